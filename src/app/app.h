@@ -42,6 +42,7 @@ extern const struct eo_command eo_command_rig;
 extern const struct eo_command eo_command_serve;
 extern const struct eo_command eo_command_stage;
 extern const struct eo_command eo_command_sweep;
+extern const struct eo_command eo_command_tolerance;
 extern const struct eo_command eo_command_verify;
 
 /* "easeoff 0.1.0" */

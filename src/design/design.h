@@ -16,6 +16,7 @@
 #include "optimizer/settings.h"
 #include "rating/pitch_deviation.h"
 #include "rating/rating_settings.h"
+#include "tolerance/settings.h"
 
 #include "base/error.h"
 
@@ -160,6 +161,7 @@ struct eo_design {
   struct eo_rating_settings rating;
   struct eo_flank_grids grids; /* beside it: what a search varies stays small */
   struct eo_pitch pitch;       /* of single teeth: over the hunting period alone */
+  struct eo_tolerance_settings tolerance;
   struct eo_objective objective;
   struct eo_optimization optimization;
   struct eo_resolution resolution;

@@ -335,7 +335,8 @@ static enum eo_code hash_without(const struct eo_design *design, const char *con
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error)
 {
-  static const char *const without[] = {"version", "name", "rating", "pitch", "objective", "optimization", NULL};
+  static const char *const without[] = {"version",   "name",      "rating",       "pitch",
+                                        "tolerance", "objective", "optimization", NULL};
   return hash_without(design, without, hex, error);
 }
 
@@ -361,7 +362,8 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"version", "name", "modification", "rating", "pitch", "objective", "optimization"};
+  static const char *const without[] = {"version", "name",      "modification", "rating",
+                                        "pitch",   "tolerance", "objective",    "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;

@@ -14,7 +14,7 @@
 
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,
     eo_supports_table, eo_shafts_table, eo_load_case_table, eo_flank_modification_table, eo_member_modification_table,
-    eo_modification_table, eo_modification_terms_table, eo_rating_table, eo_rating_member_table, eo_lubricant_table,
+    eo_modification_table, eo_modification_terms_table, eo_tolerance_table, eo_rating_table, eo_rating_member_table, eo_lubricant_table,
     eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
 /* Keys of a flank's modification that may be optimized; ends with NULL. */

@@ -76,6 +76,7 @@ static void strip(struct eo_design *bare, const struct eo_design *design)
   memset(&bare->optimization, 0, sizeof bare->optimization);
   memset(&bare->rating, 0, sizeof bare->rating);
   memset(&bare->pitch, 0, sizeof bare->pitch);
+  memset(&bare->tolerance, 0, sizeof bare->tolerance);
   memset(&bare->modification, 0, sizeof bare->modification);
 }
 

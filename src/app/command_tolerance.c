@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "app/number.h"
+#include "app/watch.h"
+#include "base/parallel.h"
+#include "document/pair_log.h"
+#include "document/tolerance_document.h"
+#include "format/json.h"
+
+struct request {
+  const char *file, *pairs, *grade, *seed, *threads, *csv, *worst, *keep, *data;
+  bool json, no_cache, no_vibration;
+  int thread_count;
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings;
+  struct eo_scatter scatter;
+  bool assumed;
+};
+
+/* A whole number of an option; *value stays where it is not given. */
+static bool read_whole(const char *text, const char *option, int low, int high, int *value, int *status)
+{
+  struct eo_error error;
+  if (!text || eo_app_read_whole(text, option, low, high, value, &error))
+    return true;
+  *status = eo_app_fail(NULL, &error);
+  return false;
+}
+
+/* Options stand in place of what the block says. */
+static bool read_options(struct request *request, int *status)
+{
+  struct eo_tolerance_settings *t = &request->design.tolerance;
+  int seed = -1;
+  if (!read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, status) ||
+      !read_whole(request->pairs, "--pairs", 1, EO_SCATTER_MOST_PAIRS, &t->pairs, status) ||
+      !read_whole(request->grade, "--class", 0, 12, &t->grade, status) ||
+      !read_whole(request->seed, "--seed", 0, 2147483647, &seed, status))
+    return false;
+  if (request->grade && t->preset == EO_SCATTER_AS_STATED)
+    t->preset = EO_SCATTER_ISO_CLASS;
+  if (seed >= 0)
+    t->seed = (uint64_t)seed;
+  if (request->no_vibration)
+    t->vibration = false;
+  return true;
+}
+
+static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
+                            struct eo_error *error)
+{
+  struct eo_text directory = {0};
+  bool cached = !request->no_cache && eo_app_cache_directory(request->data, &directory);
+  struct eo_pair_options options = {.cache_directory = cached ? directory.data : NULL};
+  enum eo_code code = eo_pair_new(pair, &request->design, &options, progress, error);
+  eo_text_done(&directory);
+  return code;
+}
+
+static enum eo_code save(struct eo_text *text, const char *path, struct eo_error *error)
+{
+  enum eo_code code = eo_text_save(text, path, error);
+  eo_text_done(text);
+  return code;
+}
+
+static enum eo_code save_files(const struct request *request, const struct eo_tolerance_report *report,
+                               struct eo_error *error)
+{
+  struct eo_text rows = {0}, worst = {0};
+  if (request->csv) {
+    eo_tolerance_csv(report, &rows);
+    EO_TRY(save(&rows, request->csv, error));
+  }
+  if (!request->worst)
+    return EO_OK;
+  json_t *document = eo_design_encode(&report->worst_design);
+  if (document)
+    eo_json_write(&worst, document, EO_JSON_PRETTY);
+  worst.failed = worst.failed || !document;
+  json_decref(document);
+  return save(&worst, request->worst, error);
+}
+
+static int show(const struct request *request, const struct eo_tolerance_report *report)
+{
+  struct eo_text text = {0};
+  if (request->json)
+    return eo_app_print_json(eo_tolerance_encode(report, &request->warnings), false);
+  eo_tolerance_summary(report, &request->warnings, &text);
+  return eo_app_print(&text);
+}
+
+static enum eo_code open_log(const struct request *request, struct eo_pair_log **log, struct eo_error *error)
+{
+  int scalars = 0;
+  while (eo_scalar_at(scalars))
+    scalars++;
+  return request->keep
+             ? eo_pair_log_open(log, request->keep, &request->design, scalars * request->design.load_cases, error)
+             : EO_OK;
+}
+
+/* The rows, from the log as far as it has them. */
+static enum eo_code run_pairs(struct request *request, const struct eo_pair *pair, const struct eo_progress *progress,
+                              struct eo_scatter_run *run, struct eo_error *error)
+{
+  struct eo_scatter_plan plan = eo_tolerance_plan(&request->design.tolerance);
+  struct eo_pair_log *log = NULL;
+  EO_TRY(open_log(request, &log, error));
+  plan.threads = request->thread_count;
+  plan.log = eo_pair_log_of(log);
+  enum eo_code code = eo_scatter_run_pairs(run, pair, &request->design, &request->scatter, &plan, progress, error);
+  eo_pair_log_close(log);
+  return code;
+}
+
+static int run_request(struct request *request)
+{
+  struct eo_watch watch;
+  struct eo_error error;
+  struct eo_pair *pair = NULL;
+  struct eo_scatter_run run = {0};
+  struct eo_tolerance_report *report = NULL;
+  eo_watch_start(&watch);
+  enum eo_code code = eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, &error);
+  if (!code)
+    code = prepare(request, &watch.progress, &pair, &error);
+  if (!code)
+    code = run_pairs(request, pair, &watch.progress, &run, &error);
+  if (!code)
+    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed, &error);
+  eo_watch_clear(&watch);
+  if (watch.stopped)
+    code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.%s",
+                        request->keep ? " The same command goes on from here." : "");
+  if (!code)
+    code = save_files(request, report, &error);
+  int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, report);
+  eo_watch_end(&watch);
+  eo_tolerance_report_free(report);
+  eo_scatter_run_done(&run);
+  eo_pair_free(pair);
+  return status;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *request = calloc(1, sizeof *request);
+  struct eo_error error;
+  int operands, status;
+  if (!request) {
+    eo_error_memory(&error);
+    return eo_app_fail(NULL, &error);
+  }
+  const struct eo_option options[] = {
+      {.name = "--pairs", .value = &request->pairs},     {.name = "--class", .value = &request->grade},
+      {.name = "--seed", .value = &request->seed},       {.name = "--no-vibration", .flag = &request->no_vibration},
+      {.name = "--worst", .value = &request->worst},     {.name = "--keep", .value = &request->keep},
+      {.name = "--json", .flag = &request->json},        {.name = "--csv", .value = &request->csv},
+      {.name = "--data", .value = &request->data},       {.name = "--no-cache", .flag = &request->no_cache},
+      {.name = "--threads", .value = &request->threads}, {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+      read_options(request, &status))
+    status = run_request(request);
+  free(request);
+  return status;
+}
+
+const struct eo_command eo_command_tolerance = {"tolerance",
+                                                "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] "
+                                                "[--worst FILE] [--keep FILE] [--json] [--csv FILE] "
+                                                "[--threads N] [--data DIR] [--no-cache]",
+                                                "many pairs as they are made: percentiles, what decides, yield",
+                                                "The design's block \"tolerance\" says what scatters: a preset, inputs "
+                                                "by their keys, limits that a good pair meets;\n"
+                                                "\"tolerance\": {\"preset\": \"iso_class\", \"class\": 5} is enough, "
+                                                "and without a block class 5 of ISO 1328-1:2013 is "
+                                                "taken.\n"
+                                                "Percentiles come with the interval in which they lie with 95 %. R2 "
+                                                "says how much of the variance the inputs explain "
+                                                "linearly,\n"
+                                                "Q2 how much a quadratic surface does for pairs that it was not fitted "
+                                                "to. --worst writes the worst pair as a design, "
+                                                "--csv a line\n"
+                                                "per pair. --keep FILE keeps every pair as it is computed: the same "
+                                                "command goes on from there. All cores work unless "
+                                                "--threads\n"
+                                                "says otherwise; the numbers do not depend on it.\n\n" EO_APP_DATA_HELP
+                                                "--no-cache neither reads nor keeps it.\n",
+                                                run};

@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "document/scatter_document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "rating/flank_tolerance.h"
+
+/* Where an evaluation reads its numbers; other blocks belong to the prepared pair, the rating or the search. */
+static const char *const varied[] = {"modification", "alignment", "supports", "shafts", "load_cases", NULL};
+
+/* What a key is being looked up for. */
+struct search {
+  struct eo_scatter *scatter;
+  const struct eo_design *design;
+  const struct eo_scatter_row *row;
+  char pointer[64]; /* of the row in the design; "" for a preset's */
+  int found;
+  struct eo_error *error;
+};
+
+static enum eo_code refuse(const struct search *search, const char *why)
+{
+  return eo_error_set(search->error, EO_ERROR_INPUT, search->pointer, "%.90s: %s", search->row->key, why);
+}
+
+/* Numbers with spaces, commas or semicolons between. */
+static enum eo_code read_values(const struct search *search, struct eo_scatter_input *input)
+{
+  const char *at = search->row->values;
+  input->values = 0;
+  while (*(at += strspn(at, " ,;\t\n"))) {
+    char *end;
+    double value = strtod(at, &end);
+    if (end == at || !isfinite(value))
+      return refuse(search, "values are numbers with spaces, commas or semicolons between.");
+    if (input->values == EO_SCATTER_LIST)
+      return refuse(search, "too many values.");
+    input->value[input->values++] = value;
+    at = end;
+  }
+  return input->values > 0 ? EO_OK : refuse(search, "values are missing.");
+}
+
+/* Rows with the same name of a group share a number; 0: none. */
+static int group_number(const struct search *search)
+{
+  const struct eo_tolerance_settings *t = &search->design->tolerance;
+  for (int i = 0; i < t->rows && *search->row->group; i++)
+    if (t->row[i].kind == search->row->kind && strcmp(t->row[i].group, search->row->group) == 0)
+      return i + 1;
+  return 0;
+}
+
+static enum eo_code set_distribution(const struct search *search, struct eo_scatter_input *input)
+{
+  const struct eo_scatter_row *row = search->row;
+  input->deviation = (struct eo_distribution){.mean = row->bias, .sigma = row->sigma, .cut = INFINITY};
+  switch (row->kind) {
+  case EO_SCATTER_UNIFORM:
+    input->deviation.kind = EO_DISTRIBUTION_UNIFORM;
+    input->deviation.low = row->low;
+    input->deviation.high = row->high;
+    return row->low <= row->high ? EO_OK : refuse(search, "low is above high.");
+  case EO_SCATTER_VALUES:
+    input->deviation.kind = EO_DISTRIBUTION_LIST;
+    input->together = group_number(search);
+    return read_values(search, input);
+  case EO_SCATTER_FIXED_SUM:
+    input->fixed_sum = group_number(search);
+    if (!input->fixed_sum)
+      return refuse(search, "a fixed sum needs a group: the inputs whose sum stays.");
+    return isnan(row->cut) ? EO_OK : refuse(search, "a fixed sum has no cut.");
+  default:
+    input->deviation.cut = isnan(row->cut) ? INFINITY : row->cut;
+    return EO_OK;
+  }
+}
+
+/* A key that is there already is taken anew: what is stated comes behind the preset. */
+static struct eo_scatter_input *place_for(struct eo_scatter *scatter, const char *key)
+{
+  for (int i = 0; i < scatter->inputs; i++)
+    if (strcmp(scatter->input[i].key, key) == 0)
+      return &scatter->input[i];
+  return scatter->inputs < EO_MAX_SCATTER_INPUTS ? &scatter->input[scatter->inputs++] : NULL;
+}
+
+static enum eo_code add_input(struct search *search, const char *key, const struct eo_scatter_input *where)
+{
+  struct eo_scatter_input *input = place_for(search->scatter, key);
+  if (!input)
+    return refuse(search, "more inputs than can scatter at once.");
+  *input = *where;
+  snprintf(input->key, sizeof input->key, "%s", key);
+  search->found++;
+  return set_distribution(search, input);
+}
+
+static enum eo_code add_number(struct search *search, const char *key, const struct eo_field *field, size_t offset)
+{
+  const struct eo_unit *unit = field->unit;
+  double si;
+  memcpy(&si, (const char *)search->design + offset, sizeof si);
+  if (strncmp(key, "alignment.", 10) == 0 && strstr(key, "_um") && strstr(key, "shaft_angle"))
+    return refuse(search, "a shaft angle error scatters as an angle, shaft_angle_error_..._deg.");
+  if (isnan(si))
+    return refuse(search, "it is not stated, so there is nothing to scatter about.");
+  struct eo_scatter_input input = {.offset = offset,
+                                   .unit = eo_unit_in(unit, 1),
+                                   .nominal = eo_unit_out(unit, si),
+                                   .least = field->low,
+                                   .most = field->high};
+  return add_input(search, key, &input);
+}
+
+static enum eo_code walk(struct search *search, const struct eo_table *table, size_t base, const char *rest,
+                         const char *before);
+
+/* Rows of a list by number, from 1. */
+static enum eo_code walk_list(struct search *search, const struct eo_field *field, size_t base, const char *rest,
+                              const char *before)
+{
+  size_t length = strcspn(rest, ".");
+  int rows;
+  bool all = length == 1 && *rest == '*';
+  memcpy(&rows, (const char *)search->design + base + field->count_offset, sizeof rows);
+  for (int i = 0; i < rows && rest[length]; i++) {
+    char key[EO_SCATTER_NAME];
+    if (!all && strtol(rest, NULL, 10) != i + 1)
+      continue;
+    snprintf(key, sizeof key, "%.80s.%d", before, i + 1);
+    EO_TRY(walk(search, field->table, base + field->offset + (size_t)i * field->table->size, rest + length + 1, key));
+  }
+  return EO_OK;
+}
+
+/* A coast flank is meant where its name stands, not by a star; the other end of a pair with one is not there. */
+static bool is_meant(const struct search *search, const struct eo_field *field, const char *name, size_t length)
+{
+  bool star = length == 1 && *name == '*';
+  if (search->design->gear_pair.ends == 1 && strcmp(field->key, "right") == 0)
+    return false;
+  if (star)
+    return strcmp(field->key, "coast") != 0 && field->kind == EO_FIELD_OBJECT;
+  return strlen(field->key) == length && strncmp(field->key, name, length) == 0;
+}
+
+static enum eo_code walk(struct search *search, const struct eo_table *table, size_t base, const char *rest,
+                         const char *before)
+{
+  size_t length = strcspn(rest, ".");
+  for (int i = 0; i < table->count; i++) {
+    const struct eo_field *field = &table->field[i];
+    char key[EO_SCATTER_NAME];
+    if (!is_meant(search, field, rest, length) || field->flags & EO_FIELD_ELSEWHERE)
+      continue;
+    snprintf(key, sizeof key, "%.48s%s%.40s", before, *before ? "." : "", field->key);
+    if (field->kind == EO_FIELD_OBJECT && rest[length] && !(field->flags & EO_FIELD_NULLABLE))
+      EO_TRY(walk(search, field->table, base + field->offset, rest + length + 1, key));
+    else if (field->kind == EO_FIELD_LIST && rest[length])
+      EO_TRY(walk_list(search, field, base, rest + length + 1, key));
+    else if (field->kind == EO_FIELD_NUMBER && !rest[length])
+      EO_TRY(add_number(search, key, field, base + field->offset));
+  }
+  return EO_OK;
+}
+
+static enum eo_code add_factor(struct search *search, int target)
+{
+  struct eo_scatter_input input = {.target = target, .unit = 1, .nominal = 1, .least = 0.1, .most = 10};
+  return add_input(search, search->row->key, &input);
+}
+
+static enum eo_code add_row(struct search *search)
+{
+  const char *key = search->row->key;
+  bool known = false;
+  if (strcmp(key, "compliance_factor") == 0)
+    return add_factor(search, EO_TARGET_COMPLIANCE);
+  if (strcmp(key, "speed_factor") == 0)
+    return add_factor(search, EO_TARGET_SPEED);
+  for (int i = 0; varied[i]; i++)
+    known |= strncmp(key, varied[i], strlen(varied[i])) == 0 && key[strlen(varied[i])] == '.';
+  if (!known)
+    return refuse(search, "what scatters stands in modification, alignment, supports, shafts or load_cases, or is "
+                          "compliance_factor or speed_factor; another gear pair is prepared anew.");
+  search->found = 0;
+  EO_TRY(walk(search, &eo_design_table, 0, key, ""));
+  return search->found ? EO_OK : refuse(search, "there is no such number in the design.");
+}
+
+static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
+{
+  const struct eo_tolerance_settings *t = &design->tolerance;
+  for (int i = 0; i < t->rows; i++) {
+    struct search search = {.scatter = scatter, .design = design, .row = &t->row[i], .error = error};
+    snprintf(search.pointer, sizeof search.pointer, "/tolerance/inputs/%d/key", i);
+    if (t->preset == EO_SCATTER_AS_MEASURED && t->row[i].kind != EO_SCATTER_VALUES)
+      return refuse(&search, "with the preset as_measured every input has values.");
+    EO_TRY(add_row(&search));
+  }
+  return EO_OK;
+}
+
+/* One input of a preset. */
+static enum eo_code add_preset_row(struct eo_scatter *scatter, const struct eo_design *design,
+                                   const struct eo_scatter_row *row, struct eo_error *error)
+{
+  struct search search = {.scatter = scatter, .design = design, .row = row, .pointer = "/tolerance", .error = error};
+  return add_row(&search);
+}
+
+static enum eo_code add_normal(struct eo_scatter *scatter, const struct eo_design *design, const char *key,
+                               double limit, struct eo_error *error)
+{
+  bool ground = design->tolerance.preset == EO_SCATTER_GROUND;
+  struct eo_scatter_row row = {.kind = EO_SCATTER_NORMAL, .sigma = limit / (ground ? 3 : 2), .cut = ground ? 3 : 2.5};
+  snprintf(row.key, sizeof row.key, "%s", key);
+  return add_preset_row(scatter, design, &row, error);
+}
+
+static enum eo_code tolerance_of(const struct eo_design *design, int member, struct eo_flank_tolerance *tolerance,
+                                 struct eo_error *error)
+{
+  const struct eo_tolerance_settings *t = &design->tolerance;
+  const struct eo_gear_pair *pair = &design->gear_pair;
+  struct eo_error found;
+  struct eo_tolerance_input in = {.reference_diameter = pair->normal_module / cos(pair->helix_angle) *
+                                                        pair->teeth[member],
+                                  .normal_module = pair->normal_module,
+                                  .face_width = pair->face_width,
+                                  .teeth = pair->teeth[member],
+                                  .grade = t->grade,
+                                  .total_contact_ratio = NAN};
+  if (eo_flank_tolerance(tolerance, (enum eo_tolerance_edition)t->edition, &in, &found))
+    return eo_error_set(error, EO_ERROR_INPUT, "/tolerance/class", "%.380s", found.text);
+  return EO_OK;
+}
+
+/* Reliefs and the lead crowning that a flank has, within 2 um: what a ground flank's wheel and axes keep to. */
+static enum eo_code add_ground(struct eo_scatter *scatter, const struct eo_design *design, int member, int end,
+                               const char *flank, struct eo_error *error)
+{
+  const struct eo_flank_modification *own = &design->modification.flank[member][end];
+  const struct {
+    const char *key;
+    double amount;
+  } all[] = {{"tip_relief_um", own->tip_relief}, {"root_relief_um", own->root_relief}};
+  for (int i = 0; i < 2; i++) {
+    struct eo_scatter_row row = {.kind = EO_SCATTER_UNIFORM, .low = -2, .high = 2, .cut = NAN};
+    snprintf(row.key, sizeof row.key, "%s.%s", flank, all[i].key);
+    if (all[i].amount > 0)
+      EO_TRY(add_preset_row(scatter, design, &row, error));
+  }
+  struct eo_scatter_row crowning = {.kind = EO_SCATTER_UNIFORM, .low = -2, .high = 2, .cut = NAN};
+  snprintf(crowning.key, sizeof crowning.key, "%s.lead_crowning_um", flank);
+  return add_preset_row(scatter, design, &crowning, error);
+}
+
+/* Slopes by f_H, a barrel and a crowning by the form tolerances f_f: what of a form deviation a flank has as a whole.
+ */
+static enum eo_code add_flank(struct eo_scatter *scatter, const struct eo_design *design,
+                              const struct eo_flank_tolerance *t, int member, int end, struct eo_error *error)
+{
+  static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
+  const struct {
+    const char *key;
+    double limit;
+  } all[] = {{"profile_slope_um", t->profile_slope},
+             {"profile_crowning_um", t->profile_form},
+             {"helix_slope_um", t->helix_slope},
+             {"lead_crowning_um", t->helix_form}};
+  char flank[64], key[EO_SCATTER_KEY];
+  snprintf(flank, sizeof flank, "modification.%s.%s", member_name[member], end_name[end]);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    snprintf(key, sizeof key, "%s.%s", flank, all[i].key);
+    EO_TRY(add_normal(scatter, design, key, 1e6 * all[i].limit, error));
+  }
+  return design->tolerance.preset == EO_SCATTER_GROUND ? add_ground(scatter, design, member, end, flank, error) : EO_OK;
+}
+
+/* Flanks of both members, and the shafts by ISO/TR 10064-3: f_Sigma over the bearing span as an angle, whatever the
+   span, with the F_beta of the gear. */
+static enum eo_code add_preset(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
+{
+  struct eo_flank_tolerance t = {0};
+  for (int member = 0; member < 2; member++) {
+    EO_TRY(tolerance_of(design, member, &t, error));
+    for (int end = 0; end < design->gear_pair.ends; end++)
+      EO_TRY(add_flank(scatter, design, &t, member, end, error));
+  }
+  struct eo_axis_tolerance axis = eo_axis_tolerance(t.helix_total, 1);
+  double per_width = 180 / M_PI / design->gear_pair.face_width;
+  EO_TRY(add_normal(scatter, design, "alignment.shaft_angle_error_in_plane_deg", axis.in_plane * per_width, error));
+  return add_normal(scatter, design, "alignment.shaft_angle_error_out_of_plane_deg", axis.out_of_plane * per_width,
+                    error);
+}
+
+enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_design *design, bool assume_class,
+                                  bool *assumed, struct eo_error *error)
+{
+  const struct eo_tolerance_settings *t = &design->tolerance;
+  bool nothing = t->preset == EO_SCATTER_AS_STATED && t->rows == 0;
+  scatter->inputs = 0;
+  if (assumed)
+    *assumed = nothing && assume_class;
+  if ((nothing && assume_class) || t->preset == EO_SCATTER_ISO_CLASS || t->preset == EO_SCATTER_GROUND)
+    EO_TRY(add_preset(scatter, design, error));
+  EO_TRY(add_stated(scatter, design, error));
+  return eo_scatter_settle(scatter, error);
+}
+
+void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size)
+{
+  const struct eo_distribution *d = &input->deviation;
+  int length = 0;
+  if (d->kind == EO_DISTRIBUTION_UNIFORM)
+    snprintf(text, size, "uniform, %+.4g .. %+.4g", d->low, d->high);
+  else if (d->kind == EO_DISTRIBUTION_LIST)
+    snprintf(text, size, "%d values", input->values);
+  else
+    length = snprintf(text, size, "normal, sigma %.4g", d->sigma);
+  if (length > 0 && d->mean != 0)
+    length += snprintf(text + length, size - (size_t)length, ", bias %+.4g", d->mean);
+  if (length > 0 && !isinf(d->cut))
+    length += snprintf(text + length, size - (size_t)length, ", cut at %.3g sigma", d->cut);
+  if (length > 0 && input->fixed_sum > 0)
+    snprintf(text + length, size - (size_t)length, ", fixed sum");
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From a design's block `tolerance` to inputs that scatter: keys looked up in the field tables, presets put into
+   numbers. */
+#ifndef EASEOFF_DOCUMENT_SCATTER_DOCUMENT_H
+#define EASEOFF_DOCUMENT_SCATTER_DOCUMENT_H
+
+#include "document/design_document.h"
+#include "tolerance/scatter.h"
+
+/* Inputs of a complete design, settled, of struct eo_design. assume_class: a block without preset and inputs means
+   class 5 of ISO 1328-1:2013, and *assumed (may be NULL) says so. Errors: EO_ERROR_INPUT with the place in the block
+   (no such key, what is no number of the evaluation, limits of the standard), memory. */
+enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_design *design, bool assume_class,
+                                  bool *assumed, struct eo_error *error);
+
+/* A row's distribution in words, "normal, sigma 3.25, cut at 2.5 sigma". */
+void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size);
+
+#endif

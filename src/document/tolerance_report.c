@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the rows of a run to what they say. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/tolerance_document.h"
+
+struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *t)
+{
+  return (struct eo_scatter_plan){.pairs = t->pairs,
+                                  .sampling = (enum eo_sampling)t->sampling,
+                                  .seed = t->seed,
+                                  .vibration = t->vibration,
+                                  .root_stress = t->root_stress};
+}
+
+static double value_at(const struct eo_scatter_run *run, int pair, int scalar, int load_case)
+{
+  return run->output[(size_t)pair * (size_t)run->outputs + (size_t)(scalar * run->cases + load_case)];
+}
+
+static enum eo_code check_limit(const struct eo_scatter_run *run, const struct eo_tolerance_limit *limit, int index,
+                                struct eo_error *error)
+{
+  char pointer[64];
+  snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/output", index);
+  if (eo_scalar_find(limit->output) < 0)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer,
+                        "There is no output \"%.60s\": peak_to_peak_um, order_1_um, max_pressure_MPa, impact_N, "
+                        "rms_m_per_s2, K_Hbeta, edge_load_share and others of the documentation are.",
+                        limit->output);
+  snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/load_case", index);
+  if (limit->load_case > run->cases)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "There is no load case %d of %d.", limit->load_case,
+                        run->cases);
+  return EO_OK;
+}
+
+/* How far a pair is beyond a limit, over the limit: at most 0 when it is met; infinite where it has no number. */
+static double beyond(const struct eo_scatter_run *run, const struct eo_tolerance_limit *limit, int pair)
+{
+  int scalar = eo_scalar_find(limit->output);
+  double worst = -INFINITY, scale = limit->most != 0 ? fabs(limit->most) : 1;
+  for (int k = 0; k < run->cases; k++) {
+    double value = value_at(run, pair, scalar, k);
+    if (limit->load_case == 0 || limit->load_case == k + 1)
+      worst = isfinite(value) ? fmax(worst, (value - limit->most) / scale) : INFINITY;
+  }
+  return worst;
+}
+
+static void set_share(struct eo_yield_row *row, int inside, int pairs)
+{
+  row->inside = inside;
+  row->pairs = pairs;
+  row->fraction = (double)inside / pairs;
+  row->exact = eo_clopper_pearson(inside, pairs, 0.95);
+  row->wilson = eo_wilson(inside, pairs, 0.95);
+}
+
+static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_error *error)
+{
+  const struct eo_tolerance_settings *t = &report->design->tolerance;
+  const struct eo_scatter_run *run = report->run;
+  int inside[EO_MAX_TOLERANCE_LIMITS + 1] = {0};
+  for (int i = 0; i < t->limits; i++)
+    EO_TRY(check_limit(run, &t->limit[i], i, error));
+  for (int pair = 0; pair < run->pairs; pair++) {
+    bool all = true;
+    for (int i = 0; i < t->limits; i++) {
+      bool met = beyond(run, &t->limit[i], pair) <= 0;
+      inside[i] += met;
+      all = all && met;
+    }
+    inside[t->limits] += all;
+  }
+  report->yields = t->limits > 0 ? t->limits + 1 : 0;
+  for (int i = 0; i < report->yields; i++) {
+    struct eo_yield_row *row = &report->yield[i];
+    *row = (struct eo_yield_row){.most = NAN};
+    if (i < t->limits) {
+      memcpy(row->output, t->limit[i].output, sizeof row->output);
+      row->load_case = t->limit[i].load_case;
+      row->most = t->limit[i].most;
+    }
+    set_share(row, inside[i], run->pairs);
+  }
+  return EO_OK;
+}
+
+/* Largest excess over a limit; where none is stated the largest swing of the transmission error. */
+static double badness(const struct eo_tolerance_report *report, int pair, int *limit)
+{
+  const struct eo_tolerance_settings *t = &report->design->tolerance;
+  double worst = -INFINITY;
+  int swing = eo_scalar_find("peak_to_peak_um");
+  *limit = -1;
+  for (int i = 0; i < t->limits; i++) {
+    double own = beyond(report->run, &t->limit[i], pair);
+    if (isfinite(own) && own > worst) {
+      worst = own;
+      *limit = i;
+    }
+  }
+  for (int k = 0; k < report->run->cases && t->limits == 0; k++) {
+    double own = value_at(report->run, pair, swing, k);
+    worst = isfinite(own) ? fmax(worst, own) : worst;
+  }
+  return worst;
+}
+
+static void find_worst(struct eo_tolerance_report *report)
+{
+  double worst = -INFINITY, unused[2];
+  int limit, swing = eo_scalar_find("peak_to_peak_um");
+  const char *name = "peak_to_peak_um";
+  for (int pair = 0; pair < report->run->pairs; pair++) {
+    double own = badness(report, pair, &limit);
+    report->failed += isnan(value_at(report->run, pair, swing, 0));
+    if (own > worst) {
+      worst = own;
+      report->worst = pair;
+      name = limit >= 0 ? report->design->tolerance.limit[limit].output : "peak_to_peak_um";
+    }
+  }
+  snprintf(report->worst_of, sizeof report->worst_of, "%s", name);
+  report->worst_design = *report->design;
+  eo_scatter_apply(report->scatter, report->run->input + (size_t)report->worst * (size_t)report->run->inputs,
+                   &report->worst_design, &unused[0], &unused[1]);
+  for (int k = 0; k < report->design->load_cases; k++)
+    report->worst_design.load_case[k].speed *= unused[1];
+  eo_table_round_to_document(&eo_design_table, &report->worst_design);
+  memset(&report->worst_design.tolerance, 0, sizeof report->worst_design.tolerance);
+  eo_table_defaults(&eo_tolerance_table, &report->worst_design.tolerance);
+  snprintf(report->worst_design.name, sizeof report->worst_design.name, "%.150s, pair %d as made", report->design->name,
+           report->worst + 1);
+}
+
+static enum eo_code report_outputs(struct eo_tolerance_report *report, struct eo_error *error)
+{
+  const struct eo_scatter_run *run = report->run;
+  struct eo_moments moments[EO_MAX_SCATTER_INPUTS];
+  bool independent = eo_scatter_is_independent(report->scatter);
+  for (int i = 0; i < run->inputs; i++)
+    moments[i] = eo_scatter_moments(report->scatter, i);
+  report->output = calloc((size_t)run->outputs, sizeof *report->output);
+  if (!report->output)
+    return eo_error_memory(error);
+  for (int i = 0; i < run->outputs; i++) {
+    struct eo_tolerance_case *output = &report->output[report->outputs];
+    *output = (struct eo_tolerance_case){
+        .scalar = eo_scalar_at(i / run->cases), .load_case = i % run->cases, .nominal = run->nominal[i]};
+    report->outputs++; /* so that it is freed */
+    EO_TRY(eo_output_report_make(&output->report, run->pairs, run->inputs, run->input, run->output + i, run->outputs,
+                                 independent ? moments : NULL, report->design->tolerance.seed, error));
+    if (output->report.rows > 0)
+      continue;
+    eo_output_report_done(&output->report);
+    report->outputs--;
+  }
+  return EO_OK;
+}
+
+enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **result, const struct eo_design *design,
+                                     const struct eo_scatter *scatter, const struct eo_scatter_run *run, bool assumed,
+                                     struct eo_error *error)
+{
+  struct eo_tolerance_report *report = calloc(1, sizeof *report);
+  if (!report)
+    return eo_error_memory(error);
+  report->design = design;
+  report->scatter = scatter;
+  report->run = run;
+  report->assumed = assumed;
+  enum eo_code code = count_yields(report, error);
+  if (!code)
+    code = report_outputs(report, error);
+  if (!code)
+    find_worst(report);
+  if (code)
+    eo_tolerance_report_free(report);
+  else
+    *result = report;
+  return code;
+}
+
+void eo_tolerance_report_free(struct eo_tolerance_report *report)
+{
+  if (!report)
+    return;
+  for (int i = 0; i < report->outputs; i++)
+    eo_output_report_done(&report->output[i].report);
+  free(report->output);
+  free(report);
+}

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Field tables of the gears as made. */
+#include "document/design_document.h"
+
+#include "evaluation/design_scatter.h"
+#include "rating/flank_tolerance.h"
+
+static const char *const presets[] = {"as_stated", "iso_class", "ground", "as_measured", NULL};
+static const char *const editions[] = {"1995", "1995_exact", "2013", NULL};
+static const char *const samplings[] = {"sobol", "latin", "random", NULL};
+static const char *const kinds[] = {"normal", "uniform", "values", "fixed_sum", NULL};
+
+static const struct eo_field row[] = {
+    {.key = "key",
+     .kind = EO_FIELD_TEXT,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_scatter_row, key),
+     .low = 1,
+     .count = EO_SCATTER_KEY,
+     .help = "what scatters: keys of this document with points between, modification.pinion.left.profile_slope_um; "
+             "load_cases.1.torque_Nm; * for every name, modification.*.*.helix_slope_um; compliance_factor, "
+             "speed_factor"},
+    EO_CHOICE(struct eo_scatter_row, kind, "distribution", kinds, EO_SCATTER_NORMAL,
+              "of the deviation from the nominal value; fixed_sum: normal, and what a group is off in all is nothing"),
+    EO_NUMBER(struct eo_scatter_row, bias, "bias", NULL, -1e6, 1e6, 0, "mean deviation, in the unit of the key"),
+    EO_NUMBER(struct eo_scatter_row, sigma, "sigma", NULL, 0, 1e6, 0,
+              "standard deviation before the cut, in the unit of the key"),
+    EO_NUMBER_DERIVED(struct eo_scatter_row, cut, "cut_sigma", NULL, 0.1, 10, "no cut",
+                      "deviations farther from the bias do not occur, in sigma (normal)"),
+    EO_NUMBER(struct eo_scatter_row, low, "low", NULL, -1e6, 1e6, 0, "least deviation (uniform)"),
+    EO_NUMBER(struct eo_scatter_row, high, "high", NULL, -1e6, 1e6, 0, "largest deviation (uniform)"),
+    EO_TEXT(struct eo_scatter_row, values, "values",
+            "deviations as they were measured, numbers with spaces, commas or semicolons between (values)"),
+    EO_TEXT(struct eo_scatter_row, group, "group",
+            "values: rows of one group are drawn together, pair by pair; fixed_sum: whose sum stays"),
+};
+static const struct eo_table row_table = EO_TABLE("an input that scatters", struct eo_scatter_row, row);
+
+static const struct eo_field limit[] = {
+    {.key = "output",
+     .kind = EO_FIELD_TEXT,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_tolerance_limit, output),
+     .low = 1,
+     .count = EO_SCATTER_KEY,
+     .help = "a number of the load cases: peak_to_peak_um, rms_m_per_s2, max_pressure_MPa ..."},
+    {.key = "load_case",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_tolerance_limit, load_case),
+     .low = 1,
+     .high = EO_MAX_LOAD_CASES,
+     .fallback = NAN,
+     .derived = "every one",
+     .help = "which load case, from 1"},
+    EO_NUMBER_REQUIRED(struct eo_tolerance_limit, most, "at_most", NULL, -1e9, 1e9, "in the unit of the output"),
+};
+static const struct eo_table limit_table = EO_TABLE("a limit", struct eo_tolerance_limit, limit);
+
+static const struct eo_field tolerance[] = {
+    EO_CHOICE(struct eo_tolerance_settings, preset, "preset", presets, EO_SCATTER_AS_STATED,
+              "inputs beside those stated: iso_class: slopes, form as crownings and shaft angles by ISO 1328-1, the "
+              "tolerance is 2 sigma, cut at 2.5; ground: the tolerance is 3 sigma, reliefs and crownings within 2 um; "
+              "as_stated, as_measured: none"),
+    EO_CHOICE(struct eo_tolerance_settings, edition, "edition", editions, EO_ISO1328_2013, "of ISO 1328-1"),
+    EO_INTEGER(struct eo_tolerance_settings, grade, "class", 0, 12, 5,
+               "tolerance class of 2013, or grade of 1995, of the preset"),
+    EO_INTEGER(struct eo_tolerance_settings, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, 1000, "how many are drawn"),
+    EO_CHOICE(struct eo_tolerance_settings, sampling, "sampling", samplings, EO_SAMPLING_SOBOL,
+              "scrambled Sobol points, a Latin hypercube, or independent draws"),
+    {.key = "seed",
+     .kind = EO_FIELD_SEED,
+     .offset = offsetof(struct eo_tolerance_settings, seed),
+     .low = 0,
+     .high = 9007199254740991.,
+     .fallback = 1,
+     .help = "equal seeds give equal pairs"},
+    EO_FLAG(struct eo_tolerance_settings, vibration, "vibration", 1, "with the vibration of every pair"),
+    EO_FLAG(struct eo_tolerance_settings, root_stress, "root_stress", 0, "with its root stress, which takes longest"),
+    EO_LIST(struct eo_tolerance_settings, row, rows, "inputs", &row_table, 0, EO_MAX_SCATTER_ROWS,
+            "what scatters and how; a key that the preset has too is taken from here"),
+    EO_LIST(struct eo_tolerance_settings, limit, limits, "limits", &limit_table, 0, EO_MAX_TOLERANCE_LIMITS,
+            "what a good pair meets"),
+};
+const struct eo_table eo_tolerance_table = EO_TABLE("tolerance", struct eo_tolerance_settings, tolerance);

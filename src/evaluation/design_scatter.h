@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Many pairs as made: each drawn, evaluated as far as its numbers are asked for, and kept as one row. */
+#ifndef EASEOFF_EVALUATION_DESIGN_SCATTER_H
+#define EASEOFF_EVALUATION_DESIGN_SCATTER_H
+
+#include "evaluation/scalar.h"
+#include "tolerance/scatter.h"
+
+enum { EO_SCATTER_MOST_PAIRS = 100000 };
+
+/* A row that is known from before is not computed again; each new one is handed over once, from several threads, one at
+   a time. */
+struct eo_scatter_log {
+  bool (*find)(void *context, int pair, double *output); /* fills output[outputs]; NULL: nothing is known */
+  enum eo_code (*keep)(void *context, int pair, const double *output, struct eo_error *error); /* NULL: nowhere */
+  void *context;
+};
+
+struct eo_scatter_plan {
+  int pairs;
+  enum eo_sampling sampling;
+  uint64_t seed;
+  bool vibration, root_stress; /* the numbers that need them are NaN without */
+  int threads;                 /* 0: eo_parallel_cores() */
+  struct eo_scatter_log log;
+};
+
+/* One column per number of each load case: scalar * cases + load case. */
+struct eo_scatter_run {
+  int pairs, inputs, cases, scalars, outputs, bounded; /* bounded: draws that met a bound of their key */
+  double *input;                                       /* [pairs][inputs], in the units of the keys */
+  double *output;                                      /* [pairs][outputs], in the units of the scalars; NaN: none */
+  double *nominal;                                     /* [outputs], of the design itself */
+};
+
+/* design: resolved, served by the pair. The same bytes for any number of threads. Errors: EO_ERROR_INPUT (pairs,
+   supports), memory, cancelled, of the log. eo_scatter_run_done() also after an error. */
+enum eo_code eo_scatter_run_pairs(struct eo_scatter_run *run, const struct eo_pair *pair,
+                                  const struct eo_design *design, const struct eo_scatter *scatter,
+                                  const struct eo_scatter_plan *plan, const struct eo_progress *progress,
+                                  struct eo_error *error);
+void eo_scatter_run_done(struct eo_scatter_run *run); /* NULL is fine */
+
+#endif

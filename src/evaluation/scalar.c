@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evaluation/scalar.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "numerics/periodic.h"
+
+enum what {
+  SWING,
+  MEAN,
+  ORDER,
+  PRESSURE,
+  LINE_LOAD,
+  EDGE,
+  FACE_FACTOR,
+  SHARE_FACTOR,
+  IMPACT,
+  RMS,
+  DYNAMIC,
+  LOSS,
+  ROOT
+};
+
+/* clang-format off */
+static const struct eo_scalar scalars[] = {
+    {"peak_to_peak_um", "of the loaded transmission error of the pair", 1e-6, 0, 0, -1, SWING},
+    {"peak_to_peak_left_um", "of the left end alone", 1e-6, 0, 0, EO_LEFT, SWING},
+    {"peak_to_peak_right_um", "of the right end alone", 1e-6, 0, 0, EO_RIGHT, SWING},
+    {"mean_um", "of the loaded transmission error", 1e-6, 0, 0, -1, MEAN},
+    {"order_1_um", "first mesh order of the transmission error, amplitude", 1e-6, 0, 1, -1, ORDER},
+    {"order_2_um", "second mesh order", 1e-6, 0, 2, -1, ORDER},
+    {"order_3_um", "third mesh order", 1e-6, 0, 3, -1, ORDER},
+    {"max_pressure_MPa", "largest contact pressure", 1e6, 0, 0, -1, PRESSURE},
+    {"max_pressure_left_MPa", "of the left end", 1e6, 0, 0, EO_LEFT, PRESSURE},
+    {"max_pressure_right_MPa", "of the right end", 1e6, 0, 0, EO_RIGHT, PRESSURE},
+    {"max_line_load_N_per_mm", "largest load per length of contact line", 1e3, 0, 0, -1, LINE_LOAD},
+    {"edge_load_share", "largest share of the load on tip edges", 1, 0, 0, -1, EDGE},
+    {"K_Hbeta", "load over the face: largest over mean", 1, 0, 0, -1, FACE_FACTOR},
+    {"K_Halpha", "sharing among the pairs", 1, 0, 0, -1, SHARE_FACTOR},
+    {"impact_N", "general entering impact", 1, 0, 0, -1, IMPACT},
+    {"rms_m_per_s2", "RMS of the relative acceleration normal to the teeth", 1, EO_SCALAR_VIBRATION, 0, -1, RMS},
+    {"dynamic_factor", "largest dynamic over static mesh force", 1, EO_SCALAR_VIBRATION, 0, -1, DYNAMIC},
+    {"contact_loss", "share of the mesh cycle without contact", 1, EO_SCALAR_VIBRATION, 0, -1, LOSS},
+    {"root_stress_MPa", "largest root stress of both members", 1e6, EO_SCALAR_ROOT, 0, -1, ROOT},
+};
+/* clang-format on */
+enum { SCALARS = sizeof scalars / sizeof *scalars };
+
+const struct eo_scalar *eo_scalar_at(int index)
+{
+  return index >= 0 && index < SCALARS ? &scalars[index] : NULL;
+}
+
+int eo_scalar_find(const char *key)
+{
+  for (int i = 0; i < SCALARS; i++)
+    if (strcmp(scalars[i].key, key) == 0)
+      return i;
+  return -1;
+}
+
+static double order_of(const struct eo_evaluation *evaluation, const struct eo_case_result *c, int order)
+{
+  double amplitude[3][2];
+  if (2 * order >= evaluation->positions)
+    return NAN;
+  eo_periodic_harmonics(evaluation->positions, c->transmission, order, amplitude);
+  return hypot(amplitude[order - 1][0], amplitude[order - 1][1]);
+}
+
+static double root_of(const struct eo_end_result *end)
+{
+  double largest = NAN;
+  for (int member = 0; member < 2; member++)
+    if (end->root[member].phases > 0)
+      largest = fmax(largest, end->root[member].maximum);
+  return largest;
+}
+
+static double at_end(const struct eo_scalar *scalar, const struct eo_case_result *c, int end)
+{
+  const struct eo_end_result *e = &c->end[end];
+  switch (scalar->what) {
+  case SWING:
+    return e->transmission_peak;
+  case PRESSURE:
+    return e->max_pressure;
+  case LINE_LOAD:
+    return e->max_line_load;
+  case EDGE:
+    return e->edge_share;
+  case FACE_FACTOR:
+    return e->face.face_factor;
+  case SHARE_FACTOR:
+    return e->face.share_factor;
+  case IMPACT:
+    return e->impact.force;
+  case LOSS:
+    return c->vibration.contact_loss[end];
+  default:
+    return root_of(e);
+  }
+}
+
+/* The worse end; NaN of one does not hide the other. */
+static double worse_of(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation,
+                       const struct eo_case_result *c)
+{
+  double worst = NAN;
+  for (int end = 0; end < evaluation->ends; end++)
+    worst = fmax(worst, at_end(scalar, c, end));
+  return worst;
+}
+
+double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation, int load_case)
+{
+  const struct eo_case_result *c = &evaluation->load_case[load_case];
+  bool shaken = !(scalar->needs & EO_SCALAR_VIBRATION) || c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
+  if (c->contact_failures > 0 || !shaken || scalar->end >= evaluation->ends)
+    return NAN;
+  if (scalar->end >= 0)
+    return at_end(scalar, c, scalar->end) / scalar->unit;
+  switch (scalar->what) {
+  case SWING:
+    return c->peak_to_peak / scalar->unit;
+  case MEAN:
+    return c->mean / scalar->unit;
+  case ORDER:
+    return order_of(evaluation, c, scalar->order) / scalar->unit;
+  case RMS:
+    return c->vibration.rms_pair[EO_READING_NORMAL] / scalar->unit;
+  case DYNAMIC:
+    return c->dynamic_force_factor / scalar->unit;
+  default:
+    return worse_of(scalar, evaluation, c) / scalar->unit;
+  }
+}

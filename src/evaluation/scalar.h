@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Single numbers of a load case, by name: what a tolerance analysis counts and what an objective may be. */
+#ifndef EASEOFF_EVALUATION_SCALAR_H
+#define EASEOFF_EVALUATION_SCALAR_H
+
+#include "evaluation/evaluator.h"
+
+/* What it takes beyond the static half of an evaluation. */
+enum { EO_SCALAR_VIBRATION = 1, EO_SCALAR_ROOT = 2 };
+
+struct eo_scalar {
+  const char *key;  /* with the unit of the document */
+  const char *help; /* one line for people */
+  double unit;      /* SI value = value times unit */
+  int needs;        /* EO_SCALAR_... */
+  int order;        /* of the transmission error; 0: none */
+  int end;          /* EO_LEFT, EO_RIGHT; -1: the pair, or the worse end */
+  int what;         /* of scalar.c */
+};
+
+/* NULL after the last; the index of a key, -1: none. */
+const struct eo_scalar *eo_scalar_at(int index);
+int eo_scalar_find(const char *key);
+
+/* Of a load case, in the unit of the key; NaN where there is none (no such end, contact or vibration did not converge,
+   not asked for). */
+double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation, int load_case);
+
+#endif

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tolerance/output_report.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tolerance/influence.h"
+#include "tolerance/interval.h"
+#include "tolerance/surface.h"
+
+static const double percents[EO_REPORT_PERCENTS] = {1, 5, 10, 25, 50, 75, 90, 95, 99};
+enum { RESAMPLES = 400 }; /* the ends of an interval to 5 % of its width */
+
+/* Rows that have the number: [rows][inputs], [rows], and sorted. */
+struct rows {
+  int count, inputs;
+  double *input, *output, *sorted;
+};
+
+static enum eo_code collect(struct rows *rows, struct eo_output_report *report, int pairs, const double *input,
+                            const double *output, int stride, struct eo_error *error)
+{
+  size_t n = (size_t)pairs, k = (size_t)rows->inputs;
+  rows->input = malloc(sizeof *rows->input * n * (k + 2));
+  if (!rows->input)
+    return eo_error_memory(error);
+  rows->output = rows->input + n * k;
+  rows->sorted = rows->output + n;
+  for (size_t i = 0; i < n; i++) {
+    double value = output[i * (size_t)stride];
+    if (!isfinite(value))
+      continue;
+    memcpy(rows->input + (size_t)rows->count * k, input + i * k, sizeof *input * k);
+    if (rows->count == 0 || value > rows->output[report->largest])
+      report->largest = rows->count;
+    rows->output[rows->count++] = value;
+  }
+  /* from the number of the row back to that of the pair */
+  for (int i = 0, row = 0; i < pairs; i++)
+    if (isfinite(output[(size_t)i * (size_t)stride]) && row++ == report->largest) {
+      report->largest = i;
+      break;
+    }
+  memcpy(rows->sorted, rows->output, sizeof *rows->output * (size_t)rows->count);
+  eo_sort_numbers(rows->count, rows->sorted);
+  return EO_OK;
+}
+
+static enum eo_code describe(const struct rows *rows, struct eo_output_report *report, uint64_t seed,
+                             struct eo_error *error)
+{
+  struct eo_bootstrap bootstrap = {0};
+  report->summary = eo_summary_of(rows->count, rows->output);
+  report->varies = report->summary.largest > report->summary.least;
+  eo_histogram(rows->count, rows->output, report->summary.least, report->summary.largest, EO_REPORT_BINS,
+               report->count);
+  for (int i = 0; i < EO_REPORT_PERCENTS; i++) {
+    struct eo_rank_interval ranks = eo_order_statistic_ranks(rows->count, percents[i] / 100, 0.95);
+    report->percentile[i] =
+        (struct eo_report_percentile){.percent = percents[i],
+                                      .value = eo_percentile(rows->count, rows->sorted, percents[i]),
+                                      .low = ranks.low >= 1 ? rows->sorted[ranks.low - 1] : NAN,
+                                      .high = ranks.high <= rows->count ? rows->sorted[ranks.high - 1] : NAN};
+  }
+  EO_TRY(eo_bootstrap_run(&bootstrap, rows->count, rows->output, 0, NULL, 0.95, RESAMPLES, seed, error));
+  memcpy(report->mean_interval, bootstrap.mean, sizeof bootstrap.mean);
+  memcpy(report->deviation_interval, bootstrap.deviation, sizeof bootstrap.deviation);
+  return EO_OK;
+}
+
+/* What cannot be fitted (too few rows, inputs that depend on each other) is left out. */
+static enum eo_code regress(const struct rows *rows, struct eo_output_report *report, double *size,
+                            struct eo_error *error)
+{
+  struct eo_error found;
+  struct eo_regression regression = {.coefficient = size};
+  enum eo_code code = eo_regression_run(&regression, rows->count, rows->inputs, rows->input, rows->output, &found);
+  if (code == EO_ERROR_NUMERIC)
+    return EO_OK;
+  if (code)
+    return eo_error_memory(error);
+  report->r2 = regression.r2;
+  report->r2_adjusted = regression.r2_adjusted;
+  for (int i = 0; i < rows->inputs; i++)
+    report->influence[i].coefficient = size[i];
+  return EO_OK;
+}
+
+static enum eo_code fit_surface(const struct rows *rows, struct eo_output_report *report,
+                                const struct eo_moments *moments, double *scratch, struct eo_error *error)
+{
+  struct eo_surface surface;
+  struct eo_error found;
+  enum eo_code code = eo_surface_fit(&surface, rows->count, rows->inputs, moments, rows->input, rows->output, &found);
+  if (!code) {
+    report->q2 = surface.q2;
+    report->residual = surface.residual;
+    report->leading = surface.leading;
+    eo_surface_indices(&surface, scratch, scratch + rows->inputs);
+    for (int i = 0; i < rows->inputs; i++) {
+      report->influence[i].first = scratch[i];
+      report->influence[i].total = scratch[rows->inputs + i];
+    }
+  }
+  eo_surface_done(&surface);
+  return code == EO_ERROR_MEMORY ? eo_error_memory(error) : EO_OK;
+}
+
+static enum eo_code put_in_order(struct eo_output_report *report, double *size, struct eo_error *error)
+{
+  int k = report->inputs, *order = malloc(sizeof *order * (size_t)k);
+  struct eo_report_influence *old = malloc(sizeof *old * (size_t)k);
+  bool by_surface = report->q2 > report->r2;
+  enum eo_code code = order && old ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    memcpy(old, report->influence, sizeof *old * (size_t)k);
+    for (int i = 0; i < k; i++)
+      size[i] = by_surface ? old[i].total : old[i].coefficient;
+    eo_order_by_size(k, size, order);
+    for (int i = 0; i < k; i++)
+      report->influence[i] = old[order[i]];
+  }
+  free(order);
+  free(old);
+  return code;
+}
+
+static enum eo_code find_influences(const struct rows *rows, struct eo_output_report *report,
+                                    const struct eo_moments *moments, struct eo_error *error)
+{
+  double *scratch = malloc(sizeof *scratch * 2 * (size_t)rows->inputs);
+  if (!scratch)
+    return eo_error_memory(error);
+  enum eo_code code = regress(rows, report, scratch, error);
+  if (!code && moments)
+    code = fit_surface(rows, report, moments, scratch, error);
+  if (!code)
+    code = put_in_order(report, scratch, error);
+  free(scratch);
+  return code;
+}
+
+enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, int inputs, const double *input,
+                                   const double *output, int stride, const struct eo_moments *moments, uint64_t seed,
+                                   struct eo_error *error)
+{
+  struct rows rows = {.inputs = inputs};
+  *report = (struct eo_output_report){.inputs = inputs, .r2 = NAN, .r2_adjusted = NAN, .q2 = NAN, .residual = NAN};
+  report->influence = malloc(sizeof *report->influence * (size_t)inputs);
+  if (!report->influence)
+    return eo_error_memory(error);
+  for (int i = 0; i < inputs; i++)
+    report->influence[i] = (struct eo_report_influence){i, NAN, NAN, NAN};
+  enum eo_code code = collect(&rows, report, pairs, input, output, stride, error);
+  report->rows = rows.count;
+  if (!code && rows.count > 0)
+    code = describe(&rows, report, seed, error);
+  if (!code && report->varies)
+    code = find_influences(&rows, report, moments, error);
+  free(rows.input);
+  return code;
+}
+
+void eo_output_report_done(struct eo_output_report *report)
+{
+  if (report)
+    free(report->influence);
+}

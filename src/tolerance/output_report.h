@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One number of many pairs: how it is distributed and what decides. */
+#ifndef EASEOFF_TOLERANCE_OUTPUT_REPORT_H
+#define EASEOFF_TOLERANCE_OUTPUT_REPORT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/error.h"
+#include "tolerance/distribution.h"
+#include "tolerance/statistics.h"
+
+enum { EO_REPORT_PERCENTS = 9, EO_REPORT_BINS = 25 };
+
+/* A percentile and where it lies with 95 %, by the ranks of the values (distribution-free); NaN: that side is open. */
+struct eo_report_percentile {
+  double percent, value, low, high;
+};
+
+/* One input: standardised coefficient, Sobol indices of the surface. NaN where there is none. */
+struct eo_report_influence {
+  int input;
+  double coefficient, first, total;
+};
+
+struct eo_output_report {
+  int rows; /* pairs that have the number; the rest did not converge */
+  struct eo_summary summary;
+  double mean_interval[2], deviation_interval[2]; /* 95 %, bootstrap */
+  struct eo_report_percentile percentile[EO_REPORT_PERCENTS];
+  int count[EO_REPORT_BINS]; /* equal parts from least to largest */
+  int largest;               /* pair */
+  bool varies;
+  double r2, r2_adjusted; /* of the linear regression; NaN: none */
+  double q2, residual;    /* of the quadratic surface, each row left out once; NaN: none */
+  int leading;            /* inputs that it has squares and products of */
+  int inputs;
+  struct eo_report_influence *influence; /* [inputs], by size of the total index where the surface carries more than the
+                                            regression, else by that of the coefficient; owned */
+};
+
+/* input[pairs][inputs]; output: every stride-th value, NaN where there is none. moments: of independent inputs; NULL:
+   they are not independent, so there is no surface. Errors: memory. */
+enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, int inputs, const double *input,
+                                   const double *output, int stride, const struct eo_moments *moments, uint64_t seed,
+                                   struct eo_error *error);
+void eo_output_report_done(struct eo_output_report *report);
+
+#endif
