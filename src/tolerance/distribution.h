@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How one input scatters about its nominal value: section "Tolerances" of doc/theory.md. Units are those of whoever
+/* How one input scatters about its nominal value: doc/theory/as-made.md. Units are those of whoever
    states it. */
 #ifndef EASEOFF_TOLERANCE_DISTRIBUTION_H
 #define EASEOFF_TOLERANCE_DISTRIBUTION_H

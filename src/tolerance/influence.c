@@ -22,7 +22,7 @@ static int standardise(int n, int k, const double *input, const double *output, 
     for (int row = 0; row < n; row++)
       own[row] = i < k ? input[(size_t)row * (size_t)k + (size_t)i] : output[row];
     struct eo_summary s = eo_summary_of(n, own);
-    if (i < k && s.least == s.largest)
+    if (i < k && !(s.largest > s.least))
       continue;
     for (int row = 0; row < n; row++)
       own[row] = s.largest > s.least ? (own[row] - s.mean) / s.deviation : 0;
@@ -39,7 +39,7 @@ static double product(int n, const double *a, const double *b)
   return sum;
 }
 
-/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: (T7). */
+/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: (A7). */
 static enum eo_code solve(struct eo_regression *regression, int n, int varying, const double *column, const int *of,
                           struct eo_error *error)
 {
@@ -142,7 +142,7 @@ struct sums {
 };
 
 /* One pair of points a, b and those of a with one coordinate of b each:
-   V_i = mean of f(b) (f(a_b^i) - f(a)), T_i = mean of (f(a) - f(a_b^i))^2 / 2: (T9). */
+   V_i = mean of f(b) (f(a_b^i) - f(a)), T_i = mean of (f(a) - f(a_b^i))^2 / 2: (A9). */
 static void add_point(eo_unit_function *function, void *context, int inputs, double *u, double shift, struct sums *sums)
 {
   const double *other = u + inputs;

@@ -35,7 +35,7 @@ void eo_sort_numbers(int n, double *value)
   qsort(value, (size_t)n, sizeof *value, ascending);
 }
 
-/* (T3) */
+/* (A3) */
 double eo_percentile(int n, const double *sorted, double percent)
 {
   double rank = (n - 1) * percent / 100;
@@ -73,7 +73,8 @@ enum eo_code eo_bootstrap_run(struct eo_bootstrap *bootstrap, int n, const doubl
     struct eo_summary s = eo_summary_of(n, own);
     drawn[r] = s.mean;
     drawn[each + r] = s.deviation;
-    eo_sort_numbers(n, own);
+    if (percents > 0)
+      eo_sort_numbers(n, own);
     for (int k = 0; k < percents; k++)
       drawn[(size_t)(k + 2) * each + r] = eo_percentile(n, own, percent[k]);
   }

@@ -153,6 +153,7 @@ static void test_every_fault(void)
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
   complete.rating.accuracy_grade = 5; /* so that the rating is in the document */
+  complete.tolerance.grade = 6;       /* and this */
   for (int i = 0; i < 4; i++)         /* and all flanks */
     complete.modification.coast[i / 2][i % 2].helix_slope = 1e-6;
   complete.load_case[0].has_alignment = 1;

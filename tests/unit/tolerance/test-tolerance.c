@@ -9,6 +9,7 @@
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
 #include "tolerance/sampler.h"
+#include "tolerance/scatter.h"
 #include "tolerance/sobol_sequence.h"
 #include "tolerance/statistics.h"
 #include "tolerance/surface.h"
@@ -202,8 +203,51 @@ static void test_surface(void)
   eo_surface_done(&surface);
 }
 
+/* Sigma 3 and 4 under a fixed sum: what is left of 3 is 3 sqrt(1 - 9/25) = 2.4, and of 4 the same. */
+static void test_scatter(void)
+{
+  enum { PAIRS = 2000 };
+  static struct eo_scatter scatter;
+  static double column[2][PAIRS];
+  struct eo_sampler *sampler;
+  struct eo_error error;
+  const double unbounded = INFINITY;
+  double over = 0, member[3] = {0, 0, 7}, compliance, speed;
+  int bounded = 0;
+  scatter.inputs = 3;
+  for (int i = 0; i < 3; i++)
+    scatter.input[i] = (struct eo_scatter_input){.offset = sizeof(double) * (size_t)i,
+                                                 .unit = 1e-3,
+                                                 .nominal = 10,
+                                                 .least = -unbounded,
+                                                 .most = unbounded,
+                                                 .deviation = {.sigma = 3 + i, .cut = INFINITY},
+                                                 .fixed_sum = i < 2};
+  scatter.input[2].target = EO_TARGET_COMPLIANCE;
+  scatter.input[2].nominal = 1;
+  scatter.input[2].least = 0.1;
+  ok(eo_scatter_settle(&scatter, &error) == EO_OK && scatter.dimensions == 3, "three inputs");
+  ok(!eo_scatter_is_independent(&scatter), "a fixed sum ties two of them");
+  eo_sampler_new(&sampler, EO_SAMPLING_SOBOL, 3, PAIRS, 1, &error);
+  for (int i = 0; i < PAIRS; i++) {
+    double value[3];
+    bounded += eo_scatter_draw(&scatter, sampler, i, value);
+    over = fmax(over, fabs(value[0] + value[1] - 20));
+    column[0][i] = value[0];
+    column[1][i] = value[1];
+    eo_scatter_apply(&scatter, value, member, &compliance, &speed);
+  }
+  eo_sampler_free(sampler);
+  close_to(over, 0, 1e-12, "the sum stays");
+  close_to(eo_summary_of(PAIRS, column[0]).deviation, 2.4, 0.03, "deviation under a fixed sum");
+  close_to(eo_scatter_moments(&scatter, 1).deviation, 2.4, 1e-12, "of the other one, stated");
+  close_to(member[0], 1e-3 * column[0][PAIRS - 1], 1e-15, "the value stands in the struct");
+  ok(member[2] == 7 && speed == 1 && compliance >= 0.1 && bounded > 500, "a factor has its bound: %d times", bounded);
+}
+
 int main(void)
 {
+  test_scatter();
   test_normal();
   test_distributions();
   test_sequence();

@@ -1,0 +1,111 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# easeoff tolerance from outside, on the paper pair at a coarse resolution.
+. "$(dirname "$0")/../support/tap.sh"
+
+write_design() # BLOCK: with this block "tolerance"
+{
+  cat >"$folder/design.json" <<EOF
+{"name": "coarse", "gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
+ "load_cases": [{"torque_Nm": 828, "speed_rpm": 2000}],
+ "modification": {"pinion": {"left": {"tip_relief_um": 14, "tip_relief_start_mm": 1.6}, "right": {"tip_relief_um": 14, "tip_relief_start_mm": 1.6}}},
+ "tolerance": $1,
+ "resolution": {"positions": 16, "cells_per_line": 12, "body": "sector", "sector_teeth": 3, "layers": 10, "flank_rows": 6, "fillet_elements": 8, "te_harmonics": 5, "harmonics": 8}}
+EOF
+}
+
+tolerance() # ARGUMENTS...: output in $folder/out
+{
+  "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" "$@" >"$folder/out" 2>"$folder/err"
+  result $? "tolerance $*"
+}
+
+refuses() # TEXT BLOCK: on one line of standard error
+{
+  write_design "$2"
+  "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" >"$folder/out" 2>"$folder/err"
+  [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$1" "$folder/err"
+  result $? "says $1"
+}
+
+same() # FILE FILE WHAT
+{
+  cmp -s "$1" "$2"
+  result $? "$3"
+}
+
+# near WHAT PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]: see json-numbers.c.
+near()
+{
+  what=$1
+  shift
+  verdict=$("$numbers" "$folder/out" "$@" 2>&1)
+  result $? "$what: $verdict"
+}
+
+# ---- linear response: apex offsets displace the mean transmission error by tan(beta_b)/2 um per um ----
+
+write_design '{"vibration": false, "inputs": [{"key": "alignment.pinion_apex_offset_um", "sigma": 12}, {"key": "alignment.gear_apex_offset_um", "sigma": 9}]}'
+tolerance --pairs 256 --json
+# nominal + z tan(beta_b)/2 sqrt(12^2 + 9^2): 95 % lies 5.102461 um above the median; 4 standard errors of 256 pairs are 1.6 um
+median=$("$numbers" "$folder/out" /outputs/3/percentiles/4/value | tr -d "[] ")
+awk "BEGIN { printf \"[%.9f]\", $median + 5.102461 }" >"$folder/expected"
+near "the 95 % percentile of a normal" /outputs/3/percentiles/7/value "$folder/expected" "" 0.25 absolute
+echo "[3.102076]" >"$folder/expected"
+near "its standard deviation" /outputs/3/std "$folder/expected" "" 0.02 relative
+echo "[1]" >"$folder/expected"
+near "R2 of a linear response" /outputs/3/R2 "$folder/expected" "" 1e-6 absolute
+echo "[0.64]" >"$folder/expected"
+near "the pinion's share of the variance" /outputs/3/influences/0/first "$folder/expected" "" 0.005 absolute
+echo "[0]" >"$folder/expected"
+near "the swing does not change" /outputs/0/std "$folder/expected" "" 1e-4 absolute
+
+# ---- the same bytes for threads and after a stop ----
+
+write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
+tolerance --pairs 24 --json --threads 1 --worst "$folder/worst.json"
+cp "$folder/out" "$folder/one.json"
+tolerance --pairs 24 --json --threads 3
+same "$folder/out" "$folder/one.json" "the same bytes with 3 threads"
+tolerance --pairs 24 --json --keep "$folder/pairs"
+# as a kill leaves it: a row cut off in its middle
+head -n 12 "$folder/pairs" >"$folder/cut"
+sed -n 13p "$folder/pairs" | cut -c 1-40 | tr -d '\n' >>"$folder/cut"
+tolerance --pairs 24 --json --keep "$folder/cut"
+same "$folder/out" "$folder/one.json" "the same bytes after a stop"
+[ "$(grep -c ';$' "$folder/cut")" -eq 24 ]
+result $? "every pair once in the file"
+tolerance --pairs 24 --json --keep "$folder/cut"
+same "$folder/out" "$folder/one.json" "and from the file alone"
+write_design '{"preset": "iso_class", "class": 6}'
+"$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs 24 --keep "$folder/cut" >"$folder/out" 2>"$folder/err"
+[ $? -eq 1 ] && grep -q "no pairs of this design" "$folder/err"
+result $? "a file of another scatter is refused"
+
+# ---- the worst pair opens as a design ----
+
+"$EASEOFF" analyze "$folder/worst.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
+result $? "the worst pair is a design"
+"$numbers" "$folder/one.json" /outputs/0/histogram/to >"$folder/expected"
+near "with the largest swing" /load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
+
+# ---- people and tables ----
+
+write_design '{}'
+tolerance --pairs 8 --no-vibration --csv "$folder/pairs.csv"
+grep -q "class 5 of ISO 1328-1:2013 is taken" "$folder/out" && grep -q "Worst pair" "$folder/out"
+result $? "a table for people says what was assumed"
+[ "$(wc -l <"$folder/pairs.csv")" -eq 9 ] && [ "$(awk -F, '{ print NF }' "$folder/pairs.csv" | sort -u | wc -l)" -eq 1 ]
+result $? "a heading and a line for each pair"
+
+refuses "there is no such number" '{"inputs": [{"key": "modification.pinion.left.profil_slope_um", "sigma": 1}]}'
+refuses "another gear pair is prepared anew" '{"inputs": [{"key": "gear_pair.normal_module_mm", "sigma": 1}]}'
+refuses "not stated" '{"inputs": [{"key": "modification.pinion.left.tip_relief_diameter_mm", "sigma": 1}]}'
+refuses "no output \"peak\"" '{"pairs": 1, "limits": [{"output": "peak", "at_most": 1}]}'
+refuses "no load case 2" '{"pairs": 1, "limits": [{"output": "peak_to_peak_um", "load_case": 2, "at_most": 1}]}'
+refuses "alone cannot keep a sum" '{"inputs": [{"key": "alignment.gear_apex_offset_um", "distribution": "fixed_sum", "group": "a", "sigma": 1}]}'
+refuses "every input has values" '{"preset": "as_measured", "inputs": [{"key": "alignment.gear_apex_offset_um", "sigma": 1}]}'
+refuses "low is above high" '{"inputs": [{"key": "speed_factor", "distribution": "uniform", "low": 1, "high": 0}]}'
+
+echo "1..$count"
+exit $failed
