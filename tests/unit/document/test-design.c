@@ -152,9 +152,13 @@ static void test_every_fault(void)
   memset(long_text, 'x', sizeof long_text - 1);
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
-  complete.rating.accuracy_grade = 5; /* so that the rating is in the document */
-  complete.tolerance.grade = 6;       /* and this */
-  for (int i = 0; i < 4; i++)         /* and all flanks */
+  complete.rating.accuracy_grade = 5;                      /* so that the rating is in the document */
+  complete.tolerance.rows = complete.tolerance.limits = 1; /* and these */
+  complete.tolerance.row[0].cut = NAN;
+  strcpy(complete.tolerance.row[0].key, "speed_factor");
+  strcpy(complete.tolerance.limit[0].output, "peak_to_peak_um");
+  complete.tolerance.limit[0].most = 1;
+  for (int i = 0; i < 4; i++) /* and all flanks */
     complete.modification.coast[i / 2][i % 2].helix_slope = 1e-6;
   complete.load_case[0].has_alignment = 1;
   complete.load_case[0].alignment = (struct eo_case_alignment){NAN, NAN, NAN, NAN};
