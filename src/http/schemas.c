@@ -9,6 +9,7 @@
 #include "document/measurement_document.h"
 #include "document/result.h"
 #include "document/sweep_document.h"
+#include "document/tolerance_document.h"
 #include "exchange/import.h"
 #include "document/update_document.h"
 #include "format/schema.h"
@@ -240,6 +241,7 @@ static const struct eo_outline measurements = EO_OUTLINE("Measurements", measure
 
 static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_sweep_outline,
+                                                    &eo_tolerance_outline,
                                                     &eo_study_outline,
                                                     &eo_job_outline,
                                                     &eo_job_generations_outline,

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep, *spur, *stages;
+static char *coarse, *order, *named, *sweep, *pairs, *spur, *stages;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -204,6 +204,11 @@ static const struct command analyses[] = {
     {"sweep", "POST", API "/sweep", .body = &sweep, .status = 200, .pointer = "speed_rpm", .value = "[1000,1500,2000]"},
     {"sweep as CSV", "POST", API "/sweep.csv", .body = &sweep, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
+    {"tolerance", "POST", API "/tolerance", .body = &pairs, .status = 200, .pointer = "pairs", .value = "6"},
+    {"tolerance as CSV", "POST", API "/tolerance.csv", .body = &pairs, .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
+    {"tolerance of too many pairs", "POST", API "/tolerance", .text = "{\"design\":{},\"pairs\":100000}", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/pairs"},
     {"sweep without a design", "POST", API "/sweep", .text = "{\"speed\":{\"from\":1,\"to\":2}}", .status = 422},
     {"sweep with a wrong key", "POST", API "/sweep",
      .text = "{\"design\":{},\"spede\":1,\"speed\":{\"from\":-1,\"to\":2}}", .status = 422,
@@ -548,6 +553,9 @@ int main(void)
   json_t *range = json_pack("{s:O, s:n, s:{s:i, s:i, s:i}}", "design", document, "torque", "speed", "from", 1000, "to",
                             2000, "points", 3);
   sweep = json_dumps(range, JSON_COMPACT);
+  json_t *many = json_pack("{s:O, s:i}", "design", document, "pairs", 6);
+  pairs = json_dumps(many, JSON_COMPACT);
+  json_decref(many);
   json_decref(range);
   json_decref(both);
   json_decref(document);
@@ -580,6 +588,7 @@ int main(void)
   free(order);
   free(named);
   free(sweep);
+  free(pairs);
   free(spur);
   free(stages);
   return tap_done();

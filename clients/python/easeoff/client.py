@@ -192,6 +192,15 @@ class Client:
         """
         return self._computed("POST", "/sweep", document=request, lane=easeoff_lane).json
 
+    @operation("tolerance")
+    def tolerance(self, design: Design, pairs: int | None = None, *, easeoff_lane: str | None = None) -> doc.Tolerance:
+        """Many pairs of a design as they are made: percentiles, what decides, yield, the worst pair.
+
+        design: with its block "tolerance"; pairs: how many, in place of what the block says.
+        """
+        request = {"design": design, "pairs": pairs}
+        return self._computed("POST", "/tolerance", document=request, lane=easeoff_lane).json
+
     @operation("listExports")
     def exports(self) -> doc.Exports:
         """The formats of exported files."""
