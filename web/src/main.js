@@ -20,6 +20,11 @@ import { designView } from './views/design.js';
 const VIEWS = [
   { id: 'design', title: 'Design', load: async () => designView },
   { id: 'optimize', title: 'Optimize', load: async () => (await import('./views/optimize.js')).optimizeView },
+  {
+    id: 'tolerance',
+    title: 'Tolerance',
+    load: async () => (await import('./views/tolerance/tolerance.js')).toleranceView,
+  },
   { id: 'compare', title: 'Compare', load: async () => (await import('./views/compare.js')).compareView },
   { id: 'rig', title: 'Rig', load: async () => (await import('./views/rig/rig.js')).rigView },
   { id: 'report', title: '', load: async () => (await import('./report.js')).reportView },

@@ -18,7 +18,7 @@ const ALIGNMENT = {
 const FLAGS = ['ends'];
 /** Groups with a place of their own; every other object of the tables follows in their order. */
 const PLACED = ['gear_pair', 'material', 'modification', 'alignment', 'supports', 'shafts', 'resolution'];
-const ELSEWHERE = ['objective', 'optimization'];
+const ELSEWHERE = ['objective', 'optimization', 'tolerance'];
 
 export class Parameters {
   /** @param {import('../base/store.js').DesignStore} store @param {import('../form/form.js').Form} form */

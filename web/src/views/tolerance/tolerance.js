@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Tolerance view: what scatters in gears as they are made, and what many pairs of this design come to.
+import { fill, h } from '../../base/dom.js';
+import { duration, labelOf, unitText } from '../../base/format.js';
+import { Lane } from '../../base/lane.js';
+import { readQuantity } from '../../base/quantity.js';
+import { Chart } from '../../figures/chart.js';
+import { progressBar } from '../../jobbar.js';
+import { influences, inputTable, percentiles, yields } from './tolerance_tables.js';
+
+const KEYS = ['preset', 'class', 'edition', 'pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
+const FIRST = 64; // pairs of the first answer; each next one has four times as many
+const GROWTH = 4;
+const MOST = 5000; // pairs that the service puts into one answer
+const LIMITS = /** @type {[string, string, string][]} */ ([
+  ['peak_to_peak_um', 'Peak to peak at most', 'um'],
+  ['rms_m_per_s2', 'Vibration RMS at most', 'm_per_s2'],
+  ['max_pressure_MPa', 'Pressure at most', 'MPa'],
+]);
+const UNIT = /_(um|MPa|N_per_mm|N|m_per_s2)$/;
+
+/** @param {string} key */
+const unitOfKey = key => UNIT.exec(key)?.[1] ?? '';
+
+class ToleranceView {
+  /** @type {any} */ #result = null;
+  /** Pairs of the answer that is on its way; 0: none. */
+  #asked = 0;
+  #began = 0;
+  #stopped = false;
+  /** The design, as text, that the figures belong to. */
+  #of = '';
+
+  /** @param {import('../../app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    this.fields = app.form.set();
+    this.lane = new Lane({
+      result: (task, data) => this.#take(task.note, data),
+      refused: (_task, error) => this.#end(error.message),
+      preparing: (_task, job) => this.#say(`The teeth are prepared, ${Math.round(100 * (job.progress ?? 0))} %`),
+    });
+    this.start = h('button.primary', { type: 'button', onclick: () => this.#begin() }, 'Draw the pairs');
+    this.stop = h('button', { type: 'button', hidden: true, onclick: () => this.#halt() }, 'Stop');
+    this.state = h('p.aside', { role: 'status' });
+    this.limits = h('fieldset', null, h('legend', null, 'A good pair has'));
+    this.output = h('select', { id: 'tolerance-output', onchange: () => this.#draw() });
+    this.histogram = new Chart({
+      title: 'Pairs',
+      name: 'Distribution over the pairs',
+      unit: '',
+      xLabel: 'value',
+      zero: true,
+      wide: true,
+      help: 'How many of the pairs lie in each of 25 equal parts; the lines: as drawn, and the 95 % percentile.',
+    });
+    this.percentiles = h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Percentiles' });
+    this.influences = h('section', { 'aria-label': 'What decides' });
+    this.yields = h('section', { 'aria-label': 'Yield' });
+    this.inputs = h('section', { 'aria-label': 'What scatters' });
+    this.notes = h('section', { 'aria-label': 'Notes' });
+    this.worst = h('button', { type: 'button', hidden: true, onclick: () => this.#openWorst() }, 'Open the worst pair');
+    this.empty = h(
+      'p.empty',
+      null,
+      'Nothing has been drawn yet. Choose how the gears are made on the left: a preset from ISO 1328-1 is enough; ' +
+        'inputs of your own stand in the block "tolerance" of the design document.',
+    );
+    this.element = this.#layOut();
+    app.store.addEventListener('change', () => this.#note());
+    this.#drawLimits();
+    this.#draw();
+  }
+
+  #layOut() {
+    return h(
+      '.design-view.tolerance-view',
+      null,
+      h(
+        'aside.form-pane',
+        { 'aria-label': 'Gears as made' },
+        h('.form-scroll', null, this.fields.fieldsOf('/tolerance', { only: KEYS }), this.limits),
+        h('.form-foot', null, this.start, this.stop, this.state),
+      ),
+      h(
+        '.figure-pane',
+        null,
+        this.empty,
+        h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst),
+        this.notes,
+        h('.figures', null, this.histogram.element),
+        this.percentiles,
+        this.yields,
+        this.influences,
+        this.inputs,
+      ),
+    );
+  }
+
+  /** Limits of all load cases, one for each of a few numbers; others in the document stay. */
+  #drawLimits() {
+    const { store } = this.app;
+    const stated = () => store.design.tolerance?.limits ?? [];
+    /** @param {string} key */
+    const mine = key => stated().find((/** @type {any} */ limit) => limit.output === key && !limit.load_case);
+    /** @param {string} key @param {string} text @param {string} unit */
+    const change = (key, text, unit) => {
+      const others = stated().filter((/** @type {any} */ limit) => limit !== mine(key));
+      const { value, fault } = readQuantity(text, unit);
+      if (text.trim() !== '' && fault !== undefined) return fault;
+      store.set('/tolerance/limits', text.trim() === '' ? others : [...others, { output: key, at_most: value }]);
+      return '';
+    };
+    for (const [key, label, unit] of LIMITS) {
+      const fault = h('span.fault', { role: 'alert' });
+      const input = h('input', {
+        id: `limit-${key}`,
+        inputmode: 'decimal',
+        value: mine(key)?.at_most ?? '',
+        onchange: () => {
+          fault.textContent = change(key, input.value, unit);
+        },
+      });
+      this.limits.append(
+        h('label.field', { for: input.id }, h('span', null, `${label} (${unitText(unit)})`), input, fault),
+      );
+    }
+  }
+
+  get #wanted() {
+    return Math.min(this.app.store.design.tolerance?.pairs ?? 1000, MOST);
+  }
+
+  #begin() {
+    this.app.form.flush();
+    this.#stopped = false;
+    this.#of = JSON.stringify(this.app.store.design);
+    this.start.disabled = true;
+    this.stop.hidden = false;
+    this.#ask(Math.min(FIRST, this.#wanted));
+  }
+
+  /** @param {number} pairs */
+  #ask(pairs) {
+    this.#asked = pairs;
+    this.#began = performance.now();
+    this.lane.submit({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs }, note: pairs });
+    this.#say(`${pairs} pairs are computed`);
+  }
+
+  /**
+   * Each answer is shown; the next one has more pairs, the first of them the same.
+   * @param {number} pairs @param {any} data
+   */
+  #take(pairs, data) {
+    const seconds = (performance.now() - this.#began) / 1000;
+    if (pairs !== this.#asked) return;
+    this.#result = data;
+    this.#drawChoice();
+    this.#draw();
+    if (this.#stopped || pairs >= this.#wanted) {
+      this.#end(this.#stopped ? `Stopped at ${pairs} pairs.` : '');
+      return;
+    }
+    const next = Math.min(pairs * GROWTH, this.#wanted);
+    this.#ask(next);
+    fill(
+      this.state,
+      progressBar({ name: 'the pairs', progress: { fraction: pairs / this.#wanted } }),
+      ` ${pairs} of ${this.#wanted} pairs, the next answer in about ${duration((seconds * next) / pairs)}`,
+    );
+  }
+
+  #halt() {
+    this.#stopped = true;
+    this.lane.overtake({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs: 1 } });
+    this.#end(this.#result ? `Stopped at ${this.#result.pairs} pairs.` : 'Stopped.');
+  }
+
+  /** @param {string} text */
+  #end(text) {
+    this.#asked = 0;
+    this.start.disabled = false;
+    this.stop.hidden = true;
+    this.#say(text);
+  }
+
+  /** @param {string} text */
+  #say(text) {
+    fill(this.state, text);
+  }
+
+  /** The design has changed: what is shown belongs to the one before. */
+  #note() {
+    if (this.#result && !this.#asked && JSON.stringify(this.app.store.design) !== this.#of)
+      this.#say('The design has changed since these pairs were drawn.');
+  }
+
+  #drawChoice() {
+    const chosen = this.output.value;
+    const cases = this.#result.design.load_cases.length;
+    fill(
+      this.output,
+      this.#result.outputs.map((/** @type {any} */ { key, load_case: k }, /** @type {number} */ i) => {
+        const text = `${labelOf(key)}${cases > 1 ? `, load case ${k}` : ''}`;
+        return h('option', { value: String(i), selected: String(i) === chosen }, text);
+      }),
+    );
+  }
+
+  #draw() {
+    const result = this.#result;
+    this.empty.hidden = result !== null;
+    this.worst.hidden = result === null;
+    this.output.disabled = result === null;
+    if (!result) return;
+    const output = result.outputs[Number(this.output.value) || 0];
+    const unit = unitText(unitOfKey(output.key));
+    this.#drawHistogram(output, unit);
+    fill(this.percentiles, percentiles(result, output, unit));
+    fill(this.influences, influences(output));
+    fill(this.yields, yields(result.yield));
+    fill(this.inputs, inputTable(result));
+    fill(
+      this.notes,
+      result.warnings.map((/** @type {string} */ text) => h('p.aside', null, text)),
+    );
+  }
+
+  /** A step for each part. @param {any} output @param {string} unit */
+  #drawHistogram(output, unit) {
+    const { from, to, count } = output.histogram;
+    const width = (to - from) / count.length;
+    const x = count.flatMap((/** @type {number} */ _n, /** @type {number} */ i) => [
+      from + i * width,
+      from + (i + 1) * width * (1 - 1e-9),
+    ]);
+    const y = count.flatMap((/** @type {number} */ n) => [n, n]);
+    const high = output.percentiles.find((/** @type {any} */ row) => row.percent === 95);
+    const marks = [{ x: high.value, label: '95 %', strong: true }];
+    if (output.nominal !== null && output.nominal >= from && output.nominal <= to)
+      marks.push({ x: output.nominal, label: 'as drawn', strong: false });
+    this.histogram.frame.setCase(`${labelOf(output.key)} ${unit ? `(${unit})` : ''}, ${output.rows} pairs`);
+    if (to > from)
+      this.histogram.set({ x, curves: [{ label: 'pairs', y, colour: 'own', line: 'solid', width: 2 }], marks });
+    else this.histogram.frame.say('Every pair has the same value.');
+  }
+
+  #openWorst() {
+    const { library } = this.app;
+    this.app.opening(() => library.openNew(this.#result.worst.design), 'design');
+  }
+
+  show() {
+    this.#note();
+  }
+}
+
+/** @param {import('../../app.js').App} app @returns {import('../../app.js').View} */
+export function toleranceView(app) {
+  return new ToleranceView(app);
+}

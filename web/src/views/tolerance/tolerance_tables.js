@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the Tolerance view shows beside the distribution: tables and bars.
+import { h } from '../../base/dom.js';
+import { labelOf, sig } from '../../base/format.js';
+
+const SHOWN = 10; // inputs with a bar
+
+/** "modification.pinion.left.profile_slope_um" -> "pinion left, profile slope". @param {string} key */
+function nameOf(key) {
+  const parts = key.split('.');
+  const last = labelOf(parts.pop() ?? '').toLowerCase();
+  const where = parts.filter(part => part !== 'modification').join(' ');
+  return where ? `${where.replaceAll('_', ' ')}, ${last}` : last;
+}
+
+/** @param {any} result @param {any} output @param {string} unit */
+export function percentiles(result, output, unit) {
+  /** @param {any} row */
+  const line = row =>
+    h(
+      'tr',
+      null,
+      h('th', { scope: 'row' }, `${row.percent} %`),
+      h('td', null, sig(row.value, 4)),
+      h('td', null, `${sig(row.from, 4)} to ${sig(row.to, 4)}`),
+    );
+  return h(
+    'table.numbers',
+    null,
+    h('caption', null, `${labelOf(output.key)}${unit ? `, ${unit}` : ''}: ${result.pairs} pairs`),
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        h('th', { scope: 'col' }, 'Share of the pairs'),
+        h('th', { scope: 'col' }, 'at most'),
+        h('th', { scope: 'col' }, 'with 95 % between'),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      output.percentiles.map(line),
+      h(
+        'tr',
+        null,
+        h('th', { scope: 'row' }, 'mean'),
+        h('td', null, sig(output.mean, 4)),
+        h('td', null, output.mean_interval.map((/** @type {number} */ end) => sig(end, 4)).join(' to ')),
+      ),
+      h(
+        'tr',
+        null,
+        h('th', { scope: 'row' }, 'standard deviation'),
+        h('td', null, sig(output.std, 3)),
+        h('td', null, output.std_interval.map((/** @type {number} */ end) => sig(end, 3)).join(' to ')),
+      ),
+      h('tr', null, h('th', { scope: 'row' }, 'as drawn'), h('td', null, sig(output.nominal, 4)), h('td')),
+    ),
+  );
+}
+
+/** Bars of the inputs that decide most, by the measure that explains more. @param {any} output */
+export function influences(output) {
+  const bySurface = (output.Q2 ?? -1) > (output.R2 ?? -1);
+  /** @param {any} row */
+  const sizeOf = row => (bySurface ? (row.total ?? 0) : Math.abs(row.coefficient ?? 0));
+  const rows = output.influences.slice(0, SHOWN);
+  const largest = Math.max(...rows.map(sizeOf), 1e-12);
+  /** @param {any} row */
+  const bar = row =>
+    h(
+      'tr',
+      null,
+      h('th', { scope: 'row', title: row.key }, nameOf(row.key)),
+      h('td', null, sig(bySurface ? row.total : row.coefficient, 2)),
+      h('td.effect', null, h('span', { css: { width: `${(100 * sizeOf(row)) / largest}%` } })),
+    );
+  const share = sig(bySurface ? output.Q2 : output.R2, 2);
+  const measure = bySurface
+    ? `total Sobol indices of a quadratic surface; it explains ${share} of the variance of pairs it was not fitted to`
+    : `standardised coefficients of a linear regression, which explains ${share} of the variance`;
+  return h(
+    'table.numbers.influences',
+    null,
+    h('caption', null, `What decides: ${measure}`),
+    h('tbody', null, rows.map(bar)),
+  );
+}
+
+/** @param {any[]} rows */
+export function yields(rows) {
+  if (!rows.length) return null;
+  /** @param {any} row */
+  const line = row =>
+    h(
+      'tr',
+      null,
+      h('th', { scope: 'row' }, row.output ? `${labelOf(row.output)} at most ${sig(row.at_most, 4)}` : 'all limits'),
+      h('td', null, `${sig(100 * row.fraction, 4)} %`),
+      h('td', null, row.clopper_pearson.map((/** @type {number} */ end) => `${sig(100 * end, 3)} %`).join(' to ')),
+    );
+  const caption = h('caption', null, 'Yield, with its 95 % interval');
+  return h('table.numbers', null, caption, h('tbody', null, rows.map(line)));
+}
+
+/** @param {any} result */
+export function inputTable(result) {
+  const title = `What scatters: ${result.inputs.length} inputs`;
+  /** @param {any} row */
+  const line = row =>
+    h(
+      'tr',
+      null,
+      h('th', { scope: 'row', title: row.key }, nameOf(row.key)),
+      h('td', null, sig(row.nominal, 4)),
+      h('td', null, row.distribution),
+    );
+  const table = h('table.numbers', null, h('tbody', null, result.inputs.map(line)));
+  return h('details', null, h('summary', null, title), table);
+}
