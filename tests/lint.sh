@@ -47,7 +47,7 @@ eslint=$MODULES/node_modules/eslint/bin/eslint.js
 tsc=$MODULES/node_modules/typescript/bin/tsc
 node=node
 [ -f "$eslint" ] || node="npm's library"
-echo web/src tests/browser web/build.mjs >"$list"
+echo web/src tests/browser web/build.mjs web/manual.mjs >"$list"
 reads "$node" 'eslint has nothing to say' node "$eslint" -c "$MODULES/eslint.config.js"
 echo "$MODULES/tsconfig.json" >"$list"
 reads "$node" 'the types of the page agree with its code' node "$tsc" --noEmit --strict -p

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The manuals as pages: node manual.mjs DOC FOLDER. Markdown by marked, equations by KaTeX as MathML: no script, no font, nothing from elsewhere.
+// The manuals as pages: node manual.mjs DOC FOLDER. Markdown by marked, equations by KaTeX as MathML: no script, no
+// font, nothing from elsewhere.
 import katex from 'katex';
 import { Marked } from 'marked';
 import { cp, mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -14,8 +15,9 @@ const MANUALS = [
   ['validation.md', 'Validation'],
 ];
 
-const escape = (/** @type {string} */ text) =>
-  text.replace(/[&<>"]/g, (c) => /** @type {Record<string, string>} */ ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
+/** @type {Record<string, string>} */
+const ENTITY = { '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' };
+const escape = (/** @type {string} */ text) => text.replace(/[&<>"]/g, (c) => ENTITY[c]);
 const slug = (/** @type {string} */ text) =>
   text
     .toLowerCase()
@@ -34,7 +36,10 @@ const equation = {
     return { type: 'equation', raw: match[0], tag, text: match[1].replace(/\\tag\{\w+\}/, '').trim() };
   },
   renderer(/** @type {{ text: string, tag: string }} */ token) {
-    const math = katex.renderToString(token.text, { output: 'mathml', displayMode: true, throwOnError: true });
+    // styles within elements are what the server's pages may not have
+    const math = katex
+      .renderToString(token.text, { output: 'mathml', displayMode: true, throwOnError: true })
+      .replace(/ style="[^"]*"/g, '');
     const number = token.tag ? `<a href="#${token.tag}">(${token.tag})</a>` : '';
     return `<div class="equation"${token.tag ? ` id="${token.tag}"` : ''}>${math}${number}</div>\n`;
   },
@@ -57,7 +62,9 @@ marked.use({
     table(token) {
       const row = (/** @type {string} */ kind, /** @type {any[]} */ cells) =>
         `<tr>${cells.map((cell) => `<${kind}>${this.parser.parseInline(cell.tokens)}</${kind}>`).join('')}</tr>`;
-      return `<div class="table"><table><thead>${row('th', token.header)}</thead><tbody>${token.rows.map((cells) => row('td', cells)).join('\n')}</tbody></table></div>\n`;
+      const head = row('th', token.header);
+      const rows = token.rows.map((cells) => row('td', cells)).join('\n');
+      return `<div class="table"><table><thead>${head}</thead><tbody>${rows}</tbody></table></div>\n`;
     },
   },
 });
@@ -109,14 +116,17 @@ ${body}</main>
 
 await rm(target, { recursive: true, force: true });
 await mkdir(join(target, 'theory'), { recursive: true });
-const chapters = (await readdir(join(source, 'theory'))).filter((name) => name.endsWith('.md')).map((name) => `theory/${name}`);
+const chapters = (await readdir(join(source, 'theory')))
+  .filter((name) => name.endsWith('.md'))
+  .map((name) => `theory/${name}`);
+const htmlOf = (/** @type {string} */ name) => name.replace('.md', '.html');
 const texts = new Map();
 const equations = new Map();
 for (const name of [...MANUALS.map(([file]) => file), ...chapters]) {
   texts.set(name, await readFile(join(source, name), 'utf8'));
-  for (const [, label] of texts.get(name).matchAll(/\\tag\{(\w+)\}/g)) equations.set(label, name.replace('.md', '.html'));
+  for (const [, label] of texts.get(name).matchAll(/\\tag\{(\w+)\}/g)) equations.set(label, htmlOf(name));
 }
-for (const [name, text] of texts) await writeFile(join(target, name.replace('.md', '.html')), pageOf(name, text, equations));
+for (const [name, text] of texts) await writeFile(join(target, htmlOf(name)), pageOf(name, text, equations));
 await mkdir(join(target, 'figures'), { recursive: true });
 for (const name of await readdir(join(source, 'figures')))
   if (/\.(svg|png)$/.test(name)) await cp(join(source, 'figures', name), join(target, 'figures', name));
