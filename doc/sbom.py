@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the program is made of, as an SPDX 2.3 document: sbom.py PROGRAM LOCKFILE VERSION > easeoff.spdx.json (`make sbom`)
+
+The Debian packages of the libraries it is linked with, as the dynamic loader finds them here, and the npm packages whose
+code is in the page. The same tree on the same machine gives the same bytes; $SOURCE_DATE_EPOCH is the date, else 1970."""
+
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+
+def output(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def linked_packages(program):
+    """{name: (version, source, licence)} of the Debian packages that hold what the program loads."""
+    files = sorted({os.path.realpath(path) for path in re.findall(r"=> (/\S+)", output("ldd", program))})
+    found = {}
+    for file in files:
+        # dpkg may know a file below /lib or below /usr/lib
+        names = [file, file.removeprefix("/usr"), "/usr" + file]
+        owners = (subprocess.run(["dpkg", "-S", name], capture_output=True, text=True, check=False) for name in names)
+        owner = next((done.stdout.split(":")[0] for done in owners if done.returncode == 0), None)
+        if owner is None:
+            raise SystemExit(f"no Debian package holds {file}")
+        form = "${Version}\t${source:Package}\t${source:Version}"
+        version, source, source_version = output("dpkg-query", "-W", "-f", form, owner).split("\n")[0].split("\t")
+        found[owner] = (version, f"{source} {source_version}")
+    return found
+
+
+def bundled_packages(lockfile):
+    """{name: entry} of the packages whose code the page's bundle takes in: those that are not for building alone."""
+    entries = json.loads(Path(lockfile).read_text(encoding="utf-8"))["packages"]
+    return {name.split("node_modules/")[-1]: entry for name, entry in entries.items() if name and not entry.get("dev")}
+
+
+def package(name, version, **more):
+    identity = "SPDXRef-" + re.sub(r"[^A-Za-z0-9.-]", "-", name)
+    return {
+        "SPDXID": identity,
+        "name": name,
+        "versionInfo": version,
+        "downloadLocation": "NOASSERTION",
+        "filesAnalyzed": False,
+        "licenseConcluded": "NOASSERTION",
+        "licenseDeclared": "NOASSERTION",
+        "copyrightText": "NOASSERTION",
+    } | more
+
+
+def reference(locator):
+    return [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": locator}]
+
+
+def document(program, lockfile, version):
+    own = package("easeoff", version, licenseDeclared="GPL-3.0-or-later", licenseConcluded="GPL-3.0-or-later")
+    parts = []
+    for name, (found, source) in sorted(linked_packages(program).items()):
+        locator = reference(f"pkg:deb/debian/{name}@{found}")
+        parts.append((package(name, found, sourceInfo=f"Debian source {source}", externalRefs=locator), "DYNAMIC_LINK"))
+    for name, entry in sorted(bundled_packages(lockfile).items()):
+        more = {"licenseDeclared": entry.get("license", "NOASSERTION")}
+        locator = reference(f"pkg:npm/{name}@{entry['version']}")
+        parts.append((package(name, entry["version"], externalRefs=locator, **more), "CONTAINS"))
+    relationships = [{"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES", "relatedSpdxElement": own["SPDXID"]}]
+    for part, kind in parts:
+        relationships.append({"spdxElementId": own["SPDXID"], "relationshipType": kind, "relatedSpdxElement": part["SPDXID"]})
+    made = {"packages": [own] + [part for part, _ in parts], "relationships": relationships}
+    stamp = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", "0"))))
+    digest = hashlib.sha256(json.dumps(made, sort_keys=True).encode()).hexdigest()
+    return {
+        "spdxVersion": "SPDX-2.3",
+        "dataLicense": "CC0-1.0",
+        "SPDXID": "SPDXRef-DOCUMENT",
+        "name": f"easeoff-{version}",
+        "documentNamespace": f"https://easeoff.invalid/spdx/easeoff-{version}-{digest}",
+        "creationInfo": {"created": stamp, "creators": ["Tool: easeoff-sbom", "Organization: Easeoff developers"]},
+    } | made
+
+
+if __name__ == "__main__":
+    print(json.dumps(document(*sys.argv[1:4]), indent=2))
