@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each assumption is worth: the paper's pair with case A, one thing changed at a time, as a table of doc/theory/assumptions.md.
+"""What each assumption is worth: the paper's pair with case A, one thing changed at a time.
 
-effects.py PROGRAM FILE writes the table between the file's two marks (`make effects`; a minute or two of finite elements)."""
+effects.py PROGRAM FILE writes the table between the marks of doc/theory/assumptions.md (`make effects`; a minute or two
+of finite elements)."""
 
 import copy
 import json
@@ -32,9 +33,12 @@ CHANGES = [
 ]
 
 
+def output(command, text=None):
+    return subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout
+
+
 def analyse(program, design):
-    done = subprocess.run([program, "analyze", "-", "--json"], input=json.dumps(design), capture_output=True, text=True, check=True)
-    case = json.loads(done.stdout)["load_cases"][1]
+    case = json.loads(output([program, "analyze", "-", "--json"], json.dumps(design)))["load_cases"][1]
     return {
         "mean TE": case["lte"]["mean_um"],
         "PPLTE": case["lte"]["peak_to_peak_um"],
@@ -56,7 +60,7 @@ def change(design, place, value):
 
 def main():
     program, path = sys.argv[1], Path(sys.argv[2])
-    design = json.loads(subprocess.run([program, "example", "paper-case-a"], capture_output=True, text=True, check=True).stdout)
+    design = json.loads(output([program, "example", "paper-case-a"]))
     stated = analyse(program, design)
     units = {"mean TE": "um", "PPLTE": "um", "impact": "N", "root stress": "MPa", "RMS": "m/s2"}
     rows = ["| changed | " + " | ".join(f"{name}, %" for name in units) + " |", "|---|" + "---|" * len(units),

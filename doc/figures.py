@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures of the manuals, drawn from the program's own numbers: figures.py PROGRAM FOLDER [NAME...]
 
-`make figures` writes all of them; the check draws those that need no finite elements again and compares (tests/doc/figures.sh)."""
+`make figures` writes all of them; the check draws those that need no finite elements again and compares
+(tests/doc/figures.sh)."""
 
 import json
 import math
-import os
 import subprocess
 import sys
 import tempfile
@@ -24,7 +24,8 @@ class Program:
         key = (tuple(arguments), json.dumps(document))
         if key not in self.kept:
             text = json.dumps(document) if document else ""
-            self.kept[key] = json.loads(subprocess.run([self.path, *arguments], input=text, capture_output=True, text=True, check=True).stdout)
+            done = subprocess.run([self.path, *arguments], input=text, capture_output=True, text=True, check=True)
+            self.kept[key] = json.loads(done.stdout)
         return self.kept[key]
 
     def example(self, name):
@@ -57,14 +58,16 @@ class Sheet:
 
     def line(self, points, colour=INK, width=1.5, dash="", close=False, fill="none"):
         places = " ".join(f"{'L' if i else 'M'}{x:.1f} {y:.1f}" for i, (x, y) in enumerate(self.at(*p) for p in points))
-        self.parts.append(f'<path d="{places}{"Z" if close else ""}" fill="{fill}" stroke="{colour}" stroke-width="{width}"'
-                          f'{f" stroke-dasharray={chr(34)}{dash}{chr(34)}" if dash else ""}/>')
+        end = "Z" if close else ""
+        dashes = f' stroke-dasharray="{dash}"' if dash else ""
+        self.parts.append(f'<path d="{places}{end}" fill="{fill}" stroke="{colour}" stroke-width="{width}"{dashes}/>')
 
     def circle(self, x, y, radius, colour=INK, width=1.5, fill="none"):
         """radius in the units of x."""
         px, py = self.at(x, y)
         size = abs(self.at(x + radius, y)[0] - px)
-        self.parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{size:.1f}" fill="{fill}" stroke="{colour}" stroke-width="{width}"/>')
+        look = f'fill="{fill}" stroke="{colour}" stroke-width="{width}"'
+        self.parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="{size:.1f}" {look}/>')
 
     def dot(self, x, y, colour=INK, size=3):
         px, py = self.at(x, y)
@@ -74,14 +77,16 @@ class Sheet:
         px, py = self.at(x, y)
         px, py = px + shift[0], py + shift[1]
         turned = f' transform="rotate({turn} {px:.1f} {py:.1f})"' if turn else ""
-        self.parts.append(f'<text x="{px:.1f}" y="{py:.1f}" fill="{colour}" font-size="{size}" text-anchor="{anchor}"{turned}>{text}</text>')
+        look = f'fill="{colour}" font-size="{size}" text-anchor="{anchor}"'
+        self.parts.append(f'<text x="{px:.1f}" y="{py:.1f}" {look}{turned}>{text}</text>')
 
     def arrow(self, start, end, colour=INK, width=1.5):
         self.line([start, end], colour, width)
         (ax, ay), (bx, by) = self.at(*start), self.at(*end)
         angle = math.atan2(by - ay, bx - ax)
         tips = [(bx - 8 * math.cos(angle + turn), by - 8 * math.sin(angle + turn)) for turn in (0.35, -0.35)]
-        self.parts.append(f'<path d="M{tips[0][0]:.1f} {tips[0][1]:.1f}L{bx:.1f} {by:.1f}L{tips[1][0]:.1f} {tips[1][1]:.1f}Z" fill="{colour}"/>')
+        places = "L".join(f"{x:.1f} {y:.1f}" for x, y in (tips[0], (bx, by), tips[1]))
+        self.parts.append(f'<path d="M{places}Z" fill="{colour}"/>')
 
     def frame(self, x_label, y_label, x_ticks, y_ticks):
         low, high, below, above = self.range
@@ -97,9 +102,13 @@ class Sheet:
 
     def save(self, folder, name):
         width, height = self.size
-        text = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" role="img"'
-                f' font-family="sans-serif"><title>{self.title}</title><rect width="{width}" height="{height}" fill="#ffffff"/>\n'
-                + "\n".join(self.parts) + "\n</svg>\n")
+        size = f'width="{width}" height="{height}"'
+        text = (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" {size} role="img"'
+            f' font-family="sans-serif"><title>{self.title}</title><rect {size} fill="#ffffff"/>\n'
+            + "\n".join(self.parts)
+            + "\n</svg>\n"
+        )
         (Path(folder) / f"{name}.svg").write_text(text, encoding="utf-8")
 
 
@@ -113,7 +122,8 @@ def line_of_action(program):
     e = (math.cos(alpha), math.sin(alpha))
 
     def arc(centre, radius, colour, width, dash=""):
-        points = [(radius * math.sin(t), centre + radius * math.cos(t)) for t in (i * math.pi / 180 for i in range(-180, 181))]
+        angles = [i * math.pi / 180 for i in range(-180, 181)]
+        points = [(radius * math.sin(t), centre + radius * math.cos(t)) for t in angles]
         inside = [p for p in points if abs(p[0]) < 61 and abs(p[1]) < 44]
         runs, last = [[]], None
         for p in inside:
@@ -132,7 +142,8 @@ def line_of_action(program):
     t1, t2, s_a, s_e = *g["tangent_length_mm"], g["path_start_mm"], g["path_end_mm"]
     sheet.line([(-t1 * e[0], -t1 * e[1]), (t2 * e[0], t2 * e[1])], GREY, 1)
     sheet.line([(s_a * e[0], s_a * e[1]), (s_e * e[0], s_e * e[1])], GREEN, 3)
-    for s, name, shift in ((-t1, "T1", (-14, 2)), (t2, "T2", (14, 2)), (s_a, "A", (2, 20)), (s_e, "E", (2, -10)), (0, "C", (12, 16))):
+    places = [(-t1, "T1", (-14, 2)), (t2, "T2", (14, 2)), (s_a, "A", (2, 20)), (s_e, "E", (2, -10)), (0, "C", (12, 16))]
+    for s, name, shift in places:
         sheet.dot(s * e[0], s * e[1], GREEN if name in "AE" else INK)
         sheet.text(s * e[0], s * e[1], name, shift=shift)
     sheet.arrow((17, 17 * e[1] / e[0] - 5), (26, 26 * e[1] / e[0] - 5), GREEN)
@@ -171,7 +182,8 @@ def ends(program):
     sheet.line([(-105, 0), (-reach, 0)], GREY, 1, "8 3 2 3")
     sheet.line([(reach, 0), (105, 0)], GREY, 1, "8 3 2 3")
     sheet.axes((0, 0, 640, 330), (0, 640), (0, 330), down=True)
-    sheet.text(320, 318, "the apex trails: outer face ends meet first, so &#951; points outwards on both ends", GREY, size=12)
+    words = "the apex trails: outer face ends meet first, so &#951; points outwards on both ends"
+    sheet.text(320, 318, words, GREY, size=12)
     return sheet
 
 
@@ -199,7 +211,8 @@ def plane_of_action(program):
     sheet.text(s_a - 4, -17, "&#951;", GREEN, shift=(0, -6))
     sheet.text(s_a, b / 2, "A, gear's tip", shift=(0, -8))
     sheet.text(s_e, b / 2, "E, pinion's tip", shift=(0, -8))
-    sheet.text((s_a + s_e) / 2, -b / 2, f"path of contact {s_e - s_a:.1f} mm, base pitch {p:.1f} mm, face width {b:g} mm", GREY, shift=(0, 36), size=12)
+    words = f"path of contact {s_e - s_a:.1f} mm, base pitch {p:.1f} mm, face width {b:g} mm"
+    sheet.text((s_a + s_e) / 2, -b / 2, words, GREY, shift=(0, 36), size=12)
     return sheet
 
 
@@ -216,7 +229,11 @@ def modification(program):
     eta = [-27.5 + 55 * i / 80 for i in range(81)]
     lead = program.run(["stage", "modification", "-"], design | {"u_mm": [0] * 81, "eta_mm": eta})["lead_um"]
     sheet = Sheet(640, 300, "What case A takes off the pinion")
-    for left, x, y, label, ticks in ((70, u, profile, "u along the rack, mm", range(-4, 6, 2)), (390, eta, lead, "&#951;, mm", range(-20, 30, 10))):
+    charts = [
+        (70, u, profile, "u along the rack, mm", range(-4, 6, 2)),
+        (390, eta, lead, "&#951;, mm", range(-20, 30, 10)),
+    ]
+    for left, x, y, label, ticks in charts:
         sheet.axes((left, 30, left + 235, 245), (x[0], x[-1]), (0, 20))
         sheet.frame(label, "taken off, &#181;m", ticks, range(0, 21, 5))
         sheet.line(list(zip(x, y)), BLUE, 2)
@@ -233,7 +250,8 @@ def slice_gap(program):
     phase = [low + (high - low) * i / 160 for i in range(161)]
     design = {"gear_pair": PAIR, "modification": flank_a(program), "alignment": {"shaft_angle_error_in_plane_deg": 0}}
     exact = program.run(["stage", "gap", "-"], design | {"phase_mm": phase})["slice_gap_um"]
-    laid = program.run(["stage", "modification", "-"], {"gear_pair": PAIR, "modification": flank_a(program), "s_mm": phase})["profile_um"]
+    laid_on = {"gear_pair": PAIR, "modification": flank_a(program), "s_mm": phase}
+    laid = program.run(["stage", "modification", "-"], laid_on)["profile_um"]
     sheet = Sheet(640, 300, "Slice gap of case A")
     sheet.axes((70, 20, 610, 245), (low, high), (0, 20))
     sheet.frame("phase c along the path of contact, mm", "gap, &#181;m", range(-10, 11, 5), range(0, 21, 5))
@@ -247,12 +265,14 @@ def slice_gap(program):
 def lumped_model(program):
     """Masses and springs of the dynamic model; stiffnesses as derived for the paper's pair."""
     law = {"kind": "fourier", "mean_N_per_um": 1100, "cosine_N_per_um": [0], "sine_N_per_um": [0]}
-    p = program.run(["stage", "dynamics", "-"], {"gear_pair": PAIR, "law": law, "torque_Nm": 828, "speed_rpm": 2000, "pinion_teeth": 17, "harmonics": 2})["params"]
+    running = {"torque_Nm": 828, "speed_rpm": 2000, "pinion_teeth": 17, "harmonics": 2}
+    p = program.run(["stage", "dynamics", "-"], {"gear_pair": PAIR, "law": law} | running)["params"]
     sheet = Sheet(640, 380, "The lumped model")
     sheet.axes((0, 0, 640, 380), (0, 640), (0, 380), down=True)
 
     def body(x, y, name, colour):
-        sheet.line([(x - 60, y - 28), (x + 60, y - 28), (x + 60, y + 28), (x - 60, y + 28)], colour, 2, close=True, fill="#f5f7fa")
+        corners = [(x - 60, y - 28), (x + 60, y - 28), (x + 60, y + 28), (x - 60, y + 28)]
+        sheet.line(corners, colour, 2, close=True, fill="#f5f7fa")
         sheet.text(x, y, name, colour, shift=(0, 5))
 
     def spring(start, end, label, shift, colour=GREY):
@@ -260,10 +280,10 @@ def lumped_model(program):
         length, turns = math.dist(start, end), 6
         nx, ny = -(by - ay) / length, (bx - ax) / length
         points = [start]
-        for i in range(1, 2 * turns):
-            t, side = 0.2 + 0.6 * i / (2 * turns), 5 if i % 2 else -5
+        for i in range(2 * turns + 1):
+            t, side = 0.2 + 0.6 * i / (2 * turns), 0 if i in (0, 2 * turns) else 5 if i % 2 else -5
             points.append((ax + t * (bx - ax) + side * nx, ay + t * (by - ay) + side * ny))
-        sheet.line([start, (ax + 0.2 * (bx - ax), ay + 0.2 * (by - ay)), *points[1:], (ax + 0.8 * (bx - ax), ay + 0.8 * (by - ay)), end], colour, 1.4)
+        sheet.line([*points, end], colour, 1.4)
         sheet.text((ax + bx) / 2, (ay + by) / 2, label, colour, "start" if shift[0] > 0 else "middle", shift, 12)
 
     for x, side in ((190, "left"), (450, "right")):
@@ -281,7 +301,8 @@ def lumped_model(program):
     for x in (50, 590):
         sheet.line([(x, 248), (x, 292)], GREY, 2)
     sheet.text(320, 195, "each body: y, z, &#952;", GREY)
-    sheet.text(320, 372, "groove springs couple the ends; torsion of the groove where asked for or where ends differ", GREY, size=12)
+    words = "groove springs couple the ends; torsion of the groove where asked for or where ends differ"
+    sheet.text(320, 372, words, GREY, size=12)
     return sheet
 
 
@@ -295,7 +316,8 @@ def transmission_error(program):
             values = case["lte"]["pair_um"]
             values = [v - case["lte"]["mean_um"] for v in values + values[:1]]
             sheet.line([(i / (len(values) - 1), v) for i, v in enumerate(values)], colour, 2, dash)
-    sheet.text(0.03, 1.02, "grey: unmodified, blue: case A; dotted 621, full 828, dashed 1035 N m", GREY, "start", size=12)
+    words = "grey: unmodified, blue: case A; dotted 621, full 828, dashed 1035 N m"
+    sheet.text(0.03, 1.02, words, GREY, "start", size=12)
     return sheet
 
 
@@ -329,7 +351,8 @@ def contact_pattern(program):
         colours, start = [shade(value - smallest) for value in clearance[i][:-1]] + [""], 0
         for j in range(1, len(colours)):
             if colours[j] != colours[start]:
-                sheet.line([(eta[start], s[i]), (eta[j], s[i]), (eta[j], s[i + 1]), (eta[start], s[i + 1])], "none", 0, "", True, colours[start])
+                cell = [(eta[start], s[i]), (eta[j], s[i]), (eta[j], s[i + 1]), (eta[start], s[i + 1])]
+                sheet.line(cell, "none", 0, "", True, colours[start])
                 start = j
     sheet.frame("&#951; over the face, mm", "s on the path of contact, mm", range(-20, 30, 10), range(-10, 15, 5))
     return sheet
@@ -340,8 +363,8 @@ def search(program):
     with tempfile.TemporaryDirectory() as folder:
         design = Path(folder) / "design.json"
         design.write_text(json.dumps(program.example("paper-case-a")), encoding="utf-8")
-        found = subprocess.run([program.path, "optimize", str(design), "--budget", "200", "--fresh", "--json", "--data", folder], capture_output=True,
-                               text=True, check=True, env=os.environ | {"XDG_DATA_HOME": folder})
+        command = [program.path, "optimize", str(design), "--budget", "200", "--fresh", "--json", "--data", folder]
+        found = subprocess.run(command, capture_output=True, text=True, check=True)
     spent, best = [], []
     for generation in json.loads(found.stdout)["generations"]:
         spent.append((spent[-1] if spent else 0) + generation["true"])
@@ -349,7 +372,10 @@ def search(program):
     sheet = Sheet(640, 300, "A search: best objective over true evaluations")
     sheet.axes((70, 20, 610, 245), (0, 200), (0, 1))
     sheet.frame("true evaluations", "best J (unmodified 1)", range(0, 201, 50), (0, 0.25, 0.5, 0.75, 1))
-    sheet.line([(x, y) for i, (x, y) in enumerate(zip(spent, best)) for x, y in (((x, best[i - 1]), (x, y)) if i else ((x, y),))], BLUE, 2)
+    steps = [(spent[0], best[0])]
+    for i in range(1, len(spent)):
+        steps += [(spent[i], best[i - 1]), (spent[i], best[i])]
+    sheet.line(steps, BLUE, 2)
     for name, colour in (("paper-case-a", ORANGE), ("paper-case-b", GREEN)):
         value = program.analysis(name)["objectives"]["J"]
         sheet.line([(0, value), (200, value)], colour, 1.2, "6 4")
@@ -358,32 +384,47 @@ def search(program):
 
 
 def rig(program):
-    """A synthetic recording of case A with noise, measured, beside the prediction: orders of the rotational acceleration."""
+    """A synthetic recording of case A with noise, measured, beside the prediction: orders of the acceleration."""
     with tempfile.TemporaryDirectory() as folder:
         design, file = Path(folder) / "design.json", Path(folder) / "run.csv"
         design.write_text(json.dumps(program.example("paper-case-a")), encoding="utf-8")
-        subprocess.run([program.path, "rig", "--design", str(design), "--torque", "828", "--speed", "2000", "--noise-urad", "5", "-o", str(file)],
-                       capture_output=True, check=True)
-        measured = subprocess.run([program.path, "measure", str(design), str(file), "--torque", "828", "--json"], capture_output=True, text=True, check=True)
+        stated = ["--torque", "828", "--speed", "2000", "--noise-urad", "5"]
+        record = [program.path, "rig", "--design", str(design), *stated, "-o", str(file)]
+        subprocess.run(record, capture_output=True, check=True)
+        measure = [program.path, "measure", str(design), str(file), "--torque", "828", "--json"]
+        measured = subprocess.run(measure, capture_output=True, text=True, check=True)
     answer = json.loads(measured.stdout)
     result, orders = answer["measurements"][0]["result"], answer["comparison"]["details"][0]["orders"]
     sheet = Sheet(640, 300, "Measured and predicted orders of a synthetic recording")
     sheet.axes((70, 20, 610, 245), (0.4, 8.6), (0, 25))
     sheet.frame("mesh order", "amplitude, m/s&#178;", range(1, 9), range(0, 26, 5))
     for k in range(8):
-        sigma = result["mesh"]["sigma_um"][k] / result["mesh"]["amplitude_um"][k] * orders["measured_m_per_s2"][k]
-        sheet.line([(k + 1.16, 0), (k + 1.16, min(25, orders["predicted_m_per_s2"][k]))], BLUE, 12)
-        sheet.line([(k + 0.84, 0), (k + 0.84, min(25, orders["measured_m_per_s2"][k]))], ORANGE, 12)
-        sheet.line([(k + 0.84, max(0, orders["measured_m_per_s2"][k] - 2 * sigma)), (k + 0.84, min(25, orders["measured_m_per_s2"][k] + 2 * sigma))], INK, 1.5)
+        measured, predicted = orders["measured_m_per_s2"][k], orders["predicted_m_per_s2"][k]
+        sigma = result["mesh"]["sigma_um"][k] / result["mesh"]["amplitude_um"][k] * measured
+        sheet.line([(k + 1.16, 0), (k + 1.16, min(25, predicted))], BLUE, 12)
+        sheet.line([(k + 0.84, 0), (k + 0.84, min(25, measured))], ORANGE, 12)
+        sheet.line([(k + 0.84, max(0, measured - 2 * sigma)), (k + 0.84, min(25, measured + 2 * sigma))], INK, 1.5)
     rms = result["rms_m_per_s2"]
-    sheet.text(8.5, 23, f"orange: measured, RMS {rms['value']:.1f} &#177; {rms['sigma']:.1f} m/s&#178;; blue: predicted; bars: two sigmas", GREY, "end", size=12)
+    size = f"{rms['value']:.1f} &#177; {rms['sigma']:.1f} m/s&#178;"
+    sheet.text(8.5, 23, f"orange: measured, RMS {size}; blue: predicted; bars: two sigmas", GREY, "end", size=12)
     return sheet
 
 
-QUICK = {"line-of-action": line_of_action, "ends": ends, "plane-of-action": plane_of_action, "modification": modification, "slice-gap": slice_gap,
-         "lumped-model": lumped_model}
-ALL = QUICK | {"transmission-error": transmission_error, "vibration": vibration, "contact-pattern": contact_pattern,
-               "search": search, "rig": rig}
+QUICK = {
+    "line-of-action": line_of_action,
+    "ends": ends,
+    "plane-of-action": plane_of_action,
+    "modification": modification,
+    "slice-gap": slice_gap,
+    "lumped-model": lumped_model,
+}
+ALL = QUICK | {
+    "transmission-error": transmission_error,
+    "vibration": vibration,
+    "contact-pattern": contact_pattern,
+    "search": search,
+    "rig": rig,
+}
 
 
 def main():

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the program is made of, as an SPDX 2.3 document: sbom.py PROGRAM LOCKFILE VERSION > easeoff.spdx.json (`make sbom`)
+"""What the program is made of, as an SPDX 2.3 document: sbom.py PROGRAM LOCKFILE VERSION > FILE (`make sbom`)
 
-The Debian packages of the libraries it is linked with, as the dynamic loader finds them here, and the npm packages whose
-code is in the page. The same tree on the same machine gives the same bytes; $SOURCE_DATE_EPOCH is the date, else 1970."""
+The Debian packages of the libraries it is linked with, as the dynamic loader finds them here, and the npm packages
+whose code is in the page. The same tree on the same machine gives the same bytes; $SOURCE_DATE_EPOCH is the date, else
+1970."""
 
 import hashlib
 import json
@@ -60,6 +61,10 @@ def reference(locator):
     return [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": locator}]
 
 
+def relation(one, kind, other):
+    return {"spdxElementId": one, "relationshipType": kind, "relatedSpdxElement": other}
+
+
 def document(program, lockfile, version):
     own = package("easeoff", version, licenseDeclared="GPL-3.0-or-later", licenseConcluded="GPL-3.0-or-later")
     parts = []
@@ -70,9 +75,8 @@ def document(program, lockfile, version):
         more = {"licenseDeclared": entry.get("license", "NOASSERTION")}
         locator = reference(f"pkg:npm/{name}@{entry['version']}")
         parts.append((package(name, entry["version"], externalRefs=locator, **more), "CONTAINS"))
-    relationships = [{"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES", "relatedSpdxElement": own["SPDXID"]}]
-    for part, kind in parts:
-        relationships.append({"spdxElementId": own["SPDXID"], "relationshipType": kind, "relatedSpdxElement": part["SPDXID"]})
+    relationships = [relation("SPDXRef-DOCUMENT", "DESCRIBES", own["SPDXID"])]
+    relationships += [relation(own["SPDXID"], kind, part["SPDXID"]) for part, kind in parts]
     made = {"packages": [own] + [part for part, _ in parts], "relationships": relationships}
     stamp = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", "0"))))
     digest = hashlib.sha256(json.dumps(made, sort_keys=True).encode()).hexdigest()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The validation book: validation.py PROGRAM CASES FILE [paper] writes the parts of FILE that stand between marks (`make validation`), or
-the comparison with the paper alone.
+"""The validation book: validation.py PROGRAM CASES FILE [paper] writes the parts of FILE that stand between marks
+(`make validation`), or the comparison with the paper alone.
 
-Every number comes from `easeoff verify --json` and `easeoff analyze --json` of this program; the expected ones from the case files, whose
-sources are named. What the words around them say is written by hand."""
+Every number comes from `easeoff verify --json` and `easeoff analyze --json` of this program; the expected ones from the
+case files, whose sources are named. What the words around them say is written by hand."""
 
 import json
 import statistics
@@ -16,7 +16,7 @@ NEAR = 0.8  # of the tolerance: what is listed among the disagreements
 # What a file's numbers come from, where the file itself has no line for it.
 ORIGIN = {
     "calculix.json": "contact of the same bricks by CalculiX, three-dimensional finite elements",
-    "contact.json": "an independent computation of geometry, gaps, loaded contact and impact; ISO 6336 formulae; CalculiX",
+    "contact.json": "an independent computation of geometry, gaps, loaded contact, impact; ISO 6336 formulae; CalculiX",
     "deviations.json": "an independent computation: gap by search over generated sections, closed-form flexibility",
     "dynamics.json": "an independent model of the twelve freedoms; published folds of one freedom with backlash",
     "encoder.json": "recordings made from formulae with known transmission error",
@@ -47,16 +47,25 @@ def number(value):
 
 
 def table(heads, rows):
-    return "\n".join(["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)] + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+    lines = ["| " + " | ".join(cells) + " |" for cells in [heads, *rows]]
+    lines.insert(1, "|" + "---|" * len(heads))
+    return "\n".join(lines) + "\n"
 
 
 def share(check):
     """What a check takes of its tolerance; None where that has no meaning (exact counts and flags)."""
-    return abs(check["value"] - check["expected"]) / check["tolerance"] if check["tolerance"] and check["value"] is not None else None
+    if not check["tolerance"] or check["value"] is None:
+        return None
+    return abs(check["value"] - check["expected"]) / check["tolerance"]
 
 
 def relative(check):
+    """Deviation in per cent of what is expected; None of zero."""
     return 100 * (check["value"] / check["expected"] - 1) if check["expected"] and check["value"] is not None else None
+
+
+def shown(value, form):
+    return "-" if value is None else format(value, form)
 
 
 def blocks_of(name, report):
@@ -65,8 +74,10 @@ def blocks_of(name, report):
         checks = [c for c in report["checks"] if c["pointer"].split("/")[1] == block]
         shares = [s for s in map(share, checks) if s is not None]
         deviations = [abs(r) for r in map(relative, checks) if r is not None]
-        rows.append([name, block, str(len(checks)), str(sum(not c["pass"] for c in checks)),
-                     f"{statistics.median(deviations):.2g}" if deviations else "-", f"{max(shares):.2f}" if shares else "exact"])
+        median = statistics.median(deviations) if deviations else None
+        largest = f"{max(shares):.2f}" if shares else "exact"
+        out = sum(not c["pass"] for c in checks)
+        rows.append([name, block, str(len(checks)), str(out), shown(median, ".2g"), largest])
     return rows
 
 
@@ -76,10 +87,10 @@ def disagreements(reports):
         for check in report["checks"]:
             taken = share(check)
             if not check["pass"] or (taken or 0) > NEAR:
-                deviation = relative(check)
-                rows.append((-(taken or 99), [f"{name}: {check['case'].split(': ', 1)[-1]}", check["quantity"].replace("|", "/"), number(check["expected"]), number(check["value"]),
-                                              f"{deviation:+.2g}" if deviation is not None else "-", f"{taken:.2f}" if taken is not None else "-",
-                                              "" if check["pass"] else "**out**"]))
+                cells = [f"{name}: {check['case'].split(': ', 1)[-1]}", check["quantity"].replace("|", "/")]
+                cells += [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+                cells += [shown(taken, ".2f"), "" if check["pass"] else "**out**"]
+                rows.append((-(taken or 99), cells))
     rows.sort(key=lambda row: (row[1][-1] == "", row[0]))
     return [row for _, row in rows]
 
@@ -96,14 +107,12 @@ def published(reports, cases):
                 continue
             entry = entries[int(place[2])]
             quantity = check["quantity"].removeprefix("expected.").removesuffix(".printed")
-            deviation = relative(check)
-            sources.setdefault(entry["source"], []).append(
-                [entry["id"], quantity, number(check["expected"]), number(check["value"]), f"{deviation:+.2g}" if deviation is not None else "-"])
+            values = [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+            sources.setdefault(entry["source"], []).append([entry["id"], quantity, *values])
     for check in reports["standards.json"]["checks"]:
-        deviation = relative(check)
-        sources.setdefault("standards.json: " + check["case"].split(": ", 1)[0], []).append(
-            [check["case"].split(": ", 1)[-1], check["quantity"], number(check["expected"]), number(check["value"]),
-             f"{deviation:+.2g}" if deviation is not None else "-"])
+        block, row = check["case"].split(": ", 1)[0], check["case"].split(": ", 1)[-1]
+        values = [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+        sources.setdefault(f"standards.json: {block}", []).append([row, check["quantity"], *values])
     parts = []
     for source in sorted(sources):
         rows = sources[source]
@@ -115,7 +124,7 @@ def paper(program):
     torque, laws, ours, rows = (621, 828, 1035), ("tangent", "secant"), {}, []
     for label, (example, _) in PAPER.items():
         for law in laws:
-            design = json.loads(subprocess.run([program, "example", example], capture_output=True, text=True, check=True).stdout)
+            design = run(program, ["example", example])
             design["resolution"]["mesh_law"] = law
             result = run(program, ["analyze", "-", "--json"], json.dumps(design))
             ours[label, law] = [case["vibration"]["rms_m_per_s2"]["normal"] for case in result["load_cases"]]
@@ -123,7 +132,8 @@ def paper(program):
         for k, load in enumerate(torque):
             rows.append([f"RMS, {label}, {load} N m", f"{printed[k]:.2f} m/s2"])
             for law in laws:
-                rows[-1] += [f"{ours[label, law][k]:.2f} m/s2", f"{100 * (ours[label, law][k] / printed[k] - 1):+.0f} %"]
+                value = ours[label, law][k]
+                rows[-1] += [f"{value:.2f} m/s2", f"{100 * (value / printed[k] - 1):+.0f} %"]
     for label in ("case A", "case B"):
         for k, load in enumerate(torque):
             theirs = 100 * (1 - PAPER[label][1][k] / PAPER["unmodified"][1][k])
@@ -154,12 +164,16 @@ def main():
     checks = [check for report in reports.values() for check in report["checks"]]
     text = book.read_text(encoding="utf-8")
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    text = put(text, "summary", f"{version}: {len(checks)} numbers compared in {len(reports)} files, {sum(not c['pass'] for c in checks)} out of tolerance.\n\n"
-               + table(["file", "its numbers come from"], [[name, origin] for name, origin in ORIGIN.items()]))
-    text = put(text, "disagreements", table(["case", "quantity", "expected", "Easeoff", "deviation, %", "of tolerance", ""], disagreements(reports)))
+    out = sum(not check["pass"] for check in checks)
+    summary = f"{version}: {len(checks)} numbers compared in {len(reports)} files, {out} out of tolerance.\n\n"
+    origins = table(["file", "its numbers come from"], [list(row) for row in ORIGIN.items()])
+    text = put(text, "summary", summary + origins)
+    heads = ["case", "quantity", "expected", "Easeoff", "deviation, %", "of tolerance", ""]
+    text = put(text, "disagreements", table(heads, disagreements(reports)))
     text = put(text, "paper", paper(program))
-    text = put(text, "cases", table(["file", "block", "numbers", "out", "median deviation, %", "largest, of tolerance"],
-                                    [row for name, report in reports.items() for row in blocks_of(name, report)]))
+    heads = ["file", "block", "numbers", "out", "median deviation, %", "largest, of tolerance"]
+    rows = [row for name, report in reports.items() for row in blocks_of(name, report)]
+    text = put(text, "cases", table(heads, rows))
     text = put(text, "published", published(reports, cases))
     book.write_text(text, encoding="utf-8")
 

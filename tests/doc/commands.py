@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every command of the manuals, run in the order of the text.
 
-Blocks of the kind `sh` of README.md, doc/guide.md and doc/api.md are run by one shell per document, in an empty folder of its own;
-blocks of the kind `python` in between by the interpreter, with the client of clients/python at hand. A document passes when every
-command ends with 0. So that this takes seconds, `easeoff` is a front that asks for a coarse mesh in every design; the numbers
-that the texts quote are those of the usual one. Blocks of other kinds (`console`, `text`, `json`) are to be read."""
+Blocks of the kind `sh` of README.md, doc/guide.md and doc/api.md are run by one shell per document, in an empty folder
+of its own; blocks of the kind `python` in between by the interpreter, with the client of clients/python at hand. A
+document passes when every command ends with 0. So that this takes seconds, `easeoff` is a front that asks for a coarse
+mesh in every design; the numbers that the texts quote are those of the usual one. Blocks of other kinds (`console`,
+`text`, `json`) are to be read."""
 
 import json
 import os
@@ -21,15 +22,27 @@ SOURCES = Path(os.environ.get("SOURCES", ".")).resolve()
 PROGRAM = Path(os.environ.get("EASEOFF", "./easeoff")).resolve()
 DOCUMENTS = ["README.md", "doc/guide.md", "doc/api.md"]
 PATIENCE = 120  # seconds of one document
-COARSE = {"body": "sector", "positions": 16, "cells_per_line": 8, "sector_teeth": 3, "neighbour_coupling": False, "layers": 6, "flank_rows": 4,
-          "fillet_elements": 6, "harmonics": 12, "te_harmonics": 8}
+COARSE = {
+    "body": "sector",
+    "sector_teeth": 3,
+    "neighbour_coupling": False,
+    "layers": 6,
+    "flank_rows": 4,
+    "fillet_elements": 6,
+    "positions": 16,
+    "cells_per_line": 8,
+    "harmonics": 12,
+    "te_harmonics": 8,
+}
 FRONT = '''#!/usr/bin/env python3
 import json, os, subprocess, sys, tempfile
 coarse = {coarse!r}
 program = {program!r}
 kept = []
 def coarser(design):
-    return design | {{"resolution": design.get("resolution", {{}}) | coarse}} if isinstance(design, dict) and "gear_pair" in design else design
+    if isinstance(design, dict) and "gear_pair" in design:
+        design["resolution"] = design.get("resolution", {{}}) | coarse
+    return design
 def argument(word):
     if not word.endswith(".json") or not os.path.isfile(word):
         return word
@@ -56,7 +69,7 @@ sys.exit(done.returncode)
 
 
 def script_of(text, folder):
-    """The document's blocks as one shell script that says on descriptor 3 which block begins; and how many there are."""
+    """The document's blocks as one shell script that says on descriptor 3 which block begins; how many there are."""
     parts, count = ["set -eu"], 0
     for kind, block in re.findall(r"(?ms)^```(\w+)[^\n]*\n(.*?)^```$", text):
         if kind not in ("sh", "python"):
@@ -83,14 +96,25 @@ def run(document):
         front.chmod(0o755)
         script, count = script_of(text, folder)
         (folder / "script").write_text(script, encoding="utf-8")
-        environment = os.environ | {"PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "HOME": str(folder / "home"), "SOURCES": str(SOURCES),
-                                    "PYTHONPATH": str(SOURCES / "clients" / "python"), "EASEOFF": str(front)}
+        environment = os.environ | {
+            "PATH": f"{folder / 'bin'}:{os.environ['PATH']}",
+            "HOME": str(folder / "home"),
+            "PYTHONPATH": str(SOURCES / "clients" / "python"),
+        }
         for leftover in ("EASEOFF_DATA", "XDG_DATA_HOME", "XDG_CACHE_HOME"):
             environment.pop(leftover, None)
-        with open(folder / "steps", "w", encoding="utf-8") as steps, open(folder / "out", "w", encoding="utf-8") as out:
+        (folder / "steps").touch()
+        with open(folder / "out", "w", encoding="utf-8") as out:
             # In a session of its own, so that a server that a text left running goes with it.
-            shell = subprocess.Popen(["sh", "-c", 'exec 3>>"$1"; . "$2"', "sh", str(folder / "steps"), str(folder / "script")], cwd=folder / "work",
-                                     env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, start_new_session=True)
+            shell = subprocess.Popen(
+                ["sh", "-c", 'exec 3>>"$1"; . "$2"', "sh", str(folder / "steps"), str(folder / "script")],
+                cwd=folder / "work",
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
             try:
                 status = shell.wait(PATIENCE)
             except subprocess.TimeoutExpired:

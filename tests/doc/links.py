@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Links inside the repository's texts: every file and heading that is pointed at is there. Prints what is not; ends with 1 then.
+"""Links inside the repository's texts: every file and heading that is pointed at is there. Prints what is not, and ends
+with 1 then.
 usage: links.py FILE.md..."""
 
 import re
@@ -16,7 +17,8 @@ def places(path, known={}):
     if path not in known:
         text = path.read_text(encoding="utf-8")
         outside = re.sub(r"(?ms)^```.*?^```", "", text)
-        known[path] = {slug(h) for h in re.findall(r"(?m)^#+ (.+)$", outside)} | set(re.findall(r"\\tag\{(\w+)\}", text))
+        headings = re.findall(r"(?m)^#+ (.+)$", outside)
+        known[path] = {slug(heading) for heading in headings} | set(re.findall(r"\\tag\{(\w+)\}", text))
     return known[path]
 
 

@@ -17,9 +17,9 @@ Worked examples are blocks of the kind `worked`, for people to follow with a cal
     m_t = 6 / cos(24*deg) = 6.567818      # geometry.transverse_module_mm
     ```
 
-The number must be the value of the expression, and the program's number at the place, both rounded to its digits. A name
-without an expression takes the program's number. After `worked`: `design EXAMPLE`, `analyze EXAMPLE` (on a coarse mesh), or
-`stage NAME`, whose input is the json block before it."""
+The number must be the value of the expression, and the program's number at the place, both rounded to its digits. A
+name without an expression takes the program's number. After `worked`: `design EXAMPLE`, `analyze EXAMPLE` (on a coarse
+mesh), or `stage NAME`, whose input is the json block before it."""
 
 import json
 import math
@@ -31,11 +31,20 @@ from pathlib import Path
 
 SOURCES = Path(os.environ.get("SOURCES", "."))
 PROGRAM = os.environ.get("EASEOFF", "./easeoff")
-COARSE = {"layers": 6, "flank_rows": 6, "fillet_elements": 8, "body": "sector", "sector_teeth": 3, "positions": 32, "cells_per_line": 16,
-          "te_harmonics": 12}
-MATHEMATICS = {name: getattr(math, name) for name in
-               "sin cos tan asin acos atan sqrt hypot log exp pi fabs".split()} | {"deg": math.pi / 180, "ln": math.log, "abs": abs, "max": max}
+COARSE = {
+    "body": "sector",
+    "sector_teeth": 3,
+    "layers": 6,
+    "flank_rows": 6,
+    "fillet_elements": 8,
+    "positions": 32,
+    "cells_per_line": 16,
+    "te_harmonics": 12,
+}
+MATHEMATICS = {name: getattr(math, name) for name in "sin cos tan asin acos atan sqrt hypot log exp pi".split()}
+MATHEMATICS |= {"deg": math.pi / 180}
 LABEL = r"\(([A-Z]+\d+)\)"
+LABELS = r"((?:\([A-Z]+\d+\) ?)+)"
 count = failures = 0
 
 
@@ -61,7 +70,7 @@ def read_equations():
             if label in found:
                 faults.append(f"{chapter.name}: ({label}) is numbered twice")
             found[label] = (chapter.name, None, None)
-        for labels, function, path in re.findall(rf"(?m)^> ((?:{LABEL[:-2]}\) ?)+): `(\w+)\(\)` in (src/\S+?\.[ch])\b".replace("([A-Z]", "(?:[A-Z]"), text):
+        for labels, function, path in re.findall(rf"(?m)^> {LABELS}: `(\w+)\(\)` in (src/\S+?\.[ch])\b", text):
             for label in re.findall(LABEL, labels):
                 if label not in found:
                     faults.append(f"{chapter.name}: names a function for ({label}), which is not numbered")
@@ -92,13 +101,14 @@ def check_citations():
                 faults.append(f"({label}) names no function")
             elif body is None:
                 faults.append(f"({label}): {path} defines no {function}()")
-            elif not re.search(rf"theory (?:{LABEL} )*\({label}\)", body):
+            elif not any(f"({label})" in run for run in re.findall(rf"theory {LABELS}", body)):
                 faults.append(f"({label}): {function}() in {path} does not say \"theory ({label})\"")
         result(not faults, f"{chapter.name}: each equation is named by the function that computes it", faults)
     faults = []
     for path, text in sources.items():
-        for run in re.findall(rf"theory ((?:{LABEL[:2]}[A-Z]+\d+\) ?)+)".replace("(([A-Z]", "(["), text):
-            faults += [f"{path.relative_to(SOURCES)} cites ({label})" for label in re.findall(LABEL, run) if label not in equations]
+        for run in re.findall(rf"theory {LABELS}", text):
+            unknown = [label for label in re.findall(LABEL, run) if label not in equations]
+            faults += [f"{path.relative_to(SOURCES)} cites ({label})" for label in unknown]
     result(not faults, "the source cites no equation that is not there", faults)
 
 
@@ -127,7 +137,8 @@ class Program:
                 design = json.loads(self.run(["example", words[1]]))
                 if words[0] == "analyze":
                     design["resolution"] |= COARSE
-                answer = self.run([words[0], "-", "--json", *(["--no-cache"] if words[0] == "analyze" else [])], json.dumps(design))
+                options = ["--json", "--no-cache"] if words[0] == "analyze" else ["--json"]
+                answer = self.run([words[0], "-", *options], json.dumps(design))
             self.known[key] = json.loads(answer)
         return self.known[key]
 
@@ -146,7 +157,10 @@ def check_line(line, names, document):
     printed = parts[-1]
     if not re.fullmatch(r"-?\d*\.?\d+(?:e[+-]?\d+)?", printed):
         return f"{line}: no number stands at the end"
-    value = names[name] = eval(parts[0], {"__builtins__": {}}, names) if len(parts) > 1 else float(printed)  # the repository's own text
+    value = float(printed)
+    if len(parts) > 1:
+        value = eval(parts[0], {"__builtins__": {}}, names)  # the repository's own text
+    names[name] = value
     if not agrees(value, printed):
         return f"{line}: by hand it is {value:.9g}"
     if place:
