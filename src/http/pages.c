@@ -153,13 +153,11 @@ static const struct page *find(const struct eo_pages *pages, const char *path)
 /* The file at a path, or what a folder shows: its index.html, when the path has the slash behind it. */
 static const struct page *shown_at(const struct eo_pages *pages, const char *path)
 {
-  static const char index[] = "index.html";
-  char below[LONGEST_PATH + sizeof index];
+  char below[LONGEST_PATH + sizeof "index.html"];
   size_t length = strlen(path);
   if (length == 0 || length > LONGEST_PATH || path[length - 1] != '/')
     return find(pages, path);
-  memcpy(below, path, length);
-  memcpy(below + length, index, sizeof index);
+  snprintf(below, sizeof below, "%.*sindex.html", LONGEST_PATH, path);
   return find(pages, below);
 }
 
@@ -169,8 +167,7 @@ static bool is_folder(const struct eo_pages *pages, const char *path, char slash
   size_t length = strlen(path);
   if (length == 0 || length > LONGEST_PATH || path[length - 1] == '/')
     return false;
-  memcpy(slashed, path, length);
-  memcpy(slashed + length, "/", 2);
+  snprintf(slashed, LONGEST_PATH + 2, "%.*s/", LONGEST_PATH, path);
   return shown_at(pages, slashed);
 }
 
