@@ -9,7 +9,7 @@
 void eo_impact_inertia(const struct eo_geometry *g, const struct eo_material *material, double inertia[2])
 {
   for (int i = 0; i < 2; i++)
-    inertia[i] = M_PI / 2 * eo_material_of(material, i).density * g->face_width * pow(g->working_radius[i], 4);
+    inertia[i] = M_PI / 2 * eo_material_of(material, i).density * g->member_width[i] * pow(g->working_radius[i], 4);
 }
 
 double eo_impact_mass(const struct eo_geometry *g, const double inertia[2])

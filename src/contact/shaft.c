@@ -17,7 +17,7 @@ bool eo_shafts_equal(const struct eo_shafts *a, const struct eo_shafts *b)
   return equal;
 }
 
-enum { NODES = EO_DEFLECTION_NODES, VECTOR = 2 * NODES, MOST_PIECES = 2 * (NODES - 1) + 3, MOST_SIZE = 2 * VECTOR };
+enum { NODES = EO_DEFLECTION_NODES, VECTOR = 2 * NODES, MOST_PIECES = 2 * (NODES - 1) + 7, MOST_SIZE = 2 * VECTOR };
 
 /* A stretch of a body with one section. */
 struct piece {
@@ -81,21 +81,25 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
 {
   const struct eo_material own = eo_material_of(both, member), *material = &own;
   double bore = pair->bore[member], offset = pair->ends == 2 ? (g->face_width + pair->groove_width) / 2 : 0,
-         half = offset + g->face_width / 2;
+         half = offset + g->face_width / 2, beyond = eo_gear_pair_extra_width(pair, member) / 2;
   struct eo_shaft_section shaft = eo_shaft_section_of(material, shafts->shaft_diameter[member], bore);
   struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(g, member), bore);
   *body = (struct body){.geometry = g, .member = member, .ends = pair->ends, .mid = {-offset, offset}};
   memcpy(body->bearing, shafts->bearing_position[member], sizeof body->bearing);
-  body->clamp = shafts->drive_side[member] == EO_DRIVE_LEFT ? -half : half;
+  body->clamp = shafts->drive_side[member] == EO_DRIVE_LEFT ? -(half + beyond) : half + beyond;
   body->arm = member == EO_PINION ? g->tangent_length[EO_PINION] : -g->tangent_length[EO_GEAR];
-  add_piece(body, body->bearing[EO_LEFT], -half, shaft);
+  add_piece(body, body->bearing[EO_LEFT], -(half + beyond), shaft);
+  add_piece(body, -(half + beyond), -half, toothed);
   add_end(body, EO_LEFT, toothed);
   if (pair->ends == 2) {
-    add_piece(body, -pair->groove_width / 2, pair->groove_width / 2,
-              eo_shaft_section_of(material, pair->groove_diameter[member], bore));
+    double edge = pair->groove_width / 2, inner = edge - beyond;
+    add_piece(body, -edge, -inner, toothed);
+    add_piece(body, -inner, inner, eo_shaft_section_of(material, pair->groove_diameter[member], bore));
+    add_piece(body, inner, edge, toothed);
     add_end(body, EO_RIGHT, toothed);
   }
-  add_piece(body, half, body->bearing[EO_RIGHT], shaft);
+  add_piece(body, half, half + beyond, toothed);
+  add_piece(body, half + beyond, body->bearing[EO_RIGHT], shaft);
 }
 
 /* Internal bending moment and shear at x of a simply supported beam under a unit force, or a unit moment, at z. */

@@ -32,6 +32,13 @@ static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_erro
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
                         "Two ends need a groove of at least 0.1 mm between them, not %.6g mm.",
                         1e3 * pair->groove_width);
+  for (int i = 0; i < 2 && pair->ends == 2; i++)
+    if (eo_gear_pair_groove_width(pair, i) < 1e-4)
+      return eo_error_set(error, EO_ERROR_INPUT, i ? "/gear_pair/gear_face_width_mm" : "/gear_pair/pinion_face_width_mm",
+                          "The own faces of the %s, %.6g mm, leave %.6g mm of the groove of %.6g mm between them, less "
+                          "than 0.1 mm: a wider groove or narrower faces.",
+                          member_name[i], 1e3 * pair->member_width[i], 1e3 * eo_gear_pair_groove_width(pair, i),
+                          1e3 * pair->groove_width);
   return EO_OK;
 }
 
@@ -125,11 +132,15 @@ static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank,
   char key[128];
   double length = 0, face_width = place->geometry->face_width;
   for (int k = 0; k < 2; k++) {
-    point_to(place, which[k], "_end_relief_length_mm", key);
+    point_to(place, which[k], "_end_relief_um", key);
     if (flank->end_relief[k] > 0 && flank->end_relief_length[k] <= 0)
-      return eo_error_set(error, EO_ERROR_INPUT, key, "An end relief needs a length above 0.");
+      return eo_error_set(error, EO_ERROR_INPUT, key,
+                          "An end relief of %.6g um needs its length: %s_end_relief_length_mm above 0, and up to %.6g "
+                          "mm with the other end's.",
+                          1e6 * flank->end_relief[k], which[k], 1e3 * face_width);
     length += flank->end_relief_length[k];
   }
+  point_to(place, which[flank->end_relief_length[0] <= flank->end_relief_length[1]], "_end_relief_length_mm", key);
   if (length > face_width)
     return eo_error_set(error, EO_ERROR_INPUT, key, "The end reliefs are %.6g mm long together, the face only %.6g mm.",
                         1e3 * length, 1e3 * face_width);
@@ -144,11 +155,12 @@ static enum eo_code check_triangles(const struct eo_flank_modification *flank, c
     const struct eo_triangular_relief *t = &flank->triangular[i / 2][i % 2];
     char corner[32], key[128];
     snprintf(corner, sizeof corner, "%s%s", relief_side[i / 2], face[i % 2]);
-    point_to(place, corner, t->profile_length > 0 ? "_triangular_face_length_mm" : "_triangular_profile_length_mm",
-             key);
+    point_to(place, corner, "_triangular_relief_um", key);
     if (t->amount != 0 && !(t->profile_length > 0 && t->face_length > 0))
       return eo_error_set(error, EO_ERROR_INPUT, key,
-                          "A triangular relief needs a length above 0 along the profile and along the face.");
+                          "A triangular relief of %.6g um needs lengths above 0: %s_triangular_profile_length_mm and "
+                          "%s_triangular_face_length_mm.",
+                          1e6 * t->amount, corner, corner);
   }
   return EO_OK;
 }
@@ -262,7 +274,8 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
                                 struct eo_error *error)
 {
   const double *bearing = shafts->bearing_position[i];
-  double half = pair->ends == 2 ? pair->groove_width / 2 + pair->face_width : pair->face_width / 2;
+  double half = (pair->ends == 2 ? pair->groove_width / 2 + pair->face_width : pair->face_width / 2) +
+                eo_gear_pair_extra_width(pair, i) / 2;
   char key[64];
   for (int k = 0; k < 2; k++) {
     snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);

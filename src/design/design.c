@@ -8,6 +8,7 @@
 #include "design/check.h"
 #include "gear/entry.h"
 #include "gear/geometry.h"
+#include "rating/gear_rating.h"
 #include "rating/pair_dimensions.h"
 #include "rating/thickness_allowance.h"
 
@@ -73,9 +74,60 @@ static enum eo_code settle_allowances(struct eo_gear_pair *pair, struct eo_error
   return EO_OK;
 }
 
+/* F_beta of the grade, of the member for which it is larger, m. */
+static enum eo_code helix_tolerance(const struct eo_design *design, double *largest, struct eo_error *error)
+{
+  const struct eo_gear_pair *pair = &design->gear_pair;
+  *largest = 0;
+  for (int i = 0; i < 2; i++) {
+    struct eo_flank_tolerance tolerance;
+    struct eo_error found;
+    const struct eo_tolerance_input in = {
+        .reference_diameter = pair->normal_module / cos(pair->helix_angle) * pair->teeth[i],
+        .normal_module = pair->normal_module,
+        .face_width = pair->face_width + eo_gear_pair_extra_width(pair, i),
+        .teeth = pair->teeth[i],
+        .grade = design->alignment.error_grade,
+        .total_contact_ratio = NAN};
+    if (eo_flank_tolerance(&tolerance, eo_rating_tolerance_edition(&design->rating), &in, &found))
+      return eo_error_set(error, EO_ERROR_INPUT, "/alignment/shaft_error_grade",
+                          "%.300s State the errors themselves instead.", found.text);
+    *largest = fmax(*largest, tolerance.helix_total);
+  }
+  return EO_OK;
+}
+
+/* What a stated grade allows (ISO/TR 10064-3): f_Sigma_beta = 0.5 (L/b) F_beta out of plane and twice that in the plane
+   of the axes over the bearing span L, so gamma = 0.5 F_beta/b and kappa = F_beta/b, with the signs by which both add
+   up in the plane of action. */
+static enum eo_code settle_errors(struct eo_design *design, struct eo_error *error)
+{
+  static const double SAME = 1e-6;
+  struct eo_alignment *a = &design->alignment;
+  double tolerance, width = design->gear_pair.face_width;
+  if (!a->error_grade)
+    return EO_OK;
+  EO_TRY(helix_tolerance(design, &tolerance, error));
+  const double follows[2] = {-tolerance / width, 0.5 * tolerance / width},
+               deviation[2] = {a->deviation_in_plane, a->deviation_out_of_plane};
+  double *const angle[2] = {&a->shaft_angle_in_plane, &a->shaft_angle_out_of_plane};
+  for (int i = 0; i < 2; i++) {
+    double stated = isnan(deviation[i]) ? *angle[i] : atan(deviation[i] / width);
+    if (stated != 0 && !(fabs(stated - follows[i]) <= SAME * fabs(follows[i])))
+      return eo_error_set(error, EO_ERROR_INPUT, "/alignment/shaft_error_grade",
+                          "Grade %d makes the shaft angle error %s %.6g deg, but %.6g deg is stated: leave one of the "
+                          "two out.",
+                          a->error_grade, i ? "out of plane" : "in plane", follows[i] * 180 / M_PI,
+                          stated * 180 / M_PI);
+    *angle[i] = follows[i];
+  }
+  return EO_OK;
+}
+
 enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error)
 {
   EO_TRY(eo_gear_pair_settle(&design->gear_pair, error));
+  EO_TRY(settle_errors(design, error));
   return settle_allowances(&design->gear_pair, error);
 }
 
@@ -142,12 +194,11 @@ static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometr
 static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i,
                             double pitch_radius)
 {
-  double groove = pair->ends == 2 ? pair->groove_width / 2 : 0, body = pair->groove_diameter[i] / 2,
+  double width = pair->face_width + eo_gear_pair_extra_width(pair, i);
+  double groove = pair->ends == 2 ? eo_gear_pair_groove_width(pair, i) / 2 : 0, body = pair->groove_diameter[i] / 2,
          bore = pair->bore[i] / 2;
-  double area = pitch_radius * pitch_radius * pair->face_width + body * body * groove -
-                bore * bore * (pair->face_width + groove);
-  double polar = pow(pitch_radius, 4) * pair->face_width + pow(body, 4) * groove -
-                 pow(bore, 4) * (pair->face_width + groove);
+  double area = pitch_radius * pitch_radius * width + body * body * groove - bore * bore * (width + groove);
+  double polar = pow(pitch_radius, 4) * width + pow(body, 4) * groove - pow(bore, 4) * (width + groove);
   fill(&supports->mass[i], density * M_PI * area);
   fill(&supports->inertia[i], density * M_PI / 2 * polar);
 }
@@ -184,20 +235,21 @@ static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pa
                            const struct eo_material *both, int i)
 {
   const struct eo_material own = eo_material_of(both, i), *material = &own;
-  double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
+  double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2, length = eo_gear_pair_groove_width(pair, i);
   double shear_modulus = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
   fill(&supports->groove_axial_stiffness[i],
-       material->youngs_modulus * M_PI * (body * body - bore * bore) / pair->groove_width);
+       material->youngs_modulus * M_PI * (body * body - bore * bore) / length);
   fill(&supports->groove_torsional_stiffness[i],
-       shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / pair->groove_width);
+       shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / length);
 }
 
 static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *pair)
 {
   double outside = pair->ends == 2 ? pair->groove_width / 2 + 1.5 * pair->face_width : pair->face_width;
   for (int i = 0; i < 2; i++) {
-    fill(&shafts->bearing_position[i][EO_LEFT], -outside);
-    fill(&shafts->bearing_position[i][EO_RIGHT], outside);
+    double beyond = outside + eo_gear_pair_extra_width(pair, i) / 2;
+    fill(&shafts->bearing_position[i][EO_LEFT], -beyond);
+    fill(&shafts->bearing_position[i][EO_RIGHT], beyond);
     fill(&shafts->shaft_diameter[i],
          fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
   }

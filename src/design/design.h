@@ -41,6 +41,7 @@ struct eo_alignment {
   double coupling_thrust;        /* on the pinion, + to the right, N */
   double apex_offset[2];         /* [member] of the right end away from the left one beyond the nominal distance, m */
   enum eo_apex apex;
+  int error_grade; /* of ISO 1328-1, from which the shaft angle errors follow: eo_design_settle(); 0: they are stated */
 };
 
 /* Stiffness with which the pinion is held along its axis, at a stop where it has play, N/m: 0 floating, INFINITY
@@ -171,8 +172,8 @@ struct eo_design {
 struct eo_geometry;
 
 /* Before there is a geometry: what was entered in another way becomes the members themselves (gear/entry.h), allowances
-   come from their series, the backlash from stated allowances. EO_ERROR_INPUT with the key: statements that contradict
-   each other, no such series. */
+   come from their series, the backlash from stated allowances, shaft angle errors from a stated grade. EO_ERROR_INPUT
+   with the key: statements that contradict each other, no such series or grade. */
 enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
 /* The drive flanks carry ahead with the member driving that drives in every load case, or with the pinion driving when
    both do; turning round either of torque or rotation brings the coast flanks into contact. */

@@ -12,6 +12,8 @@
   ROW("normal_pressure_angle", pair->normal_pressure_angle)                                \
   ROW("helix_angle", pair->helix_angle)                                                    \
   ROW("face_width", pair->face_width)                                                      \
+  ROW("pinion_face_width", pair->member_width[EO_PINION])                                  \
+  ROW("gear_face_width", pair->member_width[EO_GEAR])                                      \
   ROW("groove_width", pair->groove_width)                                                  \
   ROW("addendum_coefficient", pair->addendum_coefficient)                                  \
   ROW("dedendum_coefficient", pair->dedendum_coefficient)                                  \

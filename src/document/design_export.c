@@ -145,7 +145,7 @@ static void write_flank_points(const struct flank *flank, struct eo_text *text)
   for (int i = 0; i < flank->rows; i++)
     for (int j = 0; j < flank->columns; j++) {
       double s = path_at(flank, (double)i / (flank->rows - 1));
-      double eta = flank->geometry->face_width * ((double)j / (flank->columns - 1) - 0.5);
+      double eta = flank->geometry->member_width[flank->member] * ((double)j / (flank->columns - 1) - 0.5);
       put_place(text, flank->member, flank->end);
       eo_text_print(text, ",%d,%d", i, j);
       write_point(flank, s, eta, text);
@@ -182,7 +182,7 @@ static void write_profile_chart(const struct flank *flank, struct eo_text *text)
 static void write_lead_chart(const struct flank *flank, struct eo_text *text)
 {
   for (int i = 0; i < CHART_POINTS; i++) {
-    double eta = flank->geometry->face_width * ((double)i / (CHART_POINTS - 1) - 0.5);
+    double eta = flank->geometry->member_width[flank->member] * ((double)i / (CHART_POINTS - 1) - 0.5);
     put_place(text, flank->member, flank->end);
     eo_text_add(text, ",lead");
     put(text, eta, &eo_unit_mm);
@@ -209,7 +209,7 @@ static void write_topography_of(const struct flank *flank, struct eo_text *text)
   for (int i = 0; i < flank->rows; i++)
     for (int j = 0; j < flank->columns; j++) {
       double s = path_at(flank, (double)i / (flank->rows - 1));
-      double eta = flank->geometry->face_width * ((double)j / (flank->columns - 1) - 0.5);
+      double eta = flank->geometry->member_width[flank->member] * ((double)j / (flank->columns - 1) - 0.5);
       put_place(text, flank->member, flank->end);
       put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
       put(text, roll_at(flank, s), &eo_unit_deg);
@@ -243,7 +243,7 @@ static void write_flank_grid(const struct eo_design *design, const struct eo_geo
   text->failed = text->failed || !delta || eo_flank_shape(design, geometry, side, member, end, &shape, &spline);
   eo_active_profile(geometry, member, ends);
   for (int j = 0; j < size[1]; j++)
-    y[j] = geometry->face_width * ((double)j / (size[1] - 1) - 0.5);
+    y[j] = geometry->member_width[member] * ((double)j / (size[1] - 1) - 0.5);
   for (int i = 0; i < size[0] && !text->failed; i++) {
     u[i] = ends[EO_ROOT_SIDE] + (ends[EO_TIP_SIDE] - ends[EO_ROOT_SIDE]) * i / (size[0] - 1);
     for (int j = 0; j < size[1]; j++)

@@ -10,6 +10,7 @@
 #include "format/band_chart.h"
 #include "format/unit.h"
 #include "gear/modification.h"
+#include "rating/gear_rating.h"
 
 enum { POINTS = EO_FLANK_CHART_POINTS };
 
@@ -76,7 +77,7 @@ static void set_profile(struct eo_flank_chart *c, const struct eo_geometry *g,
 /* ISO 1328-1: the evaluation leaves out at each end the smaller of 5 % of the face and one module. */
 static void set_helix(struct eo_flank_chart *c, const struct eo_geometry *g, const struct eo_modification_shape *shape)
 {
-  double half = g->face_width / 2, left_out = fmin(0.05 * g->face_width, g->normal_module);
+  double width = g->member_width[c->member], half = width / 2, left_out = fmin(0.05 * width, g->normal_module);
   c->active[0] = -half;
   c->active[1] = half;
   c->range[0] = left_out - half;
@@ -99,13 +100,12 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
   struct eo_error error = {.text = ""};
   const struct eo_tolerance_input in = {.reference_diameter = 2 * g->reference_radius[member],
                                         .normal_module = g->normal_module,
-                                        .face_width = g->face_width,
+                                        .face_width = g->member_width[member],
                                         .teeth = g->teeth[member],
                                         .grade = r->accuracy_grade,
                                         .total_contact_ratio = g->transverse_contact_ratio + g->overlap_ratio};
-  enum eo_tolerance_edition edition = r->edition == EO_ISO6336_2019 ? EO_ISO1328_2013 : EO_ISO1328_1995;
   *tolerance = (struct eo_flank_tolerance){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-  eo_flank_tolerance(tolerance, edition, &in, &error);
+  eo_flank_tolerance(tolerance, eo_rating_tolerance_edition(r), &in, &error);
   snprintf(note, size, "%s", error.text);
 }
 

@@ -13,6 +13,12 @@ enum { TO_MM = 1000000 };
 static const char *const other_modules[] = {"transverse_module_mm", "normal_diametral_pitch_per_inch",
                                             "transverse_diametral_pitch_per_inch", NULL};
 
+static const char *const own_widths[] = {"pinion_face_width_mm", "gear_face_width_mm", NULL};
+
+#define OWN_WIDTH(member_)                                                                                           \
+  "own face width of the " member_ " at one end, centred on its mate's: what is beyond the common width supports the " \
+  "teeth and the root; modifications are laid out over the common width"
+
 /* A coefficient of one member's basic rack. */
 #define RACK(member, name, key_, low_, high_, help_) \
   EO_NUMBER_DERIVED(struct eo_gear_pair, rack[member].name, key_, NULL, low_, high_, "that of both members", help_)
@@ -87,8 +93,20 @@ static const struct eo_field gear_pair[] = {
               "without the sign and exchange left and right; of a herringbone pair the hand decides whether the apex "
               "leads or trails: see alignment.apex.",
      .help = "helix angle beta at the pitch cylinder; 0: spur"},
-    EO_NUMBER_REQUIRED(struct eo_gear_pair, face_width, "face_width_mm", &eo_unit_mm, 0.5, 5000,
-                       "face width of one end"),
+    {.key = "face_width_mm",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_gear_pair, face_width),
+     .unit = &eo_unit_mm,
+     .low = 0.5,
+     .high = 5000,
+     .fallback = NAN,
+     .instead = own_widths,
+     .help = "face width b of one end, common to both members"},
+    EO_NUMBER_DERIVED(struct eo_gear_pair, member_width[EO_PINION], "pinion_face_width_mm", &eo_unit_mm, 0.5, 5000,
+                      "the common face width", OWN_WIDTH("pinion")),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, member_width[EO_GEAR], "gear_face_width_mm", &eo_unit_mm, 0.5, 5000,
+                      "the common face width", OWN_WIDTH("gear")),
     EO_NUMBER_DERIVED(struct eo_gear_pair, groove_width, "groove_width_mm", &eo_unit_mm, 0, 5000,
                       "8 m_n with two ends, 0 with one", "tool withdrawal groove between the ends"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, addendum_coefficient, "addendum_coefficient", NULL, 0.2, 2,
@@ -230,12 +248,15 @@ static const char *const apex[] = {"trailing", "leading", NULL};
     .help = help_                                                                                                      \
   }
 
+#define ALIGNED(limit) \
+  "aligned: no error is assumed; with shaft_error_grade the limit of ISO/TR 10064-3, " limit " (both add up)"
+
 static const struct eo_field alignment[] = {
     EO_NUMBER_BASED(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
-                    "aligned: no error is assumed",
+                    ALIGNED("- F_beta / b"),
                     "shaft angle error in the plane of the axes, pivot in the middle of the groove"),
     EO_NUMBER_BASED(struct eo_alignment, shaft_angle_out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg,
-                    -2, 2, 0, "aligned: no error is assumed", "shaft angle error out of the plane of the axes"),
+                    -2, 2, 0, ALIGNED("F_beta / (2 b)"), "shaft angle error out of the plane of the axes"),
     EO_CHOICE(
         struct eo_alignment, pinion_axial, "pinion_axial", axial, EO_AXIAL_FLOATING,
         "how the pinion is held along its axis, in contact and vibration alike; with one end \"floating\" means held "
@@ -251,6 +272,16 @@ static const struct eo_field alignment[] = {
     DEVIATION(deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", "shaft_angle_error_out_of_plane_deg",
               "as shaft_angle_error_out_of_plane_deg says",
               "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),
+    {.key = "shaft_error_grade",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_alignment, error_grade),
+     .low = 1,
+     .high = 11,
+     .fallback = NAN,
+     .derived = "the errors are stated",
+     .help = "grade or class of ISO 1328-1, in the edition that belongs to the rating's, whose F_beta limits both shaft "
+             "angle errors: f_Sigma_beta = L/(2 b) F_beta, f_Sigma_delta twice that over the bearing span L"},
     EO_NUMBER(struct eo_alignment, pinion_axial_clearance, "pinion_axial_clearance_um", &eo_unit_um, 0, 1e5, 200,
               "whole play of the pinion between its stops, half to each side of where its apex meets the gear's, used "
               "with \"stops\"; at a stop pinion_axial_stiffness_N_per_um holds it"),

@@ -199,7 +199,7 @@ static void say_body(struct list *list, const struct eo_result_source *source)
     if (eo_flexibility_report(flexibility)->support[m] != EO_MEMBER_FLOATING)
       continue;
     double bore = source->design->gear_pair.bore[m] / 2;
-    if (source->ends == 1 && g->helix_angle > 0 && bore > 0 && g->face_width < NARROW * g->root_radius[m])
+    if (source->ends == 1 && g->helix_angle > 0 && bore > 0 && g->member_width[m] < NARROW * g->root_radius[m])
       say(list,
           "The %s is a narrow disc that carries thrust: it also dishes, which the floating body leaves to the shaft "
           "and "

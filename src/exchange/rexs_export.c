@@ -71,10 +71,21 @@ static double groove_width(const struct writer *w)
   return w->ends == 2 && !isnan(width) ? width : 0;
 }
 
-/* Where an end's left face stands on its shaft; the whole length of a shaft. */
+static double own_width(const struct writer *w, int member)
+{
+  return 1e3 * w->geometry->member_width[member];
+}
+
+/* Where the left face that both members share stands on the shafts; the whole length of a shaft. */
 static double face_at(const struct writer *w, int end)
 {
   return w->overhang + (end == EO_RIGHT ? face_width(w) + groove_width(w) : 0);
+}
+
+/* Where a member's own left face stands. */
+static double own_face_at(const struct writer *w, int member, int end)
+{
+  return face_at(w, end) - (own_width(w, member) - face_width(w)) / 2;
 }
 
 static double shaft_length(const struct writer *w)
@@ -163,16 +174,16 @@ static void write_load(struct writer *w, int member)
 static void write_shaft(struct writer *w, int member)
 {
   double bore = number_of(w->gear_pair, member, "bore_mm"), outer = number_of(w->shafts, member, "shaft_diameter_mm");
-  double right = face_at(w, w->ends - 1) + face_width(w);
+  double own = own_width(w, member), left = own_face_at(w, member, 0), right = own_face_at(w, member, w->ends - 1) + own;
   eo_rexs_build(&w->builder, SHAFT + member, "shaft", member == EO_PINION ? "pinion shaft" : "gear shaft");
   if (member == EO_PINION)
     eo_rexs_build_flag(&w->builder, "defines_speed", true);
   put_place(w, 0, distance_of(w, member));
   eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, (char *)NULL);
-  write_section(w, member, 0, 0, w->overhang, outer, bore);
-  write_section(w, member, 1, face_at(w, 0) + face_width(w), groove_width(w),
+  write_section(w, member, 0, 0, left, outer, bore);
+  write_section(w, member, 1, left + own, w->ends == 2 ? right - own - (left + own) : 0,
                 number_of(w->gear_pair, member, "groove_diameter_mm"), bore);
-  write_section(w, member, 2, right, w->overhang, outer, bore);
+  write_section(w, member, 2, right, shaft_length(w) - right, outer, bore);
   write_bearings(w, member);
   write_load(w, member);
 }
@@ -219,13 +230,13 @@ static void write_gear(struct writer *w, int member, int end, int *modification)
   eo_rexs_build_whole(&w->builder, "number_of_teeth", w->geometry->teeth[member]);
   eo_rexs_build_number(&w->builder, "normal_module", pair_number(w, "normal_module_mm"));
   eo_rexs_build_number(&w->builder, "helix_angle_reference_diameter", helix_of(w, member, end));
-  eo_rexs_build_number(&w->builder, "face_width", face_width(w));
-  eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", face_at(w, end));
+  eo_rexs_build_number(&w->builder, "face_width", own_width(w, member));
+  eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", own_face_at(w, member, end));
   eo_rexs_build_number(&w->builder, "tip_diameter", number_of(w->gear_pair, member, "tip_diameter_mm"));
   eo_rexs_build_number(&w->builder, "root_diameter", 2e3 * w->geometry->root_radius[member]);
   eo_rexs_build_number(&w->builder, "inner_diameter", number_of(w->gear_pair, member, "bore_mm"));
   eo_rexs_build_word(&w->builder, "datum_face_orientation", "negative");
-  put_place(w, face_at(w, end), distance_of(w, member));
+  put_place(w, own_face_at(w, member, end), distance_of(w, member));
   eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
   eo_rexs_relate(&w->builder, "reference", 0, "origin", id, "referenced", MATERIAL, (char *)NULL);
   for (int side = 0; side < 2; side++)

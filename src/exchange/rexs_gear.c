@@ -329,6 +329,24 @@ static void name_width(struct eo_rexs_import *import)
     }
 }
 
+/* Own widths where both members stand centred on each other; else the common width is all that a design has. */
+static void put_widths(struct eo_rexs_import *import, json_t *gear_pair)
+{
+  static const char *const key[2] = {"pinion_face_width_mm", "gear_face_width_mm"};
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "face_width_mm", import->width);
+  for (int member = 0; member < 2; member++) {
+    bool centred = true;
+    for (int end = 0; end < import->pair->ends; end++) {
+      const struct eo_rexs_wheel *wheel = &import->wheel[member][end], *mate = &import->wheel[1 - member][end];
+      centred = centred && fabs(wheel->left + wheel->right - mate->left - mate->right) <= same * import->width &&
+                fabs(wheel->face_width - import->wheel[member][EO_LEFT].face_width) <= same * import->width;
+    }
+    double own = import->wheel[member][EO_LEFT].face_width;
+    if (centred && own > import->width * (1 + same))
+      eo_rexs_put(import, &eo_gear_pair_table, gear_pair, key[member], own);
+  }
+}
+
 bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
 {
   struct eo_import *out = import->out;
@@ -345,7 +363,7 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_module_mm", pinion->module);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_pressure_angle_deg", pinion->pressure_angle);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "helix_angle_deg", fabs(pinion->helix));
-  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "face_width_mm", import->width);
+  put_widths(import, gear_pair);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "groove_width_mm",
               import->pair->ends == 2 ? groove_width(import) : 0);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "centre_distance_mm", mesh->centre_distance);

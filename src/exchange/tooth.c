@@ -123,7 +123,7 @@ static int face_breaks(const struct eo_tooth *tooth, const struct eo_modificatio
   for (int i = 0; i < 2; i++)
     for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)
       part[parts++] = 0.5 +
-                      side * shape->end[i].start * cos(tooth->geometry->helix_angle) / tooth->geometry->face_width;
+                      side * shape->end[i].start * cos(tooth->geometry->helix_angle) / tooth->geometry->member_width[tooth->member];
   qsort(part, (size_t)parts, sizeof *part, compare_numbers);
   for (int i = 0; i < parts; i++)
     count = add_break(at, count, part[i]);
@@ -215,7 +215,7 @@ void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int n
 {
   const struct eo_geometry *g = tooth->geometry;
   bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
-  double outwards = g->face_width * (mirrored ? 0.5 - q : q - 0.5), unused[3];
+  double outwards = g->member_width[tooth->member] * (mirrored ? 0.5 - q : q - 0.5), unused[3];
   double *across = normal ? normal : unused;
   if (is_flank(part))
     flank_point(tooth, part == EO_TOOTH_COAST, tooth->start_path + p * (tooth->tip_path - tooth->start_path), outwards,

@@ -107,7 +107,7 @@ struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int
                          .layers = table->layers,
                          .arc = table->arc,
                          .position = table->root,
-                         .width = flexibility->width,
+                         .width = flexibility->width[member],
                          .twist = flexibility->twist[member],
                          .first = 2};
   while (root.first < root.points - 2 && !is_critical(root.position, root.first))

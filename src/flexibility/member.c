@@ -110,7 +110,7 @@ out:
 static enum eo_code solve_whole(struct eo_member_job *job)
 {
   double start = (1e-3 * eo_clock_milliseconds());
-  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
+  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
                                      eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR,
                                      job->error);
   job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
@@ -130,7 +130,7 @@ static enum eo_code solve_half(struct eo_member_job *job)
   enum eo_code code = EO_ERROR_MEMORY;
   if (!keep || !place || !inverse)
     goto out;
-  code = eo_sector_init(&half, &job->section, job->settings->layers, job->geometry->face_width,
+  code = eo_sector_init(&half, &job->section, job->settings->layers, job->geometry->member_width[job->member],
                         eo_sector_twist(job->geometry, job->member), job->material, EO_HALF_TOOTH, job->error);
   if (code)
     goto out;

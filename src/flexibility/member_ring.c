@@ -235,7 +235,7 @@ static enum eo_code answer_all(struct eo_member_job *job, const struct kept *kep
   for (int t = -motion->reach; t <= motion->reach && !code; t++)
     code = answer_tooth(job, kept, tooth, motion, t, &answer);
   if (!code)
-    fill_parts(job->result, motion, job->geometry->face_width);
+    fill_parts(job->result, motion, job->geometry->member_width[job->member]);
   eo_stress_operator_done(&answer.operator);
   free(answer.all);
   free(answer.displacement);

@@ -184,6 +184,9 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
       eo_hash_add_number(&hash, m ? "gear_residual_undercut" : "pinion_residual_undercut", g->residual_undercut[m]);
     }
   for (int m = 0; m < 2; m++)
+    if (g->member_width[m] != g->face_width)
+      eo_hash_add_number(&hash, m ? "gear_face_width" : "pinion_face_width", g->member_width[m]);
+  for (int m = 0; m < 2; m++)
     add_member(&hash, g, m, &worker[m]);
   eo_hash_finish(&hash, key);
 }
@@ -225,7 +228,7 @@ static void *compute_member(void *context)
   if (w->code == EO_ERROR_NUMERIC && w->geometry->undercut[w->member])
     w->code = refuse_undercut(w);
   if (!w->code)
-    w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
+    w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width[w->member],
                                   &report->smallest_eigenvalue[w->member], &w->error);
   eo_member_result_done(&result);
   if (w->code) {
@@ -272,7 +275,7 @@ static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], cons
       eo_cache_write(&cache, part, 2);
   }
   for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
-    code = eo_flank_table_connect(&f->table[m], f->width, error);
+    code = eo_flank_table_connect(&f->table[m], f->width[m], error);
   if (!f->report.from_cache)
     memcpy(f->report.note, cache.note, sizeof f->report.note);
   eo_cache_close(&cache);
@@ -294,8 +297,8 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   struct shared shared = {.mutex = PTHREAD_MUTEX_INITIALIZER, .progress = progress};
   struct worker worker[2];
   f->settings = *settings;
-  f->width = geometry->face_width;
   for (int m = 0; m < 2; m++) {
+    f->width[m] = geometry->member_width[m];
     f->twist[m] = eo_sector_twist(geometry, m);
     worker[m] = (struct worker){.shared = &shared,
                                 .flexibility = f,

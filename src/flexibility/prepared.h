@@ -10,7 +10,7 @@ struct eo_flexibility {
   struct eo_flexibility_settings settings;
   struct eo_flexibility_report report;
   struct eo_flank_table table[2]; /* [member] */
-  double width;                   /* of the face, m */
+  double width[2];                /* [member] of its own face, m */
   double twist[2];                /* [member], rad/m */
 };
 

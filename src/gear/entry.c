@@ -87,6 +87,32 @@ static enum eo_code settle_pressure_angle(struct eo_gear_pair *pair, struct eo_e
   return EO_OK;
 }
 
+/* Both members stand centred on each other, so the narrower one decides what they share. */
+static enum eo_code settle_widths(struct eo_gear_pair *pair, struct eo_error *error)
+{
+  static const char *const key[2] = {"/gear_pair/pinion_face_width_mm", "/gear_pair/gear_face_width_mm"};
+  double *own = pair->member_width;
+  for (int i = 0; i < 2; i++)
+    own[i] = own[i] > 0 ? own[i] : NAN;
+  double common = isnan(own[0]) || isnan(own[1]) ? NAN : fmin(own[0], own[1]);
+  if (isnan(pair->face_width))
+    pair->face_width = isnan(common) ? fmax(own[0], own[1]) : common;
+  if (!isnan(common) && differ(pair->face_width, common, pair->face_width))
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
+                        "The members' own faces, %.9g and %.9g mm, share %.9g mm, not %.9g mm: leave this key out.",
+                        own[EO_PINION] / MM, own[EO_GEAR] / MM, common / MM, pair->face_width / MM);
+  for (int i = 0; i < 2; i++) {
+    if (own[i] < pair->face_width * (1 - SAME))
+      return eo_error_set(error, EO_ERROR_INPUT, key[i],
+                          "The member's own face, %.9g mm, is narrower than the face common to both, %.9g mm: state the "
+                          "own widths alone, or a common width of at most the narrower one.",
+                          own[i] / MM, pair->face_width / MM);
+    if (fabs(own[i] - pair->face_width) <= DERIVED * own[i])
+      own[i] = NAN;
+  }
+  return EO_OK;
+}
+
 static double transverse_pressure_angle(const struct eo_gear_pair *pair)
 {
   return atan(tan(pair->normal_pressure_angle) / cos(pair->helix_angle));
@@ -274,6 +300,7 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
   struct eo_gear_pair settled = *pair;
   EO_TRY(settle_module(&settled, error));
   EO_TRY(settle_pressure_angle(&settled, error));
+  EO_TRY(settle_widths(&settled, error));
   EO_TRY(settle_shifts(&settled, error));
   if (isnan(eo_gear_pair_tight_distance(&settled)))
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],

@@ -29,7 +29,8 @@ struct eo_gear_pair {
   double normal_module;         /* m_n, m */
   double normal_pressure_angle; /* alpha_n, rad; NaN: 20 deg (settled) */
   double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
-  double face_width;            /* b of one end, m */
+  double face_width;            /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
+  double member_width[2];       /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
   double groove_width;          /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
   double addendum_coefficient;  /* h_aP*; NaN, of all three: profile A of ISO 53 */
   double dedendum_coefficient;  /* h_fP* = h_aP* + c* */
@@ -60,6 +61,18 @@ struct eo_gear_pair {
   double measuring_ball[2];         /* D_M, m; NaN: of the usual ones the smallest that fits */
   struct eo_gear_entry entry;
 };
+
+/* How much wider a member's own face is than the common one, m; half of it stands beyond either end of the contact. */
+static inline double eo_gear_pair_extra_width(const struct eo_gear_pair *pair, int member)
+{
+  return pair->member_width[member] > 0 ? pair->member_width[member] - pair->face_width : 0;
+}
+
+/* The groove between the two ends of a member, m. */
+static inline double eo_gear_pair_groove_width(const struct eo_gear_pair *pair, int member)
+{
+  return pair->groove_width - eo_gear_pair_extra_width(pair, member);
+}
 
 /* The member's own basic rack; alpha_n must be settled. */
 struct eo_rack eo_gear_pair_rack(const struct eo_gear_pair *pair, int member);

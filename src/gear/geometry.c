@@ -53,6 +53,7 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
   g->face_width = pair->face_width;
   for (int i = 0; i < 2; i++) {
     struct eo_rack rack = eo_gear_pair_rack(pair, i);
+    g->member_width[i] = pair->member_width[i] > 0 ? pair->member_width[i] : g->face_width;
     g->dedendum[i] = rack.dedendum_coefficient * g->normal_module;
     g->fillet_radius[i] = rack.fillet_radius_coefficient * g->normal_module;
     g->teeth[i] = pair->teeth[i];

@@ -58,15 +58,19 @@ static void set_resonance(struct eo_rating_basis *basis)
   basis->resonance_speed = eo_resonance_speed(g->teeth[0], basis->stiffness.mesh_alpha, basis->reduced_mass);
 }
 
-/* The edition of ISO 1328-1 that belongs to that of ISO 6336: a rating never mixes them. */
+enum eo_tolerance_edition eo_rating_tolerance_edition(const struct eo_rating_settings *rating)
+{
+  return rating->edition == EO_ISO6336_2019 ? EO_ISO1328_2013 : EO_ISO1328_1995;
+}
+
 static enum eo_code set_tolerances(struct eo_rating_basis *basis, struct eo_error *error)
 {
   const struct eo_rating_settings *r = basis->input.rating;
-  enum eo_tolerance_edition edition = r->edition == EO_ISO6336_2019 ? EO_ISO1328_2013 : EO_ISO1328_1995;
+  enum eo_tolerance_edition edition = eo_rating_tolerance_edition(r);
   for (int i = 0; i < 2; i++) {
     struct eo_tolerance_input in = {.reference_diameter = basis->geometry.reference_diameter[i],
                                     .normal_module = basis->pair.normal_module,
-                                    .face_width = basis->pair.face_width,
+                                    .face_width = basis->input.geometry->member_width[i],
                                     .teeth = basis->pair.teeth[i],
                                     .grade = r->accuracy_grade,
                                     .total_contact_ratio = basis->geometry.transverse_contact_ratio +
@@ -92,6 +96,12 @@ static enum eo_code set_strength(struct eo_rating_basis *basis, int i, struct eo
   return EO_OK;
 }
 
+/* b of a root: of a wider member at most one module more than the common face on each side (ISO 6336-3 5.2.2). */
+static double root_face_width(const struct eo_geometry *g, int i)
+{
+  return fmin(g->member_width[i], g->face_width + 2 * g->normal_module);
+}
+
 /* Form, stress, notch, surface and size of one root; Y_B of the rim down to the bore. */
 static enum eo_code set_root(struct eo_rating_basis *basis, int i, struct eo_error *error)
 {
@@ -105,6 +115,7 @@ static enum eo_code set_root(struct eo_rating_basis *basis, int i, struct eo_err
       .dedendum_coefficient = g->dedendum[i] / g->normal_module,
       .fillet_radius_coefficient = g->fillet_radius[i] / g->normal_module,
       .tangential_force = 1,
+      .face_width = root_face_width(g, i),
       .grade = r->accuracy_grade};
   EO_TRY(eo_tooth_root(&basis->root[i], &basis->pair, &basis->geometry, i, &in, error));
   double depth = g->tip_radius[i] - g->root_radius[i], rim = g->root_radius[i] - basis->input.pair->bore[i] / 2;
@@ -136,7 +147,7 @@ enum eo_code eo_rating_basis_init(struct eo_rating_basis *basis, const struct eo
     EO_TRY(set_root(basis, i, error));
     basis->flank_life[i] = eo_life_flank(r->member[i].material, r->some_pitting, r->long_life);
     basis->root_life[i] = eo_life_root(r->member[i].material, r->long_life);
-    basis->width_over_depth = fmin(basis->width_over_depth, g->face_width / (g->tip_radius[i] - g->root_radius[i]));
+    basis->width_over_depth = fmin(basis->width_over_depth, g->member_width[i] / (g->tip_radius[i] - g->root_radius[i]));
   }
   return EO_OK;
 }

@@ -70,8 +70,9 @@ enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pa
   root->stress_correction = section.stress_correction;
   root->helix_factor = helix_factor(in->edition, g->overlap_ratio, p->helix_angle);
   root->deep_tooth = deep_tooth(in->grade, g->virtual_contact_ratio);
-  root->nominal = in->tangential_force / (p->face_width * p->normal_module) * root->form_factor *
-                  root->stress_correction * root->helix_factor * root->deep_tooth;
+  double width = in->face_width > 0 ? in->face_width : p->face_width;
+  root->nominal = in->tangential_force / (width * p->normal_module) * root->form_factor * root->stress_correction *
+                  root->helix_factor * root->deep_tooth;
   return EO_OK;
 }
 

@@ -16,6 +16,7 @@ struct eo_tooth_root_input {
   double generating_shift;                                /* x_E of the tooth that is cut (or the nominal x) */
   double dedendum_coefficient, fillet_radius_coefficient; /* h_fP, rho_fP over m_n */
   double tangential_force;                                /* F_t of the width b */
+  double face_width;                                      /* b of this root, m; 0: of the pair */
   int grade;                                              /* flank grade: Y_DT counts from 4 on; 0: not known */
 };
 

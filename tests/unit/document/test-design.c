@@ -502,7 +502,7 @@ static const struct contradiction contradictions[] = {
     {"tip relief beyond the active flank", "/modification/pinion/right/tip_relief_start_mm", late_tip},
     {"root relief beyond the active flank", "/modification/pinion/left/root_relief_start_mm", late_root},
     {"the gear's tip relief beyond its active flank", "/modification/gear/left/tip_relief_start_mm", late_gear_tip},
-    {"end relief without a length", "/modification/pinion/left/leading_end_relief_length_mm", no_relief_length},
+    {"end relief without a length", "/modification/pinion/left/leading_end_relief_um", no_relief_length},
     {"end reliefs that overlap", "/modification/pinion/left/leading_end_relief_length_mm", long_end_reliefs},
     {"a sector without a middle tooth", "/resolution/sector_teeth", even_sector},
     {"more harmonics than positions resolve", "/resolution/te_harmonics", many_harmonics},
@@ -596,7 +596,7 @@ static void nudge(void *group, const struct eo_field *field)
 {
   char *place = (char *)group + field->offset;
   if (field->kind == EO_FIELD_NUMBER)
-    *(double *)(void *)place = nextafter(*(double *)(void *)place, INFINITY);
+    *(double *)(void *)place = isnan(*(double *)(void *)place) ? 1 : nextafter(*(double *)(void *)place, INFINITY);
   else if (field->kind == EO_FIELD_FLAG)
     *(bool *)(void *)place = !*(bool *)(void *)place;
   else

@@ -105,7 +105,7 @@ static void test_refusals(void)
          "{\"gear\":{\"right\":{\"coast\":{\"tip_relief_um\":3,\"tip_relief_roll_length_mm\":80}}}}", "",
          "/modification/gear/right/coast/tip_relief_roll_length_mm");
   refuse("a triangular relief without a length", "{\"pinion\":{\"left\":{\"tip_leading_triangular_relief_um\":3}}}", "",
-         "/modification/pinion/left/tip_leading_triangular_profile_length_mm");
+         "/modification/pinion/left/tip_leading_triangular_relief_um");
   refuse("a slope under both names", "{\"pinion\":{\"left\":{\"lead_slope_um\":3,\"helix_slope_um\":6}}}", "",
          "/modification/pinion/left/helix_slope_um");
   refuse("a grid whose rows are of unequal length",

@@ -314,6 +314,45 @@ static void check_refusals(void)
   refuse(coarse, &hollow, "/gear_pair/gear_bore_mm");
 }
 
+/* Deflection of one member at a place of its face under a unit load there, m/N. */
+static double own_compliance(const struct eo_flexibility *flexibility, int member, double eta)
+{
+  const struct eo_flank_point point = {.pair = 0, .s = {0, 0}, .eta = eta};
+  double compliance = 0;
+  eo_flexibility_add_compliance(flexibility, member, 1, &point, &compliance);
+  return compliance;
+}
+
+/* A pinion whose own face is wider than the common one: its teeth are supported beyond the face ends of the gear, where
+   they become nearly as stiff as in their middle; the gear's stay what they are. */
+static void check_wider_member(const struct eo_flexibility *narrow)
+{
+  struct eo_geometry common = geometry;
+  struct eo_gear_pair usual = pair;
+  double end = geometry.face_width / 2, before[2], after[2];
+  pair.member_width[EO_PINION] = 1.5 * pair.face_width;
+  eo_geometry_init(&geometry, &pair, NULL);
+  struct eo_flexibility_settings finer = coarse;
+  finer.layers = 15; /* layers as thick as those of the common face */
+  struct eo_flexibility *wide = prepare(&finer, NULL);
+  if (ok(wide != NULL && strcmp(eo_flexibility_report(wide)->key, eo_flexibility_report(narrow)->key) != 0,
+         "a wider pinion is another preparation")) {
+    for (int m = 0; m < 2; m++) {
+      before[m] = own_compliance(narrow, m, end) / own_compliance(narrow, m, 0);
+      after[m] = own_compliance(wide, m, end) / own_compliance(wide, m, 0);
+    }
+    ok(before[EO_PINION] > 3 && after[EO_PINION] < 1.3,
+       "the end of the common face is %.3f times as soft as its middle, with teeth beyond it %.3f times",
+       before[EO_PINION], after[EO_PINION]);
+    near(own_compliance(wide, EO_PINION, 0), own_compliance(narrow, EO_PINION, 0), 0.06, "mid face hardly knows of it");
+    near(after[EO_GEAR], before[EO_GEAR], 0.05, "nor does the gear");
+    close_to(eo_flexibility_root(wide, EO_PINION).width, pair.member_width[EO_PINION], 0, "the root reaches over it");
+  }
+  eo_flexibility_free(wide);
+  pair = usual;
+  geometry = common;
+}
+
 int main(void)
 {
   struct eo_error error = {0};
@@ -330,6 +369,7 @@ int main(void)
   check_full_disk(flexibility);
   check_stop();
   check_refusals();
+  check_wider_member(flexibility);
   eo_flexibility_free(flexibility);
   return tap_done();
 }
