@@ -111,10 +111,12 @@ static bool is_kept(const char *cache, const struct eo_flexibility_report *repor
   return kept;
 }
 
-static enum eo_code prepare(const struct request *request, const struct eo_design *design,
-                            const struct eo_geometry *geometry, const struct eo_progress *progress,
-                            struct eo_error *error)
+static enum eo_code prepare_half(const struct request *request, const struct eo_design *design,
+                                 const struct eo_geometry *whole, int end, const struct eo_progress *progress,
+                                 struct eo_error *error)
 {
+  const struct eo_geometry half = eo_geometry_of_half(whole, &design->gear_pair, end), *geometry = &half;
+  const struct eo_gear_pair pair = eo_gear_pair_half(&design->gear_pair, end);
   struct eo_text cache = {0};
   struct eo_flexibility *flexibility = NULL;
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design->resolution);
@@ -122,7 +124,7 @@ static enum eo_code prepare(const struct request *request, const struct eo_desig
     eo_text_add(&cache, request->cache);
   else if (!eo_app_cache_directory(request->data, &cache))
     return eo_error_set(error, EO_ERROR_INPUT, "", "There is no place for prepared pairs; --data names one.");
-  enum eo_code code = eo_flexibility_prepare(geometry, &design->gear_pair, &design->material, &settings, cache.data,
+  enum eo_code code = eo_flexibility_prepare(geometry, &pair, &design->material, &settings, cache.data,
                                              progress, &flexibility, error);
   if (!code && !is_kept(cache.data, eo_flexibility_report(flexibility)))
     code = eo_error_set(error, EO_ERROR_FULL, "", "The prepared pair cannot be kept: %.200s",
@@ -137,6 +139,16 @@ static enum eo_code prepare(const struct request *request, const struct eo_desig
   eo_flexibility_free(flexibility);
   eo_text_done(&cache);
   return code;
+}
+
+/* Both halves of a pair whose halves differ, one after the other. */
+static enum eo_code prepare(const struct request *request, const struct eo_design *design,
+                            const struct eo_geometry *geometry, const struct eo_progress *progress,
+                            struct eo_error *error)
+{
+  for (int end = 0; end <= eo_gear_pair_is_uneven(&design->gear_pair); end++)
+    EO_TRY(prepare_half(request, design, geometry, end, progress, error));
+  return EO_OK;
 }
 
 /* For a server: it ends with whoever started it; where that was before this could be said, its first word finds nobody.

@@ -19,10 +19,10 @@ struct place {
 };
 
 struct eo_elastic {
-  const struct eo_contact_grid *grid;
+  const struct eo_contact_grid *grid[2]; /* [end] */
   struct eo_shaft_influence influence;
   struct place *place[2];             /* [end][most_points] of the present position */
-  double *gap[2];                     /* [end][grid->points] of the bent bodies */
+  double *gap[2];                     /* [end][points of its grid] of the bent bodies */
   double *change, *answer;            /* [most_points] */
   struct eo_deflection deflection[2]; /* [end] at the present position, and what its loads ask for */
   struct eo_deflection asked[2], load[2];
@@ -33,10 +33,13 @@ struct eo_elastic {
   struct eo_deflection *history[2];        /* [end][positions] */
 };
 
-static void set_places(const struct eo_elastic *el, const struct eo_contact_position *p, struct place *place)
+static void set_places(struct eo_elastic *el, int end, int j)
 {
+  const struct eo_contact_grid *grid = el->grid[end];
+  const struct eo_contact_position *p = &grid->position[j];
+  struct place *place = el->place[end];
   for (int i = 0; i < p->points; i++) {
-    double u = (p->point[i].eta / el->grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
+    double u = (p->point[i].eta / grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
     place[i].node = (int)fmax(0, fmin(EO_DEFLECTION_NODES - 2, floor(u)));
     place[i].weight = u - place[i].node;
     place[i].path = p->path[i];
@@ -66,7 +69,7 @@ static void spread(int points, const struct place *place, const struct eo_deflec
 
 static void gather_loads(struct eo_elastic *el, int end, int j, const struct eo_loaded_end *result)
 {
-  const struct eo_contact_position *p = &el->grid->position[j];
+  const struct eo_contact_position *p = &el->grid[end]->position[j];
   for (int i = 0; i < p->points; i++)
     el->answer[i] = result->line_load[p->first + i] * p->length[i];
   gather(p->points, el->place[end], el->answer, &el->load[end]);
@@ -84,7 +87,7 @@ static double product(const struct eo_deflection *a, const double *b)
 /* Largest gap that a deflection makes anywhere between the ends of the path of contact. */
 static double largest(const struct eo_elastic *el, const struct eo_deflection *a, const struct eo_deflection *b)
 {
-  const struct eo_geometry *g = &el->grid->geometry;
+  const struct eo_geometry *g = &el->grid[EO_LEFT]->geometry;
   double most = 0, reach = fmax(-g->path_start, g->path_end);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     most = fmax(most, fabs(a->part[0][i] - b->part[0][i]) + reach * fabs(a->part[1][i] - b->part[1][i]));
@@ -95,7 +98,7 @@ static double largest(const struct eo_elastic *el, const struct eo_deflection *a
 static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
                     double factor, int end, int j, double load, bool first, struct eo_loaded_end *result)
 {
-  const struct eo_contact_position *p = &el->grid->position[j];
+  const struct eo_contact_position *p = &el->grid[end]->position[j];
   double rise = 0, total = 0, *gap = el->gap[end] + p->first;
   const double *rigid = gaps->gap + p->first;
   spread(p->points, el->place[end], &el->deflection[end], el->change);
@@ -106,13 +109,13 @@ static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const
     total += force;
   }
   result->approach[j] += total > 0 ? rise / total : 0;
-  eo_loaded_resolve(ws, el->grid, el->gap[end], factor, j, load, result);
+  eo_loaded_resolve(ws, el->grid[end], el->gap[end], factor, j, load, result);
 }
 
 /* Answer of the end solved last to every mode, and to the shift of load. */
 static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, double factor, int end, int j)
 {
-  const struct eo_contact_position *p = &el->grid->position[j];
+  const struct eo_contact_position *p = &el->grid[end]->position[j];
   eo_loaded_prepare_response(ws, p);
   for (int k = 0; k < MODES; k++) {
     struct eo_deflection mode;
@@ -201,7 +204,7 @@ static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *c,
 /* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number
    of iterations, 0 when they did not converge. The contact's answer is asked for once, and again when the iteration
    slows down. */
-static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
+static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2], const struct eo_loaded_gaps *gaps,
                           const struct eo_elastic_case *c, double soft, const int at[2], struct eo_loaded_end *result)
 {
   enum { ITERATIONS = 40 };
@@ -210,14 +213,14 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws,
   bool held, ask = true;
   double before = INFINITY;
   for (int end = 0; end < ends; end++)
-    set_places(el, &el->grid->position[at[end]], el->place[end]);
+    set_places(el, end, at[end]);
   for (int iteration = 1; iteration <= ITERATIONS; iteration++) {
     el->shift = fmax(-MOST_SHIFT * c->load, fmin(MOST_SHIFT * c->load, el->shift));
     for (int end = 0; end < ends; end++) {
       double load = end == EO_LEFT ? c->load + el->shift : c->load - el->shift;
-      resolve(el, ws, &gaps[end], c->compliance_factor, end, at[end], load, iteration == 1, &result[end]);
+      resolve(el, ws[end], &gaps[end], c->compliance_factor, end, at[end], load, iteration == 1, &result[end]);
       if (ask)
-        respond(el, ws, c->compliance_factor, end, at[end]);
+        respond(el, ws[end], c->compliance_factor, end, at[end]);
       gather_loads(el, end, at[end], &result[end]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
@@ -233,13 +236,13 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws,
 
 static int other_position(const struct eo_elastic *el, int j, int stagger)
 {
-  int n = el->grid->positions;
+  int n = el->grid[EO_LEFT]->positions;
   return ((j - stagger) % n + n) % n;
 }
 
 static void summarise(const struct eo_elastic *el, struct eo_elastic_report *report)
 {
-  int n = el->grid->positions;
+  int n = el->grid[EO_LEFT]->positions;
   for (int end = 0; end < el->influence.ends; end++) {
     double *mean = &report->mean[end].part[0][0];
     for (int j = 0; j < n; j++)
@@ -253,7 +256,7 @@ static void summarise(const struct eo_elastic *el, struct eo_elastic_report *rep
 /* Start of position j: on from the two positions before. */
 static void extrapolate(struct eo_elastic *el, int j, int stagger)
 {
-  int n = el->grid->positions;
+  int n = el->grid[EO_LEFT]->positions;
   for (int end = 0; end < 2; end++) {
     int behind[2] = {j - 1, j - 2};
     for (int k = 0; k < 2; k++)
@@ -264,14 +267,14 @@ static void extrapolate(struct eo_elastic *el, int j, int stagger)
   }
 }
 
-void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
+void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2], const struct eo_loaded_gaps *gaps,
                       const struct eo_elastic_case *c, struct eo_loaded_end *result, struct eo_elastic_report *report)
 {
-  double lean = sin(el->grid->geometry.base_helix_angle);
+  double lean = sin(el->grid[EO_LEFT]->geometry.base_helix_angle);
   double stiffness = c->hold.stiffness, soft = stiffness > 0 && isfinite(stiffness) ? 4 * lean * lean / stiffness : 0;
   *report = (struct eo_elastic_report){0};
   el->shift = c->hold.shift;
-  for (int j = 0; j < el->grid->positions; j++) {
+  for (int j = 0; j < el->grid[EO_LEFT]->positions; j++) {
     int at[2] = {j, other_position(el, j, c->stagger)};
     extrapolate(el, j, c->stagger);
     int count = solve_position(el, ws, gaps, c, soft, at, result);
@@ -287,11 +290,11 @@ void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, con
 void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, int stagger,
                      const struct eo_loaded_end *result, int end, double *bent)
 {
-  for (int j = 0; j < el->grid->positions; j++) {
+  for (int j = 0; j < el->grid[EO_LEFT]->positions; j++) {
     int at[2] = {j, other_position(el, j, stagger)};
-    const struct eo_contact_position *p = &el->grid->position[at[end]];
+    const struct eo_contact_position *p = &el->grid[end]->position[at[end]];
     for (int e = 0; e < el->influence.ends; e++) {
-      set_places(el, &el->grid->position[at[e]], el->place[e]);
+      set_places(el, e, at[e]);
       gather_loads(el, e, at[e], &result[e]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
@@ -303,26 +306,26 @@ void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, i
 
 static enum eo_code allocate(struct eo_elastic *el, struct eo_error *error)
 {
-  size_t points = (size_t)el->grid->points, most = (size_t)el->grid->most_points,
-         positions = (size_t)el->grid->positions;
+  int left = el->grid[EO_LEFT]->most_points, right = el->grid[EO_RIGHT]->most_points;
+  size_t most = (size_t)(left > right ? left : right), positions = (size_t)el->grid[EO_LEFT]->positions;
   bool complete = (el->change = calloc(most, sizeof(double))) && (el->answer = calloc(most, sizeof(double)));
   for (int end = 0; end < 2; end++)
-    complete = complete && (el->gap[end] = calloc(points, sizeof(double))) &&
+    complete = complete && (el->gap[end] = calloc((size_t)el->grid[end]->points, sizeof(double))) &&
                (el->place[end] = calloc(most, sizeof(struct place))) &&
                (el->history[end] = calloc(positions, sizeof(struct eo_deflection)));
   return complete ? EO_OK : eo_error_memory(error);
 }
 
-enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_grid *grid,
+enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_grid *const grid[2],
                             const struct eo_gear_pair *pair, const struct eo_shafts *shafts, bool inwards,
                             struct eo_error *error)
 {
   struct eo_elastic *el = calloc(1, sizeof *el);
   if (!el)
     return eo_error_memory(error);
-  el->grid = grid;
-  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid->geometry, pair, &grid->material, shafts, inwards,
-                                              error);
+  memcpy(el->grid, grid, sizeof el->grid);
+  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid[EO_LEFT]->geometry, pair, &grid[EO_LEFT]->material,
+                                              shafts, inwards, error);
   if (!code)
     code = allocate(el, error);
   if (code)

@@ -17,11 +17,11 @@
 #include "contact/loaded.h"
 #include "contact/shaft.h"
 
-/* The bodies of one design on one grid, and scratch of one thread. */
+/* The bodies of one design on the grids of its ends, and scratch of one thread. */
 struct eo_elastic;
 
-/* The grid is borrowed; inwards: see eo_shaft_influence_init(). */
-enum eo_code eo_elastic_new(struct eo_elastic **elastic, const struct eo_contact_grid *grid,
+/* The grids [end] are borrowed and have as many positions; inwards: see eo_shaft_influence_init(). */
+enum eo_code eo_elastic_new(struct eo_elastic **elastic, const struct eo_contact_grid *const grid[2],
                             const struct eo_gear_pair *pair, const struct eo_shafts *shafts, bool inwards,
                             struct eo_error *error);
 void eo_elastic_free(struct eo_elastic *elastic);
@@ -40,9 +40,9 @@ struct eo_elastic_report {
   int failures;                    /* positions that did not converge */
 };
 
-/* gaps[ends]: of rigid bodies. result[ends]: of eo_loaded_solve() for the same load on them; becomes that on elastic
+/* workspace[2]: of the ends, may be one. gaps[ends]: of rigid bodies. result[ends]: of eo_loaded_solve() for the same load on them; becomes that on elastic
    bodies. */
-void eo_elastic_solve(struct eo_elastic *elastic, struct eo_loaded_workspace *workspace,
+void eo_elastic_solve(struct eo_elastic *elastic, struct eo_loaded_workspace *const workspace[2],
                       const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *load,
                       struct eo_loaded_end *result, struct eo_elastic_report *report);
 

@@ -29,7 +29,7 @@ struct piece {
 struct body {
   const struct eo_geometry *geometry;
   int member, ends;
-  double mid[2]; /* [end] z of mid face, m */
+  double mid[2], width[2]; /* [end] z of mid face, face width, m */
   double bearing[2];
   double clamp; /* z where twist is measured from */
   double arm;   /* xi of the pitch point */
@@ -57,7 +57,7 @@ double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int membe
 /* z of a node: eta runs to the left on the left end, to the right on the right one, or the other way round. */
 static double node_place(const struct body *body, int end, int node)
 {
-  double eta = body->geometry->face_width * ((double)node / (NODES - 1) - 0.5);
+  double eta = body->width[end] * ((double)node / (NODES - 1) - 0.5);
   return body->mid[end] + ((end == EO_LEFT) != body->inwards ? -eta : eta);
 }
 
@@ -80,16 +80,20 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
                       const struct eo_material *both, const struct eo_shafts *shafts, int member)
 {
   const struct eo_material own = eo_material_of(both, member), *material = &own;
-  double bore = pair->bore[member], offset = pair->ends == 2 ? (g->face_width + pair->groove_width) / 2 : 0,
-         half = offset + g->face_width / 2, beyond = eo_gear_pair_extra_width(pair, member) / 2;
+  double bore = pair->bore[member], beyond = eo_gear_pair_extra_width(pair, member) / 2, half[2];
   struct eo_shaft_section shaft = eo_shaft_section_of(material, shafts->shaft_diameter[member], bore);
   struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(g, member), bore);
-  *body = (struct body){.geometry = g, .member = member, .ends = pair->ends, .mid = {-offset, offset}};
+  *body = (struct body){.geometry = g, .member = member, .ends = pair->ends};
+  for (int end = 0; end < 2; end++) {
+    body->width[end] = pair->ends == 2 ? eo_gear_pair_face_width(pair, end) : pair->face_width;
+    body->mid[end] = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(pair, end);
+    half[end] = eo_gear_pair_mid_face(pair, end) + body->width[end] / 2 + beyond;
+  }
   memcpy(body->bearing, shafts->bearing_position[member], sizeof body->bearing);
-  body->clamp = shafts->drive_side[member] == EO_DRIVE_LEFT ? -(half + beyond) : half + beyond;
+  body->clamp = shafts->drive_side[member] == EO_DRIVE_LEFT ? -half[EO_LEFT] : half[EO_RIGHT];
   body->arm = member == EO_PINION ? g->tangent_length[EO_PINION] : -g->tangent_length[EO_GEAR];
-  add_piece(body, body->bearing[EO_LEFT], -(half + beyond), shaft);
-  add_piece(body, -(half + beyond), -half, toothed);
+  add_piece(body, body->bearing[EO_LEFT], -half[EO_LEFT], shaft);
+  add_piece(body, -half[EO_LEFT], beyond - half[EO_LEFT], toothed);
   add_end(body, EO_LEFT, toothed);
   if (pair->ends == 2) {
     double edge = pair->groove_width / 2, inner = edge - beyond;
@@ -98,8 +102,8 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
     add_piece(body, inner, edge, toothed);
     add_end(body, EO_RIGHT, toothed);
   }
-  add_piece(body, half, half + beyond, toothed);
-  add_piece(body, half + beyond, body->bearing[EO_RIGHT], shaft);
+  add_piece(body, half[EO_RIGHT] - beyond, half[EO_RIGHT], toothed);
+  add_piece(body, half[EO_RIGHT], body->bearing[EO_RIGHT], shaft);
 }
 
 /* Internal bending moment and shear at x of a simply supported beam under a unit force, or a unit moment, at z. */

@@ -26,6 +26,19 @@ static enum eo_code check_body(const struct eo_gear_pair *pair, const struct eo_
   return EO_OK;
 }
 
+/* A narrow right half must keep the teeth in mesh by itself. */
+static enum eo_code check_right_half(const struct eo_gear_pair *pair, const struct eo_geometry *right,
+                                     struct eo_error *error)
+{
+  double total = right->transverse_contact_ratio + right->overlap_ratio;
+  if (!eo_gear_pair_is_uneven(pair) || total >= 1)
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/right_face_width_mm",
+                      "The total contact ratio of the right end, %.4g, is below 1: the teeth do not mesh continuously. "
+                      "A wider face than %.6g mm, a larger helix angle or a longer addendum adds to it.",
+                      total, 1e3 * right->face_width);
+}
+
 static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_error *error)
 {
   if (pair->ends == 2 && pair->groove_width < 1e-4)
@@ -181,7 +194,8 @@ enum eo_code eo_modification_check(const struct eo_design *design, const struct 
   for (int side = 0; side < 2; side++)
     for (int i = 0; i < 2; i++)
       for (int end = 0; end < design->gear_pair.ends; end++) {
-        const struct flank_place place = {geometry, (enum eo_flank_side)side, i, end};
+        const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
+        const struct flank_place place = {&half, (enum eo_flank_side)side, i, end};
         EO_TRY(check_flank(side == EO_DRIVE_FLANK ? &design->modification.flank[i][end]
                                                   : &design->modification.coast[i][end],
                            &place, error));
@@ -274,10 +288,10 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
                                 struct eo_error *error)
 {
   const double *bearing = shafts->bearing_position[i];
-  double half = (pair->ends == 2 ? pair->groove_width / 2 + pair->face_width : pair->face_width / 2) +
-                eo_gear_pair_extra_width(pair, i) / 2;
   char key[64];
   for (int k = 0; k < 2; k++) {
+    double face = eo_gear_pair_face_width(pair, k), half = (pair->ends == 2 ? pair->groove_width / 2 + face : face / 2) +
+                                                           eo_gear_pair_extra_width(pair, i) / 2;
     snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);
     if (k == EO_LEFT ? bearing[k] > -half : bearing[k] < half)
       return eo_error_set(error, EO_ERROR_INPUT, key,
@@ -316,13 +330,18 @@ static enum eo_code check_objective(const struct eo_objective *objective, struct
 
 enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_error *error)
 {
-  enum eo_code code = check_groove(&design->gear_pair, error);
+  const struct eo_geometry right = eo_geometry_of_half(geometry, &design->gear_pair, EO_RIGHT);
+  enum eo_code code = check_right_half(&design->gear_pair, &right, error);
+  if (!code)
+    code = check_groove(&design->gear_pair, error);
   for (int i = 0; i < 2 && !code; i++)
     code = check_body(&design->gear_pair, geometry, i, error);
   if (!code)
     code = eo_modification_check(design, geometry, error);
   if (!code)
     code = check_resolution(&design->resolution, geometry, error);
+  if (!code && eo_gear_pair_is_uneven(&design->gear_pair))
+    code = check_resolution(&design->resolution, &right, error);
   if (!code)
     code = check_shafts(&design->shafts, &design->gear_pair, error);
   if (!code)

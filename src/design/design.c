@@ -190,17 +190,31 @@ static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometr
   fill(&pair->centre_distance_allowance, eo_centre_distance_allowance(pair->centre_distance));
 }
 
-/* Solid pitch cylinder of one end and half the groove body, less the bore. */
-static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i,
-                            double pitch_radius)
+/* Solid pitch cylinder of one end and half the groove body, less the bore: m and J per density. */
+static void cylinder(const struct eo_gear_pair *pair, int i, double pitch_radius, double *volume, double *polar)
 {
   double width = pair->face_width + eo_gear_pair_extra_width(pair, i);
   double groove = pair->ends == 2 ? eo_gear_pair_groove_width(pair, i) / 2 : 0, body = pair->groove_diameter[i] / 2,
          bore = pair->bore[i] / 2;
-  double area = pitch_radius * pitch_radius * width + body * body * groove - bore * bore * (width + groove);
-  double polar = pow(pitch_radius, 4) * width + pow(body, 4) * groove - pow(bore, 4) * (width + groove);
-  fill(&supports->mass[i], density * M_PI * area);
-  fill(&supports->inertia[i], density * M_PI / 2 * polar);
+  *volume = pitch_radius * pitch_radius * width + body * body * groove - bore * bore * (width + groove);
+  *polar = pow(pitch_radius, 4) * width + pow(body, 4) * groove - pow(bore, 4) * (width + groove);
+}
+
+/* A right end of another width is heavier or lighter as the cylinders are, also where the left one's mass is stated. */
+static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i,
+                            double pitch_radius)
+{
+  double volume[2], polar[2];
+  cylinder(pair, i, pitch_radius, &volume[EO_LEFT], &polar[EO_LEFT]);
+  fill(&supports->mass[i], density * M_PI * volume[EO_LEFT]);
+  fill(&supports->inertia[i], density * M_PI / 2 * polar[EO_LEFT]);
+  supports->right_mass[i] = supports->right_inertia[i] = 0;
+  if (!eo_gear_pair_is_uneven(pair))
+    return;
+  const struct eo_gear_pair right = eo_gear_pair_half(pair, EO_RIGHT);
+  cylinder(&right, i, pitch_radius, &volume[EO_RIGHT], &polar[EO_RIGHT]);
+  supports->right_mass[i] = supports->mass[i] * volume[EO_RIGHT] / volume[EO_LEFT];
+  supports->right_inertia[i] = supports->inertia[i] * polar[EO_RIGHT] / polar[EO_LEFT];
 }
 
 /* Bearings grow with the shaft they carry. 1e10 N/m2 of seat diameter: a cylindrical roller bearing of medium series by
@@ -245,11 +259,14 @@ static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pa
 
 static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *pair)
 {
-  double outside = pair->ends == 2 ? pair->groove_width / 2 + 1.5 * pair->face_width : pair->face_width;
+  double outside[2];
+  for (int end = 0; end < 2; end++)
+    outside[end] = pair->ends == 2 ? pair->groove_width / 2 + 1.5 * eo_gear_pair_face_width(pair, end)
+                                   : pair->face_width;
   for (int i = 0; i < 2; i++) {
-    double beyond = outside + eo_gear_pair_extra_width(pair, i) / 2;
-    fill(&shafts->bearing_position[i][EO_LEFT], -beyond);
-    fill(&shafts->bearing_position[i][EO_RIGHT], beyond);
+    double beyond = eo_gear_pair_extra_width(pair, i) / 2;
+    fill(&shafts->bearing_position[i][EO_LEFT], -(outside[EO_LEFT] + beyond));
+    fill(&shafts->bearing_position[i][EO_RIGHT], outside[EO_RIGHT] + beyond);
     fill(&shafts->shaft_diameter[i],
          fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
   }

@@ -14,6 +14,7 @@
   ROW("face_width", pair->face_width)                                                      \
   ROW("pinion_face_width", pair->member_width[EO_PINION])                                  \
   ROW("gear_face_width", pair->member_width[EO_GEAR])                                      \
+  ROW("right_face_width", pair->right_face_width)                                          \
   ROW("groove_width", pair->groove_width)                                                  \
   ROW("addendum_coefficient", pair->addendum_coefficient)                                  \
   ROW("dedendum_coefficient", pair->dedendum_coefficient)                                  \

@@ -64,12 +64,12 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
 {
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
-      struct flank flank = {.geometry = geometry, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
+      const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
+      struct flank flank = {.geometry = &half, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
       struct eo_flank_spline *spline = NULL;
       text->failed = text->failed ||
-                     eo_flank_shape(design, geometry, EO_DRIVE_FLANK, member, end, &flank.shape, &spline);
-      if (design->gear_pair.ends == 2)
-        flank.offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
+                     eo_flank_shape(design, &half, EO_DRIVE_FLANK, member, end, &flank.shape, &spline);
+      flank.offset = eo_gear_pair_mid_face(&design->gear_pair, end);
       double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
       flank.turn = pitch_angle(geometry, member) + (member == EO_PINION ? behind : -behind);
       function(&flank, text);
@@ -236,14 +236,15 @@ static void write_topography(const struct eo_design *design, const struct eo_geo
 static void write_flank_grid(const struct eo_design *design, const struct eo_geometry *geometry,
                              enum eo_flank_side side, int member, int end, const int size[2], struct eo_text *text)
 {
+  const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
   double u[EO_EXPORT_GRID_MOST], y[EO_EXPORT_GRID_MOST], ends[2];
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline = NULL;
   double *delta = malloc(sizeof *delta * (size_t)size[0] * (size_t)size[1]);
-  text->failed = text->failed || !delta || eo_flank_shape(design, geometry, side, member, end, &shape, &spline);
+  text->failed = text->failed || !delta || eo_flank_shape(design, &half, side, member, end, &shape, &spline);
   eo_active_profile(geometry, member, ends);
   for (int j = 0; j < size[1]; j++)
-    y[j] = geometry->member_width[member] * ((double)j / (size[1] - 1) - 0.5);
+    y[j] = half.member_width[member] * ((double)j / (size[1] - 1) - 0.5);
   for (int i = 0; i < size[0] && !text->failed; i++) {
     u[i] = ends[EO_ROOT_SIDE] + (ends[EO_TIP_SIDE] - ends[EO_ROOT_SIDE]) * i / (size[0] - 1);
     for (int j = 0; j < size[1]; j++)

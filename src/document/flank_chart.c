@@ -109,9 +109,10 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
   snprintf(note, size, "%s", error.text);
 }
 
-void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *design, const struct eo_geometry *geometry,
+void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *design, const struct eo_geometry *whole,
                          int member, int end, bool helix)
 {
+  const struct eo_geometry own = eo_geometry_of_half(whole, &design->gear_pair, end), *geometry = &own;
   struct eo_modification_shape shape;
   *c = (struct eo_flank_chart){.member = member, .end = end, .helix = helix};
   struct eo_flank_spline *spline;

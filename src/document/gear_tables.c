@@ -107,6 +107,10 @@ static const struct eo_field gear_pair[] = {
                       "the common face width", OWN_WIDTH("pinion")),
     EO_NUMBER_DERIVED(struct eo_gear_pair, member_width[EO_GEAR], "gear_face_width_mm", &eo_unit_mm, 0.5, 5000,
                       "the common face width", OWN_WIDTH("gear")),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, right_face_width, "right_face_width_mm", &eo_unit_mm, 0.5, 5000,
+                      "that of the left end",
+                      "face width of the right end where the halves are unequal; face_width_mm and the members' own "
+                      "widths are those of the left one then, and what is beyond the common face is alike on both"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, groove_width, "groove_width_mm", &eo_unit_mm, 0, 5000,
                       "8 m_n with two ends, 0 with one", "tool withdrawal groove between the ends"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, addendum_coefficient, "addendum_coefficient", NULL, 0.2, 2,

@@ -62,7 +62,7 @@ json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct eo_object o = eo_object_open_as(&contact_half);
-  source->lag = eo_evaluator_stagger(source->design, c->running.flank, source->positions);
+  source->lag = eo_evaluator_stagger(source->pair, source->design, &c->running);
   eo_object_put_number(&o, "torque_Nm", c->load_case.torque);
   eo_object_put_number(&o, "speed_rpm", c->load_case.speed);
   eo_object_put_number(&o, "share", c->load_case.share);

@@ -183,7 +183,7 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
                          mean(source->positions, tangent[end]));
     eo_object_put_number(&means, end ? "mesh_right_N_per_mm_um" : "mesh_left_N_per_mm_um",
                          mean(source->positions, secant[end]) * source->normal * source->normal /
-                             source->pair->geometry.face_width);
+                             eo_pair_half(source->pair, end)->geometry.face_width);
   }
   eo_object_put(&o, "mean", eo_object_close(&means));
   return eo_object_close(&o);
@@ -203,7 +203,7 @@ static const struct eo_outline unloaded_end = EO_OUTLINE("UnloadedContactEnd", u
 static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
 {
   const struct eo_end_result *r = &source->evaluation->load_case[0].end[end];
-  struct eo_contact_pattern *pattern = source->pattern;
+  struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
   struct eo_object o = eo_object_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
   eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, 0, end), r->unloaded);
@@ -228,16 +228,19 @@ static const struct eo_outline_row place_rows[] = {
     EO_KEY("eta_mm", "[number]?",
            "place along the face from its middle, + on the side that meets first: columns of the maps",
            .unit = &eo_unit_mm),
+    EO_KEY("right_eta_mm", "[number]?", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
 };
 static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
-static void put_places(struct eo_object *o, const struct eo_contact_pattern *pattern, bool wanted)
+static void put_places(struct eo_object *o, const struct eo_result_source *source, bool wanted)
 {
+  const struct eo_contact_pattern *pattern = eo_result_pattern(source, EO_LEFT);
   eo_object_put(o, "s_mm",
                 wanted ? eo_json_reals(EO_PATTERN_ROWS, pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE) : json_null());
   eo_object_put(o, "eta_mm",
                 wanted ? eo_json_reals(EO_PATTERN_COLUMNS, pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
                        : json_null());
+  eo_result_put_right_face(o, "right_eta_mm", source, EO_PATTERN_COLUMNS, pattern->eta, wanted);
 }
 
 static json_t *encode_unloaded_pair(struct eo_result_source *source, double *peak)
@@ -273,7 +276,7 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
   json_decref(of_pair);
   eo_object_put_number(&o, "peak_to_peak_um", peak);
   eo_object_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
-  put_places(&o, source->pattern, curves);
+  put_places(&o, source, curves);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
   return eo_object_close(&o);
@@ -286,7 +289,7 @@ static json_t *encode_share(struct eo_result_source *source, int end, const stru
   double *share = malloc(sizeof *share * (size_t)source->positions);
   bool failed = !rows || !share;
   for (int i = 0; i < pairs && !failed; i++) {
-    eo_contact_pair_share(source->pair->grid, loaded, first + i, share);
+    eo_contact_pair_share(eo_pair_half(source->pair, end)->grid, loaded, first + i, share);
     failed = json_array_append_new(rows, eo_result_end_column(source, end, share, 1, NULL)) != 0;
   }
   free(share);
@@ -306,9 +309,12 @@ static const struct eo_outline shares = EO_OUTLINE("LoadShare", share_rows);
 static json_t *encode_shares(struct eo_result_source *source, const struct eo_case_result *c)
 {
   struct eo_object o = eo_object_open_as(&shares);
-  int range[2];
+  int range[2], right[2];
   json_t *pairs = json_array();
   eo_contact_grid_pairs(source->pair->grid, range);
+  eo_contact_grid_pairs(eo_pair_half(source->pair, EO_RIGHT)->grid, right);
+  range[0] = right[0] < range[0] ? right[0] : range[0];
+  range[1] = right[1] > range[1] ? right[1] : range[1];
   for (int pair = range[0]; pair <= range[1]; pair++)
     o.failed = o.failed || json_array_append_new(pairs, json_integer(pair)) != 0;
   eo_object_put(&o, "tooth_pair", pairs);
@@ -330,9 +336,9 @@ static const struct eo_outline_row pattern_end_rows[] = {
 };
 static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pattern_end_rows);
 
-static json_t *encode_pattern_end(const struct eo_result_source *source, bool wanted)
+static json_t *encode_pattern_end(const struct eo_result_source *source, int end, bool wanted)
 {
-  const struct eo_contact_pattern *pattern = source->pattern;
+  const struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
   struct eo_object o = eo_object_open_as(&pattern_end);
   eo_object_put(&o, "pressure_MPa",
                 wanted ? eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa)
@@ -356,14 +362,15 @@ static json_t *encode_pattern(struct eo_result_source *source, int k)
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   bool wanted = eo_result_has(source, EO_RESULT_NO_PATTERN, c);
   struct eo_object o = eo_object_open_as(&contact_pattern);
-  put_places(&o, source->pattern, wanted);
+  put_places(&o, source, wanted);
   for (int end = 0; end < source->ends; end++) {
-    eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
+    struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
+    eo_contact_pattern_load(pattern, eo_pair_half(source->pair, end)->grid, &c->end[end].loaded);
     source->edge_pressure[k][end] = 0;
     for (int edge = 0; edge < 2; edge++)
       for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
-        source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], source->pattern->edge[edge][j]);
-    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source, wanted));
+        source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], pattern->edge[edge][j]);
+    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source, end, wanted));
   }
   return eo_object_close(&o);
 }
@@ -464,6 +471,7 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
 static const struct eo_outline_row body_rows[] = {
     EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first",
            .unit = &eo_unit_mm),
+    EO_KEY("right_eta_mm", "[number]", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
     EO_KEY("left_um", "[number?]", "normal gap that the bodies open, mean over the mesh cycle, over eta_mm, left end",
            .unit = &eo_unit_um),
     EO_KEY("right_um", "[number?]", "the same, right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
@@ -478,6 +486,7 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
   eo_object_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_result_put_right_face(&o, "right_eta_mm", source, EO_DEFLECTION_NODES, eta, true);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, end ? "right_um" : "left_um",
                   eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));

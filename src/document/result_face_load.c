@@ -23,6 +23,7 @@ static const struct eo_outline factor_of_ends = EO_OUTLINE("FactorOfEnds", facto
 static const struct eo_outline_row face_rows[] = {
     EO_KEY("eta_mm", "[number]?", "middles of slices of the face, from its middle, + on the side that meets first",
            .unit = &eo_unit_mm),
+    EO_KEY("right_eta_mm", "[number]?", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
     EO_KEY("left_N_per_mm", "[number?]?",
            "normal force per face width, all tooth pairs together, mean over the mesh cycle, over eta_mm, left end",
            .unit = &eo_unit_N_per_mm),
@@ -48,6 +49,7 @@ json_t *eo_result_face_load(const struct eo_result_source *source, const struct 
   eo_object_put(&o, "eta_mm",
                 curves ? eo_json_reals(EO_FACE_SLICES, c->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
                        : json_null());
+  eo_result_put_right_face(&o, "right_eta_mm", source, EO_FACE_SLICES, c->end[0].face.eta, curves);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_face_load *found = &c->end[end].face;
     face.end[end] = found->face_factor;

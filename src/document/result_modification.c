@@ -106,7 +106,7 @@ static void put_curves(struct eo_object *o, const struct eo_geometry *g, int mem
 
 static json_t *encode_coast(const struct eo_result_source *source, int member, int end, const struct places *places)
 {
-  const struct eo_geometry *g = &source->pair->geometry;
+  const struct eo_geometry *g = &eo_pair_half(source->pair, end)->geometry;
   const struct eo_flank_modification *flank = &source->design->modification.coast[member][end];
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline;
@@ -121,9 +121,12 @@ static json_t *encode_coast(const struct eo_result_source *source, int member, i
   return failed ? NULL : encoded;
 }
 
-static json_t *encode_flank(const struct eo_result_source *source, int member, int end, const struct places *places)
+static json_t *encode_flank(const struct eo_result_source *source, int member, int end, const struct places *all)
 {
-  const struct eo_geometry *g = &source->pair->geometry;
+  const struct eo_geometry *g = &eo_pair_half(source->pair, end)->geometry;
+  struct places own = *all, *places = &own;
+  spread(POINTS, -g->face_width / 2, g->face_width / 2, own.eta);
+  spread(MAP_COLUMNS, -g->face_width / 2, g->face_width / 2, own.map_eta);
   struct eo_object o = eo_object_open_as(&flank_curves);
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline;
@@ -163,6 +166,9 @@ static const struct eo_outline_row modification_rows[] = {
     EO_KEY("eta_mm", "[number]", "place along the face from its middle, + towards the end that meets first",
            .unit = &eo_unit_mm),
     EO_KEY("surface_eta_mm", "[number]", "the same, for surfaces", .unit = &eo_unit_mm),
+    EO_KEY("right_eta_mm", "[number]", "eta_mm of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
+    EO_KEY("right_surface_eta_mm", "[number]", "surface_eta_mm of the right end", .unit = &eo_unit_mm,
+           .when = EO_UNEVEN),
     EO_KEY("pinion", "object", "pinion", .outline = &member_curves),
     EO_KEY("gear", "object", "gear", .outline = &member_curves),
 };
@@ -177,6 +183,8 @@ json_t *eo_result_modification(struct eo_result_source *source)
   spread(MAP_COLUMNS, -half, half, places.map_eta);
   eo_object_put(&o, "eta_mm", eo_json_reals(POINTS, places.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   eo_object_put(&o, "surface_eta_mm", eo_json_reals(MAP_COLUMNS, places.map_eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_result_put_right_face(&o, "right_eta_mm", source, POINTS, places.eta, true);
+  eo_result_put_right_face(&o, "right_surface_eta_mm", source, MAP_COLUMNS, places.map_eta, true);
   for (int member = 0; member < 2; member++)
     eo_object_put(&o, eo_result_member[member], encode_member(source, member, &places));
   return eo_object_close(&o);

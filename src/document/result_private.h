@@ -17,7 +17,7 @@ struct eo_result_source {
   int ends, positions, lag;           /* lag: positions by which the right end's columns are shifted */
   double normal;                      /* cos(beta_b): normal = transverse times it */
   unsigned left_out;                  /* EO_RESULT_NO_..., EO_RESULT_CURVES_OF() */
-  struct eo_contact_pattern *pattern; /* scratch */
+  struct eo_contact_pattern *pattern; /* [half] scratch: eo_result_pattern() */
   double *scratch;                    /* [positions] */
   double (*edge_pressure)[2];         /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
 };
@@ -36,6 +36,15 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
 /* [rows][columns] as an array of rows; null when maps are left out. */
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
                       const struct eo_unit *unit);
+
+/* The pattern of an end. */
+struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *source, int end);
+
+/* Places on the right end's face, m, where it has a width of its own: as many as on the left one, in proportion. Nothing
+   else writes the key. */
+void eo_result_put_right_face(struct eo_object *o, const char *key, const struct eo_result_source *source, int count,
+                              const double *place, bool wanted);
+#define EO_UNEVEN "with halves of unequal width"
 
 /* What is there when the pair has two ends. */
 #define EO_TWO_ENDS "with two ends"

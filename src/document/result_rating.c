@@ -62,7 +62,7 @@ static const char *const unchecked_2019[] = {
 
 static bool passes(const struct eo_design_rating *r)
 {
-  const struct eo_rating_settings *s = r->basis.input.rating;
+  const struct eo_rating_settings *s = r->basis[EO_LEFT].input.rating;
   return r->rated && fmin(r->flank_safety, r->flank_static) >= s->flank_safety &&
          fmin(r->root_safety, r->root_static) >= s->root_safety;
 }
@@ -75,12 +75,12 @@ static json_t *write_passes(const void *source)
 
 static json_t *write_least_flank(const void *source)
 {
-  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->flank_safety, NULL);
+  return eo_json_quantity(((const struct eo_design_rating *)source)->basis[EO_LEFT].input.rating->flank_safety, NULL);
 }
 
 static json_t *write_least_root(const void *source)
 {
-  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->root_safety, NULL);
+  return eo_json_quantity(((const struct eo_design_rating *)source)->basis[EO_LEFT].input.rating->root_safety, NULL);
 }
 
 static json_t *write_required_life(const void *source)
@@ -455,6 +455,7 @@ static const struct eo_outline_row rating_rows[] = {
     EO_KEY("unchecked", "[text]", "what no published report has confirmed"),
     EO_KEY("verdict", "object", "what may be signed", .outline = &verdict),
     EO_KEY("pair", "object?", "what no load changes; null when it is not rated", .outline = &basis),
+    EO_KEY("right_pair", "object?", "the same of the right end", .outline = &basis, .when = EO_UNEVEN),
     EO_KEY("load_cases", "[object]?", "in the order of the design; null when it is not rated", .outline = &rated_case),
     EO_KEY("spectrum", "object?", "all load cases together, ISO 6336-6; null when it is not rated",
            .outline = &spectrum),
@@ -485,7 +486,9 @@ json_t *eo_result_rating(const struct eo_result_source *source)
   eo_object_put(&o, "standards", texts_of(new ? standards_2019 : standards_2006));
   eo_object_put(&o, "unchecked", texts_of(new ? unchecked_2019 : unchecked_2006));
   eo_object_put(&o, "verdict", eo_outline_encode(&verdict, r));
-  eo_object_put(&o, "pair", r->rated ? eo_outline_encode(&basis, &r->basis) : json_null());
+  eo_object_put(&o, "pair", r->rated ? eo_outline_encode(&basis, &r->basis[EO_LEFT]) : json_null());
+  if (source->pair->right)
+    eo_object_put(&o, "right_pair", r->rated ? eo_outline_encode(&basis, &r->basis[EO_RIGHT]) : json_null());
   eo_object_put(&o, "load_cases", r->rated ? encode_cases(source) : json_null());
   eo_object_put(&o, "spectrum", r->rated ? encode_spectrum(source) : json_null());
   return eo_object_close(&o);

@@ -22,6 +22,23 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
   return eo_json_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
 }
 
+struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *source, int end)
+{
+  return &source->pattern[end == EO_RIGHT && source->pair->right];
+}
+
+void eo_result_put_right_face(struct eo_object *o, const char *key, const struct eo_result_source *source, int count,
+                              const double *place, bool wanted)
+{
+  enum { MOST = 64 };
+  double right[MOST];
+  if (!source->pair->right)
+    return;
+  for (int i = 0; i < count && i < MOST; i++)
+    right[i] = place[i] * source->pair->right->geometry.face_width / source->pair->geometry.face_width;
+  eo_object_put(o, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, EO_DIGITS_CURVE) : json_null());
+}
+
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
                       const struct eo_unit *unit)
 {
@@ -54,13 +71,13 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
                                       .design = design,
                                       .ends = r->ends,
                                       .positions = r->positions,
-                                      .lag = eo_evaluator_stagger(design, r->load_case[0].running.flank, r->positions),
+                                      .lag = eo_evaluator_stagger(analysis->pair, design, &r->load_case[0].running),
                                       .normal = cos(analysis->pair->geometry.base_helix_angle),
                                       .left_out = left_out};
-  source->pattern = malloc(sizeof *source->pattern);
+  source->pattern = malloc(2 * sizeof *source->pattern);
   source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
-  if (source->pattern)
-    eo_contact_pattern_init(source->pattern, source->pair->grid);
+  for (int half = 0; source->pattern && half <= (source->pair->right != NULL); half++)
+    eo_contact_pattern_init(&source->pattern[half], eo_pair_half(source->pair, half)->grid);
   return source->pattern && source->scratch;
 }
 

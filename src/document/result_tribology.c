@@ -25,18 +25,19 @@ struct tribology_end {
   struct eo_tribology figures;
   const struct eo_result_source *source;
   const struct eo_case_result *load_case;
+  int end;
   struct eo_tribology_state state;
 };
 
 static json_t *write_map(const struct tribology_end *end, double (*value)(const struct eo_tribology_point *),
                          const struct eo_unit *unit)
 {
-  const struct eo_contact_pattern *pattern = end->source->pattern;
+  const struct eo_contact_pattern *pattern = eo_result_pattern(end->source, end->end);
   double map[EO_PATTERN_ROWS * EO_PATTERN_COLUMNS];
   if (!eo_result_has(end->source, EO_RESULT_NO_TRIBOLOGY | EO_RESULT_NO_MAPS, end->load_case))
     return json_null();
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
-    double q = eo_contact_pattern_line_load(pattern, end->source->pair->grid, i);
+    double q = eo_contact_pattern_line_load(pattern, eo_pair_half(end->source->pair, end->end)->grid, i);
     struct eo_tribology_point point = eo_tribology_at(&end->state, pattern->path[i / EO_PATTERN_COLUMNS], q);
     map[i] = q > 0 ? value(&point) : NAN;
   }
@@ -93,8 +94,9 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
   const struct tribology_end view = {.figures = source->analysis->rating->load_case[k].tribology[end],
                                      .source = source,
                                      .load_case = c,
+                                     .end = end,
                                      .state = *state};
-  eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
+  eo_contact_pattern_load(eo_result_pattern(source, end), eo_pair_half(source->pair, end)->grid, &c->end[end].loaded);
   return eo_outline_encode(&tribology_end, &view);
 }
 
@@ -135,6 +137,7 @@ static const struct eo_outline_row tribology_rows[] = {
     EO_KEY("s_mm", "[number]", "roll along the line of action from the pitch point: rows of the maps",
            .unit = &eo_unit_mm),
     EO_KEY("eta_mm", "[number]", "place along the face from its middle: columns of the maps", .unit = &eo_unit_mm),
+    EO_KEY("right_eta_mm", "[number]", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
     EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &tribology_case),
 };
 const struct eo_outline eo_outline_tribology = EO_OUTLINE("Tribology", tribology_rows);
@@ -150,6 +153,7 @@ json_t *eo_result_tribology(const struct eo_result_source *source)
   eo_object_put(&o, "methods", sources);
   eo_object_put(&o, "s_mm", eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   eo_object_put(&o, "eta_mm", eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_result_put_right_face(&o, "right_eta_mm", source, EO_PATTERN_COLUMNS, source->pattern->eta, true);
   for (int k = 0; k < source->evaluation->cases; k++)
     o.failed = o.failed || json_array_append_new(cases, encode_case(source, k)) != 0;
   eo_object_put(&o, "load_cases", cases);

@@ -255,6 +255,16 @@ static void reduce(struct eo_dynamics_model *m)
     project(m, m->reading[EO_READING_NORMAL][end], o->mesh[end]);
 }
 
+/* Mass or, of the rotation, inertia of an end. */
+static double mass_of(const struct eo_dynamics_parameters *p, int member, int end, int motion)
+{
+  bool rotation = motion == EO_MOTION_ROTATION;
+  double right = rotation ? p->right_inertia[member] : p->right_mass[member];
+  if (end == EO_RIGHT && right > 0)
+    return right;
+  return rotation ? p->inertia[member] : p->mass[member];
+}
+
 enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struct eo_dynamics_parameters *parameters,
                                     struct eo_error *error)
 {
@@ -265,9 +275,8 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < parameters->ends; end++)
       for (int motion = EO_MOTION_Y; motion <= EO_MOTION_ROTATION; motion++)
-        model->mass[eo_dynamics_freedom(parameters->ends, member, end, motion)] = motion == EO_MOTION_ROTATION
-                                                                                      ? parameters->inertia[member]
-                                                                                      : parameters->mass[member];
+        model->mass[eo_dynamics_freedom(parameters->ends, member, end, motion)] = mass_of(parameters, member, end,
+                                                                                          motion);
   for (int member = 0; member < 2; member++)
     if (parameters->machine_inertia[member] > 0) {
       model->machine[member] = model->freedoms;

@@ -116,9 +116,25 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
   return code || p->ends == 1 ? code : check_dampers(p, error);
 }
 
+/* Of one end; of ends that differ the mean. */
+static double mean_end(double left, double right)
+{
+  return right > 0 ? (left + right) / 2 : left;
+}
+
+static double mean_mass(const struct eo_dynamics_parameters *p, int member)
+{
+  return mean_end(p->mass[member], p->right_mass[member]);
+}
+
+static double mean_inertia(const struct eo_dynamics_parameters *p, int member)
+{
+  return mean_end(p->inertia[member], p->right_inertia[member]);
+}
+
 double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *p)
 {
-  const double *r = p->base_radius, *j = p->inertia;
+  const double *r = p->base_radius, j[2] = {mean_inertia(p, EO_PINION), mean_inertia(p, EO_GEAR)};
   return j[0] * j[1] / (j[0] * r[1] * r[1] + j[1] * r[0] * r[0]);
 }
 
@@ -149,9 +165,9 @@ static void set_bearings(struct eo_dynamics_parameters *p, const struct eo_suppo
   double zeta = supports->bearing_damping_ratio;
   for (int i = 0; i < 2; i++) {
     p->bearing_stiffness[i] = supports->bearing_stiffness[i];
-    p->bearing_damping[i] = damper(zeta, p->bearing_stiffness[i], p->mass[i]);
+    p->bearing_damping[i] = damper(zeta, p->bearing_stiffness[i], mean_mass(p, i));
     p->gear_axial_stiffness[i] = supports->gear_axial_stiffness[i];
-    p->gear_axial_damping[i] = damper(zeta, p->gear_axial_stiffness[i], p->mass[EO_GEAR]);
+    p->gear_axial_damping[i] = damper(zeta, p->gear_axial_stiffness[i], mean_mass(p, EO_GEAR));
   }
 }
 
@@ -175,13 +191,13 @@ static enum eo_code set_single_axial(struct eo_dynamics_parameters *p, double he
 static void set_pinion_axial(struct eo_dynamics_parameters *p, double held, const struct eo_supports *supports)
 {
   p->pinion_axial_stiffness = held;
-  p->pinion_axial_damping = damper(supports->bearing_damping_ratio, p->pinion_axial_stiffness, 2 * p->mass[EO_PINION]);
+  p->pinion_axial_damping = damper(supports->bearing_damping_ratio, p->pinion_axial_stiffness, 2 * mean_mass(p, EO_PINION));
 }
 
 static void set_machines(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
 {
   for (int m = 0; m < 2; m++) {
-    double own = p->ends * p->inertia[m], machine = supports->machine_inertia[m];
+    double own = p->ends * mean_inertia(p, m), machine = supports->machine_inertia[m];
     p->machine_inertia[m] = machine;
     p->machine_stiffness[m] = supports->machine_stiffness[m];
     if (machine > 0)
@@ -195,11 +211,11 @@ static void set_groove(struct eo_dynamics_parameters *p, const struct eo_support
   double zeta = supports->groove_damping_ratio;
   for (int m = 0; m < 2; m++) {
     p->groove_axial_stiffness[m] = supports->groove_axial_stiffness[m];
-    p->groove_axial_damping[m] = 2 * zeta * sqrt(p->groove_axial_stiffness[m] * p->mass[m] / 2);
+    p->groove_axial_damping[m] = 2 * zeta * sqrt(p->groove_axial_stiffness[m] * mean_mass(p, m) / 2);
     if (!coupled)
       continue;
     p->groove_torsional_stiffness[m] = supports->groove_torsional_stiffness[m];
-    p->groove_torsional_damping[m] = damper(zeta, p->groove_torsional_stiffness[m], p->inertia[m] / 2);
+    p->groove_torsional_damping[m] = damper(zeta, p->groove_torsional_stiffness[m], mean_inertia(p, m) / 2);
   }
 }
 
@@ -229,6 +245,8 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
   for (int m = 0; m < 2; m++) {
     p.mass[m] = supports->mass[m];
     p.inertia[m] = supports->inertia[m];
+    p.right_mass[m] = ends == 2 ? supports->right_mass[m] : 0;
+    p.right_inertia[m] = ends == 2 ? supports->right_inertia[m] : 0;
   }
   set_bearings(&p, supports);
   bool coupled = supports->torsional_coupling == EO_COUPLING_ON ||

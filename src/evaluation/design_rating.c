@@ -38,8 +38,9 @@ static double tip_relief(const struct eo_design *design)
   return least;
 }
 
-static struct eo_rating_input input_of(const struct eo_pair *pair, const struct eo_design *design)
+static struct eo_rating_input input_of(const struct eo_pair *whole, const struct eo_design *design, int end)
 {
+  const struct eo_pair *pair = eo_pair_half(whole, end);
   const struct eo_shafts *shafts = &design->shafts;
   const double *bearing = shafts->bearing_position[EO_PINION];
   return (struct eo_rating_input){.geometry = &pair->geometry,
@@ -54,13 +55,14 @@ static struct eo_rating_input input_of(const struct eo_pair *pair, const struct 
                                   .shaft_diameter = shafts->shaft_diameter[EO_PINION]};
 }
 
-/* The design with a helix slope deviation more on the pinion's flanks; transverse, over the face width, + takes off
-   where the teeth meet first. */
+/* The design with the helix slope deviation of each end more on the pinion's flanks, one way or the other; transverse,
+   over the face width, + takes off where the teeth meet first. */
 static void lean(struct eo_design *leaning, const struct eo_design *design, const struct eo_geometry *geometry,
-                 double deviation)
+                 const struct eo_rating_basis basis[2], double way)
 {
   *leaning = *design;
   for (int end = 0; end < design->gear_pair.ends; end++) {
+    double deviation = way * basis[end].mesh_deviation;
     leaning->modification.flank[EO_PINION][end].helix_slope += deviation * cos(geometry->base_helix_angle);
     leaning->modification.coast[EO_PINION][end].helix_slope -= deviation * cos(geometry->base_helix_angle);
   }
@@ -70,10 +72,9 @@ static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_ev
                                    const struct eo_design *design, const struct eo_scenario *scenario,
                                    struct eo_design *leaning, struct eo_error *error)
 {
-  double deviation = rating->basis.mesh_deviation;
   for (int side = 0; side < 2; side++) {
     const struct eo_evaluation *evaluation;
-    lean(leaning, design, &eo_evaluator_pair(evaluator)->geometry, side ? -deviation : deviation);
+    lean(leaning, design, &eo_evaluator_pair(evaluator)->geometry, rating->basis, side ? -1 : 1);
     EO_TRY(eo_evaluator_contact_at(evaluator, leaning, scenario, &evaluation, error));
     for (int k = 0; k < evaluation->cases; k++)
       for (int end = 0; end < evaluation->ends; end++)
@@ -86,8 +87,11 @@ enum eo_code eo_design_rating_lean(struct eo_design_rating *rating, struct eo_ev
                                    const struct eo_design *design, const struct eo_scenario *scenario,
                                    struct eo_error *error)
 {
-  struct eo_rating_input input = input_of(eo_evaluator_pair(evaluator), design);
-  rating->rated = !eo_rating_basis_init(&rating->basis, &input, &rating->reason);
+  rating->rated = true;
+  for (int end = 0; end < 2 && rating->rated; end++) {
+    struct eo_rating_input input = input_of(eo_evaluator_pair(evaluator), design, end);
+    rating->rated = !eo_rating_basis_init(&rating->basis[end], &input, &rating->reason);
+  }
   if (!rating->rated)
     return EO_OK;
   struct eo_design *leaning = malloc(sizeof *leaning);
@@ -121,7 +125,8 @@ static double root_stress(const struct eo_end_result *end, int member)
 static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_case_result *c, int k, int end,
                              struct eo_error *error)
 {
-  const struct eo_rating_settings *settings = rating->basis.input.rating;
+  const struct eo_rating_basis *basis = &rating->basis[end];
+  const struct eo_rating_settings *settings = basis->input.rating;
   struct eo_face_factors *face = &rating->load_case[k].face[end];
   bool periodic = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
   const struct eo_rating_load load = {
@@ -135,7 +140,7 @@ static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_ca
       .share = c->end[end].face.share_factor,
       .pressure = c->end[end].max_pressure,
       .root = {root_stress(&c->end[end], EO_PINION), root_stress(&c->end[end], EO_GEAR)}};
-  return eo_rated_case_find(&rating->load_case[k].end[end], &rating->basis, &load, error);
+  return eo_rated_case_find(&rating->load_case[k].end[end], basis, &load, error);
 }
 
 /* The distribution of one end, its share of the load, and its tribology: what needs no standard. */
@@ -151,7 +156,7 @@ static void describe_end(struct eo_design_rating *rating, const struct eo_pair *
   face->worse = rating->rated ? fmax(face->leaning[0], face->leaning[1]) : NAN;
   r->sharing[end] = mean(pair->grid->positions, c->end[end].loaded.load) / c->force;
   eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, c->load_case.speed);
-  eo_tribology_find(&r->tribology[end], &state, pair->grid, &c->end[end].loaded);
+  eo_tribology_find(&r->tribology[end], &state, eo_pair_half(pair, end)->grid, &c->end[end].loaded);
 }
 
 static void decide(struct eo_design_rating *rating)
@@ -174,7 +179,7 @@ static void find_spectra(struct eo_design_rating *rating)
   for (int end = 0; end < rating->ends; end++) {
     for (int k = 0; k < rating->cases; k++)
       cases[k] = rating->load_case[k].end[end];
-    eo_rated_spectrum_find(&rating->end[end], &rating->basis, rating->cases, cases);
+    eo_rated_spectrum_find(&rating->end[end], &rating->basis[end], rating->cases, cases);
   }
   decide(rating);
 }
@@ -184,7 +189,8 @@ void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair
 {
   rating->ends = evaluation->ends;
   rating->cases = evaluation->cases;
-  rating->basis.input = input_of(pair, design);
+  for (int end = 0; end < 2; end++)
+    rating->basis[end].input = input_of(pair, design, end);
   rating->flank_safety = rating->root_safety = rating->flank_static = rating->root_static = rating->life = NAN;
   rating->film_ratio = INFINITY;
   rating->contact_temperature = -INFINITY;

@@ -223,7 +223,7 @@ static struct eo_vibration_case case_at(const struct job *job, const struct prob
   struct eo_impact strike[2] = {p->impact[0], p->impact[1]};
   load.speed = speed;
   for (int end = 0; end < job->sweep->ends; end++) {
-    eo_impact_strike(&strike[end], job->pair->grid, &job->pair->impact, speed, 1);
+    eo_impact_strike(&strike[end], eo_pair_half(job->pair, end)->grid, &eo_pair_half(job->pair, end)->impact, speed, 1);
     if (impact)
       impact[end] = strike[end].touched ? strike[end].force : 0;
   }

@@ -127,7 +127,8 @@ const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluat
 /* The pair it evaluates. */
 const struct eo_pair *eo_evaluator_pair(const struct eo_evaluator *evaluator);
 
-/* Positions by which the right end lags behind the left one as phases grow. */
-int eo_evaluator_stagger(const struct eo_design *design, enum eo_flank_side flank, int positions);
+/* Positions by which the right end lags behind the left one as phases grow: the stagger, less what a half of another
+   width is ahead. */
+int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running);
 
 #endif

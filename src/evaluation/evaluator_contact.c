@@ -51,18 +51,20 @@ enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *evaluator, const struc
   EO_TIMED(evaluator->result.static_ms);
   const struct eo_shafts *shafts = &run->design->shafts;
   const struct eo_pair *pair = evaluator->pair;
+  const struct eo_contact_grid *const grid[2] = {eo_evaluator_grid(evaluator, EO_LEFT),
+                                                 eo_evaluator_grid(evaluator, EO_RIGHT)};
   evaluator->bodies_are_elastic = shafts->enabled;
   if (!shafts->enabled)
     return EO_OK;
   if (!evaluator->gaps_on_bent_bodies.gap)
-    EO_TRY(eo_loaded_gaps_init(&evaluator->gaps_on_bent_bodies, pair->grid, error));
+    EO_TRY(eo_loaded_gaps_init(&evaluator->gaps_on_bent_bodies, eo_evaluator_larger_grid(evaluator), error));
   if (!eo_shafts_equal(shafts, &evaluator->shafts))
     drop_bodies(evaluator);
   evaluator->shafts = *shafts;
   for (int m = 0; m < evaluator->meetings; m++) {
     bool inwards = evaluator->meeting[m]->running.inwards;
     if (!evaluator->elastic_bodies[inwards])
-      EO_TRY(eo_elastic_new(&evaluator->elastic_bodies[inwards], pair->grid, &pair->gear_pair, shafts, inwards, error));
+      EO_TRY(eo_elastic_new(&evaluator->elastic_bodies[inwards], grid, &pair->gear_pair, shafts, inwards, error));
   }
   return EO_OK;
 }
@@ -119,8 +121,8 @@ void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, i
     const enum eo_flank_side side = meeting->running.flank;
     const struct eo_flank_spline *const spline[2] = {evaluator->spline[side][EO_PINION][end],
                                                      evaluator->spline[side][EO_GEAR][end]};
-    eo_meeting_field_init(&meeting->field[end], evaluator->pair, run->design, spline, &meeting->running, end);
-    eo_loaded_gaps_set(&meeting->gaps[end], evaluator->pair->grid, &meeting->field[end]);
+    eo_meeting_field_init(&meeting->field[end], eo_pair_half(evaluator->pair, end), run->design, spline, &meeting->running, end);
+    eo_loaded_gaps_set(&meeting->gaps[end], eo_evaluator_grid(evaluator, end), &meeting->field[end]);
     meeting->datum[end] = eo_gap_field_datum(&meeting->field[end]);
   }
 }
@@ -138,8 +140,8 @@ static void solve_meeting(struct eo_evaluator *evaluator, const struct eo_run *r
       force[loads] = result->load_case[k].end_force[end];
       loaded[loads++] = result->load_case[k].end[end].loaded;
     }
-  eo_loaded_solve(evaluator->loaded[thread], evaluator->pair->grid, &evaluator->meeting[m]->gaps[end],
-                  run->scenario.compliance, loads, force, loaded);
+  eo_loaded_solve(eo_evaluator_workspace(evaluator, thread, end), eo_evaluator_grid(evaluator, end),
+                  &evaluator->meeting[m]->gaps[end], run->scenario.compliance, loads, force, loaded);
   for (int i = 0; i < loads; i++)
     result->load_case[of[i]].end[end].loaded.failures = loaded[i].failures;
 }
@@ -177,8 +179,10 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_ru
   const struct eo_running *running = &load_case->running;
   struct eo_elastic_case load = {load_case->force, run->scenario.compliance,
                                  eo_meeting_hold(evaluator, run->design, running),
-                                 eo_evaluator_stagger(run->design, running->flank, evaluator->pair->grid->positions)};
-  eo_elastic_solve(eo_meeting_bodies(evaluator, running), evaluator->loaded[0],
+                                 eo_evaluator_stagger(evaluator->pair, run->design, running)};
+  struct eo_loaded_workspace *const workspace[2] = {eo_evaluator_workspace(evaluator, 0, EO_LEFT),
+                                                    eo_evaluator_workspace(evaluator, 0, EO_RIGHT)};
+  eo_elastic_solve(eo_meeting_bodies(evaluator, running), workspace,
                    eo_meeting_of(evaluator, load_case)->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;
 }
@@ -206,13 +210,13 @@ void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run
 static void balance_case(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_case_result *load_case)
 {
   const struct eo_meeting *meeting = eo_meeting_of(evaluator, load_case);
-  const struct eo_contact_grid *grid = evaluator->pair->grid;
   const struct eo_loaded_half half[2] = {
-      {evaluator->loaded[0], grid, &meeting->gaps[EO_LEFT]},
-      {evaluator->loaded[0], grid, &meeting->gaps[eo_reuse_stored_at(evaluator, EO_RIGHT)]}};
+      {eo_evaluator_workspace(evaluator, 0, EO_LEFT), eo_evaluator_grid(evaluator, EO_LEFT), &meeting->gaps[EO_LEFT]},
+      {eo_evaluator_workspace(evaluator, 0, EO_RIGHT), eo_evaluator_grid(evaluator, EO_RIGHT),
+       &meeting->gaps[eo_reuse_stored_at(evaluator, EO_RIGHT)]}};
   struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
   struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, &load_case->running);
-  int stagger = eo_evaluator_stagger(run->design, load_case->running.flank, evaluator->result.positions);
+  int stagger = eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running);
   eo_loaded_balance(half, run->scenario.compliance, &hold, stagger, load_case->force, both);
   for (int end = 0; end < 2; end++)
     load_case->end[end].loaded.failures = both[end].failures;

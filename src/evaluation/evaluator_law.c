@@ -10,7 +10,7 @@ enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const
                                      double stiffness, bool held, struct eo_dynamics_parameters *parameters,
                                      struct eo_error *error)
 {
-  bool differ = design->gear_pair.ends == 2 && !eo_reuse_same_flanks(design);
+  bool differ = design->gear_pair.ends == 2 && (evaluator->pair->right || !eo_reuse_same_flanks(design));
   return eo_dynamics_parameters_init(parameters, &evaluator->pair->geometry, design->gear_pair.ends,
                                      held ? eo_alignment_axial_stiffness(&design->alignment) : 0, &design->supports,
                                      differ, stiffness, error);
@@ -62,8 +62,7 @@ const struct eo_loaded_gaps *eo_evaluator_gaps_of(struct eo_evaluator *evaluator
     return &meeting->gaps[eo_reuse_stored_at(evaluator, end)];
   const struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
   eo_elastic_gaps(eo_meeting_bodies(evaluator, &load_case->running), meeting->gaps,
-                  eo_evaluator_stagger(run->design, load_case->running.flank, evaluator->result.positions), both, end,
-                  bent->gap);
+                  eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running), both, end, bent->gap);
   return bent;
 }
 
@@ -77,7 +76,7 @@ static enum eo_code make_table_storage(struct eo_evaluator *evaluator, struct eo
   if (!evaluator->table || !evaluator->table_rows)
     return eo_error_memory(error);
   for (int i = 0; i < EO_EVALUATOR_TABLE_LOADS; i++)
-    EO_TRY(eo_loaded_end_init(&evaluator->table[i], evaluator->pair->grid, error));
+    EO_TRY(eo_loaded_end_init(&evaluator->table[i], eo_evaluator_larger_grid(evaluator), error));
   return EO_OK;
 }
 
@@ -87,7 +86,7 @@ static enum eo_code solve_table(struct eo_evaluator *evaluator, const struct eo_
                                 struct eo_error *error)
 {
   EO_TRY(make_table_storage(evaluator, error));
-  eo_loaded_solve(evaluator->loaded[0], evaluator->pair->grid,
+  eo_loaded_solve(eo_evaluator_workspace(evaluator, 0, request->end), eo_evaluator_grid(evaluator, request->end),
                   eo_evaluator_gaps_of(evaluator, run, request->load_case, request->end), run->scenario.compliance,
                   loads, load, evaluator->table);
   return EO_OK;

@@ -62,7 +62,8 @@ struct eo_evaluator {
   int meeting_of[EO_MAX_LOAD_CASES];             /* [load case] */
   struct eo_flank_grids grids;                   /* those of the splines */
   struct eo_flank_spline *spline[2][2][2];       /* [flank side][member][end]; owned; NULL: no grid */
-  struct eo_loaded_workspace *loaded[2];         /* [thread]; the second NULL until asked for */
+  struct eo_loaded_workspace *loaded[2][2];      /* [thread][half]; of the second thread NULL until asked for, of the
+                                                    second half NULL where it is like the first */
   double axial_stiffness; /* between the ends and one axial position of the pinion, N/m: 0 floating, INFINITY rigid */
   bool bodies_are_elastic;
   struct eo_elastic *elastic_bodies[2];      /* [inwards]; NULL: rigid, or not asked for */
@@ -71,8 +72,8 @@ struct eo_evaluator {
   struct eo_loaded_end spare[2];             /* [end]: for the compliance band */
 
   /* root stress */
-  struct eo_root_workspace *root[2]; /* [thread]; NULL until asked for */
-  struct eo_root_peak *peaks;        /* [member][teeth][most_cases * 2]; NULL until asked for */
+  struct eo_root_workspace *root[2][2]; /* [thread][half]; NULL until asked for */
+  struct eo_root_peak *peaks[2];        /* [half]: [member][teeth][most_cases * 2]; NULL until asked for */
 
   /* mesh laws and vibration */
   struct eo_loaded_end *table; /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */
@@ -91,6 +92,32 @@ struct eo_evaluator {
 
   struct eo_evaluation result;
 };
+
+/* What an end is solved on. */
+static inline const struct eo_contact_grid *eo_evaluator_grid(const struct eo_evaluator *evaluator, int end)
+{
+  return eo_pair_half(evaluator->pair, end)->grid;
+}
+
+/* Which of two things that halves have for themselves is an end's. */
+static inline int eo_evaluator_half(const struct eo_evaluator *evaluator, int end)
+{
+  return end == EO_RIGHT && evaluator->pair->right;
+}
+
+/* The one with more points: what is made for it has room for either. */
+static inline const struct eo_contact_grid *eo_evaluator_larger_grid(const struct eo_evaluator *evaluator)
+{
+  const struct eo_contact_grid *left = eo_evaluator_grid(evaluator, EO_LEFT),
+                               *right = eo_evaluator_grid(evaluator, EO_RIGHT);
+  return right->points > left->points ? right : left;
+}
+
+static inline struct eo_loaded_workspace *eo_evaluator_workspace(const struct eo_evaluator *evaluator, int thread,
+                                                                 int end)
+{
+  return evaluator->loaded[thread][eo_evaluator_half(evaluator, end)];
+}
 
 /* In meeting.c. */
 
@@ -165,13 +192,16 @@ void eo_beside_finish(struct eo_beside *beside);
 
 /* In evaluator_roots.c. */
 
-/* Root stress of several ends; the work is one tooth of a member under a batch of ends at a time. */
+/* Root stress of several ends; the work is one tooth of a member under a batch of ends of one half at a time. */
+struct eo_root_half {
+  int ends, teeth, first_tooth; /* ends: to compute; teeth: of a member that are in mesh over the cycle */
+  struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
+};
 struct eo_roots {
   struct eo_evaluator *evaluator;
   bool wanted, copies_left;     /* copies_left: the right end is a copy of the left one */
-  int ends, teeth, first_tooth; /* ends: to compute; teeth: of a member that are in mesh over the cycle */
-  struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
-  atomic_int next;        /* piece of work to be taken */
+  struct eo_root_half half[2];  /* both ends in the first where they are alike */
+  atomic_int next;              /* piece of work to be taken */
   double milliseconds[2]; /* [thread] */
   struct eo_beside beside;
 };

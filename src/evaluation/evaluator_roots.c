@@ -8,17 +8,17 @@
    of a tooth stay in the cache. */
 enum { ROOT_STEP = 2, ROOT_BATCH = 8 };
 
-static enum eo_code make_workspaces(struct eo_evaluator *evaluator, int teeth, struct eo_error *error)
+static enum eo_code make_workspaces(struct eo_evaluator *evaluator, int half, int teeth, struct eo_error *error)
 {
-  const struct eo_pair *pair = evaluator->pair;
+  const struct eo_pair *pair = eo_pair_half(evaluator->pair, half);
   const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
   int ends = 2 * evaluator->most_cases < ROOT_BATCH ? 2 * evaluator->most_cases : ROOT_BATCH;
   for (int thread = 0; thread < evaluator->threads; thread++)
-    if (!evaluator->root[thread])
-      EO_TRY(eo_root_workspace_new(&evaluator->root[thread], pair->grid, modes, ROOT_STEP, ends, error));
-  if (!evaluator->peaks)
-    evaluator->peaks = malloc(sizeof *evaluator->peaks * (size_t)teeth * 4 * (size_t)evaluator->most_cases);
-  return evaluator->peaks ? EO_OK : eo_error_memory(error);
+    if (!evaluator->root[thread][half])
+      EO_TRY(eo_root_workspace_new(&evaluator->root[thread][half], pair->grid, modes, ROOT_STEP, ends, error));
+  if (!evaluator->peaks[half])
+    evaluator->peaks[half] = malloc(sizeof **evaluator->peaks * (size_t)teeth * 4 * (size_t)evaluator->most_cases);
+  return evaluator->peaks[half] ? EO_OK : eo_error_memory(error);
 }
 
 /* Ends whose root stress is neither valid from the last run nor that of the left one. */
@@ -27,24 +27,33 @@ static void list_ends(struct eo_roots *roots)
   struct eo_evaluator *evaluator = roots->evaluator;
   for (int k = 0; k < evaluator->result.cases; k++)
     for (int end = 0; end < evaluator->result.ends; end++)
-      if (!evaluator->root_valid[end] && !(end == EO_RIGHT && roots->copies_left))
-        roots->end[roots->ends++] = &evaluator->result.load_case[k].end[end];
+      if (!evaluator->root_valid[end] && !(end == EO_RIGHT && roots->copies_left)) {
+        struct eo_root_half *half = &roots->half[eo_evaluator_half(evaluator, end)];
+        half->end[half->ends++] = &evaluator->result.load_case[k].end[end];
+      }
 }
 
 /* One tooth of a member under a batch of ends. */
-static void find_tooth(const struct eo_roots *roots, int thread, int piece)
+static void find_tooth(const struct eo_roots *roots, int thread, int number, int piece)
 {
-  int tooth = piece % roots->teeth, member = piece / roots->teeth % 2;
-  int first = piece / roots->teeth / 2 * ROOT_BATCH;
-  int count = roots->ends - first < ROOT_BATCH ? roots->ends - first : ROOT_BATCH;
+  const struct eo_root_half *half = &roots->half[number];
+  int tooth = piece % half->teeth, member = piece / half->teeth % 2;
+  int first = piece / half->teeth / 2 * ROOT_BATCH;
+  int count = half->ends - first < ROOT_BATCH ? half->ends - first : ROOT_BATCH;
   const struct eo_loaded_end *loaded[ROOT_BATCH];
   struct eo_root_history *history[ROOT_BATCH];
   for (int i = 0; i < count; i++) {
-    loaded[i] = &roots->end[first + i]->loaded;
-    history[i] = &roots->end[first + i]->root[member];
+    loaded[i] = &half->end[first + i]->loaded;
+    history[i] = &half->end[first + i]->root[member];
   }
-  eo_root_tooth_compute(roots->evaluator->root[thread], member, roots->first_tooth + tooth, count, loaded, history,
-                        roots->evaluator->peaks + (member * roots->teeth + tooth) * roots->ends + first);
+  eo_root_tooth_compute(roots->evaluator->root[thread][number], member, half->first_tooth + tooth, count, loaded,
+                        history, roots->evaluator->peaks[number] + (member * half->teeth + tooth) * half->ends + first);
+}
+
+static int pieces_of(const struct eo_root_half *half)
+{
+  int batches = (half->ends + ROOT_BATCH - 1) / ROOT_BATCH;
+  return batches * 2 * half->teeth;
 }
 
 /* Takes teeth until none is left. */
@@ -52,25 +61,27 @@ static void find_teeth(void *context, int thread)
 {
   struct eo_roots *roots = context;
   EO_TIMED(roots->milliseconds[thread]);
-  int batches = (roots->ends + ROOT_BATCH - 1) / ROOT_BATCH, pieces = batches * 2 * roots->teeth;
+  int left = pieces_of(&roots->half[0]), pieces = left + pieces_of(&roots->half[1]);
   for (int piece; (piece = atomic_fetch_add(&roots->next, 1)) < pieces;)
-    find_tooth(roots, thread, piece);
+    find_tooth(roots, thread, piece >= left, piece >= left ? piece - left : piece);
 }
 
 enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluator, const struct eo_run *run,
                             struct eo_error *error)
 {
-  int range[2];
-  eo_contact_grid_pairs(evaluator->pair->grid, range);
   *roots = (struct eo_roots){.evaluator = evaluator,
                              .wanted = run->root,
                              .copies_left = eo_reuse_copies_left(evaluator, run->design),
-                             .teeth = range[1] - range[0] + 1,
-                             .first_tooth = range[0],
                              .beside = {.work = find_teeth, .context = roots}};
   if (!run->root)
     return EO_OK;
-  EO_TRY(make_workspaces(evaluator, roots->teeth, error));
+  for (int half = 0; half <= (evaluator->pair->right != NULL); half++) {
+    int range[2];
+    eo_contact_grid_pairs(eo_evaluator_grid(evaluator, half), range);
+    roots->half[half].teeth = range[1] - range[0] + 1;
+    roots->half[half].first_tooth = range[0];
+    EO_TRY(make_workspaces(evaluator, half, roots->half[half].teeth, error));
+  }
   list_ends(roots);
   eo_beside_start(&roots->beside, evaluator->threads);
   return EO_OK;
@@ -89,11 +100,16 @@ static void copy_history(const struct eo_root_history *from, struct eo_root_hist
 static void finish_histories(const struct eo_roots *roots)
 {
   const struct eo_evaluator *evaluator = roots->evaluator;
-  for (int member = 0; member < 2; member++) {
-    struct eo_root root = eo_flexibility_root(evaluator->pair->flexibility, member);
-    for (int i = 0; i < roots->ends; i++)
-      eo_root_history_finish(&roots->end[i]->root[member], &root, evaluator->pair->grid, ROOT_STEP,
-                             evaluator->peaks + member * roots->teeth * roots->ends + i, roots->ends);
+  for (int k = 0; k < 4; k++) {
+    int number = k / 2, member = k % 2;
+    const struct eo_root_half *half = &roots->half[number];
+    if (half->ends == 0)
+      continue;
+    const struct eo_pair *pair = eo_pair_half(evaluator->pair, number);
+    struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+    for (int i = 0; i < half->ends; i++)
+      eo_root_history_finish(&half->end[i]->root[member], &root, pair->grid, ROOT_STEP,
+                             evaluator->peaks[number] + member * half->teeth * half->ends + i, half->ends);
   }
 }
 
@@ -101,14 +117,14 @@ static void finish_histories(const struct eo_roots *roots)
 static void complete_histories(const struct eo_roots *roots)
 {
   struct eo_evaluation *result = &roots->evaluator->result;
-  int phases = roots->teeth * ((result->positions + ROOT_STEP - 1) / ROOT_STEP);
+  int steps = (result->positions + ROOT_STEP - 1) / ROOT_STEP;
   for (int k = 0; k < result->cases; k++)
     for (int member = 0; member < 2; member++)
       for (int end = 0; end < result->ends; end++) {
         struct eo_root_history *history = &result->load_case[k].end[end].root[member];
         if (end == EO_RIGHT && roots->copies_left)
           copy_history(&result->load_case[k].end[EO_LEFT].root[member], history);
-        history->phases = phases;
+        history->phases = roots->half[eo_evaluator_half(roots->evaluator, end)].teeth * steps;
       }
 }
 

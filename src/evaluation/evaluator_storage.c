@@ -36,20 +36,30 @@ static void done_end(struct eo_end_result *end)
   }
 }
 
-static enum eo_code init_case(struct eo_case_result *load_case, const struct eo_contact_grid *grid,
+static enum eo_code init_case(struct eo_case_result *load_case, const struct eo_contact_grid *const grid[2],
                               struct eo_error *error)
 {
-  load_case->transmission = calloc((size_t)grid->positions, sizeof(double));
+  load_case->transmission = calloc((size_t)grid[EO_LEFT]->positions, sizeof(double));
   if (!load_case->transmission)
     return eo_error_memory(error);
   for (int end = 0; end < 2; end++)
-    EO_TRY(init_end(&load_case->end[end], grid, error));
+    EO_TRY(init_end(&load_case->end[end], grid[end], error));
+  return EO_OK;
+}
+
+/* The workspaces of a thread. */
+static enum eo_code add_workspaces(struct eo_evaluator *evaluator, int thread, struct eo_error *error)
+{
+  for (int half = 0; half <= (evaluator->pair->right != NULL); half++)
+    EO_TRY(eo_loaded_workspace_new(&evaluator->loaded[thread][half], eo_evaluator_grid(evaluator, half), error));
   return EO_OK;
 }
 
 static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error *error)
 {
-  const struct eo_contact_grid *grid = evaluator->pair->grid;
+  const struct eo_contact_grid *const both[2] = {eo_evaluator_grid(evaluator, EO_LEFT),
+                                                 eo_evaluator_grid(evaluator, EO_RIGHT)},
+                                     *grid = both[EO_LEFT];
   struct eo_evaluation *result = &evaluator->result;
   size_t most = (size_t)evaluator->most_cases;
   result->positions = grid->positions;
@@ -62,11 +72,11 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   if (!result->load_case || !result->objective || !evaluator->law || !evaluator->problem || !evaluator->shifted)
     return eo_error_memory(error);
   for (int k = 0; k < evaluator->most_cases; k++)
-    EO_TRY(init_case(&result->load_case[k], grid, error));
+    EO_TRY(init_case(&result->load_case[k], both, error));
   for (int end = 0; end < 2; end++) {
-    EO_TRY(eo_loaded_end_init(&evaluator->spare[end], grid, error));
+    EO_TRY(eo_loaded_end_init(&evaluator->spare[end], both[end], error));
   }
-  return eo_loaded_workspace_new(&evaluator->loaded[0], grid, error);
+  return add_workspaces(evaluator, 0, error);
 }
 
 enum eo_code eo_evaluator_new(struct eo_evaluator **result, const struct eo_pair *pair, int most_cases,
@@ -88,8 +98,8 @@ enum eo_code eo_evaluator_new(struct eo_evaluator **result, const struct eo_pair
 
 enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error)
 {
-  if (threads > 1 && !evaluator->loaded[1])
-    EO_TRY(eo_loaded_workspace_new(&evaluator->loaded[1], evaluator->pair->grid, error));
+  if (threads > 1 && !evaluator->loaded[1][0])
+    EO_TRY(add_workspaces(evaluator, 1, error));
   evaluator->threads = threads > 1 ? 2 : 1;
   return EO_OK;
 }
@@ -134,11 +144,12 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
   free(evaluator->table);
   free(evaluator->table_rows);
   free(evaluator->shifted);
-  for (int thread = 0; thread < 2; thread++) {
-    eo_loaded_workspace_free(evaluator->loaded[thread]);
-    eo_root_workspace_free(evaluator->root[thread]);
+  for (int i = 0; i < 4; i++) {
+    eo_loaded_workspace_free(evaluator->loaded[i / 2][i % 2]);
+    eo_root_workspace_free(evaluator->root[i / 2][i % 2]);
   }
-  free(evaluator->peaks);
+  for (int half = 0; half < 2; half++)
+    free(evaluator->peaks[half]);
   eo_meetings_done(evaluator);
   eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);
   eo_vibration_free(evaluator->vibration);

@@ -32,7 +32,7 @@ static void find_first_contact(const struct eo_evaluator *evaluator, struct eo_c
     struct eo_gap_field bent;
     const struct eo_gap_field *field = loaded_field(evaluator, load_case, end, &bent);
     result->loaded_datum = eo_gap_field_datum(field);
-    eo_loaded_first_contact(evaluator->pair->grid, field, first_contact);
+    eo_loaded_first_contact(eo_evaluator_grid(evaluator, end), field, first_contact);
   }
 }
 
@@ -59,7 +59,7 @@ static void raise_peaks(struct eo_end_result *result, const struct eo_contact_gr
 /* Peaks over the mesh cycle, and the secant stiffness P / (Z - Z0). */
 static void summarise(const struct eo_evaluator *evaluator, struct eo_case_result *load_case, int end)
 {
-  const struct eo_contact_grid *grid = evaluator->pair->grid;
+  const struct eo_contact_grid *grid = eo_evaluator_grid(evaluator, end);
   struct eo_end_result *result = &load_case->end[end];
   double low = INFINITY, high = -INFINITY, steepest = 0;
   double *first_contact = result->stiffness; /* until the stiffness takes its place */
@@ -88,7 +88,7 @@ static void summarise_pair(const struct eo_evaluator *evaluator, const struct eo
                            struct eo_case_result *load_case)
 {
   int n = evaluator->result.positions, last = evaluator->result.ends - 1;
-  int stagger = eo_evaluator_stagger(run->design, load_case->running.flank, n);
+  int stagger = eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running);
   const double *left = load_case->end[EO_LEFT].loaded.approach, *right = load_case->end[last].loaded.approach;
   double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle);
   load_case->mean = 0;
@@ -115,7 +115,7 @@ void eo_evaluator_summarise_pairs(struct eo_evaluator *evaluator, const struct e
 static void find_impact(const struct eo_evaluator *evaluator, const struct eo_run *run,
                         struct eo_case_result *load_case, int end)
 {
-  const struct eo_pair *pair = evaluator->pair;
+  const struct eo_pair *pair = eo_pair_half(evaluator->pair, end);
   struct eo_impact_settings settings = pair->impact;
   struct eo_gap_field bent;
   settings.backwards = load_case->running.backwards;

@@ -34,12 +34,14 @@ static bool carries_throughout(const struct eo_loaded_end *end, int positions, b
 static struct eo_vibration_case loads_of(const struct eo_evaluator *evaluator, const struct eo_run *run,
                                          const struct eo_case_result *load_case)
 {
-  double stagger = run->design->alignment.stagger;
-  bool on_coast = load_case->running.flank == EO_COAST_FLANK;
+  const struct eo_running *running = &load_case->running;
+  double stagger = run->design->alignment.stagger,
+         behind = (running->flank == EO_COAST_FLANK ? -stagger : stagger) -
+                  (double)evaluator->pair->ahead[running->inwards] / evaluator->result.positions;
   struct eo_vibration_case load = {.torque = load_case->load_case.torque,
                                    .speed = load_case->load_case.speed * run->scenario.speed,
                                    .pinion_teeth = evaluator->pair->geometry.teeth[EO_PINION],
-                                   .phase_right = load_case->running.backwards != on_coast ? stagger : -stagger,
+                                   .phase_right = running->backwards ? behind : -behind,
                                    .gated = true,
                                    .impact = run->design->resolution.impact_in_dynamics};
   const struct eo_impact impact[2] = {load_case->end[EO_LEFT].impact, load_case->end[EO_RIGHT].impact};
@@ -203,8 +205,8 @@ static void load_spare_ends(struct eo_evaluator *evaluator, const struct eo_run 
     int stored = eo_reuse_stored_at(evaluator, end);
     loaded[end] = &spare[stored];
     if (stored == end)
-      eo_loaded_solve(evaluator->loaded[0], evaluator->pair->grid, &eo_meeting_of(evaluator, load_case)->gaps[end],
-                      run->scenario.compliance, 1, &load_case->end_force[end], &spare[end]);
+      eo_loaded_solve(eo_evaluator_workspace(evaluator, 0, end), eo_evaluator_grid(evaluator, end),
+                      &eo_meeting_of(evaluator, load_case)->gaps[end], run->scenario.compliance, 1, &load_case->end_force[end], &spare[end]);
   }
   if (evaluator->bodies_are_elastic)
     eo_evaluator_bend_bodies(evaluator, run, load_case, spare, &(struct eo_elastic_report){0});

@@ -37,7 +37,7 @@ static enum eo_code add_meeting(struct eo_evaluator *evaluator, const struct eo_
     if (!*place)
       return eo_error_memory(error);
     for (int end = 0; end < 2; end++)
-      EO_TRY(eo_loaded_gaps_init(&(*place)->gaps[end], evaluator->pair->grid, error));
+      EO_TRY(eo_loaded_gaps_init(&(*place)->gaps[end], eo_evaluator_grid(evaluator, end), error));
   }
   (*place)->running = *running;
   evaluator->meetings++;

@@ -33,7 +33,73 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
   return code;
 }
 
+/* Half of the way of a preparation that makes both halves, one after the other. */
+struct half_way {
+  const struct eo_progress *whole;
+  double from;
+};
+
+static int report_half(void *context, const char *what, double fraction)
+{
+  const struct half_way *way = context;
+  return eo_progress_report(way->whole, what, way->from + fraction / 2);
+}
+
+static enum eo_code new_half(struct eo_pair **result, const struct eo_design *design,
+                             const struct eo_pair_options *options, const struct eo_progress *progress,
+                             struct eo_error *error);
+
+/* The right half where it differs, at the phases that its helices have. */
+static enum eo_code add_right_half(struct eo_pair *pair, const struct eo_design *design,
+                                   const struct eo_pair_options *options, const struct eo_progress *progress,
+                                   struct eo_error *error)
+{
+  struct eo_pair_options own = *options;
+  const struct eo_geometry *g = &pair->geometry;
+  int n = pair->grid->positions;
+  double step = g->transverse_base_pitch / n,
+         lag = (design->gear_pair.right_face_width - design->gear_pair.face_width) / 2 * tan(g->base_helix_angle),
+         rest = lag - step * round(lag / step);
+  struct eo_design *right = malloc(sizeof *right);
+  double *phase = malloc(sizeof *phase * (size_t)n);
+  enum eo_code code = right && phase ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    for (int j = 0; j < n; j++)
+      phase[j] = pair->grid->position[j].phase + rest;
+    pair->ahead[0] = (int)lround((lag - rest) / step);
+    pair->ahead[1] = (int)lround((-lag - rest) / step);
+    *right = *design;
+    right->gear_pair = eo_gear_pair_half(&design->gear_pair, EO_RIGHT);
+    own.phase = phase;
+    code = new_half(&pair->right, right, &own, progress, error);
+  }
+  free(right);
+  free(phase);
+  return code;
+}
+
 enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
+                         const struct eo_progress *progress, struct eo_error *error)
+{
+  if (!eo_gear_pair_is_uneven(&design->gear_pair))
+    return new_half(result, design, options, progress, error);
+  struct half_way way[2] = {{progress, 0}, {progress, 0.5}};
+  const struct eo_progress half[2] = {{.report = report_half, .context = &way[0]},
+                                      {.report = report_half, .context = &way[1]}};
+  struct eo_pair *pair = NULL;
+  EO_TRY(new_half(&pair, design, options, progress ? &half[0] : NULL, error));
+  enum eo_code code = add_right_half(pair, design, options, progress ? &half[1] : NULL, error);
+  if (code) {
+    eo_pair_free(pair);
+    return code;
+  }
+  pair->seconds += pair->right->seconds;
+  *result = pair;
+  return EO_OK;
+}
+
+/* Both halves, where they are alike. */
+static enum eo_code new_half(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error)
 {
   double start = (1e-3 * eo_clock_milliseconds());
@@ -57,7 +123,7 @@ enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design
   for (int end = 0; end < 2; end++)
     pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1
                            ? 0
-                           : (pair->geometry.face_width + pair->gear_pair.groove_width) / 2;
+                           : eo_gear_pair_mid_face(&pair->gear_pair, end);
   pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *result = pair;
   return EO_OK;
@@ -67,6 +133,7 @@ void eo_pair_free(struct eo_pair *pair)
 {
   if (!pair)
     return;
+  eo_pair_free(pair->right);
   eo_contact_grid_free(pair->grid);
   for (int member = 0; member < 2; member++)
     eo_root_modes_free(pair->root[member]);

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A gear pair made ready for evaluation: everything that micro-geometry, load and speed do not change. Constant once
-   made; shared by every thread. */
+   made; shared by every thread. Halves of unequal width are two of them, with as many positions: helices that meet in
+   the middle of the groove give the right mid face the phase c_R = c_L + (b_R - b_L)/2 tan(beta_b) where eta runs
+   outwards, and minus that where it runs inwards. Whole positions of it are counted apart, as a stagger is; what is
+   left is in the phases of the right grid (eta outwards, the usual sense; inwards it is off by at most half a
+   position). */
 #ifndef EASEOFF_EVALUATION_PAIR_H
 #define EASEOFF_EVALUATION_PAIR_H
 
@@ -23,6 +27,8 @@ struct eo_pair {
 
   struct eo_impact_settings impact;
   double pivot[2]; /* [end]: mid face from the pivot of the shaft angle errors, m */
+  struct eo_pair *right; /* owned: the right half where it differs; NULL: as the left one */
+  int ahead[2];          /* [inwards]: positions by which the right half's phase is ahead of the left one's */
   double seconds;  /* wall time of the preparation */
 };
 
@@ -42,6 +48,12 @@ struct eo_pair_options {
 enum eo_code eo_pair_new(struct eo_pair **pair, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error);
 void eo_pair_free(struct eo_pair *pair);
+
+/* What one end is evaluated on. */
+static inline const struct eo_pair *eo_pair_half(const struct eo_pair *pair, int end)
+{
+  return end == EO_RIGHT && pair->right ? pair->right : pair;
+}
 
 /* What ISO 6336-1 asks of this pair: solid discs, C_M = 0.8. */
 struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *pair);

@@ -5,10 +5,13 @@
 #include <string.h>
 
 /* On the coast flanks phases grow the other way round the shafts. */
-int eo_evaluator_stagger(const struct eo_design *design, enum eo_flank_side flank, int positions)
+int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running)
 {
-  int behind = (int)lround(design->alignment.stagger * positions) % positions;
-  return flank == EO_COAST_FLANK ? (positions - behind) % positions : behind;
+  int positions = pair->grid->positions, behind = (int)lround(design->alignment.stagger * positions) % positions;
+  if (running->flank == EO_COAST_FLANK)
+    behind = -behind;
+  behind = (behind - pair->ahead[running->inwards]) % positions;
+  return behind < 0 ? behind + positions : behind;
 }
 
 bool eo_reuse_same_flanks(const struct eo_design *design)
@@ -35,7 +38,8 @@ int eo_reuse_stored_at(const struct eo_evaluator *evaluator, int end)
 /* Equal ends that run in step, without a thrust, carry equal loads however the pinion is held. */
 bool eo_reuse_shares_unevenly(const struct eo_evaluator *evaluator, const struct eo_design *design)
 {
-  bool in_step = eo_evaluator_stagger(design, EO_DRIVE_FLANK, evaluator->pair->grid->positions) == 0 &&
+  const struct eo_running drive = {.flank = EO_DRIVE_FLANK};
+  bool in_step = eo_evaluator_stagger(evaluator->pair, design, &drive) == 0 &&
                  (design->alignment.coupling_thrust == 0 || design->alignment.pinion_axial == EO_AXIAL_FIXED);
   return evaluator->result.ends == 2 && evaluator->axial_stiffness > 0 && !(evaluator->result.equal_ends && in_step);
 }
@@ -48,7 +52,8 @@ bool eo_reuse_copies_left(const struct eo_evaluator *evaluator, const struct eo_
 static bool equal_ends(const struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   const double *offset = run->design->alignment.apex_offset;
-  bool equal = evaluator->result.ends == 2 && eo_reuse_same_flanks(run->design) && !evaluator->bodies_are_elastic &&
+  bool equal = evaluator->result.ends == 2 && !evaluator->pair->right && eo_reuse_same_flanks(run->design) &&
+               !evaluator->bodies_are_elastic &&
                offset[EO_PINION] == offset[EO_GEAR];
   for (int k = 0; k < evaluator->result.cases && equal; k++) {
     const struct eo_case_result *c = &evaluator->result.load_case[k];

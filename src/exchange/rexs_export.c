@@ -60,9 +60,9 @@ static double pair_number(const struct writer *w, const char *key)
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static double face_width(const struct writer *w)
+static double face_width(const struct writer *w, int end)
 {
-  return pair_number(w, "face_width_mm");
+  return 1e3 * eo_gear_pair_face_width(&w->design->gear_pair, end);
 }
 
 static double groove_width(const struct writer *w)
@@ -71,26 +71,37 @@ static double groove_width(const struct writer *w)
   return w->ends == 2 && !isnan(width) ? width : 0;
 }
 
-static double own_width(const struct writer *w, int member)
+static double own_width(const struct writer *w, int member, int end)
 {
-  return 1e3 * w->geometry->member_width[member];
+  return 1e3 * eo_geometry_of_half(w->geometry, &w->design->gear_pair, end).member_width[member];
 }
 
 /* Where the left face that both members share stands on the shafts; the whole length of a shaft. */
 static double face_at(const struct writer *w, int end)
 {
-  return w->overhang + (end == EO_RIGHT ? face_width(w) + groove_width(w) : 0);
+  return w->overhang + (end == EO_RIGHT ? face_width(w, EO_LEFT) + groove_width(w) : 0);
 }
 
 /* Where a member's own left face stands. */
 static double own_face_at(const struct writer *w, int member, int end)
 {
-  return face_at(w, end) - (own_width(w, member) - face_width(w)) / 2;
+  return face_at(w, end) - (own_width(w, member, end) - face_width(w, end)) / 2;
+}
+
+static double all_faces(const struct writer *w)
+{
+  return w->ends == 2 ? face_width(w, EO_LEFT) + face_width(w, EO_RIGHT) : face_width(w, EO_LEFT);
+}
+
+/* From the left face to the middle of the groove, or of the only face. */
+static double to_middle(const struct writer *w)
+{
+  return w->ends == 2 ? face_width(w, EO_LEFT) + groove_width(w) / 2 : face_width(w, EO_LEFT) / 2;
 }
 
 static double shaft_length(const struct writer *w)
 {
-  return 2 * w->overhang + w->ends * face_width(w) + groove_width(w);
+  return 2 * w->overhang + all_faces(w) + groove_width(w);
 }
 
 static void put_place(struct writer *w, double u, double distance)
@@ -151,7 +162,7 @@ static void write_bearings(struct writer *w, int member)
       continue;
     eo_rexs_build(&w->builder, id, "concept_bearing", "");
     eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft_inner_side",
-                         shaft_length(w) / 2 + json_number_value(value));
+                         w->overhang + to_middle(w) + json_number_value(value));
     eo_rexs_build_flag(&w->builder, "radial_force_absorption", true);
     eo_rexs_build_word(&w->builder, "axial_force_absorption", fixed && !side ? "both_directions" : "no_direction");
     eo_rexs_relate(&w->builder, "side", 0, "assembly", id, "inner_part", SHAFT + member, "outer_part", CASING,
@@ -174,14 +185,16 @@ static void write_load(struct writer *w, int member)
 static void write_shaft(struct writer *w, int member)
 {
   double bore = number_of(w->gear_pair, member, "bore_mm"), outer = number_of(w->shafts, member, "shaft_diameter_mm");
-  double own = own_width(w, member), left = own_face_at(w, member, 0), right = own_face_at(w, member, w->ends - 1) + own;
+  int last = w->ends - 1;
+  double left = own_face_at(w, member, 0), inner = left + own_width(w, member, 0), from = own_face_at(w, member, last),
+         right = from + own_width(w, member, last);
   eo_rexs_build(&w->builder, SHAFT + member, "shaft", member == EO_PINION ? "pinion shaft" : "gear shaft");
   if (member == EO_PINION)
     eo_rexs_build_flag(&w->builder, "defines_speed", true);
   put_place(w, 0, distance_of(w, member));
   eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, (char *)NULL);
   write_section(w, member, 0, 0, left, outer, bore);
-  write_section(w, member, 1, left + own, w->ends == 2 ? right - own - (left + own) : 0,
+  write_section(w, member, 1, inner, w->ends == 2 ? from - inner : 0,
                 number_of(w->gear_pair, member, "groove_diameter_mm"), bore);
   write_section(w, member, 2, right, shaft_length(w) - right, outer, bore);
   write_bearings(w, member);
@@ -230,7 +243,7 @@ static void write_gear(struct writer *w, int member, int end, int *modification)
   eo_rexs_build_whole(&w->builder, "number_of_teeth", w->geometry->teeth[member]);
   eo_rexs_build_number(&w->builder, "normal_module", pair_number(w, "normal_module_mm"));
   eo_rexs_build_number(&w->builder, "helix_angle_reference_diameter", helix_of(w, member, end));
-  eo_rexs_build_number(&w->builder, "face_width", own_width(w, member));
+  eo_rexs_build_number(&w->builder, "face_width", own_width(w, member, end));
   eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", own_face_at(w, member, end));
   eo_rexs_build_number(&w->builder, "tip_diameter", number_of(w->gear_pair, member, "tip_diameter_mm"));
   eo_rexs_build_number(&w->builder, "root_diameter", 2e3 * w->geometry->root_radius[member]);
@@ -249,7 +262,7 @@ static void write_stage(struct writer *w, int end)
   double backlash = 1e3 * w->geometry->normal_backlash;
   eo_rexs_build(&w->builder, id, "cylindrical_stage", w->ends == 2 ? end ? "mesh right" : "mesh left" : "mesh");
   eo_rexs_build_number(&w->builder, "center_distance", pair_number(w, "centre_distance_mm"));
-  eo_rexs_build_number(&w->builder, "common_face_width", face_width(w));
+  eo_rexs_build_number(&w->builder, "common_face_width", face_width(w, end));
   eo_rexs_build_number(&w->builder, "minimum_normal_backlash", backlash);
   eo_rexs_build_number(&w->builder, "maximum_normal_backlash", backlash);
   eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", id, (char *)NULL);
@@ -324,13 +337,14 @@ static void write_head(struct writer *w)
 /* Long enough for the bearings and one face width beside the teeth. */
 static double overhang(const struct writer *w)
 {
-  double body = (w->ends * face_width(w) + groove_width(w)) / 2, reach = body + face_width(w);
+  double left = to_middle(w), right = all_faces(w) + groove_width(w) - left,
+         reach = fmax(left, right) + face_width(w, EO_LEFT);
   for (int i = 0; i < 4; i++) {
     char key[60];
     snprintf(key, sizeof key, "%s_%s_bearing_mm", member_name[i / 2], end_name[i % 2]);
     reach = fmax(reach, fabs(json_number_value(json_object_get(w->shafts, key))));
   }
-  return reach - body;
+  return reach - fmin(left, right);
 }
 
 void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *geometry, int version, bool with_design,

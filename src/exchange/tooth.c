@@ -46,13 +46,14 @@ void eo_tooth_done(struct eo_tooth *tooth)
     eo_flank_spline_free(tooth->spline[side]);
 }
 
-enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
+enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *whole,
                            int member, int end, struct eo_error *error)
 {
   const double least = 1e-6; /* m: less is no piece of its own */
-  double point[2], normal[2], eta = geometry->face_width / 4;
   memset(tooth, 0, sizeof *tooth);
-  tooth->geometry = geometry;
+  tooth->own = eo_geometry_of_half(whole, &design->gear_pair, end);
+  const struct eo_geometry *geometry = tooth->geometry = &tooth->own;
+  double point[2], normal[2], eta = geometry->face_width / 4;
   tooth->member = member;
   tooth->end = end;
   tooth->two_ends = design->gear_pair.ends == 2;
@@ -62,8 +63,7 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
       eo_tooth_done(tooth);
       return eo_error_memory(error);
     }
-  if (tooth->two_ends)
-    tooth->offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
+  tooth->offset = eo_gear_pair_mid_face(&design->gear_pair, end);
   double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
   tooth->pitch = pitch_angle(geometry, member, 0);
   tooth->behind = member == EO_PINION ? behind : -behind;

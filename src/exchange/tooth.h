@@ -26,7 +26,8 @@ extern const char *const eo_tooth_part_names[EO_TOOTH_PARTS];
 enum { EO_TOOTH_PIECES = EO_MOST_VERTICES + 1 };
 
 struct eo_tooth {
-  const struct eo_geometry *geometry;
+  struct eo_geometry own;             /* of its end */
+  const struct eo_geometry *geometry; /* the same; a tooth stays where it was made */
   int member, end;
   bool two_ends;
   struct eo_modification_shape shape[2]; /* [drive, coast] */

@@ -113,6 +113,31 @@ static enum eo_code settle_widths(struct eo_gear_pair *pair, struct eo_error *er
   return EO_OK;
 }
 
+/* A right half like the left one is not stated. */
+static enum eo_code settle_right_half(struct eo_gear_pair *pair, struct eo_error *error)
+{
+  double right = pair->right_face_width;
+  if (!(right > 0) || fabs(right - pair->face_width) <= DERIVED * right) {
+    pair->right_face_width = NAN;
+    return EO_OK;
+  }
+  if (pair->ends == 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/right_face_width_mm",
+                        "A pair with one end has no right half of %.9g mm: leave this key out.", right / MM);
+  return EO_OK;
+}
+
+struct eo_gear_pair eo_gear_pair_half(const struct eo_gear_pair *pair, int end)
+{
+  struct eo_gear_pair half = *pair;
+  half.face_width = eo_gear_pair_face_width(pair, end);
+  half.right_face_width = NAN;
+  for (int i = 0; i < 2; i++)
+    if (pair->member_width[i] > 0)
+      half.member_width[i] = half.face_width + eo_gear_pair_extra_width(pair, i);
+  return half;
+}
+
 static double transverse_pressure_angle(const struct eo_gear_pair *pair)
 {
   return atan(tan(pair->normal_pressure_angle) / cos(pair->helix_angle));
@@ -301,6 +326,7 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
   EO_TRY(settle_module(&settled, error));
   EO_TRY(settle_pressure_angle(&settled, error));
   EO_TRY(settle_widths(&settled, error));
+  EO_TRY(settle_right_half(&settled, error));
   EO_TRY(settle_shifts(&settled, error));
   if (isnan(eo_gear_pair_tight_distance(&settled)))
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],

@@ -31,6 +31,7 @@ struct eo_gear_pair {
   double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
   double face_width;            /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
   double member_width[2];       /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
+  double right_face_width;      /* b of the right end, m; NaN: face_width, which is that of the left one then */
   double groove_width;          /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
   double addendum_coefficient;  /* h_aP*; NaN, of all three: profile A of ISO 53 */
   double dedendum_coefficient;  /* h_fP* = h_aP* + c* */
@@ -67,6 +68,27 @@ static inline double eo_gear_pair_extra_width(const struct eo_gear_pair *pair, i
 {
   return pair->member_width[member] > 0 ? pair->member_width[member] - pair->face_width : 0;
 }
+
+/* b of an end, common to both members, m. */
+static inline double eo_gear_pair_face_width(const struct eo_gear_pair *pair, int end)
+{
+  return end == EO_RIGHT && pair->right_face_width > 0 ? pair->right_face_width : pair->face_width;
+}
+
+/* The halves of a herringbone pair differ in their faces. */
+static inline bool eo_gear_pair_is_uneven(const struct eo_gear_pair *pair)
+{
+  return pair->ends == 2 && pair->right_face_width > 0 && pair->right_face_width != pair->face_width;
+}
+
+/* Mid face of an end from the middle of the groove, m, outwards; 0 of a pair with one end. */
+static inline double eo_gear_pair_mid_face(const struct eo_gear_pair *pair, int end)
+{
+  return pair->ends == 2 ? (pair->groove_width + eo_gear_pair_face_width(pair, end)) / 2 : 0;
+}
+
+/* One half as a pair whose halves are both like it; what is beyond the common face is as wide on both halves. */
+struct eo_gear_pair eo_gear_pair_half(const struct eo_gear_pair *pair, int end);
 
 /* The groove between the two ends of a member, m. */
 static inline double eo_gear_pair_groove_width(const struct eo_gear_pair *pair, int member)

@@ -42,6 +42,27 @@ double eo_geometry_involute_inverse(double value)
   return angle;
 }
 
+static void set_widths(struct eo_geometry *g, const struct eo_gear_pair *pair)
+{
+  g->face_width = pair->face_width;
+  for (int i = 0; i < 2; i++)
+    g->member_width[i] = pair->member_width[i] > 0 ? pair->member_width[i] : g->face_width;
+}
+
+static void set_overlap(struct eo_geometry *g)
+{
+  g->overlap_ratio = g->face_width * tan(g->base_helix_angle) / g->transverse_base_pitch;
+}
+
+struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int end)
+{
+  struct eo_geometry half = *geometry;
+  const struct eo_gear_pair own = eo_gear_pair_half(pair, end);
+  set_widths(&half, &own);
+  set_overlap(&half);
+  return half;
+}
+
 static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
 {
   g->normal_module = pair->normal_module;
@@ -50,10 +71,9 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
   g->transverse_module = g->normal_module / cos(g->helix_angle);                            /* theory (G1) */
   g->transverse_pressure_angle = atan(tan(g->normal_pressure_angle) / cos(g->helix_angle)); /* theory (G2) */
   g->base_helix_angle = asin(sin(g->helix_angle) * cos(g->normal_pressure_angle));          /* theory (G3) */
-  g->face_width = pair->face_width;
+  set_widths(g, pair);
   for (int i = 0; i < 2; i++) {
     struct eo_rack rack = eo_gear_pair_rack(pair, i);
-    g->member_width[i] = pair->member_width[i] > 0 ? pair->member_width[i] : g->face_width;
     g->dedendum[i] = rack.dedendum_coefficient * g->normal_module;
     g->fillet_radius[i] = rack.fillet_radius_coefficient * g->normal_module;
     g->teeth[i] = pair->teeth[i];
@@ -241,7 +261,7 @@ static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *p
   g->path_start = -length[EO_GEAR]; /* theory (G10) */
   g->path_end = length[EO_PINION];
   g->transverse_contact_ratio = (length[0] + length[1]) / g->transverse_base_pitch; /* theory (G11) */
-  g->overlap_ratio = g->face_width * tan(g->base_helix_angle) / g->transverse_base_pitch;
+  set_overlap(g);
   g->rack_bottom = g->rack_factor * g->path_start;
   g->rack_top = g->rack_factor * g->path_end;
   for (int i = 0; i < 2; i++) {

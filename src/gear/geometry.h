@@ -53,6 +53,9 @@ struct eo_geometry {
   double normal_backlash;       /* the stated backlash and what the centre distance adds, m */
 };
 
+/* Of one half of a pair whose geometry is that of its left one: faces and overlap are all that may differ. */
+struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int end);
+
 /* Computes everything above. pair: settled (eo_gear_pair_settle()). Errors (EO_ERROR_INPUT with the key): pointed tip,
    interference with a fillet or with undercut, no continuous contact (eps_gamma < 1), a centre distance that leaves no
    backlash, no tip clearance. */

@@ -79,11 +79,13 @@ static void solve(struct bench *b, const struct eo_shafts *shafts, const struct 
 {
   struct eo_error error = {0};
   struct eo_elastic *elastic;
-  if (eo_elastic_new(&elastic, b->grid, &b->pair, shafts, false, &error))
+  const struct eo_contact_grid *const grid[2] = {b->grid, b->grid};
+  struct eo_loaded_workspace *const workspace[2] = {b->workspace, b->workspace};
+  if (eo_elastic_new(&elastic, grid, &b->pair, shafts, false, &error))
     printf("# %s\n", error.text);
   for (int end = 0; end < b->pair.ends; end++)
     eo_loaded_solve(b->workspace, b->grid, &b->gaps[end], load->compliance_factor, 1, &load->load, &b->result[end]);
-  eo_elastic_solve(elastic, b->workspace, b->gaps, load, b->result, report);
+  eo_elastic_solve(elastic, workspace, b->gaps, load, b->result, report);
   if (keep)
     *keep = elastic;
   else
