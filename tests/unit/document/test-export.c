@@ -199,7 +199,7 @@ static void test_charts(void)
   eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
   close_to(c.band[60][0] - c.band[60][1], 15e-6, 1e-12, "F_beta of the gear");
   close_to(c.range[1] - c.range[0], 49.5e-3, 1e-12, "the face less 5 % at each end");
-  geometry.face_width = 1e-3;
+  design.gear_pair.face_width = 1e-3;
   eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
   ok(isnan(c.band[60][0]) && *c.note, "a face that ISO 1328-1 does not cover has no band: %s", c.note);
 }

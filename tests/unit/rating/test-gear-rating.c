@@ -17,6 +17,7 @@ static struct eo_geometry geometry_of(const int teeth[2], double module, double 
                           .normal_pressure_angle = 20 * M_PI / 180,
                           .helix_angle = helix,
                           .face_width = width,
+                          .member_width = {width, width},
                           .centre_distance = distance,
                           .dedendum = {dedendum * module, dedendum * module},
                           .fillet_radius = {fillet * module, fillet * module}};

@@ -177,10 +177,14 @@ static void test_editions(void)
   struct eo_rating_geometry g;
   struct eo_tooth_root old, new;
   struct eo_rating_pair pair = {{24, 95}, 14e-3, 20 * M_PI / 180, 10 * M_PI / 180, 0.36, 0.861, {0.380748, 1.395377}};
-  struct eo_tooth_root_input in = {EO_ISO6336_2006, 0.48, 1.25, 0.38, 240064.4, 6};
+  struct eo_tooth_root_input in = {EO_ISO6336_2006, 0.48, 1.25, 0.38, 240064.4, 0, 6};
   eo_rating_geometry(&g, &pair, &error);
   ok(eo_tooth_root(&old, &pair, &g, 0, &in, &error) == EO_OK, "2006 %s", error.text);
   close_to(old.form_factor, 1.18, 0.006, "Y_F of a report");
+  in.face_width = 2 * pair.face_width;
+  double nominal = old.nominal;
+  ok(eo_tooth_root(&old, &pair, &g, 0, &in, &error) == EO_OK, "a wider root");
+  near(old.nominal, nominal / 2, 1e-12, "sigma_F0 of a root of its own width");
   in.edition = EO_ISO6336_2019;
   ok(eo_tooth_root(&new, &pair, &g, 0, &in, &error) == EO_OK, "2019");
   near(new.form_factor, old.form_factor / sqrt(g.virtual_contact_ratio), 1e-12, "f_eps = eps_alpha_n^-0.5");
