@@ -146,3 +146,11 @@ out:
   free(faults);
   return *status == EO_EXIT_DONE;
 }
+
+enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error)
+{
+  *inches = word && strcmp(word, "inch") == 0;
+  if (!word || *inches || strcmp(word, "mm") == 0)
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", word);
+}

@@ -6,14 +6,15 @@
 #include "app/data.h"
 #include "app/watch.h"
 #include "base/parallel.h"
+#include "format/inch.h"
 #include "format/json.h"
 #include "document/pitch_document.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
 
 struct request {
-  const char *file, *csv, *data, *pitch;
-  bool json, no_cache;
+  const char *file, *csv, *data, *pitch, *units;
+  bool json, no_cache, inches;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
@@ -67,10 +68,10 @@ static int show(const struct request *request, json_t *result)
 {
   struct eo_text text = {0};
   if (request->json)
-    return eo_app_print_json(json_incref(result), false);
+    return eo_app_print_json(request->inches ? eo_inch_from_mm(result) : json_incref(result), false);
   if (request->csv)
     return EO_EXIT_DONE;
-  eo_result_summary(result, &text);
+  eo_result_summary(result, request->inches, &text);
   return eo_app_print(&text);
 }
 
@@ -104,7 +105,8 @@ static bool read_teeth(struct request *request, int *status)
   struct eo_error error;
   struct eo_faults *faults = calloc(1, sizeof *faults);
   json_t *table = json_object();
-  enum eo_code code = faults && table ? eo_text_read(&text, request->pitch, MOST_TABLE, &error) : eo_error_memory(&error);
+  enum eo_code code = faults && table ? eo_text_read(&text, request->pitch, MOST_TABLE, &error)
+                                      : eo_error_memory(&error);
   if (!code && json_object_set_new(table, "csv", json_string(text.data)) != 0)
     code = eo_error_set(&error, EO_ERROR_INPUT, NULL, "The table is not text in UTF-8.");
   if (!code) {
@@ -129,20 +131,26 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {
-      {.name = "--json", .flag = &request->json},         {.name = "--csv", .value = &request->csv},
-      {.name = "--data", .value = &request->data},        {.name = "--pitch", .value = &request->pitch},
-      {.name = "--no-cache", .flag = &request->no_cache}, {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
-      (!request->pitch || read_teeth(request, &status)))
-    status = run_request(request);
+  const struct eo_option options[] = {{.name = "--json", .flag = &request->json},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--units", .value = &request->units},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--pitch", .value = &request->pitch},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status)) {
+    if (eo_app_units(request->units, &request->inches, &error))
+      status = eo_app_fail(NULL, &error);
+    else if (eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+             (!request->pitch || read_teeth(request, &status)))
+      status = run_request(request);
+  }
   free(request);
   return status;
 }
 
 const struct eo_command eo_command_analyze = {
-    "analyze", "DESIGN.json [--json] [--csv DIR] [--pitch FILE] [--data DIR] [--no-cache]",
+    "analyze", "DESIGN.json [--json] [--csv DIR] [--units mm|inch] [--pitch FILE] [--data DIR] [--no-cache]",
     "one true evaluation of a design, everything it computed",
     "Without --json or --csv, a summary for people: every load case "
     "unmodified and as designed, the objectives, notes, where the\n"
@@ -150,5 +158,7 @@ const struct eo_command eo_command_analyze = {
     "as files into DIR, which is made when missing. --pitch takes the "
     "deviations of single teeth from FILE, a table of a measuring\n"
     "machine with headings member, end, flank, tooth and index_um or "
-    "single_um, in place of the design's.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    "single_um, in place of the design's. --units inch shows lengths in\n"
+    "inches and thousandths of an inch, in the document by keys that end in "
+    "_in and _thou; CSV keeps mm.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

@@ -4,6 +4,7 @@
 
 #include "app/app.h"
 #include "document/completion.h"
+#include "format/inch.h"
 
 struct request {
   const char *file, *units;
@@ -13,14 +14,22 @@ struct request {
   struct eo_warnings warnings;
 };
 
+/* Takes the document over. */
+static int print_document(json_t *document, bool inches)
+{
+  json_t *shown = inches && document ? eo_inch_from_mm(document) : json_incref(document);
+  json_decref(document);
+  return eo_app_print_json(shown, false);
+}
+
 static int show(const struct request *request, bool inches)
 {
   if (request->complete)
-    return eo_app_print_json(eo_design_encode(&request->design), false);
+    return print_document(eo_design_encode(&request->design), inches);
   json_t *completion = eo_completion_encode(&request->design, &request->geometry, &request->warnings);
   struct eo_text text = {0};
   if (request->json || !completion)
-    return eo_app_print_json(completion, false);
+    return print_document(completion, inches);
   eo_completion_summary(completion, inches, &text);
   json_decref(completion);
   return eo_app_print(&text);
@@ -29,11 +38,8 @@ static int show(const struct request *request, bool inches)
 static int run_request(const struct request *request)
 {
   struct eo_error error;
-  bool inches = request->units && strcmp(request->units, "inch") == 0;
-  if (!request->units || inches || strcmp(request->units, "mm") == 0)
-    return show(request, inches);
-  eo_error_set(&error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", request->units);
-  return eo_app_fail(NULL, &error);
+  bool inches;
+  return eo_app_units(request->units, &inches, &error) ? eo_app_fail(NULL, &error) : show(request, inches);
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/inch.h"
 #include "format/json.h"
 #include "document/assumption.h"
 #include "document/design_migration.h"
@@ -210,7 +211,15 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
 bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
                       struct eo_faults *faults)
 {
-  json_t *current = eo_design_migrate(document, warnings);
+  json_t *metric = eo_inch_is_used(document) ? eo_inch_to_mm(document, faults) : json_incref((json_t *)document);
+  if (faults->count || !metric) {
+    if (!metric)
+      eo_faults_add(faults, "", "There is not enough memory for the document.");
+    json_decref(metric);
+    return false;
+  }
+  json_t *current = eo_design_migrate(metric, warnings);
+  json_decref(metric);
   bool good = current && decode_current(current, design, warnings, faults);
   if (!current)
     eo_faults_add(faults, "", "There is not enough memory for the document.");

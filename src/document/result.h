@@ -63,7 +63,7 @@ enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo
                              struct eo_error *error);
 
 /* For people: each load case unmodified and as designed, the objectives, warnings, where the time went. */
-void eo_result_summary(const json_t *result, struct eo_text *text);
+void eo_result_summary(const json_t *result, bool inches, struct eo_text *text);
 
 /* One line per load case, CSV: what stands in "objectives", as designed and unmodified. */
 void eo_result_summary_csv(const json_t *result, struct eo_text *text);

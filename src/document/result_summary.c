@@ -19,19 +19,42 @@ static const char *find_text(const json_t *value, const char *path)
   return text ? text : "";
 }
 
-static void print_pair(const json_t *result, struct eo_text *text)
+/* How lengths are shown. */
+struct shown_lengths {
+  const char *length, *small; /* units in place of mm and um */
+  double divisor;
+};
+static const struct shown_lengths shown[2] = {{"mm", "um", 1}, {"in", "thou", 25.4}};
+
+/* "2 x 55", "55 + 48", and in brackets the members' own faces where they differ from what they share. */
+static void print_faces(const json_t *pair, const json_t *geometry, const struct shown_lengths *as,
+                        struct eo_text *text)
+{
+  double face = find(pair, "face_width_mm") / as->divisor, right = find(pair, "right_face_width_mm") / as->divisor;
+  const json_t *own = json_object_get(geometry, "member_face_width_mm");
+  double pinion = json_number_value(json_array_get(own, 0)) / as->divisor,
+         gear = json_number_value(json_array_get(own, 1)) / as->divisor;
+  if (right > 0)
+    eo_text_print(text, "%.6g + %.6g", face, right);
+  else
+    eo_text_print(text, "%s%.6g", find(pair, "ends") == 2 ? "2 x " : "", face);
+  if (own && fmax(pinion, gear) > face)
+    eo_text_print(text, " (%.6g/%.6g)", pinion, gear);
+}
+
+static void print_pair(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *pair = eo_json_find(result, "design/gear_pair"), *geometry = json_object_get(result, "geometry");
-  bool double_helical = find(pair, "ends") == 2;
   char name[200];
   eo_text_clean(name, sizeof name, find_text(result, "design/name"));
   eo_text_print(text, "%s%s", name, *name ? "\n" : "");
-  eo_text_print(
-      text, "  %.0f/%.0f teeth, m_n %.6g mm, beta %.6g deg, face %s%.6g mm, a %.7g mm, eps_alpha %.4g, eps_beta %.4g\n",
-      find(pair, "pinion_teeth"), find(pair, "gear_teeth"), find(pair, "normal_module_mm"),
-      find(pair, "helix_angle_deg"), double_helical ? "2 x " : "", find(pair, "face_width_mm"),
-      find(geometry, "centre_distance_mm"), find(geometry, "transverse_contact_ratio"),
-      find(geometry, "overlap_ratio"));
+  eo_text_print(text, "  %.0f/%.0f teeth, m_n %.6g %s, beta %.6g deg, face ", find(pair, "pinion_teeth"),
+                find(pair, "gear_teeth"), find(pair, "normal_module_mm") / as->divisor, as->length,
+                find(pair, "helix_angle_deg"));
+  print_faces(pair, geometry, as, text);
+  eo_text_print(text, " %s, a %.7g %s, eps_alpha %.4g, eps_beta %.4g\n", as->length,
+                find(geometry, "centre_distance_mm") / as->divisor, as->length,
+                find(geometry, "transverse_contact_ratio"), find(geometry, "overlap_ratio"));
   eo_text_print(text, "  shaft angle error %.4g deg in plane, %.4g deg out of plane; pinion axially %s\n",
                 find(result, "design/alignment/shaft_angle_error_in_plane_deg"),
                 find(result, "design/alignment/shaft_angle_error_out_of_plane_deg"),
@@ -87,7 +110,7 @@ static void start_table(struct eo_text_table *sheet)
   eo_text_table_init(sheet, 5, headings);
 }
 
-static void print_case(const json_t *result, size_t k, struct eo_text *text)
+static void print_case(const json_t *result, size_t k, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), k);
   const json_t *after = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
@@ -99,7 +122,8 @@ static void print_case(const json_t *result, size_t k, struct eo_text *text)
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
     const struct quantity *q = &quantities[i];
     if (isfinite(find(after, q->key)))
-      add_row(&sheet, q->name, q->unit, find(before, q->key), find(after, q->key), q->scale);
+      add_row(&sheet, q->name, *q->unit == 'u' ? as->small : q->unit, find(before, q->key), find(after, q->key),
+              *q->unit == 'u' ? q->scale / as->divisor : q->scale);
   }
   eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
@@ -107,14 +131,14 @@ static void print_case(const json_t *result, size_t k, struct eo_text *text)
   eo_text_add(text, "\n");
 }
 
-static void print_objectives(const json_t *result, struct eo_text *text)
+static void print_objectives(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *after = json_object_get(result, "objectives"), *before = json_object_get(after, "unmodified");
   double violation = find(after, "violation");
   struct eo_text_table sheet;
   eo_text_add(text, "Objectives\n");
   start_table(&sheet);
-  add_row(&sheet, "f1", "um", find(before, "f1_um"), find(after, "f1_um"), 1);
+  add_row(&sheet, "f1", as->small, find(before, "f1_um"), find(after, "f1_um"), 1 / as->divisor);
   add_row(&sheet, "f2", "N", find(before, "f2_N"), find(after, "f2_N"), 1);
   add_row(&sheet, "f3", "m/s2", find(before, "f3_m_per_s2"), find(after, "f3_m_per_s2"), 1);
   add_row(&sheet, "J", "", find(before, "J"), find(after, "J"), 1);
@@ -247,12 +271,13 @@ static void print_timing(const json_t *result, struct eo_text *text)
   eo_text_add(text, "\n");
 }
 
-void eo_result_summary(const json_t *result, struct eo_text *text)
+void eo_result_summary(const json_t *result, bool inches, struct eo_text *text)
 {
-  print_pair(result, text);
+  const struct shown_lengths *as = &shown[inches];
+  print_pair(result, as, text);
   for (size_t k = 0; k < json_array_size(json_object_get(result, "load_cases")); k++)
-    print_case(result, k, text);
-  print_objectives(result, text);
+    print_case(result, k, as, text);
+  print_objectives(result, as, text);
   print_rating(result, text);
   print_pitch(result, text);
   print_frequencies(result, text);

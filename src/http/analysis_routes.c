@@ -8,12 +8,27 @@
 #include "document/completion.h"
 #include "document/result.h"
 #include "evaluation/evaluator.h"
+#include "format/inch.h"
 #include "http/request_body.h"
 #include "http/deferred.h"
 #include "http/service_reply.h"
 #include "http/route.h"
 #include "http/http_private.h"
 #include "service/preparation.h"
+
+/* The border of units: what is asked for in inches is spelt so when all is computed. */
+#define UNITS                                                                                             \
+  {                                                                                                       \
+    "units", 0, 0, 0, "mm|inch",                                                                          \
+        "inch: lengths in inches by keys that end in _in, those of um in thousandths by _thou; of JSON. " \
+        "Either spelling is read in any design"                                                           \
+  }
+
+static bool asks_inches(const struct eo_request *request)
+{
+  const char *units = eo_request_query(request, "units");
+  return units && strcmp(units, "inch") == 0;
+}
 
 static void check(struct eo_request *request)
 {
@@ -35,6 +50,11 @@ static void check(struct eo_request *request)
                           0.1 * ceil(10 * cost.seconds));
   json_object_update(reply, own);
   json_decref(own);
+  if (asks_inches(request)) {
+    json_t *inches = eo_inch_from_mm(reply);
+    json_decref(reply);
+    reply = inches;
+  }
   eo_reply_json(&request->reply, 200, reply);
 }
 
@@ -77,6 +97,7 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
                                           .left_out = left_out_of(request)};
   if (!has_load_case(request, design) || !eo_request_lane(request, &question.common))
     return;
+  request->inches = asks_inches(request) && !request->csv;
   eo_request_defer(request);
   enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
   eo_reply_unless_accepted(request, code, admission, job, &error);
@@ -172,6 +193,7 @@ const struct eo_route eo_routes_analysis[] = {
      .takes = "Design",
      .gives = "200 Check",
      .rate = EO_RATE_QUESTION,
+     .query = {UNITS},
      .summary =
          "Reads a design, fills in every default and works out the geometry; 422 names everything that is wrong."},
     {.method = EO_POST,
@@ -197,7 +219,8 @@ const struct eo_route eo_routes_analysis[] = {
                 "only these have their curves, maps and histories, the others null; all numbers stand in any case. "
                 "Absent: all parts, with maps and histories as those parameters say"},
                {"curves_of", -1, EO_MAX_LOAD_CASES - 1, -1, NULL,
-                "number of the only load case, from 0, that has curves; -1: all"}}},
+                "number of the only load case, from 0, that has curves; -1: all"},
+               UNITS}},
     {.method = EO_POST,
      .pattern = "/sweep",
      .handle = sweep,

@@ -3,6 +3,8 @@
 #include "http/service_reply.h"
 
 #include "http/job_reply.h"
+#include "format/inch.h"
+#include "format/json.h"
 #include "http/route.h"
 #include "http/http_private.h"
 
@@ -29,10 +31,26 @@ static void reply_preparing(struct eo_request *request, int64_t id)
   request->reply.retry_after = 1;
 }
 
+/* On a thread of the service, which has the time. */
+static void spell_in_inches(struct eo_text *text)
+{
+  struct eo_error error;
+  json_t *metric = eo_json_parse(text->data, text->size, &error), *inches = metric ? eo_inch_from_mm(metric) : NULL;
+  struct eo_text spelt = {.failed = !inches};
+  if (inches)
+    eo_json_write(&spelt, inches, EO_JSON_COMPACT);
+  json_decref(metric);
+  json_decref(inches);
+  eo_text_done(text);
+  *text = spelt;
+}
+
 static void take_answer(struct eo_request *request, struct eo_answer *answer)
 {
   switch (answer->kind) {
   case EO_ANSWER_DONE:
+    if (request->inches)
+      spell_in_inches(&answer->text);
     eo_reply_text(&request->reply, 200,
                   request->answer_type ? request->answer_type
                   : request->csv       ? "text/csv; charset=utf-8"

@@ -47,6 +47,15 @@ prints 'span_mm  *[0-9]'
 result $? "neither what is stated in another way nor what an analysis does not use"
 expect 0 "in inches" "$EASEOFF" design "$folder/design.json" --units inch
 prints 'centre_distance_mm  *9.25  *in'
+expect 0 "as a document in inches" "$EASEOFF" design "$folder/design.json" --units inch --json
+prints '"centre_distance_in": 9.25,'
+design '"normal_diametral_pitch_per_inch": 4, "gear_bore_in": 1.5'
+expect 0 "a length in inches is read" "$EASEOFF" design "$folder/design.json" --complete
+prints '"gear_bore_mm": 38.1'
+design '"normal_diametral_pitch_per_inch": 4, "gear_bore_in": 1.5, "gear_bore_mm": 38'
+expect 1 "but not beside the same in mm" "$EASEOFF" design "$folder/design.json"
+says 'gear_bore_in says the same as gear_bore_mm'
+design '"normal_diametral_pitch_per_inch": 4'
 expect 1 "in furlongs" "$EASEOFF" design "$folder/design.json" --units furlong
 expect 0 "as a document" "$EASEOFF" design "$folder/design.json" --json
 prints '"assumed": \['

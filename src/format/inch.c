@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "format/inch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PER_INCH = 25.4; /* mm in an inch, um in a thousandth of it */
+
+/* Endings of keys. */
+static const struct measure {
+  const char *metric, *inch;
+} measures[] = {{"_mm", "_in"}, {"_um", "_thou"}};
+enum { MEASURES = sizeof measures / sizeof *measures, LONGEST_KEY = 200 };
+
+enum way { TO_METRIC, TO_INCHES };
+
+static bool ends_with(const char *key, const char *ending)
+{
+  size_t whole = strlen(key), length = strlen(ending);
+  return whole > length && whole < LONGEST_KEY && strcmp(key + whole - length, ending) == 0;
+}
+
+/* How a key is spelt the other way; false: it is no length, or is spelt so already. */
+static bool respell(const char *key, enum way way, char other[LONGEST_KEY + 8])
+{
+  for (int i = 0; i < MEASURES; i++) {
+    const char *from = way == TO_METRIC ? measures[i].inch : measures[i].metric,
+               *to = way == TO_METRIC ? measures[i].metric : measures[i].inch;
+    if (!ends_with(key, from) || strstr(key, "_per_"))
+      continue;
+    snprintf(other, LONGEST_KEY + 8, "%.*s%s", (int)(strlen(key) - strlen(from)), key, to);
+    return true;
+  }
+  return false;
+}
+
+static double convert(double value, enum way way)
+{
+  char text[40];
+  snprintf(text, sizeof text, "%.15g",
+           way == TO_METRIC ? value * PER_INCH : value / PER_INCH);
+  return strtod(text, NULL);
+}
+
+/* A length, several, or a map of them; all else as it is. */
+static json_t *lengths(const json_t *value, enum way way)
+{
+  if (json_is_number(value))
+    return json_real(convert(json_number_value(value), way));
+  if (!json_is_array(value))
+    return json_deep_copy(value);
+  json_t *list = json_array(), *element;
+  size_t i;
+  json_array_foreach((json_t *)value, i, element) if (json_array_append_new(list, lengths(element, way)))
+  {
+    json_decref(list);
+    return NULL;
+  }
+  return list;
+}
+
+static json_t *respelt(const json_t *value, enum way way, struct eo_faults *faults);
+
+/* A row that says by "key" what its "value" is. */
+static bool is_row(const json_t *object, char other[LONGEST_KEY + 8], enum way way)
+{
+  const char *key = json_string_value(json_object_get(object, "key"));
+  return key && way == TO_INCHES && json_object_get(object, "value") && respell(key, way, other);
+}
+
+static json_t *respelt_object(const json_t *object, enum way way, struct eo_faults *faults)
+{
+  json_t *made = json_object(), *value;
+  const char *key;
+  char other[LONGEST_KEY + 8], row[LONGEST_KEY + 8];
+  bool is_length_row = is_row(object, row, way), failed = !made;
+  json_object_foreach((json_t *)object, key, value)
+  {
+    bool length = respell(key, way, other);
+    if (length && json_object_get(object, other) && faults)
+      eo_faults_add(faults, "", "%s says the same as %s: leave one of the two out.", key, other);
+    json_t *element = length                                      ? lengths(value, way)
+                      : is_length_row && strcmp(key, "key") == 0   ? json_string(row)
+                      : is_length_row && strcmp(key, "value") == 0 ? lengths(value, way)
+                                                                   : respelt(value, way, faults);
+    failed = failed || json_object_set_new(made, length ? other : key, element) != 0;
+  }
+  if (!failed)
+    return made;
+  json_decref(made);
+  return NULL;
+}
+
+static json_t *respelt_array(const json_t *array, enum way way, struct eo_faults *faults)
+{
+  json_t *made = json_array(), *value;
+  bool failed = !made;
+  size_t i;
+  json_array_foreach((json_t *)array, i, value) failed = failed ||
+                                                         json_array_append_new(made, respelt(value, way, faults)) != 0;
+  if (!failed)
+    return made;
+  json_decref(made);
+  return NULL;
+}
+
+static json_t *respelt(const json_t *value, enum way way, struct eo_faults *faults)
+{
+  return json_is_object(value)  ? respelt_object(value, way, faults)
+         : json_is_array(value) ? respelt_array(value, way, faults)
+                                : json_deep_copy(value);
+}
+
+bool eo_inch_is_used(const json_t *document)
+{
+  const char *key;
+  json_t *value;
+  char other[LONGEST_KEY + 8];
+  size_t i;
+  json_object_foreach((json_t *)document, key, value) if (respell(key, TO_METRIC, other) || eo_inch_is_used(value))
+      return true;
+  json_array_foreach((json_t *)document, i, value) if (eo_inch_is_used(value)) return true;
+  return false;
+}
+
+json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults)
+{
+  return respelt(document, TO_METRIC, faults);
+}
+
+json_t *eo_inch_from_mm(const json_t *document)
+{
+  return respelt(document, TO_INCHES, NULL);
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lengths in inches at the border. Documents keep mm and um; whoever thinks in inches may state a key that ends in
+   "_mm" with "_in" in its place, and one that ends in "_um" with "_thou" (thousandths of an inch), and ask for answers
+   spelt so. What is not a length alone ("_N_per_mm", "_per_um") stays. */
+#ifndef EASEOFF_FORMAT_INCH_H
+#define EASEOFF_FORMAT_INCH_H
+
+#include <stdbool.h>
+
+#include <jansson.h>
+
+#include "format/faults.h"
+
+/* Some key of the document, at any depth, is in inches. */
+bool eo_inch_is_used(const json_t *document);
+
+/* New: the same in mm and um, to 15 digits. A key that is there in both is a fault at it; NULL without memory. */
+json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults);
+
+/* New: the same in inches and thousandths, to 15 digits; so is the value of a row whose "key" points to a length.
+   Sentences stay as they are. NULL without memory. */
+json_t *eo_inch_from_mm(const json_t *document);
+
+#endif
