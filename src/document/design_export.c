@@ -37,8 +37,10 @@ struct flank {
   const struct eo_geometry *geometry;
   int member, end;
   struct eo_modification_shape shape;
-  double offset;     /* mid face of the end from the middle of the groove, m */
-  double turn;       /* to the frame below, from +x towards +y, rad */
+  double offset;        /* mid face of the end from the middle of the groove, m */
+  double pitch, behind; /* to the frame below, from +x towards +y, rad; what a stagger turns more */
+  double half;          /* from the tooth's centre to a flank at the working pitch radius, rad */
+  bool coast;
   int rows, columns; /* of a grid of points: root to tip, over the face */
 };
 
@@ -62,19 +64,25 @@ static const int usual_grid[2] = {PROFILE_POINTS, FACE_POINTS};
 static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
                        flank_function *function, struct eo_text *text)
 {
-  for (int member = 0; member < 2; member++)
-    for (int end = 0; end < design->gear_pair.ends; end++) {
-      const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
-      struct flank flank = {.geometry = &half, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
-      struct eo_flank_spline *spline = NULL;
-      text->failed = text->failed ||
-                     eo_flank_shape(design, &half, EO_DRIVE_FLANK, member, end, &flank.shape, &spline);
-      flank.offset = eo_gear_pair_mid_face(&design->gear_pair, end);
-      double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
-      flank.turn = pitch_angle(geometry, member) + (member == EO_PINION ? behind : -behind);
-      function(&flank, text);
-      eo_flank_spline_free(spline);
-    }
+  int ends = design->gear_pair.ends, flanks = 2 * ends * (eo_design_shows_coast(design) ? 2 : 1);
+  for (int i = 0; i < flanks; i++) {
+    int end = i % ends, member = i / ends % 2;
+    const enum eo_flank_side side = (enum eo_flank_side)(i / ends / 2);
+    double point[2], normal[2];
+    const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
+    struct flank flank = {.geometry = &half, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
+    struct eo_flank_spline *spline = NULL;
+    text->failed = text->failed || eo_flank_shape(design, &half, side, member, end, &flank.shape, &spline);
+    flank.coast = flank.shape.mirrored = side == EO_COAST_FLANK;
+    flank.offset = eo_gear_pair_mid_face(&design->gear_pair, end);
+    double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+    flank.pitch = pitch_angle(geometry, member);
+    flank.behind = member == EO_PINION ? behind : -behind;
+    eo_geometry_involute(geometry, member, geometry->working_radius[member], point, normal);
+    flank.half = atan2(point[0], point[1]);
+    function(&flank, text);
+    eo_flank_spline_free(spline);
+  }
 }
 
 /* From the member's own root to its tip. */
@@ -111,6 +119,13 @@ static double lead_part(const struct flank *flank, double eta)
   return eo_modification_lead(&flank->shape, eta / cos(flank->geometry->helix_angle), &slope);
 }
 
+static void turn(double vector[3], double angle) /* from +x towards +y */
+{
+  double c = cos(angle), s = sin(angle), x = vector[0];
+  vector[0] = c * x - s * vector[1];
+  vector[1] = s * x + c * vector[1];
+}
+
 /* Points:
    Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and
    would, unmodified, pass through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives
@@ -118,17 +133,25 @@ static double lead_part(const struct flank *flank, double eta)
    end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
 static void place_vector(const struct flank *flank, const double local[3], double shift, double global[3])
 {
-  double outwards = shift + (flank->member == EO_PINION ? local[2] : -local[2]);
-  double c = cos(flank->turn), s = sin(flank->turn);
-  global[0] = c * local[0] - s * local[1];
-  global[1] = s * local[0] + c * local[1];
+  double own[3] = {local[0], local[1], local[2]};
+  if (flank->coast) { /* half a turn about the tooth's centre, where the drive flank stands `half` away from it */
+    turn(own, flank->pitch - flank->half);
+    own[0] = -own[0];
+    own[2] = -own[2];
+    turn(own, flank->half + flank->behind);
+  } else
+    turn(own, flank->pitch + flank->behind);
+  double outwards = shift + (flank->member == EO_PINION ? own[2] : -own[2]);
+  global[0] = own[0];
+  global[1] = own[1];
   global[2] = flank->end == EO_LEFT && flank->offset > 0 ? -outwards : outwards;
 }
 
-static void write_point(const struct flank *flank, double s, double eta, struct eo_text *text)
+/* y: over the face, + on the side where drive flanks meet first. */
+static void write_point(const struct flank *flank, double s, double y, struct eo_text *text)
 {
   struct eo_surface_point point;
-  double u, v, position[3], normal[3];
+  double u, v, position[3], normal[3], eta = flank->coast ? -y : y;
   eo_surface_coordinates(flank->geometry, flank->member, s, eta, &u, &v);
   eo_surface_evaluate(flank->geometry, flank->member, &flank->shape, u, v, &point);
   place_vector(flank, point.position, flank->offset, position);
@@ -140,6 +163,13 @@ static void write_point(const struct flank *flank, double s, double eta, struct 
   put(text, eo_modification_at(&flank->shape, rack_at(flank, s), eta), &eo_unit_um);
 }
 
+/* Of the rows of a flank, at their end. */
+static void end_flank_row(const struct flank *flank, struct eo_text *text)
+{
+  eo_text_print(text, ",%s", flank->coast ? "coast" : "drive");
+  end_row(text);
+}
+
 static void write_flank_points(const struct flank *flank, struct eo_text *text)
 {
   for (int i = 0; i < flank->rows; i++)
@@ -149,14 +179,14 @@ static void write_flank_points(const struct flank *flank, struct eo_text *text)
       put_place(text, flank->member, flank->end);
       eo_text_print(text, ",%d,%d", i, j);
       write_point(flank, s, eta, text);
-      end_row(text);
+      end_flank_row(flank, text);
     }
 }
 
 static void write_point_grid(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
                              struct eo_text *text)
 {
-  eo_text_add(text, "member,end,profile,face,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,modification_um\r\n");
+  eo_text_add(text, "member,end,profile,face,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,modification_um,flank\r\n");
   each_flank(design, geometry, grid, write_flank_points, text);
 }
 
@@ -175,7 +205,7 @@ static void write_profile_chart(const struct flank *flank, struct eo_text *text)
     put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
     put(text, roll_at(flank, s), &eo_unit_deg);
     put(text, profile_part(flank, s), &eo_unit_um);
-    end_row(text);
+    end_flank_row(flank, text);
   }
 }
 
@@ -187,8 +217,8 @@ static void write_lead_chart(const struct flank *flank, struct eo_text *text)
     eo_text_add(text, ",lead");
     put(text, eta, &eo_unit_mm);
     eo_text_add(text, ",,");
-    put(text, lead_part(flank, eta), &eo_unit_um);
-    end_row(text);
+    put(text, lead_part(flank, flank->coast ? -eta : eta), &eo_unit_um);
+    end_flank_row(flank, text);
   }
 }
 
@@ -200,7 +230,7 @@ static void write_charts_of(const struct flank *flank, struct eo_text *text)
 
 static void write_charts(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
-  eo_text_add(text, "member,end,chart,coordinate_mm,radius_mm,roll_angle_deg,modification_um\r\n");
+  eo_text_add(text, "member,end,chart,coordinate_mm,radius_mm,roll_angle_deg,modification_um,flank\r\n");
   each_flank(design, geometry, usual_grid, write_charts_of, text);
 }
 
@@ -214,15 +244,15 @@ static void write_topography_of(const struct flank *flank, struct eo_text *text)
       put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
       put(text, roll_at(flank, s), &eo_unit_deg);
       put(text, eta, &eo_unit_mm);
-      put(text, eo_modification_at(&flank->shape, rack_at(flank, s), eta), &eo_unit_um);
-      end_row(text);
+      put(text, eo_modification_at(&flank->shape, rack_at(flank, s), flank->coast ? -eta : eta), &eo_unit_um);
+      end_flank_row(flank, text);
     }
 }
 
 static void write_topography_grid(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
                                   struct eo_text *text)
 {
-  eo_text_add(text, "member,end,radius_mm,roll_angle_deg,face_mm,modification_um\r\n");
+  eo_text_add(text, "member,end,radius_mm,roll_angle_deg,face_mm,modification_um,flank\r\n");
   each_flank(design, geometry, grid, write_topography_of, text);
 }
 

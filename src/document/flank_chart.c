@@ -110,13 +110,13 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
 }
 
 void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *design, const struct eo_geometry *whole,
-                         int member, int end, bool helix)
+                         enum eo_flank_side side, int member, int end, bool helix)
 {
   const struct eo_geometry own = eo_geometry_of_half(whole, &design->gear_pair, end), *geometry = &own;
   struct eo_modification_shape shape;
-  *c = (struct eo_flank_chart){.member = member, .end = end, .helix = helix};
+  *c = (struct eo_flank_chart){.side = side, .member = member, .end = end, .helix = helix};
   struct eo_flank_spline *spline;
-  bool failed = eo_flank_shape(design, geometry, EO_DRIVE_FLANK, member, end, &shape, &spline);
+  bool failed = eo_flank_shape(design, geometry, side, member, end, &shape, &spline);
   if (helix)
     set_helix(c, geometry, &shape);
   else
@@ -153,8 +153,9 @@ static void fill_drawing(struct drawing *d, const struct eo_flank_chart *c, cons
     d->upper[i] = 1e6 * c->band[i][0];
     d->lower[i] = 1e6 * c->band[i][1];
   }
-  snprintf(d->title, sizeof d->title, "%s, %s of the %s%s", c->helix ? "Helix" : "Profile",
+  snprintf(d->title, sizeof d->title, "%s, %s of the %s%s%s", c->helix ? "Helix" : "Profile",
            c->helix ? "at the pitch point" : "mid face", member_name[c->member],
+           c->side == EO_COAST_FLANK ? ", coast flank" : "",
            design->gear_pair.ends == 1 ? ""
            : c->end                    ? ", right end"
                                        : ", left end");
@@ -189,9 +190,9 @@ void eo_flank_chart_svg(const struct eo_flank_chart *c, const struct eo_design *
   if (c->helix) {
     chart.marks = 2;
     chart.mark[0].x = d->x[0];
-    chart.mark[0].label = "meets last";
+    chart.mark[0].label = c->side == EO_COAST_FLANK ? "meets first" : "meets last";
     chart.mark[1].x = d->x[POINTS - 1];
-    chart.mark[1].label = "meets first";
+    chart.mark[1].label = c->side == EO_COAST_FLANK ? "meets last" : "meets first";
   } else {
     chart.scales = 2;
     chart.scale[0].label = "roll angle, deg";
@@ -224,12 +225,13 @@ static void each_chart(const struct eo_design *design, const struct eo_geometry 
 {
   struct eo_flank_chart *chart = malloc(sizeof *chart);
   text->failed = text->failed || !chart;
-  for (int member = 0; member < 2 && chart; member++)
-    for (int end = 0; end < design->gear_pair.ends; end++)
-      for (int helix = 0; helix < 2; helix++) {
-        eo_flank_chart_find(chart, design, geometry, member, end, helix != 0);
-        function(chart, design, text);
-      }
+  int flanks = 2 * design->gear_pair.ends * (eo_design_shows_coast(design) ? 2 : 1);
+  for (int i = 0; i < flanks * 2 && chart; i++) {
+    int flank = i / 2, end = flank % design->gear_pair.ends, member = flank / design->gear_pair.ends % 2;
+    eo_flank_chart_find(chart, design, geometry, (enum eo_flank_side)(flank / design->gear_pair.ends / 2), member, end,
+                        i % 2 == 1);
+    function(chart, design, text);
+  }
   free(chart);
 }
 
@@ -252,14 +254,14 @@ static void write_rows(const struct eo_flank_chart *c, const struct eo_design *d
     put(text, c->nominal[i], 1e6);
     put(text, c->band[i][0], 1e6);
     put(text, c->band[i][1], 1e6);
-    eo_text_add(text, "\r\n");
+    eo_text_print(text, ",%s\r\n", c->side == EO_COAST_FLANK ? "coast" : "drive");
   }
 }
 
 void eo_flank_charts_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
   eo_text_add(text,
-              "member,end,chart,roll_length_mm,roll_angle_deg,diameter_mm,face_mm,nominal_um,upper_um,lower_um\r\n");
+              "member,end,chart,roll_length_mm,roll_angle_deg,diameter_mm,face_mm,nominal_um,upper_um,lower_um,flank\r\n");
   each_chart(design, geometry, write_rows, text);
 }
 
@@ -267,7 +269,7 @@ void eo_flank_charts_csv(const struct eo_design *design, const struct eo_geometr
 static void write_on_sheet(const struct eo_flank_chart *c, const struct eo_design *design, struct eo_text *text)
 {
   enum { WIDTH = 720, HEIGHT = 370 };
-  int number = (c->member * design->gear_pair.ends + c->end) * 2 + c->helix;
+  int number = (((int)c->side * 2 + c->member) * design->gear_pair.ends + c->end) * 2 + c->helix;
   eo_text_print(text, "<svg x=\"0\" y=\"%d\" width=\"%d\" height=\"%d\">\n", number * HEIGHT, WIDTH, HEIGHT);
   eo_flank_chart_svg(c, design, text);
   eo_text_add(text, "</svg>\n");
@@ -277,7 +279,7 @@ void eo_flank_charts_svg(const struct eo_design *design, const struct eo_geometr
 {
   enum { WIDTH = 720, HEIGHT = 370 };
   eo_text_print(text, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\">\n", WIDTH,
-                4 * design->gear_pair.ends * HEIGHT, WIDTH);
+                (eo_design_shows_coast(design) ? 8 : 4) * design->gear_pair.ends * HEIGHT, WIDTH);
   each_chart(design, geometry, write_on_sheet, text);
   eo_text_add(text, "</svg>\n");
 }

@@ -15,10 +15,11 @@ enum { EO_FLANK_CHART_POINTS = 121 };
 /* SI. y: metal beyond the unmodified flank, normal to it; what a modification takes off is below 0. A measured trace
    may be moved along y: only its shape counts against the band, F_alpha or F_beta wide about the nominal curve. */
 struct eo_flank_chart {
+  enum eo_flank_side side;
   int member, end;
   bool helix;                      /* else the profile */
   double x[EO_FLANK_CHART_POINTS]; /* roll length from the base circle, or place over the face from its middle, + on
-                                      the side that meets first, m */
+                                      the side that meets first on the drive flank, m */
   double roll_angle[EO_FLANK_CHART_POINTS], diameter[EO_FLANK_CHART_POINTS]; /* profile: rad, m */
   double nominal[EO_FLANK_CHART_POINTS];
   double band[EO_FLANK_CHART_POINTS][2]; /* upper, lower; NaN outside the evaluation range, or without a tolerance */
@@ -36,12 +37,14 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
 
 /* At mid face (profile), at the pitch point (helix). */
 void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *design,
-                         const struct eo_geometry *geometry, int member, int end, bool helix);
+                         const struct eo_geometry *geometry, enum eo_flank_side side, int member, int end,
+                         bool helix);
 
 /* One <svg>. */
 void eo_flank_chart_svg(const struct eo_flank_chart *chart, const struct eo_design *design, struct eo_text *text);
 
-/* Every chart of a design: rows of numbers; the drawings below each other in one SVG. */
+/* Every chart of a design, of coast flanks where they are shown (flank_grid_document.h): rows of numbers; the drawings
+   below each other in one SVG. */
 void eo_flank_charts_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
 void eo_flank_charts_svg(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
 

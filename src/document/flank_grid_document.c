@@ -307,3 +307,15 @@ bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *ge
   eo_modification_complete(shape, *spline, false);
   return failed;
 }
+
+bool eo_design_shows_coast(const struct eo_design *design)
+{
+  bool shows = false;
+  for (int k = 0; k < design->load_cases; k++)
+    shows = shows || design->load_case[k].flank == EO_COAST_FLANK;
+  for (int i = 0; i < 2; i++)
+    for (int end = 0; end < design->gear_pair.ends; end++)
+      shows = shows || !eo_modification_is_none(&design->modification.coast[i][end]) ||
+              design->grids.place[EO_COAST_FLANK][i][end].u_knots > 0;
+  return shows;
+}

@@ -34,4 +34,7 @@ bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *ge
 /* The same text from a grid. */
 void eo_flank_grid_to_text(const struct eo_flank_grid *grid, struct eo_text *text);
 
+/* Whether coast flanks are shown where flanks are: a load case runs on them, or one of them is modified. */
+bool eo_design_shows_coast(const struct eo_design *design);
+
 #endif

@@ -63,6 +63,7 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
       eo_tooth_done(tooth);
       return eo_error_memory(error);
     }
+  tooth->shape[EO_COAST_FLANK].mirrored = true; /* flank_point() has it in a frame that runs against y */
   tooth->offset = eo_gear_pair_mid_face(&design->gear_pair, end);
   double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
   tooth->pitch = pitch_angle(geometry, member, 0);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "document/flank_chart.h"
+#include "document/flank_grid_document.h"
 #include "document/geometry_table.h"
 #include "document/result.h"
 #include "format/json.h"
@@ -102,14 +103,16 @@ static void put_flanks(const struct eo_design *design, const struct eo_geometry 
                     "Nominal profile and helix; a modification takes metal off and lies below 0. The band is the "
                     "total tolerance, centred on the nominal curve: a measured trace may be moved across it, only "
                     "its shape and slope count.");
-  for (int member = 0; member < 2 && chart; member++)
-    for (int end = 0; end < design->gear_pair.ends; end++)
-      for (int helix = 0; helix < 2; helix++) {
-        eo_flank_chart_find(chart, design, geometry, member, end, helix != 0);
-        eo_flank_chart_svg(chart, design, text);
-        if (*chart->note && !helix && !end)
-          eo_page_paragraph(text, chart->note);
-      }
+  int ends = design->gear_pair.ends, charts = 4 * ends * (eo_design_shows_coast(design) ? 2 : 1);
+  for (int i = 0; i < charts && chart; i++) {
+    bool helix = i % 2 == 1;
+    int end = i / 2 % ends, member = i / 2 / ends % 2;
+    enum eo_flank_side side = (enum eo_flank_side)(i / 4 / ends);
+    eo_flank_chart_find(chart, design, geometry, side, member, end, helix);
+    eo_flank_chart_svg(chart, design, text);
+    if (*chart->note && !helix && !end && side == EO_DRIVE_FLANK)
+      eo_page_paragraph(text, chart->note);
+  }
   free(chart);
 }
 

@@ -175,7 +175,7 @@ static void test_charts(void)
 {
   struct eo_flank_chart c;
   load("paper-case-a", false);
-  eo_flank_chart_find(&c, &design, &geometry, EO_PINION, EO_LEFT, false);
+  eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, false);
   close_to(nominal_at(&c, c.active[0]), -17e-6, 0.02e-6, "root relief at d_Nf");
   close_to(nominal_at(&c, c.active[1]), -14e-6, 1e-12, "tip relief at the tip");
   close_to(nominal_at(&c, c.relief[1]), 0, 0.02e-6, "nothing where the tip relief begins");
@@ -196,11 +196,11 @@ static void test_charts(void)
   ok(rising && low == c.range[0] && high == c.range[1], "the band covers the evaluation range and nothing else");
   close_to(high - low, 0.92 * (c.active[1] - c.active[0]), 1e-12, "92 % of the active length");
   close_to(wide, 13e-6, 1e-12, "F_alpha of d 111.65 mm, m_n 6 mm, grade 6");
-  eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
+  eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_GEAR, EO_RIGHT, true);
   close_to(c.band[60][0] - c.band[60][1], 15e-6, 1e-12, "F_beta of the gear");
   close_to(c.range[1] - c.range[0], 49.5e-3, 1e-12, "the face less 5 % at each end");
   design.gear_pair.face_width = 1e-3;
-  eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
+  eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_GEAR, EO_RIGHT, true);
   ok(isnan(c.band[60][0]) && *c.note, "a face that ISO 1328-1 does not cover has no band: %s", c.note);
 }
 

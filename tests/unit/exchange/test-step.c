@@ -112,19 +112,24 @@ static void check_file(const char *name, int faces, int shells)
 /* Surfaces: */
 
 /* The frame is that of flank-points: both say where the same point of the flank lies. */
-static void check_frame(const char *name)
+static void check_frame(const char *name, bool coast)
 {
   static const char *const end_name[2] = {"left", "right"};
   struct eo_text text = {0};
   double largest = 0;
-  int compared = 0;
+  int compared = 0, coasts = 0;
   build(name);
+  for (int i = 0; i < 4 && coast; i++)
+    design.modification.coast[i / 2][i % 2] = (struct eo_flank_modification){
+        .tip_relief = 12e-6, .tip_relief_start = 1.5e-3, .helix_slope = (i + 1) * 7e-6, .twist = 5e-6};
   eo_exports_find("flank-points")->write(&design, &geometry, &text);
   for (const char *line = strchr(text.data, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
-    char member[8], end[8];
+    char member[8], end[8], flank[8];
     int row, column;
     double x, y, z, point[3];
-    if (sscanf(line, "%7[a-z],%7[a-z],%d,%d,%lf,%lf,%lf", member, end, &row, &column, &x, &y, &z) != 7 || column % 5)
+    if (sscanf(line, "%7[a-z],%7[a-z],%d,%d,%lf,%lf,%lf,%*f,%*f,%*f,%*f,%7[a-z]", member, end, &row, &column, &x, &y, &z,
+               flank) != 8 ||
+        column % 5)
       continue;
     struct eo_tooth tooth;
     init(&tooth, strcmp(member, "gear") == 0, strcmp(end, end_name[1]) == 0);
@@ -132,13 +137,41 @@ static void check_frame(const char *name)
     double s = geometry.path_start +
                (geometry.path_end - geometry.path_start) * (tooth.member == EO_PINION ? row / 20. : 1 - row / 20.);
     double p = (eo_geometry_own_path(tooth.member, s) - tooth.start_path) / (tooth.tip_path - tooth.start_path);
-    eo_tooth_point(&tooth, EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30., point, NULL);
+    bool on_coast = strcmp(flank, "coast") == 0;
+    coasts += on_coast;
+    eo_tooth_point(&tooth, on_coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30., point, NULL);
     largest = fmax(largest, hypot(hypot(1e3 * point[0] - x, 1e3 * point[1] - y), 1e3 * point[2] - z));
     compared++;
   }
-  ok(compared > 200 && largest < 1e-7, "%s: %d points as flank-points has them, within %.1g mm", name, compared,
-     largest);
+  ok(compared > 200 && largest < 1e-7 && (coasts > 0) == coast,
+     "%s: %d points as flank-points has them, within %.1g mm, %d of coast flanks", name, compared, largest, coasts);
   eo_text_done(&text);
+}
+
+/* A helix slope of 40 um on a coast flank takes half of it off where drive flanks meet first, and adds it at the other
+   end, whichever way the surfaces are made. */
+static void check_coast_slope(void)
+{
+  build("paper");
+  for (int end = 0; end < 2; end++)
+    for (int member = 0; member < 2; member++) {
+      struct eo_tooth plain, sloped;
+      double at[3], moved[3], normal[3], off[2];
+      init(&plain, member, end);
+      design.modification.coast[member][end].helix_slope = 40e-6;
+      init(&sloped, member, end);
+      for (int side = 0; side < 2; side++) {
+        double q = (end == EO_LEFT) == (side == 1) ? 0 : 1; /* side 1: outwards */
+        eo_tooth_point(&plain, EO_TOOTH_COAST, 0, 0.5, q, at, normal);
+        eo_tooth_point(&sloped, EO_TOOTH_COAST, 0, 0.5, q, moved, NULL);
+        off[side] = 0;
+        for (int i = 0; i < 3; i++)
+          off[side] += (at[i] - moved[i]) * normal[i];
+      }
+      close_to(1e6 * off[1], 20, 0.5, "off the outer end of a coast flank, um");
+      close_to(1e6 * off[0], -20, 0.5, "and on at the inner one");
+      design.modification.coast[member][end].helix_slope = 0;
+    }
 }
 
 /* Unmodified flanks and roots meet at the form circle, and the tooth is as thick as it should be at the reference
@@ -360,8 +393,10 @@ int main(void)
 {
   check_file("paper-case-b", 2 * (3 + 1 + 1 + 3 + 3), 10);
   check_file("single", 3 + 1 + 1 + 3 + 3, 5);
-  check_frame("paper-case-b");
-  check_frame("single");
+  check_frame("paper-case-b", false);
+  check_frame("paper-case-b", true);
+  check_frame("single", true);
+  check_coast_slope();
   check_tooth("paper");
   check_tooth("shifted");
   if (system("command -v gmsh >/dev/null 2>&1") == 0) {
