@@ -188,6 +188,18 @@ static enum eo_code check_flank(const struct eo_flank_modification *flank, const
   return check_triangles(flank, place, error);
 }
 
+static enum eo_code check_gain(const struct eo_design *design, const struct eo_flank_modification *flank,
+                               const struct flank_place *place, struct eo_error *error)
+{
+  char key[128];
+  if (flank->grid_gain == 0 || design->grids.place[place->side][place->member][place->end].u_knots > 0)
+    return EO_OK;
+  point_to(place, "grid_gain", "", key);
+  return eo_error_set(error, EO_ERROR_INPUT, key,
+                      "There is no grid on this flank of which %.6g more could be laid on: state a grid, or 0 here.",
+                      flank->grid_gain);
+}
+
 enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry,
                                    struct eo_error *error)
 {
@@ -196,9 +208,10 @@ enum eo_code eo_modification_check(const struct eo_design *design, const struct 
       for (int end = 0; end < design->gear_pair.ends; end++) {
         const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
         const struct flank_place place = {&half, (enum eo_flank_side)side, i, end};
-        EO_TRY(check_flank(side == EO_DRIVE_FLANK ? &design->modification.flank[i][end]
-                                                  : &design->modification.coast[i][end],
-                           &place, error));
+        const struct eo_flank_modification *flank = side == EO_DRIVE_FLANK ? &design->modification.flank[i][end]
+                                                                           : &design->modification.coast[i][end];
+        EO_TRY(check_flank(flank, &place, error));
+        EO_TRY(check_gain(design, flank, &place, error));
       }
   return EO_OK;
 }

@@ -260,8 +260,9 @@ static void write_rows(const struct eo_flank_chart *c, const struct eo_design *d
 
 void eo_flank_charts_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
-  eo_text_add(text,
-              "member,end,chart,roll_length_mm,roll_angle_deg,diameter_mm,face_mm,nominal_um,upper_um,lower_um,flank\r\n");
+  eo_text_add(
+      text,
+      "member,end,chart,roll_length_mm,roll_angle_deg,diameter_mm,face_mm,nominal_um,upper_um,lower_um,flank\r\n");
   each_chart(design, geometry, write_rows, text);
 }
 

@@ -89,6 +89,16 @@ static enum eo_code fault(const char *pointer_format, int i, struct eo_error *er
   return eo_error_set(error, EO_ERROR_INPUT, pointer, text, a, b);
 }
 
+/* Every flank that it covers has a grid. */
+static bool has_grids(const struct eo_study_variable *v, const struct eo_design *design)
+{
+  bool has = true;
+  for (int side = 0; side < 2; side++)
+    for (int end = 0; end < design->gear_pair.ends; end++)
+      has = has && (!covers(v, side, end) || design->grids.place[side][v->member][end].u_knots > 0);
+  return has;
+}
+
 /* One list row, made a variable; the field's own range holds as everywhere. */
 static enum eo_code add_listed(struct eo_study_space *space, const struct eo_design *design, int i,
                                struct eo_error *error)
@@ -106,6 +116,9 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
     return fault("/optimization/variable_list/%d/bounds", i, error,
                  "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
   struct eo_study_variable variable = {row->member, end, row->flank, field, bounds.low, bounds.high};
+  if (field->offset == offsetof(struct eo_flank_modification, grid_gain) && !has_grids(&variable, design))
+    return fault("/optimization/variable_list/%d/parameter", i, error,
+                 "A flank that this variable covers has no grid to lay on more or less of.", 0, 0);
   for (int j = 0; j < space->count; j++)
     if (overlap(&variable, &space->variable[j]))
       return fault("/optimization/variable_list/%d", i, error, "This parameter is a variable already.", 0, 0);

@@ -38,8 +38,7 @@ static bool respell(const char *key, enum way way, char other[LONGEST_KEY + 8])
 static double convert(double value, enum way way)
 {
   char text[40];
-  snprintf(text, sizeof text, "%.15g",
-           way == TO_METRIC ? value * PER_INCH : value / PER_INCH);
+  snprintf(text, sizeof text, "%.15g", way == TO_METRIC ? value * PER_INCH : value / PER_INCH);
   return strtod(text, NULL);
 }
 
@@ -80,7 +79,7 @@ static json_t *respelt_object(const json_t *object, enum way way, struct eo_faul
     bool length = respell(key, way, other);
     if (length && json_object_get(object, other) && faults)
       eo_faults_add(faults, "", "%s says the same as %s: leave one of the two out.", key, other);
-    json_t *element = length                                      ? lengths(value, way)
+    json_t *element = length                                       ? lengths(value, way)
                       : is_length_row && strcmp(key, "key") == 0   ? json_string(row)
                       : is_length_row && strcmp(key, "value") == 0 ? lengths(value, way)
                                                                    : respelt(value, way, faults);
@@ -97,8 +96,8 @@ static json_t *respelt_array(const json_t *array, enum way way, struct eo_faults
   json_t *made = json_array(), *value;
   bool failed = !made;
   size_t i;
-  json_array_foreach((json_t *)array, i, value) failed = failed ||
-                                                         json_array_append_new(made, respelt(value, way, faults)) != 0;
+  json_array_foreach((json_t *)array, i, value)
+      failed = failed || json_array_append_new(made, respelt(value, way, faults)) != 0;
   if (!failed)
     return made;
   json_decref(made);
@@ -118,8 +117,8 @@ bool eo_inch_is_used(const json_t *document)
   json_t *value;
   char other[LONGEST_KEY + 8];
   size_t i;
-  json_object_foreach((json_t *)document, key, value) if (respell(key, TO_METRIC, other) || eo_inch_is_used(value))
-      return true;
+  json_object_foreach((json_t *)document, key,
+                      value) if (respell(key, TO_METRIC, other) || eo_inch_is_used(value)) return true;
   json_array_foreach((json_t *)document, i, value) if (eo_inch_is_used(value)) return true;
   return false;
 }

@@ -152,6 +152,7 @@ void eo_modification_init(struct eo_modification_shape *shape, const struct eo_g
   init_lead(shape, g, flank);
   shape->incline = flank->profile_slope / 2 / half;
   shape->barrel = flank->profile_barrel / (half * half);
+  shape->grid_share = 1 + flank->grid_gain;
   shape->twist = flank->twist / 4 / (half * g->face_width / 2);
   memcpy(shape->triangular, flank->triangular, sizeof shape->triangular);
   shape->varies = shape->twist != 0;
@@ -285,9 +286,9 @@ double eo_modification_profile(const struct eo_modification_shape *shape, double
   for (int i = 0; i < shape->wedges; i++)
     value += wedge_value(&shape->wedge[i], u, slope);
   if (shape->grid) {
-    value += eo_flank_spline_at(shape->grid, u, shape->y, by_u);
-    slope[0] += by_u[0];
-    slope[1] += by_u[1];
+    value += shape->grid_share * eo_flank_spline_at(shape->grid, u, shape->y, by_u);
+    slope[0] += shape->grid_share * by_u[0];
+    slope[1] += shape->grid_share * by_u[1];
   }
   return value;
 }

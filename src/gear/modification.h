@@ -55,6 +55,7 @@ struct eo_flank_modification {
   double profile_slope;        /* C_Halpha: over the active profile, 0 in its middle, m; + takes more off at the tip */
   double profile_barrel;       /* C_alpha: at both ends of the active profile, 0 in its middle, m */
   double twist;                /* S_alpha: change of C_Halpha from the trailing to the leading face end, m */
+  double grid_gain;            /* what of the grid is laid on beyond it, as a share: 0 as it stands, -1 none */
   double end_exponent[2];      /* with EO_RELIEF_EXPONENT; 0: 2 */
   double exponent[2];          /* of the reliefs [root, tip] with EO_RELIEF_EXPONENT; 0: 2 */
   struct eo_relief_place place[2];              /* [root, tip] */
@@ -103,6 +104,7 @@ struct eo_modification_shape {
   bool mirrored; /* a coast flank: y = -eta */
   double twist;  /* incline per m of y, 1/m */
   struct eo_triangular_relief triangular[2][2];
+  double grid_share;                  /* of it that is laid on: 1 as it stands */
   const struct eo_flank_spline *grid; /* borrowed; NULL: none */
 };
 

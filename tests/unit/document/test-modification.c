@@ -131,6 +131,38 @@ static void test_refusals(void)
          "/load_cases");
 }
 
+/* A grid with a gain is the grid of so much larger numbers. */
+static void test_gain(void)
+{
+  static const double u[2] = {-5e-3, 5e-3}, y[3] = {-25e-3, 0, 25e-3}, delta[6] = {1e-6, 2e-6, -3e-6, 5e-6, 0, 4e-6};
+  double larger[6], slope[2], other[2], worst = 0;
+  struct eo_flank_modification plain = {.tip_relief = 5e-6, .tip_relief_start = 1e-3}, gained = plain;
+  struct eo_modification_shape shape[2], slice[2];
+  struct eo_flank_spline *spline[2] = {NULL, NULL};
+  struct eo_error error;
+  gained.grid_gain = 0.5;
+  for (int i = 0; i < 6; i++)
+    larger[i] = 1.5 * delta[i];
+  const struct eo_flank_grid grid[2] = {{2, 3, u, y, larger}, {2, 3, u, y, delta}};
+  for (int i = 0; i < 2; i++) {
+    eo_flank_spline_new(&spline[i], &grid[i], &error);
+    eo_modification_init(&shape[i], &geometry, EO_PINION, i ? &gained : &plain);
+    eo_modification_complete(&shape[i], spline[i], false);
+  }
+  for (int j = -4; j <= 4; j++)
+    for (int i = -4; i <= 4; i++) {
+      for (int k = 0; k < 2; k++)
+        eo_modification_slice(&shape[k], 6e-3 * j, &slice[k]);
+      double a = eo_modification_profile(&slice[0], 1e-3 * i, slope),
+             b = eo_modification_profile(&slice[1], 1e-3 * i, other);
+      worst = fmax(worst, fmax(fabs(a - b), 1e-3 * fabs(slope[0] - other[0])));
+    }
+  close_to(1e6 * worst, 0, 1e-9, "a gain of a half lays on half as much again, um");
+  for (int i = 0; i < 2; i++)
+    eo_flank_spline_free(spline[i]);
+  refuse("a gain of no grid", "{\"pinion\":{\"left\":{\"grid_gain\":0.5}}}", "", "/modification/pinion/left/grid_gain");
+}
+
 /* deviations by name against the formulas of their definition. */
 static void test_terms(void)
 {
@@ -374,6 +406,7 @@ int main(void)
 {
   test_starts();
   test_refusals();
+  test_gain();
   test_terms();
   test_spline();
   test_grid_document();

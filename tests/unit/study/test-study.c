@@ -415,6 +415,24 @@ static void test_variables(void)
   struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0},
                                       {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0}};
   refuse("a relief that may start outside the active flank", "/optimization/variable_list", 2, late);
+  struct eo_listed_variable gain = {EO_PINION, EO_BOTH_ENDS, parameter("grid_gain"), {-1, 1}, 0};
+  refuse("the gain of a grid that is not there", "/optimization/variable_list/0/parameter", 1, &gain);
+  static const double knots[2] = {-2e-3, 2e-3}, delta[4] = {1e-6, 2e-6, 0, 1e-6};
+  const struct eo_flank_grid grid = {2, 2, knots, knots, delta};
+  struct eo_design with_grid = design;
+  struct eo_study_space gains;
+  with_grid.optimization.variables = EO_VARIABLES_LISTED;
+  with_grid.optimization.listed = 1;
+  with_grid.optimization.list[0] = gain;
+  for (int k = 0; k < 2; k++)
+    eo_flank_grids_put(&with_grid.grids, EO_DRIVE_FLANK, EO_PINION, k, &grid, &error);
+  double scale = 0.75;
+  struct eo_modification gained;
+  ok(complete(&with_grid) && !eo_study_space_init(&gains, &with_grid, &pair->geometry, &error), "of one that is %s",
+     error.text);
+  eo_study_space_apply(&gains, &with_grid.modification, &scale, &gained);
+  ok(gained.flank[EO_PINION][0].grid_gain == 0.5 && gained.flank[EO_PINION][1].grid_gain == 0.5,
+     "the search lays on more or less of it");
   struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0};
   refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
   struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0}, {EO_PINION, EO_LEFT, length, {0, 10}, 0}};
