@@ -194,11 +194,13 @@ static void read_roots(const struct eo_hunt *hunt, struct eo_hunting_walker *wal
 {
   struct eo_hunting *r = hunt->result;
   const struct eo_loaded_end *solved = &walker->solved[end];
-  struct eo_root_history *history = &walker->history;
+  int half = walker->root[EO_RIGHT] && end == EO_RIGHT, range[2];
+  struct eo_root_history *history = &walker->history[half];
+  eo_contact_grid_pairs(hunt->input->grid[end], range);
   for (int member = 0; member < 2; member++)
-    for (int k = r->first_line; k < r->first_line + r->lines; k++) {
+    for (int k = range[0]; k <= range[1]; k++) {
       struct eo_root_peak peak;
-      eo_root_tooth_compute(walker->root, member, k, 1, &solved, &history, &peak);
+      eo_root_tooth_compute(walker->root[half], member, k, 1, &solved, &history, &peak);
       struct eo_hunting_place place = {.value = peak.stress, .end = end, .cycle = wrap(cycle, r->cycles), .line = k};
       for (int i = 0; i < 2; i++)
         place.tooth[i] = wrap(cycle - k, r->teeth[i]);
@@ -221,7 +223,7 @@ static void read_instant(const struct eo_hunt *hunt, struct eo_hunting_walker *w
   for (int end = 0; end < hunt->input->ends; end++) {
     int at = end == EO_RIGHT ? instant - hunt->input->stagger : instant;
     read_end(hunt, walker, &walker->find, end, instant);
-    if (walker->root && wrap(at, positions) == positions - 1)
+    if (walker->root[EO_LEFT] && wrap(at, positions) == positions - 1)
       read_roots(hunt, walker, &walker->find, end, floored(at, positions));
   }
 }
@@ -234,7 +236,7 @@ static enum eo_code pass_block(void *context, int thread, int item, struct eo_er
   struct eo_hunting_walker *walker = &hunt->walker[thread];
   int positions = hunt->result->positions, first = item * EO_HUNTING_BLOCK * positions,
       last = first + EO_HUNTING_BLOCK * positions,
-      ahead = walker->root && hunt->input->ends == 2 && hunt->input->stagger ? positions : 0;
+      ahead = walker->root[EO_LEFT] && hunt->input->ends == 2 && hunt->input->stagger ? positions : 0;
   (void)error;
   last = last < hunt->result->instants ? last : hunt->result->instants;
   for (int i = first - ahead; i < last; i++) {

@@ -60,7 +60,7 @@ static enum eo_code make_result(struct eo_hunting *r, const struct eo_hunting_in
     for (int member = 0; member < 2; member++)
       r->tooth_load[end][member] = make_places(r->teeth[member], &complete);
   }
-  for (int member = 0; member < 2 && input->root[0]; member++)
+  for (int member = 0; member < 2 && input->root[EO_LEFT][0]; member++)
     r->tooth_stress[member] = make_places(r->ends * r->teeth[member], &complete);
   return complete ? EO_OK : eo_error_memory(error);
 }
@@ -87,10 +87,11 @@ static enum eo_code make_walker(struct eo_hunting_walker *walker, const struct e
     EO_TRY(eo_loaded_end_init(&walker->solved[end], input->grid[end], error));
     walker->gap[end] = make_numbers(input->grid[end]->points, &complete);
   }
-  if (complete && input->root[0]) {
+  bool one_grid = input->ends == 1 || input->grid[EO_RIGHT] == input->grid[EO_LEFT];
+  for (int end = 0; complete && input->root[EO_LEFT][0] && end < (one_grid ? 1 : 2); end++) {
     int step = input->positions > ROOT_POSITIONS ? input->positions / ROOT_POSITIONS * hunt->step : hunt->step;
-    EO_TRY(eo_root_workspace_new(&walker->root, input->grid[0], input->root, step, 1, error));
-    EO_TRY(eo_root_history_init(&walker->history, input->grid[0], error));
+    EO_TRY(eo_root_workspace_new(&walker->root[end], input->grid[end], input->root[end], step, 1, error));
+    EO_TRY(eo_root_history_init(&walker->history[end], input->grid[end], error));
   }
   return complete ? EO_OK : eo_error_memory(error);
 }
@@ -118,8 +119,10 @@ static void walker_done(struct eo_hunting_walker *walker)
     for (int member = 0; member < 2; member++)
       free(walker->find.tooth_load[end][member]);
   }
-  eo_root_workspace_free(walker->root);
-  eo_root_history_done(&walker->history);
+  for (int end = 0; end < 2; end++) {
+    eo_root_workspace_free(walker->root[end]);
+    eo_root_history_done(&walker->history[end]);
+  }
 }
 
 void eo_hunt_end(struct eo_hunt *hunt)

@@ -130,5 +130,8 @@ const struct eo_pair *eo_evaluator_pair(const struct eo_evaluator *evaluator);
 /* Positions by which the right end lags behind the left one as phases grow: the stagger, less what a half of another
    width is ahead. */
 int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running);
+/* The same in positions of which so many make a mesh cycle. */
+int eo_evaluator_stagger_of(const struct eo_pair *pair, const struct eo_design *design,
+                            const struct eo_running *running, int positions);
 
 #endif

@@ -64,13 +64,12 @@ static enum eo_code compose(struct work *w, const struct eo_pitch_meeting *meeti
 /* Tables in the order of meshing and gaps of both ends, for one load case. */
 static void arrange(struct work *w, struct eo_case_result *load_case, const struct eo_pitch_case *own)
 {
-  const struct eo_contact_grid *grid = w->evaluator->pair->grid;
   struct eo_run run = {.design = w->design};
   for (int end = 0; end < w->design->gear_pair.ends; end++) {
     memcpy(w->gap[end], eo_evaluator_gaps_of(w->evaluator, &run, load_case, end)->gap,
-           sizeof(double) * (size_t)grid->points);
+           sizeof(double) * (size_t)eo_evaluator_grid(w->evaluator, end)->points);
     for (int member = 0; member < 2; member++)
-      eo_pitch_order(&w->design->pitch, &own->meeting, member, grid->geometry.teeth[member],
+      eo_pitch_order(&w->design->pitch, &own->meeting, member, w->evaluator->pair->geometry.teeth[member],
                      w->result->tooth[own->meeting.side][member][end], w->ordered[end][member]);
   }
 }
@@ -81,11 +80,11 @@ static enum eo_code hunt(struct work *w, const struct eo_case_result *load_case,
   const struct eo_pair *pair = w->evaluator->pair;
   struct eo_hunting_input input = {
       .ends = w->design->gear_pair.ends,
-      .grid = {pair->grid, pair->grid},
+      .grid = {pair->grid, eo_pair_half(pair, EO_RIGHT)->grid},
       .gap = {w->gap[EO_LEFT], w->gap[EO_RIGHT]},
       .inwards = load_case->running.inwards,
       .positions = w->design->pitch.positions,
-      .stagger = eo_evaluator_stagger(w->design, load_case->running.flank, w->design->pitch.positions),
+      .stagger = eo_evaluator_stagger_of(pair, w->design, &load_case->running, w->design->pitch.positions),
       .compliance_factor = 1,
       .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
       .shared_load = load_case->force,
@@ -93,8 +92,8 @@ static enum eo_code hunt(struct work *w, const struct eo_case_result *load_case,
       .threads = w->threads};
   for (int i = 0; i < 4; i++)
     input.tooth[i / 2][i % 2] = w->ordered[i / 2][i % 2];
-  for (int member = 0; member < 2 && w->root; member++)
-    input.root[member] = pair->root[member];
+  for (int i = 0; i < 4 && w->root; i++)
+    input.root[i / 2][i % 2] = eo_pair_half(pair, i / 2)->root[i % 2];
   return eo_hunting_run(&own->hunting, &input, NULL, error);
 }
 
@@ -175,7 +174,8 @@ static enum eo_code respond_with(const struct work *w, const struct eo_case_resu
   const struct eo_hunting *h = &own->hunting;
   struct eo_dynamics_parameters parameters;
   bool held = load_case->at_stop || design->alignment.pinion_axial != EO_AXIAL_STOPS,
-       differ = design->gear_pair.ends == 2 && !(eo_reuse_same_flanks(design) && hands_alike(w, own));
+       differ = design->gear_pair.ends == 2 &&
+                !(!w->evaluator->pair->right && eo_reuse_same_flanks(design) && hands_alike(w, own));
   double stiffness = 0;
   for (int end = 0; end < h->ends; end++) {
     order_in_time(own, load_case->running.backwards, end, scratch[end], scratch[2 + end]);
@@ -269,7 +269,7 @@ static enum eo_code make_work(struct work *w, struct eo_error *error)
   result->cases = w->evaluator->result.cases;
   result->load_case = calloc((size_t)result->cases, sizeof *result->load_case);
   for (int end = 0; end < 2; end++) {
-    w->gap[end] = malloc(sizeof(double) * (size_t)grid->points);
+    w->gap[end] = malloc(sizeof(double) * (size_t)eo_evaluator_grid(w->evaluator, end)->points);
     complete = complete && w->gap[end];
     for (int member = 0; member < 2; member++) {
       w->ordered[end][member] = calloc((size_t)grid->geometry.teeth[member], sizeof *w->ordered[end][member]);

@@ -5,13 +5,20 @@
 #include <string.h>
 
 /* On the coast flanks phases grow the other way round the shafts. */
-int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running)
+int eo_evaluator_stagger_of(const struct eo_pair *pair, const struct eo_design *design,
+                            const struct eo_running *running, int positions)
 {
-  int positions = pair->grid->positions, behind = (int)lround(design->alignment.stagger * positions) % positions;
+  int behind = (int)lround(design->alignment.stagger * positions) % positions;
+  int ahead = (int)lround((double)pair->ahead[running->inwards] * positions / pair->grid->positions);
   if (running->flank == EO_COAST_FLANK)
     behind = -behind;
-  behind = (behind - pair->ahead[running->inwards]) % positions;
+  behind = (behind - ahead) % positions;
   return behind < 0 ? behind + positions : behind;
+}
+
+int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running)
+{
+  return eo_evaluator_stagger_of(pair, design, running, pair->grid->positions);
 }
 
 bool eo_reuse_same_flanks(const struct eo_design *design)
