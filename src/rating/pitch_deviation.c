@@ -163,6 +163,7 @@ enum eo_code eo_pitch_compose(const struct eo_pitch *pitch, const struct eo_geom
                               const struct eo_pitch_meeting *meeting, int member, int end,
                               struct eo_tooth_deviation *tooth, struct eo_error *error)
 {
+  static const double none = 0;
   const struct eo_pitch_member *own = &pitch->member[member];
   const double *table[EO_TOOTH_TERMS];
   int teeth = geometry->teeth[member];
@@ -178,7 +179,7 @@ enum eo_code eo_pitch_compose(const struct eo_pitch *pitch, const struct eo_geom
   for (int i = 0; i < teeth && !code; i++) {
     const double *value[EO_TOOTH_TERMS] = {NULL};
     for (int term = 0; term < EO_TOOTH_TERMS; term++)
-      value[term] = table[term] ? &table[term][i] : &(const double){0};
+      value[term] = table[term] ? &table[term][i] : &none;
     tooth[i] =
         (struct eo_tooth_deviation){.index = *value[EO_TOOTH_INDEX] + displaced(own, geometry, meeting, member, end, i),
                                     .profile_slope = *value[EO_TOOTH_PROFILE_SLOPE],
