@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The field tables that the service describes its documents with.
-import { unitText } from './format.js';
+import { plain, unitText } from './format.js';
+import { shownValue, unitInstead } from './units.js';
 
 /**
  * @typedef {object} Field
@@ -38,6 +39,8 @@ export function fieldAt(fields, pointer) {
 
 /** The unit as it is printed. @param {Field | undefined} field */
 export function unitOf(field) {
+  const instead = unitInstead(field?.unit);
+  if (instead) return instead;
   const text = unitText(field?.unit);
   return text === field?.unit ? field?.symbol || text : text;
 }
@@ -85,6 +88,11 @@ export function numberFault(field, value) {
     return 'A whole number is needed.';
   const low = field.low ?? -Infinity;
   const high = field.high ?? Infinity;
-  if (value < low || value > high) return `${value} is outside ${low} … ${high}.`;
+  if (value < low || value > high) {
+    const [shown, from, to] = [value, low, high].map(each => shownValue(each, field.unit));
+    return unitInstead(field.unit)
+      ? `${plain(shown)} is outside ${plain(from)} … ${plain(to)} ${unitOf(field)}.`
+      : `${value} is outside ${low} … ${high}.`;
+  }
   return '';
 }

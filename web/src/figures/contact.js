@@ -7,7 +7,7 @@ import { phase } from '../base/phase.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { caseLong, endsOf, sameCase } from './context.js';
+import { caseLong, endsOf, faceOf, rightPhase, sameCase } from './context.js';
 import { placeTip } from './frame.js';
 
 const PIXELS = [132, 76]; // of one end's picture
@@ -182,13 +182,14 @@ export class Contact {
    */
   #paintLines(pen, end, panel) {
     if (phase.value === null) return;
-    const { geometry, design } = /** @type {import('./context.js').Context} */ (this.#context).result;
+    const { result } = /** @type {import('./context.js').Context} */ (this.#context);
+    const { geometry } = result;
     const pattern = this.#pattern();
     const [low, high] = [pattern.s_mm[0], pattern.s_mm[pattern.s_mm.length - 1]];
-    const half = geometry.face_width_mm / 2;
+    const half = -faceOf(pattern, end)[0];
     const pitch = geometry.transverse_base_pitch_mm;
     const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
-    const at = phase.value - (end === 'right' ? (design.alignment?.stagger ?? 0) : 0);
+    const at = phase.value + (end === 'right' ? rightPhase(result) : 0);
     pen.save();
     pen.beginPath();
     pen.rect(panel.left, panel.top, panel.width, panel.height);
@@ -241,10 +242,11 @@ export class Contact {
       if (!pattern[end] || u < 0 || u > 1 || v < 0 || v > 1) continue;
       const across = panel.mirrored ? 1 - u : u;
       const rows = pattern.s_mm.length - 1;
-      const columns = pattern.eta_mm.length - 1;
+      const face = faceOf(pattern, end);
+      const columns = face.length - 1;
       const { geometry } = context.result;
       const s = pattern.s_mm[0] + v * (pattern.s_mm[rows] - pattern.s_mm[0]);
-      const eta = pattern.eta_mm[0] + across * (pattern.eta_mm[columns] - pattern.eta_mm[0]);
+      const eta = face[0] + across * (face[columns] - face[0]);
       const radius = Math.hypot(geometry.base_radius_mm[0], geometry.tangent_length_mm[0] + s);
       fill(
         this.tip,
@@ -275,7 +277,7 @@ export class Contact {
     const rows = [['end', 's (mm)', 'eta (mm)', 'pressure (MPa)']];
     for (const end of endsOf(this.#context.result)) {
       pattern[end].pressure_MPa.forEach((/** @type {number[]} */ line, /** @type {number} */ i) => {
-        line.forEach((value, j) => rows.push([end, pattern.s_mm[i], pattern.eta_mm[j], value]));
+        line.forEach((value, j) => rows.push([end, pattern.s_mm[i], faceOf(pattern, end)[j], value]));
       });
     }
     return rows;

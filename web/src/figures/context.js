@@ -32,6 +32,19 @@ export function caseLong(row) {
   return row.name ? `${row.name}: ${text}` : text;
 }
 
+/** Places over the face of an end: halves of unequal width have each its own. @param {any} part @param {string} end */
+export function faceOf(part, end) {
+  return (end === 'right' && part.right_eta_mm) || part.eta_mm;
+}
+
+/** By how much of a mesh cycle the right half's phase is ahead: its width, less the stagger. @param {any} result */
+export function rightPhase({ geometry, design }) {
+  const right = design.gear_pair.right_face_width_mm ?? geometry.face_width_mm;
+  const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
+  const lag = ((right - geometry.face_width_mm) / 2) * lean;
+  return lag / geometry.transverse_base_pitch_mm - (design.alignment?.stagger ?? 0);
+}
+
 /** Names of the ends that there are. @param {any} result @returns {('left' | 'right')[]} */
 export function endsOf(result) {
   return (result.design.gear_pair.ends ?? 2) === 1 ? ['left'] : ['left', 'right'];

@@ -4,7 +4,7 @@
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
-import { END_COLOUR, endsOf } from './context.js';
+import { END_COLOUR, endsOf, faceOf } from './context.js';
 import { switcher } from './frame.js';
 
 const LINES = { dashed: [5, 4], dotted: [1.5, 3] };
@@ -91,7 +91,7 @@ export class ModificationCharts {
     const modification = result?.modification;
     const member = modification?.[this.#member];
     if (!member?.[end]) return null;
-    return { at: what === 'profile_um' ? member.u_mm : modification.eta_mm, value: member[end][what] };
+    return { at: what === 'profile_um' ? member.u_mm : faceOf(modification, end), value: member[end][what] };
   }
 
   /** Largest value of all that is drawn, at least 10 µm, in steps. @param {'profile_um' | 'lead_um'} what */

@@ -4,7 +4,7 @@
 import { colour } from '../base/theme.js';
 import { SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { endsOf } from './context.js';
+import { endsOf, faceOf, rightPhase } from './context.js';
 import { valueAtPlace } from './gear.js';
 import { tickText, ticks } from './ticks.js';
 
@@ -40,10 +40,12 @@ const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
  */
 function surfaceOf(result, loadCase, end) {
   const { geometry: g, modification } = result;
-  const { pinion, gear, eta_mm: faces } = modification;
+  const { pinion, gear } = modification;
+  const faces = faceOf(modification, end);
+  const width = faces[faces.length - 1] - faces[0];
   const pattern = loadCase.contact?.pattern;
   const lean = Math.tan((g.base_helix_angle_deg * Math.PI) / 180);
-  const stagger = end === 'right' ? (result.design.alignment?.stagger ?? 0) : 0;
+  const ahead = end === 'right' ? rightPhase(result) : 0;
   const count = ROWS * COLUMNS;
   const surface = {
     end,
@@ -56,7 +58,7 @@ function surfaceOf(result, loadCase, end) {
     const s = g.path_start_mm + up * (g.path_end_mm - g.path_start_mm);
     for (let j = 0; j < COLUMNS; j++) {
       const across = j / (COLUMNS - 1);
-      const eta = (across - 0.5) * g.face_width_mm;
+      const eta = (across - 0.5) * width;
       const at = i * COLUMNS + j;
       surface.taken[at] =
         valueAtPlace(pinion?.u_mm, pinion?.[end]?.profile_um, g.rack_factor * s) +
@@ -65,7 +67,7 @@ function surfaceOf(result, loadCase, end) {
         valueAtPlace(faces, gear?.[end]?.lead_um, eta);
       const grid = pattern?.[end]?.pressure_MPa;
       if (grid) surface.pressure[at] = gridValue(grid, up * (grid.length - 1), across * (grid[0].length - 1));
-      surface.cycle[at] = (s - eta * lean) / g.transverse_base_pitch_mm + stagger;
+      surface.cycle[at] = (s - eta * lean) / g.transverse_base_pitch_mm - ahead;
     }
   }
   return surface;

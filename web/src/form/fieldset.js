@@ -5,6 +5,7 @@ import { choiceText, labelOf, plain } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
 import { fallbackOf, fieldAt, isNumeric, numberFault, unitOf } from '../base/schema.js';
+import { shownValue, typedText } from '../base/units.js';
 import { Entry } from './entry.js';
 
 const REST = 700; // ms between two keys on a slider that make two steps to undo
@@ -25,7 +26,7 @@ function readNumber(text, field) {
     if (field.nullable) return { value: null };
     return field.required ? { fault: 'A value is needed here.' } : { value: fallbackOf(field) };
   }
-  const { value, fault } = readQuantity(text, field.unit);
+  const { value, fault } = readQuantity(typedText(text, field.unit), field.unit);
   if (fault !== undefined) return { fault };
   const outside = numberFault(field, value);
   return outside ? { fault: outside } : { value };
@@ -97,23 +98,23 @@ export class FieldSet {
       pointer,
       inputs: [input],
       read: () => readNumber(input.value, field),
-      write: value => [plain(value === undefined ? fallbackOf(field) : value)],
+      write: value => [plain(shownValue(value === undefined ? fallbackOf(field) : value, field.unit))],
     });
     input.addEventListener('keydown', event => {
-      const { value } = readQuantity(input.value, field.unit);
+      const { value } = readQuantity(typedText(input.value, field.unit), field.unit);
       if ((event.key !== 'ArrowUp' && event.key !== 'ArrowDown') || value === undefined) return;
       event.preventDefault();
       const whole = field.kind === 'integer' || field.kind === 'seed';
       const step = whole ? 1 : stepOf(value) * (event.shiftKey ? 10 : 1);
       const next = Number((value + (event.key === 'ArrowUp' ? step : -step)).toPrecision(10));
       if (numberFault(field, next)) return;
-      input.value = plain(next);
+      input.value = plain(shownValue(next, field.unit));
       entry.take(true);
     });
     const refresh = () => {
       const derived = valueAt(this.form.resolved, pointer);
       const open = field.derived === 'off' ? 'off' : 'auto';
-      const known = typeof derived === 'number' ? plain(Number(derived.toPrecision(6))) : open;
+      const known = typeof derived === 'number' ? plain(Number(shownValue(derived, field.unit).toPrecision(6))) : open;
       input.placeholder = field.nullable ? known : '';
       entry.refresh();
     };
@@ -133,8 +134,13 @@ export class FieldSet {
     if (field.kind === 'text') return this.#text(row, pointer, field, name, id);
     const { input, entry, refresh } = this.#number(pointer, field, id);
     const fault = this.#faultOf(field, input);
-    row.append(h('label', { for: id }, name), h('span.entry', null, input, h('span.unit', null, unitOf(field))), fault);
-    return this.#add({ pointer, name, element: row, input, fault, entry, refresh });
+    const unit = h('span.unit');
+    row.append(h('label', { for: id }, name), h('span.entry', null, input, unit), fault);
+    const both = () => {
+      unit.textContent = unitOf(field);
+      refresh();
+    };
+    return this.#add({ pointer, name, element: row, input, fault, entry, refresh: both });
   }
 
   /** @param {HTMLElement} row @param {string} pointer @param {Field} field @param {string} name @param {string} id */
@@ -211,10 +217,11 @@ export class FieldSet {
       read,
       write: value => {
         const values = value ?? fallbackOf(field);
-        return inputs.map((_, i) => (Array.isArray(values) ? plain(values[i]) : ''));
+        return inputs.map((_, i) => (Array.isArray(values) ? plain(shownValue(values[i], field.unit)) : ''));
       },
     });
     const fault = this.#faultOf(field, inputs[0]);
+    const unit = h('span.unit');
     row.classList.add('several');
     row.append(
       h('span.label', null, name),
@@ -222,15 +229,17 @@ export class FieldSet {
         'span.entry',
         null,
         parts ? names.map((part, i) => h('label.part', null, inputs[i], h('small', null, part))) : inputs,
-        h('span.unit', null, unitOf(field)),
+        unit,
       ),
       fault,
     );
     const refresh = () => {
       const derived = valueAt(this.form.resolved, pointer);
       inputs.forEach((input, i) => {
-        input.placeholder = Array.isArray(derived) ? plain(Number(derived[i].toPrecision(4))) : 'auto';
+        const shown = Array.isArray(derived) ? shownValue(derived[i], field.unit) : undefined;
+        input.placeholder = shown === undefined ? 'auto' : plain(Number(shown.toPrecision(4)));
       });
+      unit.textContent = unitOf(field);
       entry.refresh();
     };
     return this.#add({ pointer, name, element: row, input: inputs[0], fault, entry, refresh });
@@ -251,13 +260,10 @@ export class FieldSet {
     const { input, entry, refresh } = this.#number(pointer, field, id);
     const slider = this.#range(pointer, name);
     const fault = this.#faultOf(field, input);
-    row.append(
-      h('label', { for: id }, name),
-      h('span.entry', null, input, h('span.unit', null, unitOf(field))),
-      slider,
-      fault,
-    );
+    const unit = h('span.unit');
+    row.append(h('label', { for: id }, name), h('span.entry', null, input, unit), slider, fault);
     const both = () => {
+      unit.textContent = unitOf(field);
       refresh();
       const { low, high, step } = rangeOf();
       const value = this.store.get(pointer) ?? fallbackOf(field) ?? 0;

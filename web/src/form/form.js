@@ -3,6 +3,7 @@
 import { fill, h } from '../base/dom.js';
 import { labelOf, plain } from '../base/format.js';
 import { isNumeric, unitOf } from '../base/schema.js';
+import { shownValue } from '../base/units.js';
 import { FieldSet } from './fieldset.js';
 import { unfold } from './group.js';
 
@@ -132,14 +133,14 @@ export class Form {
 
   /** The help line while a field is pointed at. @param {HTMLElement} row @param {Field} field @param {string} name */
   explain(row, field, name) {
-    const unit = unitOf(field);
-    const range =
-      isNumeric(field) && typeof field.low === 'number' && typeof field.high === 'number'
-        ? `${plain(field.low)} … ${plain(field.high)}${unit ? ` ${unit}` : ''}`
-        : '';
+    const range = () => {
+      if (!isNumeric(field) || typeof field.low !== 'number' || typeof field.high !== 'number') return '';
+      const ends = [field.low, field.high].map(each => plain(shownValue(each, field.unit)));
+      return `${ends.join(' … ')} ${unitOf(field)}`.trim();
+    };
     const empty = field.nullable && field.derived ? `empty: ${field.derived}` : '';
     const show = () =>
-      fill(this.help, h('b', null, name), ` ${[field.help, range, empty].filter(Boolean).join(' · ')}`);
+      fill(this.help, h('b', null, name), ` ${[field.help, range(), empty].filter(Boolean).join(' · ')}`);
     row.addEventListener('focusin', show);
     row.addEventListener('pointerenter', show);
   }

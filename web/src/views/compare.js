@@ -6,7 +6,7 @@ import { choiceText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { unmodified } from '../base/store.js';
 import { Chart } from '../figures/chart.js';
-import { caseLong, counting, mainCase, sameCase } from '../figures/context.js';
+import { caseLong, counting, faceOf, mainCase, sameCase } from '../figures/context.js';
 import { switcher } from '../figures/frame.js';
 import { designColour, drawComparison } from './compare_table.js';
 
@@ -190,10 +190,10 @@ class CompareCurves {
     );
     put(
       this.lead,
-      modification.eta_mm,
+      faceOf(modification, end),
       curves(
         (_c, result) => result.modification.pinion[end]?.lead_um,
-        (_c, result) => result.modification.eta_mm,
+        (_c, result) => faceOf(result.modification, end),
       ),
       `${end} end`,
     );

@@ -2,6 +2,7 @@
 // The form of the Design view: what pair, what load, what flank; then whatever else the field tables have.
 import { h } from '../base/dom.js';
 import { labelOf } from '../base/format.js';
+import { inInches, useInches } from '../base/units.js';
 import { group, more } from '../form/group.js';
 import { Flank } from './flank.js';
 import { LoadCases } from './load_cases.js';
@@ -37,6 +38,7 @@ export class Parameters {
     this.element = h(
       'form.parameters',
       { 'aria-label': 'Design', onsubmit: (/** @type {Event} */ event) => event.preventDefault(), autocomplete: 'off' },
+      this.#units(),
       group('pair', 'Gear pair', true, this.#pair(), this.pairText),
       group('cases', 'Load cases', true, [this.cases.element]),
       group('modification', 'Modification', true, [this.flank.element]),
@@ -45,6 +47,23 @@ export class Parameters {
     );
     store.addEventListener('change', () => this.refresh());
     this.refresh();
+  }
+
+  /** Lengths of all fields, in and out; documents and figures keep mm. */
+  #units() {
+    const choice = h(
+      'select',
+      {
+        onchange: () => {
+          useInches(choice.value === 'inch');
+          this.form.refresh();
+        },
+      },
+      h('option', { value: 'mm' }, 'mm, µm'),
+      h('option', { value: 'inch' }, 'inch, mil'),
+    );
+    choice.value = inInches() ? 'inch' : 'mm';
+    return h('label.units', null, 'Lengths in ', choice);
   }
 
   #pair() {
