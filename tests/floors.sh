@@ -4,7 +4,7 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement format document library exchange report store study reproduction service http reference app"
+floors="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement format crew document library exchange report store study variants reproduction service http reference app"
 core="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement"
 count=0 failed=0
 
@@ -38,7 +38,7 @@ only() # LIBRARY PATTERN FOLDERS
 }
 only SuiteSparse 'cholmod|klu' numerics
 only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
-only jansson 'jansson' 'format|document|exchange|report|study|reproduction|http|reference|app'
+only jansson 'jansson' 'format|document|exchange|report|study|variants|reproduction|http|reference|app'
 wrong=$(grep -lE '\bjson_[a-z]' service/*.[ch])
 [ -z "$wrong" ]
 result $? "the service speaks structs and text, no JSON values:$wrong"

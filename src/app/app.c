@@ -41,8 +41,13 @@ static const struct eo_option *take_option(const struct eo_option *options, int 
       return NULL;
     if (option->flag)
       *option->flag = true;
-    else
-      *option->value = joined ? argv[*i] + length + 1 : argv[++*i];
+    else {
+      const char *value = joined ? argv[*i] + length + 1 : argv[++*i];
+      if (option->value)
+        *option->value = value;
+      else if (option->list->count++ < EO_OPTION_MOST)
+        option->list->value[option->list->count - 1] = value;
+    }
     return option;
   }
   return NULL;

@@ -41,6 +41,7 @@ extern const struct eo_command eo_command_restore;
 extern const struct eo_command eo_command_rig;
 extern const struct eo_command eo_command_serve;
 extern const struct eo_command eo_command_stage;
+extern const struct eo_command eo_command_study;
 extern const struct eo_command eo_command_sweep;
 extern const struct eo_command eo_command_tolerance;
 extern const struct eo_command eo_command_verify;
@@ -50,9 +51,16 @@ extern const char eo_program[];
 
 /* An option is a flag or takes a value ("--csv DIR" or "--csv=DIR"); --help is known to every command. */
 struct eo_option {
-  const char *name;   /* with its dashes; NULL ends the list */
-  bool *flag;         /* set to true, or */
-  const char **value; /* set to the argument */
+  const char *name;            /* with its dashes; NULL ends the list */
+  bool *flag;                  /* set to true, or */
+  const char **value;          /* set to the argument, or */
+  struct eo_option_list *list; /* each of its arguments is added */
+};
+
+enum { EO_OPTION_MOST = 64 };
+struct eo_option_list {
+  int count; /* beyond EO_OPTION_MOST they are counted alone */
+  const char *value[EO_OPTION_MOST];
 };
 
 /* Sorts options from operands; operand[most] is filled and *operands counted. Returns true to go on; false when the

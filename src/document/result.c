@@ -201,7 +201,7 @@ static const struct eo_outline_row objective_rows[] = {
 };
 static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives", objective_rows);
 
-static json_t *encode_objectives(const struct eo_result_source *source)
+json_t *eo_result_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
   struct eo_object o = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
@@ -323,7 +323,7 @@ json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_wa
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
   struct eo_object o = eo_object_open_as(&eo_result_outline);
   o.next = CASES_ROW + 1;
-  eo_object_put(&o, "objectives", encode_objectives(source));
+  eo_object_put(&o, "objectives", eo_result_objectives(source));
   eo_object_put(&o, "eigenfrequencies_Hz",
                 have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
   eo_object_put(&o, "damping_ratios",

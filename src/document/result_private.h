@@ -79,6 +79,7 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
 json_t *eo_result_modification(struct eo_result_source *source);
 /* null unless the analysis was asked for the rating. */
 json_t *eo_result_rating(const struct eo_result_source *source);
+json_t *eo_result_objectives(const struct eo_result_source *source);
 json_t *eo_result_tribology(const struct eo_result_source *source);
 /* null unless the design states single teeth and the analysis was asked for them. */
 json_t *eo_result_pitch(const struct eo_result_source *source);

@@ -24,6 +24,11 @@ void eo_threads_limit(void)
     set_levels(0);
 }
 
+const char *eo_threads_blas_kernel(void)
+{
+  return openblas_get_corename();
+}
+
 /* What one room may take: 32 to 128 MB of addresses, by the processor (OpenBLAS's BUFFER_SIZE), of which what is used
    becomes memory. */
 #define ROOM ((size_t)160 << 20)

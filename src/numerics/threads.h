@@ -11,6 +11,9 @@
    thread that uses numerics/sparse. */
 void eo_threads_limit(void);
 
+/* The kernels that the BLAS chose for this processor, "Haswell": two kinds may round differently. */
+const char *eo_threads_blas_kernel(void);
+
 /* Takes the rooms that BLAS works in, one for each of so many threads that call it at once, and gives them back to it:
    it keeps them, and never asks for memory again. OpenBLAS that does not get such a room asks for ever. Errors:
    EO_ERROR_MEMORY. */

@@ -6,12 +6,12 @@
 #include "store/jobs.h"
 #include "store/statement.h"
 
-/* The columns in the order eo_job_row_read() expects; design and result as SQL expressions. */
-#define EO_JOB_COLUMNS(design, result)                                                           \
+/* The columns in the order eo_job_row_read() expects; design, spec and result as SQL expressions. */
+#define EO_JOB_COLUMNS(design, spec, result)                                                     \
   "id, problem, study, space, " design                                                           \
   ", name, algorithm, fresh, import_upto, state, stopped, true_evaluations, individuals, best, " \
   "best_value, " result                                                                          \
-  ", created, updated, kind, pair, served, priority, stop, attempts, error, progress, started, finished"
+  ", created, updated, kind, pair, served, priority, stop, attempts, error, progress, started, finished, " spec
 
 #define EO_NOW "strftime('%Y-%m-%dT%H:%M:%fZ', 'now')"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 const char *const eo_store_job_states[] = {"queued", "preparing", "running", "done", "failed", "cancelled", NULL};
-const char *const eo_store_job_kinds[] = {"optimize", "prepare", NULL};
+const char *const eo_store_job_kinds[] = {"optimize", "prepare", "study", NULL};
 
 const char *eo_store_job_state_name(enum eo_job_state state)
 {
@@ -68,7 +68,8 @@ struct eo_stored_job eo_job_row_read(const struct eo_statement *s)
                                 .error = eo_column_text(s, 24),
                                 .progress = eo_column_text(s, 25),
                                 .started = eo_column_text(s, 26),
-                                .finished = eo_column_text(s, 27)};
+                                .finished = eo_column_text(s, 27),
+                                .spec = eo_column_text(s, 28)};
 }
 
 enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error)
@@ -77,9 +78,9 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
   if (!code)
     code =
         EO_STATEMENT_RUN(store, error,
-                         "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state,"
-                         " attempts, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")",
-                         "itttttnit", job->problem, job->study, job->space, job->design, job->name, job->algorithm,
+                         "INSERT INTO job (kind, spec, problem, study, space, design, name, algorithm, fresh, import_upto,"
+                         " state, attempts, started) VALUES (?, ?, nullif(?, 0), ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")",
+                         "ttitttttnit", eo_store_job_kinds[job->kind], job->spec, job->problem, job->study, job->space, job->design, job->name, job->algorithm,
                          (int)job->fresh, job->import_upto, eo_store_job_states[job->state]);
   job->id = sqlite3_last_insert_rowid(store->handle);
   return code;
@@ -117,6 +118,8 @@ static enum eo_code forget_path(struct eo_store *store, int64_t job, struct eo_e
   enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM candidate WHERE job = ?", "i", job);
   if (!code)
     code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job = ?", "i", job);
+  if (!code)
+    code = EO_STATEMENT_RUN(store, error, "DELETE FROM variant WHERE job = ?", "i", job);
   return code ? code
               : EO_STATEMENT_RUN(store, error,
                                  "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i",
@@ -145,7 +148,7 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
   if (code)
     return code;
   s = eo_statement_begin(store,
-                         "UPDATE job SET state = 'running', problem = ?, study = ?, space = ?, updated = " EO_NOW ","
+                         "UPDATE job SET state = 'running', problem = nullif(?, 0), study = ?, space = ?, updated = " EO_NOW ","
                          " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id "
                          "= ? RETURNING import_upto",
                          "itti", job->problem, job->study, job->space, job->id);
@@ -164,6 +167,13 @@ enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_
       " WHERE id = ?7",
       "ttnniri", eo_store_job_states[job->state], job->stopped ? job->stopped : "", job->true_evaluations,
       job->individuals, job->best, job->best_value, job->id);
+}
+
+enum eo_code eo_store_job_shall_stop(struct eo_store *store, int64_t job, bool *stop, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT stop FROM job WHERE id = ?", "i", job);
+  *stop = eo_statement_step(&s) && eo_column_integer(&s, 0) != 0;
+  return eo_statement_end(&s, error);
 }
 
 enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error)
@@ -214,7 +224,7 @@ enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store
                                struct eo_error *error)
 {
   struct eo_statement s = eo_statement_begin(
-      store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i",
+      store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i",
       problem);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Optimization jobs and the path each took: which evaluations it asked for, in its order, and what it predicted. Adding
+/* Jobs of optimizations and studies, and the path each took: which evaluations it asked for, in its order, and what it predicted. Adding
    needs a transaction (eo_store_begin()). */
 #ifndef EASEOFF_STORE_JOBS_H
 #define EASEOFF_STORE_JOBS_H
@@ -18,13 +18,14 @@ enum eo_job_state {
   EO_JOB_CANCELLED,
   EO_JOB_STATES
 };
-enum eo_job_kind { EO_JOB_OPTIMIZE, EO_JOB_PREPARE, EO_JOB_KINDS };
+enum eo_job_kind { EO_JOB_OPTIMIZE, EO_JOB_PREPARE, EO_JOB_STUDY, EO_JOB_KINDS };
 
 struct eo_stored_job {
   int64_t id, problem; /* problem: 0 before it begins, and of a preparation */
   const char *study;   /* hash of the design: equal studies take equal paths */
   const char *space;   /* hash of the variables and their bounds */
   const char *design;  /* JSON, every default resolved */
+  const char *spec;    /* JSON: the document of a study; "" of another kind */
   const char *name, *algorithm;
   bool fresh;          /* the algorithm knew no earlier rows */
   int64_t import_upto; /* the last evaluation that was there when it began */
@@ -48,7 +49,7 @@ struct eo_stored_job {
   const char *started, *finished; /* "" without */
 };
 
-/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare". find: -1 when it is none. */
+/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study". find: -1 when it is none. */
 const char *eo_store_job_state_name(enum eo_job_state state);
 const char *eo_store_job_kind_name(enum eo_job_kind kind);
 extern const char *const eo_store_job_states[], *const eo_store_job_kinds[]; /* by number; end with NULL */
@@ -71,6 +72,9 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
 
 /* State, stopped, counters and best. */
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error);
+
+/* Whether somebody asked for the job to end. */
+enum eo_code eo_store_job_shall_stop(struct eo_store *store, int64_t job, bool *stop, struct eo_error *error);
 
 /* Keeps the document of a job's result. */
 enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error);

@@ -55,9 +55,9 @@ static enum eo_code insert(struct eo_store *store, const struct eo_queue_entry *
 {
   enum eo_code code = EO_STATEMENT_RUN(
       store, error,
-      "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state, idempotency, request)"
-      " VALUES (?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)",
-      "tttttnntt", eo_store_job_kind_name(entry->kind), entry->design, entry->name, entry->algorithm, entry->pair,
+      "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state, idempotency, request)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)",
+      "ttttttnntt", eo_store_job_kind_name(entry->kind), entry->design, entry->spec, entry->name, entry->algorithm, entry->pair,
       (int)entry->fresh, entry->priority, entry->key, entry->request);
   *id = sqlite3_last_insert_rowid(store->handle);
   return code;
@@ -132,7 +132,7 @@ static enum eo_code count_unclean(struct eo_store *store, int64_t id, struct eo_
 {
   return EO_STATEMENT_RUN(store, error,
                           "UPDATE job SET unclean = CASE WHEN now > reached THEN 1 ELSE unclean + 1 END, reached = now"
-                          " FROM (SELECT count(*) AS now FROM candidate WHERE job = ?1)"
+                          " FROM (SELECT (SELECT count(*) FROM candidate WHERE job = ?1) + (SELECT count(*) FROM variant WHERE job = ?1) AS now)"
                           " WHERE id = ?1 AND stop = 0 AND state IN ('preparing', 'running')",
                           "i", id);
 }
@@ -277,8 +277,8 @@ static enum eo_code clone(struct eo_store *store, int64_t id, const int *priorit
   if (!code)
     code = EO_STATEMENT_RUN(
         store, error,
-        "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state)"
-        " SELECT kind, design, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE priority END, 'queued'"
+        "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state)"
+        " SELECT kind, design, spec, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE priority END, 'queued'"
         " FROM job WHERE id = ?1",
         "inn", id, priority != NULL, priority ? *priority : 0);
   *copy = sqlite3_last_insert_rowid(store->handle);
@@ -327,8 +327,8 @@ static enum eo_code find_surplus(struct eo_store *store, int keep, int64_t *id, 
 {
   struct eo_statement s = eo_statement_begin(
       store,
-      "SELECT min(id) FROM job WHERE kind = 'optimize' AND served = 1 AND state IN ('done', 'failed', 'cancelled')"
-      " AND id NOT IN (SELECT id FROM job WHERE kind = 'optimize' AND served = 1 AND state IN ('done', 'failed',"
+      "SELECT min(id) FROM job WHERE kind <> 'prepare' AND served = 1 AND state IN ('done', 'failed', 'cancelled')"
+      " AND id NOT IN (SELECT id FROM job WHERE kind <> 'prepare' AND served = 1 AND state IN ('done', 'failed',"
       " 'cancelled') ORDER BY id DESC LIMIT ?)",
       "n", keep);
   *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
@@ -364,7 +364,7 @@ enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_jo
                            enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_statement s =
-      eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE id = ?", "i", id);
+      eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE id = ?", "i", id);
   enum eo_code code = EO_OK;
   *outcome = EO_JOB_OUTCOME_MISSING;
   if (eo_statement_step(&s)) {
@@ -382,7 +382,7 @@ enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter 
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT " EO_JOB_COLUMNS(
-          "''", "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL "
+          "''", "''", "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL "
                                                                   "OR state = ?2)"
                                                                   " AND (?3 IS NULL OR kind = ?3) AND (?4 = 0 OR state "
                                                                   "IN ('queued', 'preparing', 'running')) ORDER BY id "

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "store/lock.h"
+#include "study/study_crew.h"
 
 static double wall(void)
 {
@@ -33,8 +34,7 @@ static double time_left(const struct study *s, double fraction, double now)
   return (now - s->first_computed) * (1 - fraction) / (fraction - s->fraction_before);
 }
 
-/* extra: evaluations of the batch in work that are known. Non-zero: stop. */
-static int report(struct study *s, int extra)
+int eo_study_tell_progress(struct study *s, int extra)
 {
   struct eo_study_report report = {.job = s->job.id, .unmodified = &s->result->unmodified, .best = &s->result->best};
   if (!s->plan->watch)
@@ -57,7 +57,7 @@ static int report_within(void *context, const char *what, double fraction)
 {
   struct study *s = context;
   (void)what;
-  return report(s, s->batch.count - s->missing_count + (int)(fraction * s->missing_count + 0.5));
+  return eo_study_tell_progress(s, s->batch.count - s->missing_count + (int)(fraction * s->missing_count + 0.5));
 }
 
 static enum eo_code work(void *context, int thread, int item, struct eo_error *error)
@@ -103,7 +103,8 @@ static enum eo_code compute(struct study *s, struct eo_error *error)
     s->fraction_before = budget_fraction(s, s->batch.count - s->missing_count);
   }
   double start = wall();
-  enum eo_code code = eo_parallel_run(&parallel, s->missing_count, error);
+  enum eo_code code =
+      s->plan->crew ? eo_study_compute_on_crew(s, error) : eo_parallel_run(&parallel, s->missing_count, error);
   s->result->model_seconds += wall() - start;
   return code;
 }
@@ -244,7 +245,7 @@ static enum eo_code run_batch(struct study *s, bool *more, struct eo_error *erro
   start = wall();
   code = tell(s, error);
   s->result->optimizer_seconds += wall() - start;
-  if (!code && report(s, 0))
+  if (!code && eo_study_tell_progress(s, 0))
     code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.");
   return code;
 }
@@ -349,7 +350,7 @@ enum eo_code eo_study_run(const struct eo_study_plan *plan, struct eo_study_resu
   enum eo_code code = eo_study_begin(s, error);
   if (!code)
     code = note_best(s, error);
-  if (!code && report(s, 0))
+  if (!code && eo_study_tell_progress(s, 0))
     code = EO_ERROR_CANCELLED;
   while (!code && more)
     code = run_batch(s, &more, error);

@@ -31,6 +31,7 @@ struct study {
   int missing_count, missing_capacity;
   struct worker worker[EO_MAX_THREADS];
   struct eo_batch batch;
+  int computed_of_batch; /* by a crew, of the missing ones */
   double started, first_computed; /* s; first_computed: 0 until something was */
   double fraction_before;         /* of the work that was done then */
 };
@@ -57,5 +58,8 @@ struct eo_outcome eo_study_outcome(const struct study *s, const struct eo_row_da
 
 /* Everything before the first ask: hashes, job, unmodified pair, rows of other jobs. */
 enum eo_code eo_study_begin(struct study *s, struct eo_error *error);
+
+/* Reports; extra: evaluations of the batch in work that are known. Non-zero: stop. */
+int eo_study_tell_progress(struct study *s, int extra);
 
 #endif

@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/crew_start.h"
+#include "app/data.h"
+#include "app/number.h"
+#include "app/watch.h"
+#include "format/json.h"
+#include "variants/variant_cost.h"
+#include "variants/variant_study.h"
+#include "variants/variant_table.h"
+
+enum { SHOWN = 40 }; /* rows at a terminal unless --limit says otherwise */
+
+struct request {
+  const char *file, *data, *sampling, *samples, *seed, *columns, *table, *sort, *filter, *limit, *csv, *job;
+  const char *threads, *cache; /* read by eo_app_crew_begin() */
+  bool json, dry_run, restart, descending, list_columns;
+  struct eo_option_list vary;
+  json_t *document; /* owned */
+  struct eo_variant_plan plan;
+  struct eo_app_crew *crew;
+  struct eo_store *store;
+  struct eo_watch watch;
+};
+
+/* From options to the document: */
+
+static bool is_number(const char *text, size_t length)
+{
+  char copy[64], *end;
+  if (!length || length >= sizeof copy)
+    return false;
+  snprintf(copy, sizeof copy, "%.*s", (int)length, text);
+  double value = strtod(copy, &end);
+  return !*end && isfinite(value) && !isspace((unsigned char)*copy);
+}
+
+/* "A:B:N" or "A:B"; false: it is no range. */
+static bool add_range(json_t *axis, const char *text)
+{
+  static const char *const key[] = {"from", "to", "points"};
+  int part = 0;
+  for (const char *at = text; *at && part < 3; part++) {
+    size_t length = strcspn(at, ":");
+    if (!is_number(at, length))
+      return false;
+    double value = strtod(at, NULL);
+    json_object_set_new(axis, key[part], part == 2 ? json_integer((json_int_t)value) : json_real(value));
+    at += length + (at[length] == ':');
+    if (part == 2 && *at)
+      return false;
+  }
+  return part >= 2;
+}
+
+/* Numbers or words with commas between them. */
+static void add_list(json_t *axis, const char *text)
+{
+  json_t *values = json_array();
+  bool numbers = true;
+  for (const char *at = text; *at;) {
+    size_t length = strcspn(at, ",");
+    numbers = numbers && is_number(at, length);
+    json_array_append_new(values, json_real(strtod(at, NULL)));
+    at += length + (at[length] == ',');
+  }
+  if (numbers && json_array_size(values))
+    json_object_set(axis, "values", values);
+  else
+    json_object_set_new(axis, "words", json_string(text));
+  json_decref(values);
+}
+
+static enum eo_code add_axis(json_t *list, const char *option, struct eo_error *error)
+{
+  size_t length = strcspn(option, "=");
+  json_t *axis = json_object();
+  if (!option[length] || !length || !option[length + 1]) {
+    json_decref(axis);
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "--vary %.60s is not KEY=VALUE,VALUE,... or KEY=FIRST:LAST:POINTS.", option);
+  }
+  json_object_set_new(axis, "key", json_stringn(option, length));
+  if (!strchr(option + length, ':') || !add_range(axis, option + length + 1)) {
+    json_object_del(axis, "from");
+    json_object_del(axis, "to");
+    add_list(axis, option + length + 1);
+  }
+  return json_array_append_new(list, axis) ? eo_error_memory(error) : EO_OK;
+}
+
+static enum eo_code add_whole(json_t *document, const char *key, const char *option, const char *text,
+                              struct eo_error *error)
+{
+  int value;
+  if (!text)
+    return EO_OK;
+  if (!eo_app_read_whole(text, option, 0, EO_STUDY_MOST_ROWS, &value, error))
+    return error->code;
+  return json_object_set_new(document, key, json_integer(value)) ? eo_error_memory(error) : EO_OK;
+}
+
+static enum eo_code add_table(struct request *q, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  if (!q->table)
+    return EO_OK;
+  EO_TRY(eo_text_read(&text, q->table, EO_STUDY_BYTES, error));
+  json_t *value = json_stringn(text.data ? text.data : "", text.size);
+  eo_text_done(&text);
+  return value && json_object_set_new(q->document, "table", value) == 0
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "", "%.100s is no text in UTF-8.", q->table);
+}
+
+/* A study's document as it is, a design inside one; then what the options say. */
+static enum eo_code compose(struct request *q, struct eo_error *error)
+{
+  json_t *document = eo_json_load(q->file, EO_STUDY_BYTES, error), *vary = NULL;
+  if (!document)
+    return error->code;
+  if (!json_object_get(document, "design")) {
+    json_t *design = document;
+    document = json_pack("{s:o}", "design", design);
+  }
+  q->document = document;
+  if (q->vary.count > EO_OPTION_MOST)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There are more than %d options --vary.", EO_OPTION_MOST);
+  if (q->vary.count && (vary = json_array()))
+    json_object_set_new(document, "vary", vary);
+  for (int i = 0; i < q->vary.count; i++)
+    EO_TRY(add_axis(vary, q->vary.value[i], error));
+  if (q->sampling)
+    json_object_set_new(document, "sampling", json_string(q->sampling));
+  if (q->columns)
+    json_object_set_new(document, "columns", json_string(q->columns));
+  EO_TRY(add_whole(document, "samples", "--samples", q->samples, error));
+  EO_TRY(add_whole(document, "seed", "--seed", q->seed, error));
+  return add_table(q, error);
+}
+
+static bool read_plan(struct request *q, int *status)
+{
+  struct eo_error error;
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  *status = EO_EXIT_DONE;
+  if (!faults || compose(q, &error))
+    *status = faults ? eo_app_fail(NULL, &error) : EO_EXIT_FAILED;
+  else if (!eo_variant_plan_init(&q->plan, q->document, faults))
+    *status = eo_app_fail_all(q->file, faults);
+  free(faults);
+  return *status == EO_EXIT_DONE;
+}
+
+/* What is asked for beside a study: */
+
+static int list_columns(const struct request *q)
+{
+  struct eo_scalars scalars;
+  struct eo_error error;
+  struct eo_text text = {0};
+  if (eo_scalars_init(&scalars, q->columns ? q->columns : "*", q->plan.design->load_cases,
+                      q->plan.design->gear_pair.ends, &error))
+    return eo_app_fail(NULL, &error);
+  for (int i = 0; i < scalars.count; i++)
+    eo_text_print(&text, "%-60s %-8s %s\n", scalars.scalar[i].name, scalars.scalar[i].unit, scalars.scalar[i].help);
+  eo_scalars_done(&scalars);
+  return eo_app_print(&text);
+}
+
+static void print_time(struct eo_text *text, double seconds)
+{
+  if (seconds < 120)
+    eo_text_print(text, "%.3g s", seconds);
+  else if (seconds < 7200)
+    eo_text_print(text, "%.3g min", seconds / 60);
+  else
+    eo_text_print(text, "%.3g h", seconds / 3600);
+}
+
+static int tell_cost(struct request *q, struct eo_store *store)
+{
+  struct eo_variant_cost cost;
+  struct eo_error error;
+  struct eo_text text = {0};
+  int strength = eo_crew_strength(&q->crew->crew);
+  if (eo_variant_cost_find(&q->plan, store, &cost, &error))
+    return eo_app_fail(NULL, &error);
+  eo_text_print(&text, "%d variants of %d gear pair%s\n", cost.rows, cost.pairs, cost.pairs == 1 ? "" : "s");
+  if (cost.refused_pairs)
+    eo_text_print(&text, "%d of the pairs cannot be as their first variant states them\n", cost.refused_pairs);
+  eo_text_print(&text, "preparation of pairs that are not kept: at most ");
+  print_time(&text, cost.preparation);
+  eo_text_print(&text, " of a processor, %.0f MB at its most crowded moment\n", cost.memory / 1e6);
+  if (isnan(cost.evaluation))
+    eo_text_add(&text, "evaluation: not known, the history has none yet; some 5 to 50 ms of a processor each\n");
+  else {
+    eo_text_print(&text, "evaluation: %.3g ms of a processor each (mean of earlier ones), ", 1e3 * cost.evaluation);
+    print_time(&text, cost.evaluation * cost.rows / strength);
+    eo_text_print(&text, " for all on %d at a time\n", strength);
+  }
+  eo_text_print(&text, "rows in the data folder: %.3g MB\n", cost.kept / 1e6);
+  return eo_app_print(&text);
+}
+
+/* The run: */
+
+static int show_progress(void *context, const struct eo_variant_report *report)
+{
+  struct request *q = context;
+  char line[200], left[32] = "--:--";
+  if (eo_watch_due(&q->watch)) {
+    if (isfinite(report->seconds_left))
+      snprintf(left, sizeof left, "%ld:%02ld:%02ld", lround(report->seconds_left) / 3600,
+               lround(report->seconds_left) / 60 % 60, lround(report->seconds_left) % 60);
+    snprintf(line, sizeof line, "%3.0f %%, %s left, %d of %d variants, known %d, refused %d, not converged %d",
+             100 * report->fraction, left, report->done, report->rows, report->reused, report->refused,
+             report->not_converged);
+    eo_watch_show(&q->watch, line);
+  }
+  return q->watch.stopped;
+}
+
+static void summarise(const struct eo_variant_result *r, struct eo_text *text)
+{
+  eo_text_print(text,
+                "Study %lld%s: %d of %d variants, %d known before, %d computed now, %d refused, %d not converged%s\n",
+                (long long)r->job, r->resumed ? " (taken up)" : "", r->done, r->rows, r->reused, r->computed, r->refused,
+                r->not_converged, r->cancelled ? "; stopped" : "");
+}
+
+static enum eo_code write_table(struct request *q, const struct eo_variant_table *table,
+                                const struct eo_variant_query *query, struct eo_text *text, struct eo_error *error)
+{
+  json_t *document;
+  struct eo_text csv = {0};
+  if (q->csv) {
+    enum eo_code code = eo_variant_table_csv(table, q->store, strcmp(q->csv, "-") == 0 ? text : &csv, error);
+    if (!code && csv.size)
+      code = eo_text_save(&csv, q->csv, error);
+    eo_text_done(&csv);
+    return code;
+  }
+  if (!q->json)
+    return eo_variant_table_print(table, q->store, text, error);
+  EO_TRY(eo_variant_table_encode(table, q->store, query, &document, error));
+  eo_json_write(text, document, EO_JSON_PRETTY);
+  json_decref(document);
+  return EO_OK;
+}
+
+static int show(struct request *q, int64_t job, const struct eo_variant_result *result)
+{
+  struct eo_variant_table table;
+  struct eo_error error;
+  struct eo_text text = {0};
+  int limit = q->json || q->csv ? -1 : SHOWN;
+  struct eo_variant_query query = {.filter = q->filter, .sort = q->sort, .descending = q->descending};
+  if (q->limit && !eo_app_read_whole(q->limit, "--limit", 1, EO_STUDY_MOST_ROWS, &limit, &error))
+    return eo_app_fail(NULL, &error);
+  query.most = limit;
+  bool people = !q->json && (!q->csv || strcmp(q->csv, "-") != 0);
+  enum eo_code code = eo_variant_table_init(&table, q->store, job, &query, &error);
+  if (!code && result && people)
+    summarise(result, &text);
+  if (!code)
+    code = write_table(q, &table, &query, &text, &error);
+  if (!code && people && !q->csv && table.count < table.fits)
+    eo_text_print(&text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
+  eo_variant_table_done(&table);
+  if (!code)
+    return eo_app_print(&text);
+  eo_text_done(&text);
+  return eo_app_fail(NULL, &error);
+}
+
+static int run_study(struct request *q)
+{
+  struct eo_variant_result result;
+  struct eo_error error;
+  json_t *kept = eo_variant_plan_encode(q->document, &q->plan);
+  const struct eo_variant_run run = {.plan = &q->plan,
+                                     .document = kept,
+                                     .store = q->store,
+                                     .crew = &q->crew->crew,
+                                     .restart = q->restart,
+                                     .watch = show_progress,
+                                     .context = q};
+  eo_watch_start(&q->watch);
+  enum eo_code code = kept ? eo_variant_study_run(&run, &result, &error) : eo_error_memory(&error);
+  eo_watch_clear(&q->watch);
+  eo_watch_end(&q->watch);
+  json_decref(kept);
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : show(q, result.job, &result);
+}
+
+static int run_request(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text directory = {0};
+  int status;
+  if (!q->job && !read_plan(q, &status))
+    return status;
+  if (!q->job && q->list_columns)
+    return list_columns(q);
+  enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
+  if (!code)
+    code = eo_store_open(&q->store, directory.data, q->job || q->dry_run ? EO_STORE_READ : EO_STORE_WRITE, &error);
+  int job = 0;
+  if (code && q->dry_run)
+    status = tell_cost(q, NULL); /* there is no history yet */
+  else if (code || (q->job && !eo_app_read_whole(q->job, "--job", 1, INT32_MAX, &job, &error)))
+    status = eo_app_fail(NULL, &error);
+  else
+    status = q->dry_run ? tell_cost(q, q->store) : job ? show(q, job, NULL) : run_study(q);
+  eo_store_close(q->store);
+  eo_text_done(&directory);
+  return status;
+}
+
+static bool check_operands(const struct eo_command *command, const struct request *q, int operands)
+{
+  if (operands == !q->job)
+    return true;
+  fprintf(stderr, "easeoff study: %s; usage: easeoff study %s\n",
+          operands ? "--job names a study, no design is needed" : "an argument is missing", command->usage);
+  return false;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *q = calloc(1, sizeof *q);
+  struct eo_app_crew crew;
+  int operands, status = EO_EXIT_FAILED;
+  if (!q || !eo_app_crew_begin(&crew, argc, argv, &status)) {
+    free(q);
+    return status;
+  }
+  const struct eo_option options[] = {{.name = "--vary", .list = &q->vary},
+                                      {.name = "--table", .value = &q->table},
+                                      {.name = "--sampling", .value = &q->sampling},
+                                      {.name = "--samples", .value = &q->samples},
+                                      {.name = "--seed", .value = &q->seed},
+                                      {.name = "--columns", .value = &q->columns},
+                                      {.name = "--list-columns", .flag = &q->list_columns},
+                                      {.name = "--sort", .value = &q->sort},
+                                      {.name = "--descending", .flag = &q->descending},
+                                      {.name = "--filter", .value = &q->filter},
+                                      {.name = "--limit", .value = &q->limit},
+                                      {.name = "--csv", .value = &q->csv},
+                                      {.name = "--json", .flag = &q->json},
+                                      {.name = "--job", .value = &q->job},
+                                      {.name = "--dry-run", .flag = &q->dry_run},
+                                      {.name = "--restart", .flag = &q->restart},
+                                      {.name = "--threads", .value = &q->threads},
+                                      {.name = "--data", .value = &q->data},
+                                      {.name = "--cache", .value = &q->cache},
+                                      {.name = NULL}};
+  q->crew = &crew;
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &q->file, &operands, &status))
+    status = check_operands(command, q, operands) ? run_request(q) : EO_EXIT_INPUT;
+  eo_variant_plan_done(&q->plan);
+  json_decref(q->document);
+  free(q);
+  eo_app_crew_end(&crew);
+  return status;
+}
+
+const struct eo_command eo_command_study = {
+    "study",
+    "STUDY.json|DESIGN.json [--vary KEY=VALUES]... [--table FILE.csv] [--sampling NAME] [--samples N] [--seed N] "
+    "[--columns LIST] [--list-columns] [--filter LIST] [--sort NAME] [--descending] [--limit N] [--csv FILE] [--json] "
+    "[--dry-run] [--restart] [--threads N] [--data DIR] [--cache DIR] | --job N",
+    "any numbers of a design over lists, ranges or samples: a table",
+    "  --vary KEY=A,B,C     each of these values (or words); KEY=A:B:N: N values from A to B; KEY=A:B: samples between "
+    "them\n"
+    "                       KEY: the path in the design, load_cases.1.torque_Nm; * for all load cases, both ends\n"
+    "                       (modification.pinion.*.tip_relief_um); KEY+KEY: the same value; KEY [unit]: values in that "
+    "unit\n"
+    "  --table FILE.csv     a heading of keys, a row for each variant, in place of --vary\n"
+    "  --sampling NAME      factorial (every value with every other one), latin or sobol with --samples N and --seed N\n"
+    "  --columns LIST       numbers of the result to keep, by their path, * for anything; --list-columns lists them\n"
+    "  --filter LIST        rows to show: objectives.J<0.4,outcome=converged; --sort NAME, --descending, --limit N\n"
+    "  --csv FILE           the table as comma-separated values (-: standard output); --json: as the server gives it\n"
+    "  --dry-run            says how many variants and gear pairs, how much memory and time\n"
+    "  --restart            a new study even where the same one is there; its rows are used again\n"
+    "  --job N              shows a study that is there\n\n"
+    "Every row is kept as it comes: the same study once more goes on where it was cut short, or shows its table again. "
+    "A design that\n"
+    "cannot be is a row with its reason. Searches of the same pair use rows in which only the modification "
+    "varies.\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    run};

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rank that works for rank 0. */
+#include <string.h>
+
+#include "crew/message.h"
+
+struct serving {
+  const struct eo_crew *crew;
+  const struct eo_crew_trade *const *trades;
+  struct eo_hands *hands; /* of the order that is being worked on; NULL: none */
+  bool home;
+};
+
+/* What does not go well here is said to rank 0, which ends the run. */
+static enum eo_code complain(struct serving *s, const struct eo_error *why, struct eo_error *error)
+{
+  const struct eo_crew_parcel parcel = {.item = -1, .error = *why};
+  return eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
+}
+
+static enum eo_code take_order(struct serving *s, const struct eo_text *text, struct eo_error *error)
+{
+  struct eo_error why;
+  const char *name = text->data ? text->data : "";
+  size_t length = strlen(name) + 1;
+  for (int i = 0; s->trades[i]; i++) {
+    if (strcmp(s->trades[i]->name, name) != 0)
+      continue;
+    if (!eo_hands_new(&s->hands, s->trades[i], text->data + length, text->size - length, &s->crew->place, &why))
+      return EO_OK;
+    return complain(s, &why, error);
+  }
+  eo_error_set(&why, EO_ERROR_INPUT, "", "Rank %d does not know the work \"%.40s\".", s->crew->rank, name);
+  return complain(s, &why, error);
+}
+
+static enum eo_code take_item(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+{
+  struct eo_crew_parcel parcel;
+  enum eo_code code = eo_crew_open_parcel(letter, &parcel) ? EO_OK : eo_error_memory(error);
+  if (!code && !s->hands) { /* rank 0 has heard why, and waits for its items */
+    eo_error_set(&parcel.error, EO_ERROR_CANCELLED, "", "The work was cancelled.");
+    code = eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
+  } else if (!code && !eo_hands_give(s->hands, &parcel))
+    code = eo_error_memory(error);
+  eo_text_done(&parcel.text);
+  return code;
+}
+
+static void close_order(struct serving *s)
+{
+  eo_hands_free(s->hands);
+  s->hands = NULL;
+}
+
+static enum eo_code take_letter(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+{
+  switch (letter->tag) {
+  case EO_CREW_ORDER:
+    return take_order(s, &letter->text, error);
+  case EO_CREW_ITEM:
+    return take_item(s, letter, error);
+  case EO_CREW_STOP:
+    if (s->hands)
+      eo_hands_stop(s->hands);
+    return EO_OK;
+  case EO_CREW_CLOSE:
+    close_order(s);
+    return EO_OK;
+  default:
+    s->home = true;
+    return EO_OK;
+  }
+}
+
+static enum eo_code answer(struct serving *s, bool *busy, struct eo_error *error)
+{
+  struct eo_crew_parcel parcel;
+  enum eo_code code = EO_OK;
+  while (!code && s->hands && eo_hands_collect(s->hands, 0, &parcel)) {
+    code = eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
+    eo_text_done(&parcel.text);
+    *busy = true;
+  }
+  return code;
+}
+
+enum eo_code eo_crew_serve(const struct eo_crew *crew, const struct eo_crew_trade *const *trades,
+                           struct eo_error *error)
+{
+  struct serving s = {.crew = crew, .trades = trades};
+  enum eo_code code = EO_OK;
+  for (int idle = 0; !code && !s.home;) {
+    struct eo_crew_letter letter;
+    bool busy = false;
+    code = eo_crew_receive(crew, &busy, &letter, error);
+    if (!code && busy)
+      code = take_letter(&s, &letter, error);
+    eo_text_done(&letter.text);
+    if (!code)
+      code = answer(&s, &busy, error);
+    idle = busy ? 0 : idle + 1;
+    if (!code && !busy)
+      eo_crew_rest(idle);
+  }
+  close_order(&s);
+  return code;
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "study/study_crew.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "evaluation/pair.h"
+
+/* A process at work: the study's own row code on a study that has nothing but what that needs. */
+struct shop {
+  struct eo_design design;
+  struct eo_pair *pair; /* owned */
+  struct eo_study_plan plan;
+  struct eo_study_result result;
+  struct study study;
+};
+
+/* What stands in front of an answer; its reason is in it, the raw values follow. */
+struct head {
+  int32_t outcome;
+  double cost;
+  char reason[EO_REASON_LENGTH];
+};
+
+static int look_for_stop(void *context, const char *what, double fraction)
+{
+  const struct eo_crew_bench *bench = context;
+  (void)what;
+  (void)fraction;
+  return atomic_load(bench->stopped);
+}
+
+static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
+{
+  struct shop *shop = calloc(1, sizeof *shop);
+  struct eo_geometry geometry;
+  const struct eo_progress progress = {look_for_stop, bench};
+  const struct eo_pair_options options = {.cache_directory = bench->place->cache};
+  if (!shop)
+    return eo_error_memory(error);
+  bench->state = shop;
+  EO_TRY(eo_design_read(bench->order, bench->size, &shop->design, &geometry, NULL, error));
+  EO_TRY(eo_pair_new(&shop->pair, &shop->design, &options, &progress, error));
+  shop->plan.design = &shop->design;
+  shop->plan.pair = shop->pair;
+  shop->result.scenarios = eo_evaluator_scenarios(&shop->design);
+  shop->result.cases = shop->design.load_cases;
+  shop->study.plan = &shop->plan;
+  shop->study.result = &shop->result;
+  return EO_OK;
+}
+
+static void close(struct eo_crew_bench *bench)
+{
+  struct shop *shop = bench->state;
+  if (!shop)
+    return;
+  for (int i = 0; i < EO_MAX_THREADS; i++) {
+    eo_evaluator_free(shop->study.worker[i].evaluator);
+    free(shop->study.worker[i].design);
+  }
+  eo_pair_free(shop->pair);
+  free(shop);
+  bench->state = NULL;
+}
+
+static enum eo_code work(struct eo_crew_bench *bench, int thread, const char *item, size_t size, struct eo_text *answer,
+                         struct eo_error *error)
+{
+  struct shop *shop = bench->state;
+  size_t values = (size_t)(shop->result.scenarios * shop->result.cases);
+  struct eo_row_data row = {0};
+  struct head head;
+  (void)size;
+  EO_TRY(eo_modification_read(item, &row.point.modification, error));
+  row.point.raw = calloc(values, sizeof *row.point.raw);
+  enum eo_code code = row.point.raw ? eo_study_compute_row(&shop->study, &shop->study.worker[thread], &row, error)
+                                    : eo_error_memory(error);
+  memset(&head, 0, sizeof head);
+  head.outcome = (int32_t)row.outcome;
+  head.cost = row.cost;
+  memcpy(head.reason, row.reason, sizeof head.reason);
+  eo_text_add_bytes(answer, &head, sizeof head);
+  if (row.point.raw)
+    eo_text_add_bytes(answer, row.point.raw, sizeof *row.point.raw * values);
+  free(row.point.raw);
+  return code;
+}
+
+const struct eo_crew_trade eo_study_trade = {"search", open, work, close};
+
+/* The leader's side: */
+
+static enum eo_code write_item(void *context, int item, struct eo_text *text, struct eo_error *error)
+{
+  const struct study *s = context;
+  (void)error;
+  eo_text_add(text, eo_rows_at(&s->row, s->missing[item])->text.data);
+  return EO_OK;
+}
+
+static enum eo_code take_answer(void *context, int item, const char *answer, size_t size, struct eo_error *error)
+{
+  struct study *s = context;
+  struct eo_row_data *row = eo_rows_at(&s->row, s->missing[item]);
+  struct head head;
+  size_t raw = sizeof *row->point.raw * (size_t)s->row.values;
+  if (size != sizeof head + raw)
+    return eo_error_set(error, EO_ERROR_FILE, "", "A rank sent an answer of the wrong length.");
+  memcpy(&head, answer, sizeof head);
+  memcpy(row->point.raw, answer + sizeof head, raw);
+  memcpy(row->reason, head.reason, sizeof row->reason);
+  row->outcome = (enum eo_evaluation_outcome)head.outcome;
+  row->cost = head.cost;
+  row->computed = true;
+  s->computed_of_batch = item + 1;
+  return EO_OK;
+}
+
+static int watch(void *context)
+{
+  struct study *s = context;
+  return eo_study_tell_progress(s, s->batch.count - s->missing_count + s->computed_of_batch);
+}
+
+enum eo_code eo_study_compute_on_crew(struct study *s, struct eo_error *error)
+{
+  const struct eo_crew_task task = {.trade = &eo_study_trade,
+                                    .order = s->design.data,
+                                    .size = s->design.size,
+                                    .items = s->missing_count,
+                                    .write = write_item,
+                                    .take = take_answer,
+                                    .watch = watch,
+                                    .context = s};
+  s->computed_of_batch = 0;
+  return eo_crew_run(s->plan->crew, &task, error);
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "variants/variant_cost.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "design/resolution.h"
+#include "flexibility/preparation_cost.h"
+#include "store/variant_rows.h"
+#include "variants/variant_study.h"
+
+/* Bytes of a row beside its numbers, and of an index (measured: tests/bench/bench-crew.c). */
+static const double ROW_BYTES = 560;
+
+static enum eo_code add_pair(const struct eo_variant_plan *plan, int variant, struct eo_variant_cost *cost,
+                             struct eo_error *error)
+{
+  struct eo_design *design = malloc(sizeof *design);
+  struct eo_geometry geometry;
+  struct eo_preparation_cost pair;
+  json_t *values = eo_variant_values(plan, variant);
+  enum eo_code code = design && values ? EO_OK : eo_error_memory(error);
+  if (!code)
+    code = eo_variant_design(plan->base, plan->axis, plan->axes, values, design, &geometry, error);
+  if (!code) {
+    struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design->resolution);
+    code = eo_preparation_cost_find(&geometry, &design->gear_pair, &settings, &pair, error);
+  }
+  if (!code) {
+    cost->memory = fmax(cost->memory, pair.memory);
+    cost->preparation += pair.seconds;
+  } else if (code == EO_ERROR_INPUT) {
+    cost->refused_pairs++;
+    code = EO_OK;
+  }
+  json_decref(values);
+  free(design);
+  return code;
+}
+
+/* The values that a pair depends on are other ones than those of the variant before. */
+static bool is_another_pair(const struct eo_variant_plan *plan, int before, int variant)
+{
+  json_t *one = eo_variant_values(plan, before), *other = eo_variant_values(plan, variant);
+  bool differs = false;
+  for (int i = 0; i < plan->axes; i++)
+    if (plan->axis[i].of_pair && !json_equal(json_array_get(one, (size_t)i), json_array_get(other, (size_t)i)))
+      differs = true;
+  json_decref(one);
+  json_decref(other);
+  return differs;
+}
+
+enum eo_code eo_variant_cost_find(const struct eo_variant_plan *plan, struct eo_store *store,
+                                  struct eo_variant_cost *cost, struct eo_error *error)
+{
+  struct eo_scalars scalars;
+  int *order = malloc(sizeof *order * ((size_t)plan->rows + 1));
+  *cost = (struct eo_variant_cost){.rows = plan->rows, .evaluation = NAN};
+  if (!order)
+    return eo_error_memory(error);
+  enum eo_code code = eo_variant_sort(plan, order, &cost->pairs, error);
+  for (int i = 0; i < plan->rows && !code; i++)
+    if (i == 0 || is_another_pair(plan, order[i - 1], order[i]))
+      code = add_pair(plan, order[i], cost, error);
+  free(order);
+  if (!code)
+    code = eo_variant_scalars(plan, &scalars, error);
+  if (code)
+    return code;
+  cost->kept = (ROW_BYTES + 8. * scalars.count) * plan->rows;
+  if (store)
+    code = eo_store_mean_cost(store, &cost->evaluation, error);
+  eo_scalars_done(&scalars);
+  return code;
+}

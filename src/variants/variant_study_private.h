@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A running study of variants and its parts; see variant_study.h. */
+#ifndef EASEOFF_VARIANTS_VARIANT_STUDY_PRIVATE_H
+#define EASEOFF_VARIANTS_VARIANT_STUDY_PRIVATE_H
+
+#include "store/jobs.h"
+#include "store/variant_rows.h"
+#include "variants/variant_study.h"
+
+struct variant_study {
+  const struct eo_variant_run *run;
+  struct eo_variant_result *result;
+  struct eo_stored_job job;
+  struct eo_scalars scalars;
+  int64_t columns;
+  int *missing; /* [rows] variants that have no row yet, in the order of evaluation; owned */
+  int missing_count;
+  double *number; /* [scalars.count]; owned */
+  double started, computing, committed; /* s of the clock */
+  bool open;                            /* a transaction is */
+  int unsaved;                          /* rows in it */
+  /* The history of searches, where the study shares it: */
+  bool shared;
+  int64_t problem;
+  struct eo_objective_case *raw, *unmodified; /* [cases]; owned */
+};
+
+double eo_variant_clock(void); /* s */
+
+/* Columns, job, which variants have no row yet. */
+enum eo_code eo_variant_study_begin(struct variant_study *s, struct eo_error *error);
+
+/* Gives what is known its place, and leaves the rest in s->missing. */
+enum eo_code eo_variant_look_up(struct variant_study *s, struct eo_error *error);
+
+/* The problem of the history, when the study shares it. */
+enum eo_code eo_variant_share_history(struct variant_study *s, struct eo_error *error);
+
+/* A row for a variant, in the transaction that is open. */
+enum eo_code eo_variant_keep(struct variant_study *s, int variant, struct eo_stored_variant *row, bool reused,
+                             struct eo_error *error);
+
+/* Opens a transaction when none is; commits when it has grown enough, or `now`. */
+enum eo_code eo_variant_open(struct variant_study *s, struct eo_error *error);
+enum eo_code eo_variant_commit(struct variant_study *s, bool now, struct eo_error *error);
+
+/* Non-zero: stop. */
+int eo_variant_report(struct variant_study *s, const char *what);
+
+#endif
