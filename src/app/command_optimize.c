@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/crew_start.h"
 #include "app/data.h"
 #include "app/number.h"
 #include "app/watch.h"
@@ -13,7 +14,8 @@
 #include "study/study.h"
 
 struct request {
-  const char *file, *data, *algorithm, *budget, *threads;
+  const char *file, *data, *algorithm, *budget, *threads, *cache; /* cache: read by eo_app_crew_begin() */
+  struct eo_app_crew *crew;
   bool json, fresh, restart;
   int thread_count;
   struct eo_design design;
@@ -74,12 +76,8 @@ static bool apply_options(struct request *q, struct eo_error *error)
 static enum eo_code prepare(struct request *q, const struct eo_progress *progress, struct eo_pair **pair,
                             struct eo_error *error)
 {
-  struct eo_text directory = {0};
-  bool keep = eo_app_cache_directory(q->data, &directory);
-  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
-  enum eo_code code = eo_pair_new(pair, &q->design, &options, progress, error);
-  eo_text_done(&directory);
-  return code;
+  struct eo_pair_options options = {.cache_directory = q->crew->cache.data};
+  return eo_pair_new(pair, &q->design, &options, progress, error);
 }
 
 static int show(const struct request *q, json_t *document)
@@ -97,6 +95,7 @@ static int run_study(struct request *q, const struct eo_pair *pair, struct eo_st
   const struct eo_study_plan plan = {.design = &q->design,
                                      .pair = pair,
                                      .store = store,
+                                     .crew = q->crew->crew.size > 1 ? &q->crew->crew : NULL,
                                      .threads = q->thread_count,
                                      .fresh = q->fresh,
                                      .restart = q->restart,
@@ -147,29 +146,32 @@ static int run_request(struct request *q)
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request *q = calloc(1, sizeof *q);
-  struct eo_error error;
-  int operands, status;
-  if (!q) {
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
+  struct eo_app_crew crew;
+  int operands, status = EO_EXIT_FAILED;
+  if (!q || !eo_app_crew_begin(&crew, argc, argv, &status)) {
+    free(q);
+    return status;
   }
   const struct eo_option options[] = {{.name = "--algorithm", .value = &q->algorithm},
                                       {.name = "--budget", .value = &q->budget},
                                       {.name = "--threads", .value = &q->threads},
                                       {.name = "--data", .value = &q->data},
+                                      {.name = "--cache", .value = &q->cache},
                                       {.name = "--json", .flag = &q->json},
                                       {.name = "--fresh", .flag = &q->fresh},
                                       {.name = "--restart", .flag = &q->restart},
                                       {.name = NULL}};
+  q->crew = &crew;
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &q->file, &operands, &status) &&
       eo_app_load_design(q->file, &q->design, &q->geometry, &q->warnings, &status))
     status = run_request(q);
   free(q);
+  eo_app_crew_end(&crew);
   return status;
 }
 
 const struct eo_command eo_command_optimize = {
-    "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--fresh] [--restart] [--json]",
+    "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] [--json]",
     "searches the modification that runs quietest over the duty cycle",
     "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
     "whatever their\n"
@@ -181,5 +183,5 @@ const struct eo_command eo_command_optimize = {
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
-    "  --json            the result document, as the server returns it\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    "  --json            the result document, as the server returns it\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
     run};

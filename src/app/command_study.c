@@ -160,14 +160,25 @@ static bool read_plan(struct request *q, int *status)
 
 /* What is asked for beside a study: */
 
-static int list_columns(const struct request *q)
+static int list_columns(struct request *q)
 {
   struct eo_scalars scalars;
   struct eo_error error;
   struct eo_text text = {0};
-  if (eo_scalars_init(&scalars, q->columns ? q->columns : "*", q->plan.design->load_cases,
-                      q->plan.design->gear_pair.ends, &error))
-    return eo_app_fail(NULL, &error);
+  struct eo_geometry geometry;
+  struct eo_design *design = malloc(sizeof *design);
+  enum eo_code code = design ? compose(q, &error) : eo_error_memory(&error);
+  if (!code) {
+    struct eo_text written = {0};
+    eo_json_write(&written, json_object_get(q->document, "design"), EO_JSON_COMPACT);
+    code = eo_design_read(written.data, written.size, design, &geometry, NULL, &error);
+    eo_text_done(&written);
+  }
+  if (!code)
+    code = eo_scalars_init(&scalars, q->columns ? q->columns : "*", design->load_cases, design->gear_pair.ends, &error);
+  free(design);
+  if (code)
+    return eo_app_fail(q->file, &error);
   for (int i = 0; i < scalars.count; i++)
     eo_text_print(&text, "%-60s %-8s %s\n", scalars.scalar[i].name, scalars.scalar[i].unit, scalars.scalar[i].help);
   eo_scalars_done(&scalars);
@@ -305,10 +316,10 @@ static int run_request(struct request *q)
   struct eo_error error;
   struct eo_text directory = {0};
   int status;
-  if (!q->job && !read_plan(q, &status))
-    return status;
   if (!q->job && q->list_columns)
     return list_columns(q);
+  if (!q->job && !read_plan(q, &status))
+    return status;
   enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
   if (!code)
     code = eo_store_open(&q->store, directory.data, q->job || q->dry_run ? EO_STORE_READ : EO_STORE_WRITE, &error);
