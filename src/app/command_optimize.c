@@ -9,13 +9,16 @@
 #include "app/data.h"
 #include "app/number.h"
 #include "app/watch.h"
+#include "app/work_note.h"
 #include "base/parallel.h"
 #include "document/search_space.h"
 #include "study/study.h"
 
 struct request {
-  const char *file, *data, *algorithm, *budget, *threads, *cache; /* cache: read by eo_app_crew_begin() */
+  const char *work, *file, *data, *algorithm, *budget, *threads, *cache; /* cache: read by eo_app_crew_begin() */
   struct eo_app_crew *crew;
+  struct eo_watch watch;
+  struct eo_work_note note;
   bool json, fresh, restart;
   int thread_count;
   struct eo_design design;
@@ -37,7 +40,8 @@ static void format_time(char *text, size_t size, double seconds)
 
 static int show_progress(void *context, const struct eo_study_report *r)
 {
-  struct eo_watch *watch = context;
+  struct request *q = context;
+  struct eo_watch *watch = &q->watch;
   char line[240], left[32], best[20] = "-", sums[80] = "";
   if (eo_watch_due(watch)) { /* what matters most first: narrow terminals cut the line */
     format_time(left, sizeof left, r->seconds_left);
@@ -51,7 +55,9 @@ static int show_progress(void *context, const struct eo_study_report *r)
              r->individuals ? 100. * r->true_evaluations / r->individuals : 100, sums);
     eo_watch_show(watch, line);
   }
-  return watch->stopped;
+  if (q->note.job)
+    eo_job_live_follow(&q->note.live, r);
+  return eo_work_note_shall_stop(&q->note, watch);
 }
 
 /* What the command line says in place of the design. */
@@ -90,57 +96,108 @@ static int show(const struct request *q, json_t *document)
   return eo_app_print(&text);
 }
 
-static int run_study(struct request *q, const struct eo_pair *pair, struct eo_store *store, struct eo_watch *watch)
+static int run_study(struct request *q, const struct eo_pair *pair, struct eo_store *store)
 {
   const struct eo_study_plan plan = {.design = &q->design,
                                      .pair = pair,
                                      .store = store,
                                      .crew = q->crew->crew.size > 1 ? &q->crew->crew : NULL,
                                      .threads = q->thread_count,
+                                     .job = q->note.job,
                                      .fresh = q->fresh,
                                      .restart = q->restart,
                                      .watch = show_progress,
-                                     .context = watch};
+                                     .context = q};
   struct eo_study_result result;
   struct eo_error error;
   json_t *document = NULL;
   enum eo_code code = eo_study_run(&plan, &result, &error);
   if (!code)
     code = eo_study_document(&plan, &result, &q->warnings, &document, &error);
-  eo_watch_clear(watch);
+  if (!code)
+    eo_job_live_conclude(&q->note.live, &result);
+  eo_work_note_end(&q->note, code, &error);
+  eo_watch_clear(&q->watch);
   eo_study_result_done(&result);
-  return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : show(q, document);
+  if (!code && !q->work)
+    return show(q, document);
+  json_decref(document);
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : EO_EXIT_DONE;
+}
+
+static int run_prepared(struct request *q, struct eo_store *store)
+{
+  struct eo_error error;
+  struct eo_pair *pair = NULL;
+  int status;
+  eo_watch_start(&q->watch);
+  enum eo_code code = prepare(q, &q->watch.progress, &pair, &error);
+  eo_watch_clear(&q->watch);
+  if (code) {
+    eo_work_note_end(&q->note, code, &error);
+    status = eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error);
+  } else
+    status = run_study(q, pair, store);
+  eo_watch_end(&q->watch);
+  eo_pair_free(pair);
+  return status;
+}
+
+static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct request *q = context;
+  if (job->kind != EO_JOB_OPTIMIZE)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is no optimization.", (long long)job->id);
+  q->fresh = job->fresh;
+  return eo_design_read(job->design, strlen(job->design), &q->design, &q->geometry, &q->warnings, error);
+}
+
+/* For a server: the design of its job, of which the table says everything. */
+static enum eo_code find_job(struct request *q, struct eo_store *store, struct eo_error *error)
+{
+  int job;
+  enum eo_job_outcome outcome;
+  if (!q->work)
+    return EO_OK;
+  if (!eo_app_read_whole(q->work, "--work", 1, INT32_MAX, &job, error))
+    return error->code;
+  q->note = (struct eo_work_note){.store = store, .job = job};
+  EO_TRY(eo_queue_find(store, job, take_job, q, &outcome, error));
+  return outcome == EO_JOB_OUTCOME_DONE ? EO_OK
+                                        : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
 }
 
 static int run_request(struct request *q)
 {
-  struct eo_watch watch;
   struct eo_error error;
-  struct eo_pair *pair = NULL;
   struct eo_store *store = NULL;
   struct eo_text directory = {0};
-  int status;
-  if (!apply_options(q, &error))
-    return eo_app_fail(NULL, &error);
   struct eo_study_space space;
-  if (eo_study_space_init(&space, &q->design, &q->geometry, &error))
-    return eo_app_fail(q->file, &error);
+  bool checked = q->work || (apply_options(q, &error) && !eo_study_space_init(&space, &q->design, &q->geometry, &error));
+  if (!checked)
+    return eo_app_fail(*error.pointer ? q->file : NULL, &error);
   enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
   if (!code)
     code = eo_store_open(&store, directory.data, EO_STORE_WRITE, &error);
-  eo_watch_start(&watch);
   if (!code)
-    code = prepare(q, &watch.progress, &pair, &error);
-  eo_watch_clear(&watch);
-  if (code)
-    status = eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error);
-  else
-    status = run_study(q, pair, store, &watch);
-  eo_watch_end(&watch);
-  eo_pair_free(pair);
+    code = find_job(q, store, &error);
+  int status = code ? eo_app_fail(NULL, &error) : run_prepared(q, store);
   eo_store_close(store);
   eo_text_done(&directory);
   return status;
+}
+
+/* A design, or with --work none. */
+static bool load(const struct eo_command *command, struct request *q, int operands, int *status)
+{
+  if (q->work && !operands)
+    return true;
+  if (!q->work && operands)
+    return eo_app_load_design(q->file, &q->design, &q->geometry, &q->warnings, status);
+  fprintf(stderr, "easeoff optimize: %s; usage: easeoff optimize %s\n",
+          operands ? "--work names a job, no design is needed" : "an argument is missing", command->usage);
+  *status = EO_EXIT_INPUT;
+  return false;
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
@@ -157,13 +214,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--threads", .value = &q->threads},
                                       {.name = "--data", .value = &q->data},
                                       {.name = "--cache", .value = &q->cache},
+                                      {.name = "--work", .value = &q->work},
                                       {.name = "--json", .flag = &q->json},
                                       {.name = "--fresh", .flag = &q->fresh},
                                       {.name = "--restart", .flag = &q->restart},
                                       {.name = NULL}};
   q->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &q->file, &operands, &status) &&
-      eo_app_load_design(q->file, &q->design, &q->geometry, &q->warnings, &status))
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &q->file, &operands, &status) &&
+      load(command, q, operands, &status))
     status = run_request(q);
   free(q);
   eo_app_crew_end(&crew);
@@ -171,7 +229,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 }
 
 const struct eo_command eo_command_optimize = {
-    "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] [--json]",
+    "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] [--json] | --work N",
     "searches the modification that runs quietest over the duty cycle",
     "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
     "whatever their\n"
@@ -183,5 +241,6 @@ const struct eo_command eo_command_optimize = {
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
-    "  --json            the result document, as the server returns it\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    "  --json            the result document, as the server returns it\n"
+    "  --work N          works on that job of a server's queue\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
     run};

@@ -124,6 +124,7 @@ static enum eo_code serve(struct request *request, struct eo_error *error)
   struct eo_service_settings settings = {.data = request->directory.data,
                                          .cache = request->cache.data,
                                          .program = "/proc/self/exe",
+                                         .launcher = own->launcher,
                                          .threads = own->threads,
                                          .limits = own->work};
   block_signals(&signals);
@@ -180,7 +181,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_serve = {
     "serve",
     "[--config FILE] [--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | "
-    "--allow-anyone] [--host NAME] [--web DIR] [--threads N] [--quiet] [--KEY VALUE ...]",
+    "--allow-anyone] [--host NAME] [--web DIR] [--threads N] [--launcher COMMAND] [--quiet] [--KEY VALUE ...]",
     "the page and the API, until SIGTERM or Ctrl-C",
     "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. "
     "The address is printed on standard output; requests, jobs\n"
@@ -192,6 +193,9 @@ const struct eo_command eo_command_serve = {
     "plain address and there is no token.\n\n"
     "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
     "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
+    "--launcher \"mpirun -n 64 --hostfile F\" (or srun, or a script) runs optimizations and studies: the command is "
+    "started with\n"
+    "easeoff study|optimize --work N --data DIR behind it, on the same data folder.\n\n"
     "A service manager that gives $NOTIFY_SOCKET hears when requests are "
     "answered. On SIGTERM, SIGHUP and Ctrl-C running jobs are parked; they go on\n"
     "when the server starts again.\n",

@@ -10,15 +10,17 @@
 #include "app/data.h"
 #include "app/number.h"
 #include "app/watch.h"
+#include "app/work_note.h"
 #include "format/json.h"
 #include "variants/variant_cost.h"
+#include "variants/variant_job.h"
 #include "variants/variant_study.h"
 #include "variants/variant_table.h"
 
 enum { SHOWN = 40 }; /* rows at a terminal unless --limit says otherwise */
 
 struct request {
-  const char *file, *data, *sampling, *samples, *seed, *columns, *table, *sort, *filter, *limit, *csv, *job;
+  const char *file, *data, *sampling, *samples, *seed, *columns, *table, *sort, *filter, *limit, *csv, *job, *work;
   const char *threads, *cache; /* read by eo_app_crew_begin() */
   bool json, dry_run, restart, descending, list_columns;
   struct eo_option_list vary;
@@ -27,6 +29,7 @@ struct request {
   struct eo_app_crew *crew;
   struct eo_store *store;
   struct eo_watch watch;
+  struct eo_work_note note;
 };
 
 /* From options to the document: */
@@ -235,7 +238,25 @@ static int show_progress(void *context, const struct eo_variant_report *report)
              report->not_converged);
     eo_watch_show(&q->watch, line);
   }
-  return q->watch.stopped;
+  if (q->note.job)
+    eo_variant_job_follow(&q->note.live, report);
+  return eo_work_note_shall_stop(&q->note, &q->watch);
+}
+
+/* For a server: its job, of which the table says everything. */
+static int work(struct request *q, int job)
+{
+  struct eo_variant_result result = {0};
+  struct eo_error error;
+  q->note = (struct eo_work_note){.store = q->store, .job = job};
+  eo_watch_start(&q->watch);
+  enum eo_code code = eo_variant_job_run(q->store, job, &q->crew->crew, show_progress, q, &result, &error);
+  eo_watch_clear(&q->watch);
+  eo_watch_end(&q->watch);
+  if (!code)
+    eo_variant_job_conclude(&q->note.live, &result);
+  eo_work_note_end(&q->note, code, &error);
+  return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
 }
 
 static void summarise(const struct eo_variant_result *r, struct eo_text *text)
@@ -316,9 +337,10 @@ static int run_request(struct request *q)
   struct eo_error error;
   struct eo_text directory = {0};
   int status;
-  if (!q->job && q->list_columns)
+  const char *number = q->job ? q->job : q->work;
+  if (!number && q->list_columns)
     return list_columns(q);
-  if (!q->job && !read_plan(q, &status))
+  if (!number && !read_plan(q, &status))
     return status;
   enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
   if (!code)
@@ -326,10 +348,13 @@ static int run_request(struct request *q)
   int job = 0;
   if (code && q->dry_run)
     status = tell_cost(q, NULL); /* there is no history yet */
-  else if (code || (q->job && !eo_app_read_whole(q->job, "--job", 1, INT32_MAX, &job, &error)))
+  else if (code || (number && !eo_app_read_whole(number, q->job ? "--job" : "--work", 1, INT32_MAX, &job, &error)))
     status = eo_app_fail(NULL, &error);
   else
-    status = q->dry_run ? tell_cost(q, q->store) : job ? show(q, job, NULL) : run_study(q);
+    status = q->dry_run ? tell_cost(q, q->store)
+             : q->work  ? work(q, job)
+             : q->job   ? show(q, job, NULL)
+                        : run_study(q);
   eo_store_close(q->store);
   eo_text_done(&directory);
   return status;
@@ -337,10 +362,10 @@ static int run_request(struct request *q)
 
 static bool check_operands(const struct eo_command *command, const struct request *q, int operands)
 {
-  if (operands == !q->job)
+  if (operands == (!q->job && !q->work))
     return true;
   fprintf(stderr, "easeoff study: %s; usage: easeoff study %s\n",
-          operands ? "--job names a study, no design is needed" : "an argument is missing", command->usage);
+          operands ? "--job and --work name a study, no design is needed" : "an argument is missing", command->usage);
   return false;
 }
 
@@ -367,6 +392,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--csv", .value = &q->csv},
                                       {.name = "--json", .flag = &q->json},
                                       {.name = "--job", .value = &q->job},
+                                      {.name = "--work", .value = &q->work},
                                       {.name = "--dry-run", .flag = &q->dry_run},
                                       {.name = "--restart", .flag = &q->restart},
                                       {.name = "--threads", .value = &q->threads},
@@ -387,7 +413,7 @@ const struct eo_command eo_command_study = {
     "study",
     "STUDY.json|DESIGN.json [--vary KEY=VALUES]... [--table FILE.csv] [--sampling NAME] [--samples N] [--seed N] "
     "[--columns LIST] [--list-columns] [--filter LIST] [--sort NAME] [--descending] [--limit N] [--csv FILE] [--json] "
-    "[--dry-run] [--restart] [--threads N] [--data DIR] [--cache DIR] | --job N",
+    "[--dry-run] [--restart] [--threads N] [--data DIR] [--cache DIR] | --job N | --work N",
     "any numbers of a design over lists, ranges or samples: a table",
     "  --vary KEY=A,B,C     each of these values (or words); KEY=A:B:N: N values from A to B; KEY=A:B: samples between "
     "them\n"
@@ -401,7 +427,7 @@ const struct eo_command eo_command_study = {
     "  --csv FILE           the table as comma-separated values (-: standard output); --json: as the server gives it\n"
     "  --dry-run            says how many variants and gear pairs, how much memory and time\n"
     "  --restart            a new study even where the same one is there; its rows are used again\n"
-    "  --job N              shows a study that is there\n\n"
+    "  --job N              shows a study that is there; --work N: works on that job of a server's queue\n\n"
     "Every row is kept as it comes: the same study once more goes on where it was cut short, or shows its table again. "
     "A design that\n"
     "cannot be is a row with its reason. Searches of the same pair use rows in which only the modification "

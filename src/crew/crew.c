@@ -81,9 +81,14 @@ static enum eo_code say_hello(struct eo_crew *crew, struct eo_error *error)
   return code;
 }
 
-enum eo_code eo_crew_begin(struct eo_crew *crew, const struct eo_crew_place *place, struct eo_error *error)
+void eo_crew_alone(struct eo_crew *crew, const struct eo_crew_place *place)
 {
   *crew = (struct eo_crew){.place = *place, .size = 1};
+}
+
+enum eo_code eo_crew_begin(struct eo_crew *crew, const struct eo_crew_place *place, struct eo_error *error)
+{
+  eo_crew_alone(crew, place);
   EO_TRY(eo_ranks_find(&crew->ranks, error));
   if (!crew->ranks)
     return EO_OK;

@@ -35,6 +35,9 @@ struct eo_crew {
    would differ, with the remedy), EO_ERROR_FILE (MPI), memory. */
 enum eo_code eo_crew_begin(struct eo_crew *crew, const struct eo_crew_place *place, struct eo_error *error);
 
+/* The threads of this process alone, whatever started it. */
+void eo_crew_alone(struct eo_crew *crew, const struct eo_crew_place *place);
+
 /* Whether somebody else leads: then eo_crew_serve() is all there is to do. */
 bool eo_crew_is_led(const struct eo_crew *crew);
 

@@ -89,7 +89,9 @@ static void add(struct eo_request *request)
   struct eo_error error;
   if (!eo_body_read(request, &order) || !eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
     return;
-  if (order.kind == EO_JOB_OPTIMIZE && eo_study_space_init(&space, &design, &geometry, &error))
+  if (order.kind == EO_JOB_STUDY)
+    eo_reply_problem(&request->reply, 400, NULL, "A study says what it varies: POST /studies takes it.");
+  else if (order.kind == EO_JOB_OPTIMIZE && eo_study_space_init(&space, &design, &geometry, &error))
     eo_reply_error(&request->reply, "/design", &error);
   else
     submit(request, &order, &design);
@@ -248,7 +250,7 @@ const struct eo_route eo_routes_jobs[] = {
      .query = {{"limit", 1, 200, 50, NULL, "most items"},
                {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
                {"state", 0, 0, 0, "queued|preparing|running|done|failed|cancelled", "only these"},
-               {"kind", 0, 0, 0, "optimize|prepare", "only these"}}},
+               {"kind", 0, 0, 0, "optimize|prepare|study", "only these"}}},
     {.method = EO_GET,
      .pattern = "/jobs/{id}",
      .handle = get_one,

@@ -16,6 +16,8 @@
 #include "document/study_result.h"
 #include "http/route.h"
 #include "http/storage_watch.h"
+#include "variants/variant_cost.h"
+#include "variants/variant_table.h"
 #include "study/job_document.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
@@ -268,6 +270,9 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &problem_history,
                                                     &storage,
                                                     &measurements,
+                                                    &eo_variant_table_outline,
+                                                    &eo_variant_columns_outline,
+                                                    &eo_variant_cost_outline,
                                                     &eo_import_outline};
 
 /* A stored measurement is what was measured, behind what is known of its storage. */

@@ -2,6 +2,7 @@
 #include "service/service_private.h"
 
 #include <math.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -22,6 +23,15 @@ static int or_standard(int value, int standard)
   return value > 0 ? value : standard;
 }
 
+/* Owned; other processes see another file behind /proc/self/exe. NULL without memory. */
+static char *own_path(void)
+{
+  char path[PATH_MAX];
+  ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+  path[length > 0 ? length : 0] = '\0';
+  return strdup(path);
+}
+
 static bool resolve(struct eo_service_settings *own, const struct eo_service_settings *settings)
 {
   *own = *settings;
@@ -32,7 +42,10 @@ static bool resolve(struct eo_service_settings *own, const struct eo_service_set
   own->data = strdup(settings->data);
   own->cache = settings->cache ? strdup(settings->cache) : NULL;
   own->program = settings->program ? strdup(settings->program) : NULL;
-  return own->data && (own->cache || !settings->cache) && (own->program || !settings->program);
+  own->launcher = settings->launcher && *settings->launcher ? strdup(settings->launcher) : NULL;
+  own->worker = settings->worker ? strdup(settings->worker) : own_path();
+  return own->data && (own->cache || !settings->cache) && (own->program || !settings->program) &&
+         (own->launcher || !settings->launcher || !*settings->launcher) && own->worker;
 }
 
 struct eo_preparation_settings eo_service_preparation(const struct eo_service *s)
@@ -117,7 +130,7 @@ static enum eo_code begin(struct eo_service *s, const struct eo_service_settings
   if (!resolve(&s->settings, settings))
     return eo_error_memory(error);
   /* workers, an analysis and its second thread, sweeps, works, the members of a pair */
-  EO_TRY(eo_threads_reserve(2 * s->settings.threads + 2 * s->settings.analysis_threads + OTHER_THREADS, error));
+  EO_TRY(eo_threads_reserve(3 * s->settings.threads + 2 * s->settings.analysis_threads + OTHER_THREADS, error));
   EO_TRY(open_store(s, error));
   const struct eo_service_limits *limits = &s->settings.limits;
   const struct eo_pairs_settings pairs = {
@@ -183,6 +196,8 @@ void eo_service_free(struct eo_service *s)
   free((char *)s->settings.data);
   free((char *)s->settings.cache);
   free((char *)s->settings.program);
+  free((char *)s->settings.launcher);
+  free((char *)s->settings.worker);
   free(s);
 }
 
@@ -231,7 +246,7 @@ static enum eo_code copy(void *context, const struct eo_stored_job *row, struct 
   if (c->only && row->id != c->only)
     return EO_OK;
   for (int kind = 0; kind < EO_JOB_KINDS; kind++)
-    if (c->service->worker[kind].live.id == row->id)
+    if (c->service->worker[kind].live.id == row->id && !c->service->worker[kind].launched)
       live = &c->service->worker[kind].live;
   return eo_job_view_init(c->job, row, live, c->with_design, error);
 }
@@ -468,6 +483,8 @@ static void hash_request(const struct eo_job_order *order, const struct eo_text 
   eo_hash_add_number(&h, "priority", order->priority);
   eo_hash_add_number(&h, "fresh", order->fresh);
   eo_hash_add_text(&h, "design", design->data);
+  if (order->spec)
+    eo_hash_add_text(&h, "spec", order->spec);
   eo_hash_finish(&h, hash);
 }
 
@@ -476,14 +493,17 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
 {
   char pair[EO_HASH_LENGTH + 1], request[EO_HASH_LENGTH + 1];
   bool keyed = order->key && *order->key, optimize = order->kind == EO_JOB_OPTIMIZE;
+  const char *algorithm = optimize ? eo_optimizer_algorithm_name(order->design->optimization.search.algorithm)
+                                   : order->algorithm;
   eo_pairs_key(order->design, pair);
   hash_request(order, design, request);
   const struct eo_queue_entry entry = {
       .kind = order->kind,
       .design = design->data,
-      .name = order->design->name,
-      .algorithm = optimize ? eo_optimizer_algorithm_name(order->design->optimization.search.algorithm) : "",
-      .pair = optimize ? NULL : pair,
+      .spec = order->spec,
+      .name = order->name ? order->name : order->design->name,
+      .algorithm = algorithm ? algorithm : "",
+      .pair = order->kind == EO_JOB_PREPARE ? pair : NULL,
       .key = keyed ? order->key : NULL,
       .request = keyed ? request : NULL,
       .fresh = order->fresh,
@@ -567,7 +587,9 @@ enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *prior
 enum eo_code eo_service_remove(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
   pthread_mutex_lock(&s->live_mutex);
-  bool live = s->worker[0].live.id == id || s->worker[1].live.id == id;
+  bool live = false;
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++)
+    live = live || s->worker[kind].live.id == id;
   pthread_mutex_unlock(&s->live_mutex);
   *outcome = EO_JOB_OUTCOME_STATE;
   if (live)

@@ -2,7 +2,8 @@
 /* What stands behind the server: the queue of jobs and the threads that work it off, prepared gear pairs, what-if
    analyses, events.
 
-   Threads. One optimizes: jobs run one after the other, each on all cores at a low priority. One prepares gear pairs,
+   Threads. One optimizes and one works off studies: jobs run one after the other, each on all cores at a low priority
+   (or on the machines of a launcher, service/launcher.h). One prepares gear pairs,
    so that a new pair need not wait for an optimization. Small lanes of their own answer analyses, sweeps, and work on
    measurements; they come before jobs wherever they meet. Every function below may be called from any thread at any
    time between new and free, and none of them computes: they look something up, write a row, answer.
@@ -36,7 +37,9 @@ struct eo_service_settings {
   const char *cache;    /* flexibility cache; NULL: keep none on disk */
   const char *program;  /* easeoff, which prepares gear pairs in a process of its own (service/preparation.h); NULL, or
                            no  cache: they are prepared in this one, which nobody can end then */
-  int threads;          /* of an optimization or a sweep; 0: eo_parallel_cores() */
+  const char *launcher; /* words of a command that runs optimizations and studies (service/launcher.h); NULL: here */
+  const char *worker;   /* path of easeoff on the machines of the launcher; NULL: that of this process */
+  int threads;          /* of an optimization, a study or a sweep; 0: eo_parallel_cores() */
   int analysis_threads; /* 0: 2 */
   struct eo_service_limits limits; /* all 0: the defaults of the table */
 };
@@ -63,6 +66,8 @@ struct eo_job_order {
   const struct eo_design *design; /* complete (eo_design_complete()) */
   int priority;                   /* -10..10; higher ones first, then the older */
   bool fresh;                     /* see struct eo_study_plan */
+  const char *spec;               /* of a study: its document, checked; design is its base */
+  const char *name, *algorithm;   /* of a study; else NULL: the design's */
   const char *key;                /* idempotency key, NULL or "": none; kept as long as the job */
 };
 

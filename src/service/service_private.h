@@ -21,6 +21,8 @@ struct eo_service_worker {
   pthread_t thread;
   bool running;            /* the thread was made */
   struct eo_job_live live; /* guarded by live_mutex */
+  bool recorded;           /* its end stands in the table already */
+  bool launched;           /* guarded by live_mutex: its job is another process's, the table says how far it is */
   atomic_bool cancelled;   /* the job it works on shall end */
   double published, noted; /* ms of the clock, of the last event and the last note in the table */
 };

@@ -5,11 +5,14 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <time.h>
 
 #include "base/clock.h"
+#include "service/launcher.h"
+#include "variants/variant_job.h"
 
-enum { EVENT_MS = 120, NOTE_MS = 1000, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
+enum { EVENT_MS = 120, NOTE_MS = 1000, LAUNCH_EVENT_MS = 500, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
 
 static bool must_stop(struct eo_service_worker *w)
 {
@@ -24,6 +27,7 @@ static void begin_live(struct eo_service_worker *w, int64_t id)
   w->live.id = id;
   w->live.state = EO_JOB_PREPARING;
   w->live.seconds = w->live.seconds_left = NAN;
+  w->launched = w->recorded = false;
   pthread_mutex_unlock(&w->service->live_mutex);
   w->published = w->noted = 0;
 }
@@ -32,6 +36,7 @@ static void end_live(struct eo_service_worker *w)
 {
   pthread_mutex_lock(&w->service->live_mutex);
   eo_job_live_done(&w->live);
+  w->launched = false;
   pthread_mutex_unlock(&w->service->live_mutex);
 }
 
@@ -72,17 +77,32 @@ static int follow_preparation(void *context, const char *what, double fraction)
   return must_stop(w);
 }
 
-static int follow_study(void *context, const struct eo_study_report *report)
+/* A report's numbers are in w->live, which was locked; what the counters had before. */
+static int follow_on(struct eo_service_worker *w, int evaluated, int reused)
 {
-  struct eo_service_worker *w = context;
-  pthread_mutex_lock(&w->service->live_mutex);
-  int before = w->live.true_evaluations, reused = w->live.reused;
-  eo_job_live_follow(&w->live, report);
-  atomic_fetch_add(&w->service->true_evaluations, w->live.true_evaluations - before);
+  atomic_fetch_add(&w->service->true_evaluations, w->live.true_evaluations - evaluated);
   atomic_fetch_add(&w->service->reused_evaluations, w->live.reused - reused);
   pthread_mutex_unlock(&w->service->live_mutex);
   spread(w);
   return must_stop(w);
+}
+
+static int follow_variants(void *context, const struct eo_variant_report *report)
+{
+  struct eo_service_worker *w = context;
+  pthread_mutex_lock(&w->service->live_mutex);
+  int evaluated = w->live.true_evaluations, reused = w->live.reused;
+  eo_variant_job_follow(&w->live, report);
+  return follow_on(w, evaluated, reused);
+}
+
+static int follow_study(void *context, const struct eo_study_report *report)
+{
+  struct eo_service_worker *w = context;
+  pthread_mutex_lock(&w->service->live_mutex);
+  int evaluated = w->live.true_evaluations, reused = w->live.reused;
+  eo_job_live_follow(&w->live, report);
+  return follow_on(w, evaluated, reused);
 }
 
 struct task {
@@ -137,6 +157,103 @@ static enum eo_code optimize(struct eo_service_worker *w, struct task *task, boo
   return code;
 }
 
+/* On threads of this process; pairs are prepared one after the other, each once. */
+static enum eo_code vary(struct eo_service_worker *w, const struct task *task, bool *stopped, struct eo_error *error)
+{
+  const struct eo_preparation_settings preparation = eo_service_preparation(w->service);
+  const struct eo_crew_place place = {.cache = w->service->settings.cache,
+                                      .threads = w->service->settings.threads,
+                                      .memory = preparation.memory,
+                                      .seconds = preparation.seconds};
+  struct eo_crew crew;
+  struct eo_variant_result result = {0};
+  eo_crew_alone(&crew, &place);
+  enum eo_code code = eo_variant_job_run(w->store, task->id, &crew, follow_variants, w, &result, error);
+  eo_crew_end(&crew);
+  *stopped = !code && result.cancelled;
+  pthread_mutex_lock(&w->service->live_mutex);
+  if (!code)
+    eo_variant_job_conclude(&w->live, &result);
+  pthread_mutex_unlock(&w->service->live_mutex);
+  return code;
+}
+
+/* Jobs of a launcher: */
+
+static enum eo_launch_wish watch_launch(void *context)
+{
+  struct eo_service_worker *w = context;
+  double now = eo_clock_milliseconds();
+  if (now - w->published >= LAUNCH_EVENT_MS) {
+    w->published = now;
+    eo_service_publish(w->service, w->live.id);
+  }
+  return atomic_load(&w->cancelled)           ? EO_LAUNCH_END
+         : atomic_load(&w->service->stopping) ? EO_LAUNCH_END_SOON
+                                              : EO_LAUNCH_GO_ON;
+}
+
+/* What the table says of a job. */
+struct state {
+  enum eo_job_state state;
+  int evaluated, attempts;
+};
+
+static enum eo_code take_state(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  (void)error;
+  *(struct state *)context = (struct state){job->state, job->true_evaluations, job->attempts};
+  return EO_OK;
+}
+
+static enum eo_code find_state(struct eo_service_worker *w, int64_t id, struct state *state, struct eo_error *error)
+{
+  enum eo_job_outcome outcome;
+  return eo_queue_find(w->store, id, take_state, state, &outcome, error);
+}
+
+/* A launcher has no tolerance for a rank that dies: the job is begun again while that brings it further. */
+static enum eo_code judge_launch(struct eo_service_worker *w, const struct state *before, const struct state *after,
+                                 int status, bool *stopped, struct eo_error *error)
+{
+  switch (after->state) {
+  case EO_JOB_DONE:
+  case EO_JOB_FAILED:
+    w->recorded = true;
+    return after->state == EO_JOB_DONE ? EO_OK : eo_error_set(error, EO_ERROR_NUMERIC, "", "See the job.");
+  case EO_JOB_CANCELLED:
+    *stopped = true;
+    return EO_OK;
+  default:
+    break;
+  }
+  *stopped = must_stop(w) || after->evaluated > before->evaluated ||
+             after->attempts < w->service->settings.limits.attempts;
+  return *stopped ? EO_OK
+                  : eo_error_set(error, EO_ERROR_NUMERIC, "",
+                                 "The launcher ended without a result (%s %d); the server's log has what it said.",
+                                 WIFSIGNALED(status) ? "signal" : "status",
+                                 WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
+}
+
+static enum eo_code launch(struct eo_service_worker *w, const struct task *task, bool *stopped, struct eo_error *error)
+{
+  const struct eo_launch launch = {.launcher = w->service->settings.launcher,
+                                   .program = w->service->settings.worker,
+                                   .data = w->service->settings.data,
+                                   .kind = w->kind,
+                                   .job = task->id};
+  struct state before = {0}, after = {0};
+  int status = 0;
+  pthread_mutex_lock(&w->service->live_mutex);
+  w->launched = true;
+  pthread_mutex_unlock(&w->service->live_mutex);
+  EO_TRY(find_state(w, task->id, &before, error));
+  EO_TRY(eo_launch_run(&launch, watch_launch, w, &status, error));
+  EO_TRY(find_state(w, task->id, &after, error));
+  return judge_launch(w, &before, &after, status, stopped, error);
+}
+
 static enum eo_code run_job(struct eo_service_worker *w, struct task *task, bool *stopped, struct eo_error *error)
 {
   const struct eo_progress progress = {follow_preparation, w};
@@ -144,6 +261,10 @@ static enum eo_code run_job(struct eo_service_worker *w, struct task *task, bool
   EO_TRY(eo_queue_find(w->store, task->id, take_job, task, &outcome, error));
   if (task->stop)
     atomic_store(&w->cancelled, true);
+  if (w->kind != EO_JOB_PREPARE && w->service->settings.launcher)
+    return launch(w, task, stopped, error);
+  if (w->kind == EO_JOB_STUDY)
+    return vary(w, task, stopped, error);
   EO_TRY(read_design(task, error));
   EO_TRY(eo_pairs_obtain(w->service->pairs, task->design, &progress, &task->held, error));
   return w->kind == EO_JOB_OPTIMIZE ? optimize(w, task, stopped, error) : EO_OK;
@@ -160,11 +281,14 @@ static enum eo_job_state find_end(struct eo_service_worker *w, enum eo_code code
 static void end_job(struct eo_service_worker *w, int64_t id, enum eo_job_state state, const struct eo_error *error)
 {
   struct eo_text progress = {0}, fault = {0};
+  if (w->recorded)
+    return;
   pthread_mutex_lock(&w->service->live_mutex);
   if (state == EO_JOB_DONE)
     w->live.fraction = 1;
   pthread_mutex_unlock(&w->service->live_mutex);
-  write_live(w, &progress);
+  if (!w->launched)
+    write_live(w, &progress);
   if (state == EO_JOB_FAILED)
     eo_job_error_write(error, &fault);
   /* a database that fails here leaves the job as begun: the next start of the service queues it again */
@@ -253,7 +377,7 @@ void *eo_service_work(void *argument)
   struct eo_service *s = w->service;
   uint64_t calls = 0;
   double retained = 0;
-  eo_lane_stand_back(w->kind == EO_JOB_OPTIMIZE ? OPTIMIZE_NICE : PREPARE_NICE);
+  eo_lane_stand_back(w->kind == EO_JOB_PREPARE ? PREPARE_NICE : OPTIMIZE_NICE);
   while (!atomic_load(&s->stopping)) {
     int64_t id;
     enum eo_code code = eo_queue_claim(w->store, w->kind, &id, NULL);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "design/pair_identity.h"
+#include "design/resolution.h"
+#include "flexibility/preparation_cost.h"
 
 struct eo_racked_pair {
   struct eo_pair_identity identity;
@@ -16,20 +18,20 @@ struct eo_racked_pair {
 };
 
 struct eo_pair_rack {
-  const char *cache;
+  const struct eo_crew_place *place;
   const struct eo_progress *progress;
   pthread_mutex_t mutex; /* guards what follows */
   pthread_cond_t changed;
   struct eo_racked_pair *first;
 };
 
-enum eo_code eo_pair_rack_new(struct eo_pair_rack **result, const char *cache, const struct eo_progress *progress,
+enum eo_code eo_pair_rack_new(struct eo_pair_rack **result, const struct eo_crew_place *place, const struct eo_progress *progress,
                               struct eo_error *error)
 {
   struct eo_pair_rack *rack = calloc(1, sizeof *rack);
   if (!rack)
     return eo_error_memory(error);
-  rack->cache = cache;
+  rack->place = place;
   rack->progress = progress;
   pthread_mutex_init(&rack->mutex, NULL);
   pthread_cond_init(&rack->changed, NULL);
@@ -75,14 +77,31 @@ static struct eo_racked_pair *find(const struct eo_pair_rack *rack, const struct
   return held;
 }
 
+static enum eo_code admit(const struct eo_crew_place *place, const struct eo_design *design, struct eo_error *error)
+{
+  struct eo_preparation_cost cost;
+  struct eo_geometry geometry;
+  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design->resolution);
+  if (!(place->memory > 0) || eo_geometry_init(&geometry, &design->gear_pair, NULL) ||
+      eo_preparation_cost_find(&geometry, &design->gear_pair, &settings, &cost, NULL))
+    return EO_OK; /* the preparation says what is wrong with it */
+  if (cost.memory <= place->memory && cost.seconds <= place->seconds)
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "/resolution",
+                      "Preparing this pair would take %.0f MB and %.0f s of a processor; %.0f MB and %.0f s are allowed.",
+                      cost.memory / 1e6, cost.seconds, place->memory / 1e6, place->seconds);
+}
+
 /* Called and left with the mutex locked, which it lets go of meanwhile. */
 static void prepare(struct eo_pair_rack *rack, struct eo_racked_pair *held, const struct eo_design *design)
 {
-  const struct eo_pair_options options = {.cache_directory = rack->cache};
+  const struct eo_pair_options options = {.cache_directory = rack->place->cache};
   struct eo_pair *pair = NULL;
   struct eo_error error = {0};
   pthread_mutex_unlock(&rack->mutex);
-  enum eo_code code = eo_pair_new(&pair, design, &options, rack->progress, &error);
+  enum eo_code code = admit(rack->place, design, &error);
+  if (!code)
+    code = eo_pair_new(&pair, design, &options, rack->progress, &error);
   pthread_mutex_lock(&rack->mutex);
   held->pair = code ? NULL : pair;
   held->error = error;

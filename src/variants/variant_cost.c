@@ -12,6 +12,18 @@
 /* Bytes of a row beside its numbers, and of an index (measured: tests/bench/bench-crew.c). */
 static const double ROW_BYTES = 560;
 
+#define AT(member) EO_AT(struct eo_variant_cost, member)
+static const struct eo_outline_row cost_rows[] = {
+    EO_KEY("variants", "integer", "of the study", AT(rows)),
+    EO_KEY("pairs", "integer", "gear pairs to be prepared, those that are kept already among them", AT(pairs)),
+    EO_KEY("refused_pairs", "integer", "of them that cannot be as their first variant states them", AT(refused_pairs)),
+    EO_KEY("memory_bytes", "number", "of the largest preparation", AT(memory)),
+    EO_KEY("preparation_s", "number", "of a processor, for all pairs", AT(preparation)),
+    EO_KEY("evaluation_s", "number?", "of a processor, for one variant; null: none was evaluated yet", AT(evaluation)),
+    EO_KEY("kept_bytes", "number", "of the rows in the data folder", AT(kept)),
+};
+const struct eo_outline eo_variant_cost_outline = EO_OUTLINE("StudyCost", cost_rows);
+
 static enum eo_code add_pair(const struct eo_variant_plan *plan, int variant, struct eo_variant_cost *cost,
                              struct eo_error *error)
 {

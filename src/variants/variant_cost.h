@@ -3,6 +3,7 @@
 #ifndef EASEOFF_VARIANTS_VARIANT_COST_H
 #define EASEOFF_VARIANTS_VARIANT_COST_H
 
+#include "format/outline.h"
 #include "store/store.h"
 #include "variants/variant_plan.h"
 
@@ -13,6 +14,8 @@ struct eo_variant_cost {
   double evaluation;                  /* s of a processor for one variant, mean of earlier ones; NaN: none is known */
   double kept;                        /* bytes of the rows in the data folder */
 };
+
+extern const struct eo_outline eo_variant_cost_outline;
 
 /* store: NULL, or what knows how long evaluations took. Errors: memory, the store's. */
 enum eo_code eo_variant_cost_find(const struct eo_variant_plan *plan, struct eo_store *store,

@@ -227,6 +227,18 @@ static json_t *encode_columns(const struct eo_scalars *scalars)
   return columns;
 }
 
+static const struct eo_outline_row columns_rows[] = {
+    EO_KEY("items", "[object]", "in the order of the result document", .outline = &column_outline),
+};
+const struct eo_outline eo_variant_columns_outline = EO_OUTLINE("StudyColumns", columns_rows);
+
+json_t *eo_variant_columns_encode(const struct eo_scalars *scalars)
+{
+  struct eo_object o = eo_object_open_as(&eo_variant_columns_outline);
+  eo_object_put(&o, "items", encode_columns(scalars));
+  return eo_object_close(&o);
+}
+
 static enum eo_code add_item(void *context, const struct eo_stored_variant *row, const json_t *values,
                              struct eo_error *error)
 {

@@ -35,7 +35,10 @@ enum eo_code eo_variant_table_init(struct eo_variant_table *table, struct eo_sto
                                    const struct eo_variant_query *query, struct eo_error *error);
 void eo_variant_table_done(struct eo_variant_table *table);
 
-extern const struct eo_outline eo_variant_table_outline;
+extern const struct eo_outline eo_variant_table_outline, eo_variant_columns_outline;
+
+/* { "items" [ { name, unit, help } ] }: what a study can keep. NULL without memory. */
+json_t *eo_variant_columns_encode(const struct eo_scalars *scalars);
 
 /* { "job", "name", "keys" [ { name, unit, paths } ], "columns" [ { name, unit, help } ], "variants", "done", "fits",
    "first", "items" [ { "variant", "outcome", "reason", "values" (of the keys), "numbers" (of the columns) } ] }. Errors:

@@ -92,7 +92,7 @@ static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
                          (int)json_integer_value(json_object_get(shop->order, "cases")),
                          (int)json_integer_value(json_object_get(shop->order, "ends")), error));
   shop->progress = (struct eo_progress){look_for_stop, bench};
-  return eo_pair_rack_new(&shop->rack, bench->place->cache, &shop->progress, error);
+  return eo_pair_rack_new(&shop->rack, bench->place, &shop->progress, error);
 }
 
 static void close(struct eo_crew_bench *bench)
