@@ -12,6 +12,7 @@
 #include "document/study_result.h"
 #include "evaluation/evaluator.h"
 #include "study/history_document.h"
+#include "store/merge.h"
 #include "store/evaluations.h"
 #include "store/jobs.h"
 #include "store/lock.h"
@@ -213,11 +214,23 @@ static int run_prune(struct request *q)
   return eo_app_print(&text);
 }
 
+static int run_import(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  struct eo_merge_counts counts;
+  if (eo_store_merge(q->store, q->operand[1], &counts, &error))
+    return eo_app_fail(NULL, &error);
+  eo_text_print(&text, "%lld problems, %lld evaluations and %lld rows of studies added\n", (long long)counts.problems,
+                (long long)counts.evaluations, (long long)counts.variants);
+  return eo_app_print(&text);
+}
+
 static const struct action {
   const char *name;
   int operands; /* with the name */
   int (*run)(struct request *request);
-} actions[] = {{"list", 1, run_list}, {"show", 2, run_show}, {"export", 2, run_export}, {"prune", 1, run_prune}};
+} actions[] = {{"list", 1, run_list}, {"show", 2, run_show}, {"export", 2, run_export}, {"prune", 1, run_prune}, {"import", 2, run_import}};
 
 static const struct action *find_action(const struct request *q, int operands, struct eo_error *error)
 {
@@ -226,11 +239,14 @@ static const struct action *find_action(const struct request *q, int operands, s
       bool by_job = actions[i].run == run_export && q->job;
       if (operands == actions[i].operands - by_job)
         return &actions[i];
-      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s number; see easeoff history --help.",
-                   actions[i].name, actions[i].operands == 2 && !by_job ? "one" : "no");
+      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s; see easeoff history --help.",
+                   actions[i].name,
+                   actions[i].run == run_import                ? "one folder"
+                   : actions[i].operands == 2 && !by_job ? "one number"
+                                                         : "no number");
       return NULL;
     }
-  eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export or prune.", q->operand[0]);
+  eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export, import or prune.", q->operand[0]);
   return NULL;
 }
 
@@ -241,7 +257,7 @@ static int run_action(struct request *q, int operands)
   const struct action *action = find_action(q, operands, &error);
   enum eo_code code = action ? eo_app_data_directory(q->data, &directory, &error) : EO_ERROR_INPUT;
   if (!code)
-    code = eo_store_open(&q->store, directory.data, EO_STORE_READ, &error);
+    code = eo_store_open(&q->store, directory.data, action->run == run_import ? EO_STORE_WRITE : EO_STORE_READ, &error);
   int status = code ? eo_app_fail(NULL, &error) : action->run(q);
   eo_store_close(q->store);
   eo_text_done(&directory);
@@ -266,12 +282,15 @@ static int run(const struct eo_command *command, int argc, char **argv)
 }
 
 const struct eo_command eo_command_history = {
-    "history", "list | show JOB | export PROBLEM | export --job JOB | prune  [--data DIR] [--json]",
+    "history", "list | show JOB | export PROBLEM | export --job JOB | import DIR | prune  [--data DIR] [--json]",
     "what was evaluated and searched before",
     "  list            problems (what an evaluation depends on but the modification) and jobs\n"
     "  show JOB        the result of a search, as optimize printed it\n"
     "  export PROBLEM  every true row as comma-separated values: modification, values per load case\n"
     "  export --job JOB  the path of a search: each individual, whether computed, known or predicted\n"
+    "  import DIR      adds the evaluations and the rows of studies of another data folder; what is here stays. The same "
+    "study or search\n"
+    "                  once more then finds them\n"
     "  prune           removes predictions of searches that have ended; or instead\n"
     "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check "
     "sum)\n\n" EO_APP_HISTORY_HELP,

@@ -116,6 +116,8 @@ static int run_study(struct request *q, const struct eo_pair *pair, struct eo_st
     code = eo_study_document(&plan, &result, &q->warnings, &document, &error);
   if (!code)
     eo_job_live_conclude(&q->note.live, &result);
+  if (!code && result.stopped != EO_STOP_CANCELLED)
+    q->note.live.fraction = 1;
   eo_work_note_end(&q->note, code, &error);
   eo_watch_clear(&q->watch);
   eo_study_result_done(&result);

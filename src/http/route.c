@@ -100,6 +100,8 @@ static bool is_allowed(const struct eo_query *query, const char *value)
 {
   int64_t number;
   unsigned bits;
+  if (eo_query_is_text(query))
+    return strlen(value) <= EO_QUERY_TEXT;
   if (query->words)
     return eo_query_is_list(query) ? words_of(query->words, value, &bits)
                                    : word_of(query->words, value, strlen(value)) >= 0;
@@ -118,7 +120,10 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
       continue;
     if (value && is_allowed(query, value))
       return MHD_YES;
-    if (query->words)
+    if (eo_query_is_text(query))
+      eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes a text of at most %d bytes.",
+                       query->name, EO_QUERY_TEXT);
+    else if (query->words)
       eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes %s %s.", query->name,
                        eo_query_is_list(query) ? "a list, with commas, of" : "one of", query->words);
     else

@@ -12,18 +12,23 @@ enum { EO_MOST_QUERIES = 10, EO_MOST_ANSWERS = 10 };
 /* What a request costs of what an address may start (guard.h). */
 enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_RATE_KINDS };
 
-/* A query parameter: a whole number, or one word of a list, or several. */
+/* A query parameter: a whole number, one word of a list, or several, or a text. */
 struct eo_query {
   const char *name;           /* NULL ends the list */
   double low, high, fallback; /* of a number; high of words: EO_SEVERAL_WORDS, with commas between them, or none */
-  const char *words;          /* "queued|running"; NULL: a number */
+  const char *words;          /* "queued|running"; NULL: a number; "": a text */
   const char *help;
 };
-enum { EO_SEVERAL_WORDS = 1 };
+enum { EO_SEVERAL_WORDS = 1, EO_QUERY_TEXT = 1000 /* most bytes */ };
 
 static inline bool eo_query_is_list(const struct eo_query *query)
 {
   return query->words && query->high == EO_SEVERAL_WORDS;
+}
+
+static inline bool eo_query_is_text(const struct eo_query *query)
+{
+  return query->words && !*query->words;
 }
 
 struct eo_route {

@@ -13,9 +13,11 @@
 #include "variants/variant_answer.h"
 #include "variants/variant_trade.h"
 
-/* Rows of one transaction, and how long the first of them may wait. */
+/* Rows of one transaction, and how long it may take: others wait meanwhile. */
 enum { MOST_UNSAVED = 500 };
-static const double MOST_SECONDS = 0.2;
+static const double MOST_SECONDS = 0.05;
+/* How long a row may wait in memory, to be written with others; a kill loses no more. */
+static const double MOST_WAIT = 0.2;
 
 double eo_variant_clock(void)
 {
@@ -157,31 +159,62 @@ static enum eo_code write_item(void *context, int item, struct eo_text *text, st
   return EO_OK;
 }
 
-static enum eo_code take_answer(void *context, int item, const char *bytes, size_t size, struct eo_error *error)
+static enum eo_code keep_waiting(struct variant_study *s, const struct waiting_answer *waiting, struct eo_error *error)
 {
-  struct variant_study *s = context;
   struct eo_variant_answer answer;
   void *room;
-  double start = eo_variant_clock();
-  if (!eo_variant_answer_read(&answer, bytes, size, &room))
+  if (!eo_variant_answer_read(&answer, waiting->bytes.data, waiting->bytes.size, &room))
     return eo_error_memory(error);
   s->result->computed++;
   s->result->cost += answer.cost;
-  enum eo_code code = keep_answer(s, s->missing[item], &answer, error);
+  enum eo_code code = keep_answer(s, waiting->variant, &answer, error);
   free(room);
+  return code;
+}
+
+/* Writes what waits, in its order. */
+static enum eo_code flush(struct variant_study *s, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  double start = eo_variant_clock();
+  for (int i = 0; i < s->waiting_count; i++) {
+    if (!code)
+      code = keep_waiting(s, &s->waiting[i], error);
+    if (!code)
+      code = eo_variant_commit(s, false, error);
+    eo_text_done(&s->waiting[i].bytes);
+  }
+  s->waiting_count = 0;
   if (!code)
-    code = eo_variant_commit(s, false, error);
+    code = eo_variant_commit(s, true, error);
   s->result->store_seconds += eo_variant_clock() - start;
   return code;
+}
+
+static enum eo_code take_answer(void *context, int item, const char *bytes, size_t size, struct eo_error *error)
+{
+  struct variant_study *s = context;
+  struct waiting_answer *waiting = &s->waiting[s->waiting_count++];
+  *waiting = (struct waiting_answer){.variant = s->missing[item]};
+  eo_text_add_bytes(&waiting->bytes, bytes, size);
+  if (s->waiting_count == 1)
+    s->waits_since = eo_variant_clock();
+  if (waiting->bytes.failed)
+    return eo_error_memory(error);
+  return s->waiting_count == MOST_WAITING || eo_variant_clock() - s->waits_since > MOST_WAIT ? flush(s, error) : EO_OK;
 }
 
 static int watch_crew(void *context)
 {
   struct variant_study *s = context;
-  struct eo_error ignored;
-  if (s->open && eo_variant_clock() - s->committed > MOST_SECONDS)
-    eo_variant_commit(s, true, &ignored); /* what fails here fails at the next row, which tells it */
+  if (s->waiting_count && eo_variant_clock() - s->waits_since > MOST_WAIT && flush(s, &s->fault))
+    return 1; /* told when the crew has stopped */
   return eo_variant_report(s, "");
+}
+
+static enum eo_code first_of(enum eo_code one, enum eo_code other)
+{
+  return other ? other : one;
 }
 
 static enum eo_code compute(struct variant_study *s, struct eo_error *error)
@@ -202,7 +235,11 @@ static enum eo_code compute(struct variant_study *s, struct eo_error *error)
   if (!code)
     code = eo_crew_run(s->run->crew, &task, error);
   eo_text_done(&order);
-  return code;
+  if (s->fault.code) {
+    *error = s->fault;
+    return s->fault.code;
+  }
+  return code && code != EO_ERROR_CANCELLED ? code : first_of(code, flush(s, error));
 }
 
 /* The end: what came is kept, of a run that was cut short too. */
@@ -217,7 +254,7 @@ static enum eo_code finish(struct variant_study *s, enum eo_code code, struct eo
   if (end)
     eo_store_rollback(s->run->store);
   if (!end && (!code || cancelled)) {
-    sum_up(s, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, cancelled ? "cancelled" : "done");
+    sum_up(s, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, cancelled ? "cancelled" : "");
     end = eo_store_update_job(s->run->store, &s->job, &later);
   }
   if (end && (!code || cancelled)) {
@@ -230,9 +267,13 @@ static enum eo_code finish(struct variant_study *s, enum eo_code code, struct eo
 enum eo_code eo_variant_study_run(const struct eo_variant_run *run, struct eo_variant_result *result,
                                   struct eo_error *error)
 {
-  struct variant_study study = {.run = run, .result = result, .started = eo_variant_clock()};
-  struct variant_study *s = &study;
+  struct variant_study *s = calloc(1, sizeof *s);
   *result = (struct eo_variant_result){.rows = run->plan->rows};
+  if (!s)
+    return eo_error_memory(error);
+  s->run = run;
+  s->result = result;
+  s->started = eo_variant_clock();
   enum eo_code code = eo_variant_study_begin(s, error);
   if (!code)
     code = eo_variant_look_up(s, error);
@@ -244,9 +285,12 @@ enum eo_code eo_variant_study_run(const struct eo_variant_run *run, struct eo_va
   if (s->job.id)
     eo_store_release_job(run->store, s->job.id);
   eo_scalars_done(&s->scalars);
+  for (int i = 0; i < s->waiting_count; i++)
+    eo_text_done(&s->waiting[i].bytes);
   free(s->missing);
   free(s->number);
   free(s->raw);
   free(s->unmodified);
+  free(s);
   return code;
 }

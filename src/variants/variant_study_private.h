@@ -7,6 +7,13 @@
 #include "store/variant_rows.h"
 #include "variants/variant_study.h"
 
+/* An answer that is not written yet. */
+struct waiting_answer {
+  int variant;
+  struct eo_text bytes; /* owned */
+};
+enum { MOST_WAITING = 500 };
+
 struct variant_study {
   const struct eo_variant_run *run;
   struct eo_variant_result *result;
@@ -17,6 +24,10 @@ struct variant_study {
   int missing_count;
   double *number; /* [scalars.count]; owned */
   double started, computing, committed; /* s of the clock */
+  struct waiting_answer waiting[MOST_WAITING];
+  int waiting_count;
+  double waits_since;    /* s of the clock, the first of them */
+  struct eo_error fault; /* of writing, where it could not be told at once */
   bool open;                            /* a transaction is */
   int unsaved;                          /* rows in it */
   /* The history of searches, where the study shares it: */

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep, *pairs, *spur, *stages;
+static char *coarse, *order, *named, *sweep, *pairs, *spur, *stages, *study;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -309,6 +309,37 @@ static const struct command after[] = {
     {"it is gone", "GET", API "/jobs/2", .status = 404},
 };
 
+static const struct command studies[] = {
+    {"what a study takes", "POST", API "/study-cost", .body = &study, .status = 200, .pointer = "variants", .value = "6"},
+    {"a study that varies nothing", "POST", API "/studies", .body = &named, .status = 422,
+     .pointer = "errors/0/pointer", .value = "/vary"},
+    {"a study as any job", "POST", API "/jobs", .text = "{\"kind\":\"study\",\"design\":{\"gear_pair\":{}}}", .status = 422},
+    {"a study", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202, .header = "Location",
+     .holds = API "/jobs/5", .pointer = "kind", .value = "study"},
+    {"the same study again", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202,
+     .pointer = "id", .value = "5"},
+    {"no study", "GET", API "/studies/99/table", .status = 404},
+    {"no study either", "GET", API "/studies/1/table", .status = 404},
+    {"what a study can keep", "GET", API "/study-columns?cases=2", .status = 200, .pointer = "items/0/name",
+     .value = "geometry.pinion_teeth"},
+};
+static const struct command studied[] = {
+    {"a table", "GET", API "/studies/5/table", .status = 200, .pointer = "items/5/values/1", .value = "0.5"},
+    {"its best rows", "GET", API "/studies/5/table?sort=objectives.J&limit=2&filter=objectives.J%3C2,outcome=converged",
+     .status = 200, .pointer = "next", .value = "2"},
+    {"its worst row", "GET", API "/studies/5/table?sort=objectives.J&order=descending&limit=1", .status = 200,
+     .pointer = "items/0/outcome"},
+    {"a filter that is none", "GET", API "/studies/5/table?filter=J", .status = 422, .pointer = "errors/0/pointer",
+     .value = "/filter"},
+    {"a table as CSV", "GET", API "/studies/5/table.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"a variant's design", "GET", API "/studies/5/variants/5/design", .status = 200,
+     .pointer = "modification/pinion/right/tip_relief_um", .value = "20"},
+    {"no such variant", "GET", API "/studies/5/variants/6/design", .status = 422},
+    {"no variant at all", "GET", API "/studies/5/variants/x/design", .status = 404},
+    {"studies among the jobs", "GET", API "/jobs?kind=study", .status = 200, .pointer = "items/0/progress/fraction",
+     .value = "1"},
+};
+
 #define RUN(table)                                            \
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) \
   run_command(&table[i])
@@ -556,6 +587,11 @@ int main(void)
   json_t *many = json_pack("{s:O, s:i}", "design", document, "pairs", 6);
   pairs = json_dumps(many, JSON_COMPACT);
   json_decref(many);
+  json_t *varied = json_pack("{s:O, s:[{s:s, s:[i,i,i]}, {s:s, s:[i,f]}]}", "design", document, "vary", "key",
+                             "modification.pinion.*.tip_relief_um", "values", 0, 10, 20, "key",
+                             "modification.pinion.*.lead_crowning_um", "values", 0, 0.5);
+  study = json_dumps(varied, JSON_COMPACT);
+  json_decref(varied);
   json_decref(range);
   json_decref(both);
   json_decref(document);
@@ -569,6 +605,9 @@ int main(void)
   RUN(orders);
   ok(wait_for_job(2, "done", 60), "the job ends");
   RUN(after);
+  RUN(studies);
+  ok(wait_for_job(5, "done", 60), "the study ends");
+  RUN(studied);
   check_export();
   ok(stop_server(SIGTERM) == 0, "it stops when told");
   setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
@@ -591,5 +630,6 @@ int main(void)
   free(pairs);
   free(spur);
   free(stages);
+  free(study);
   return tap_done();
 }

@@ -115,6 +115,17 @@ result $? "is a row with its reason"
 [ "$(cell "$folder/c.csv" 0 geometry.pinion_teeth)$(cell "$folder/c.csv" 8 geometry.pinion_teeth)" = 1617 ]
 result $? "each of its own pair"
 
+# Rows of several folders.
+"$EASEOFF" history import "$folder/search" --data "$folder/merged" >"$folder/out" 2>"$folder/err"
+prints "1 problems, 31 evaluations and 30 rows of studies added"
+"$EASEOFF" history import "$data" --data "$folder/merged" >"$folder/out" 2>"$folder/err"
+prints "evaluations and 25 rows of studies added"
+"$EASEOFF" history import "$data" --data "$folder/merged" >"$folder/out" 2>"$folder/err"
+prints "0 problems, 0 evaluations and 0 rows of studies added"
+study "$design" --data "$folder/merged" --table "$folder/table.csv" --csv "$folder/merged.csv"
+prints "30 of 30 variants, 30 known before, 0 computed now"
+same "$folder/found.csv" "$folder/merged.csv" "what was imported is what was found"
+
 # Before it begins.
 study "$design" --data "$folder/none" --dry-run --vary gear_pair.pinion_teeth=16,17,18 --vary T=1:1000:1000
 prints "3000 variants of 3 gear pairs"

@@ -20,6 +20,7 @@ import { designView } from './views/design.js';
 const VIEWS = [
   { id: 'design', title: 'Design', load: async () => designView },
   { id: 'optimize', title: 'Optimize', load: async () => (await import('./views/optimize.js')).optimizeView },
+  { id: 'study', title: 'Study', load: async () => (await import('./views/study/study.js')).studyView },
   {
     id: 'tolerance',
     title: 'Tolerance',

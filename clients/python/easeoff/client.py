@@ -242,6 +242,43 @@ class Client:
         """Orders an optimization or the preparation of a gear pair: {"kind": "optimize", "design": ..}."""
         return self._json("POST", "/jobs", document=order, headers={"Idempotency-Key": idempotency_key})
 
+    @operation("addStudy")
+    def add_study(self, order: Mapping[str, Any], idempotency_key: str | None = None) -> doc.Job:
+        """Orders a study: {"design": .., "vary": [{"key": "load_cases.1.torque_Nm", "values": [..]}]}."""
+        return self._json("POST", "/studies", document=order, headers={"Idempotency-Key": idempotency_key})
+
+    @operation("getStudyCost")
+    def study_cost(self, order: Mapping[str, Any]) -> dict[str, Any]:
+        """What a study would take: variants, gear pairs, memory, time."""
+        return self._json("POST", "/study-cost", document=order)
+
+    @operation("listStudyColumns")
+    def study_columns(self, cases: int | None = None, ends: int | None = None) -> dict[str, Any]:
+        """The numbers of a result that a study can keep."""
+        return self._json("GET", "/study-columns", query={"cases": cases, "ends": ends})
+
+    @operation("getStudy")
+    def study(
+        self,
+        id: int,
+        limit: int | None = None,
+        cursor: str | None = None,
+        filter: str | None = None,
+        sort: str | None = None,
+        order: str | None = None,
+    ) -> dict[str, Any]:
+        """A page of the table of a study."""
+        return self._json(
+            "GET",
+            f"/studies/{id}/table",
+            query={"limit": limit, "cursor": cursor, "filter": filter, "sort": sort, "order": order},
+        )
+
+    @operation("getStudyVariant")
+    def study_variant(self, id: int, variant: int) -> dict[str, Any]:
+        """The design of one variant, complete."""
+        return self._json("GET", f"/studies/{id}/variants/{variant}/design")
+
     @operation("listJobs")
     def jobs(self, state: str | None = None, kind: str | None = None) -> Iterator[doc.Job]:
         """All jobs, newest first."""

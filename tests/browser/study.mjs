@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study from the page: keys, cost, start, table, sort, brush, a row that is opened; no long task while doing so.
+import { cp, rm } from 'node:fs/promises';
+import { Server, chapter, finish, note, ok, openBrowser } from './harness.mjs';
+
+const [FOLDER, JOB] = (process.env.EASEOFF_STUDY ?? '').split(':');
+const LOOSE =
+  'resolution.positions=16&resolution.cells_per_line=6&resolution.sector_teeth=3&resolution.neighbour_coupling=false&' +
+  'resolution.layers=6&resolution.flank_rows=4&resolution.fillet_elements=6&resolution.harmonics=6&' +
+  'resolution.te_harmonics=6';
+const MOST_TASK = 100; // ms
+
+const server = await Server.start();
+if (FOLDER) {
+  await server.close();
+  await rm(server.folder, { recursive: true });
+  await cp(FOLDER, server.folder, { recursive: true });
+  await server.open();
+}
+const browser = await openBrowser();
+const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: 'reduce' });
+await context.addInitScript(() => {
+  if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
+  window.longest = 0;
+  new PerformanceObserver(list => {
+    for (const entry of list.getEntries()) window.longest = Math.max(window.longest, entry.duration);
+  }).observe({ type: 'longtask', buffered: true });
+});
+const page = await context.newPage();
+page.setDefaultTimeout(30000);
+const troubles = [];
+page.on('pageerror', error => troubles.push(error.message));
+const rows = page.locator('.variant-table tbody:not(.space) tr');
+const count = page.locator('.study-detail > .figure-note');
+
+await chapter('a study is ordered', async () => {
+  await page.goto(`${server.address}#study?from=paper-case-a&${LOOSE}${JOB ? `&job=${JOB}` : ''}`);
+  if (JOB) return;
+  await page.getByLabel('Values 1').fill('0:30:6');
+  await page.getByLabel('Values 2').fill('0, 5, 10, 20');
+  await page.getByText(/^24 variants of 1 gear pair/).waitFor();
+  ok(true, 'its cost stands beside it');
+  await page.getByLabel('Key 2').fill('gear_pair.teeth');
+  await page.getByText('of which member').waitFor();
+  ok(true, 'a key that could be two is asked about');
+  await page.getByLabel('Key 2').fill('modification.pinion.*.lead_crowning_um');
+  await page.getByText(/^24 variants of 1 gear pair/).waitFor();
+  await page.getByRole('button', { name: 'Start the study' }).click();
+});
+
+await chapter('its table', async () => {
+  await page.waitForFunction(
+    job => {
+      const text = document.querySelector('.study-detail > .figure-note')?.textContent ?? '';
+      return job ? /\d{3,} of/.test(text) : text.startsWith('24 of 24');
+    },
+    JOB ?? '',
+    { polling: 200 },
+  );
+  note(await count.textContent());
+  if (JOB) await page.evaluate(() => (window.longest = 0)); // the page's own start is judged elsewhere
+  const there = await rows.count();
+  ok(there > 10 && there < 80, `${there} rows are in the document`);
+  await page.getByRole('button', { name: 'J', exact: true }).click();
+  const values = await page.evaluate(() => {
+    const at = [...document.querySelectorAll('.variant-table thead th')].findIndex(th => th.title === 'objectives.J');
+    return [...document.querySelectorAll('.variant-table tbody:not(.space) tr')].map(tr => tr.children[at].textContent);
+  });
+  const numbers = values.map(Number);
+  ok(numbers.every((value, i) => !i || value >= numbers[i - 1]), 'a click on a heading sorts');
+  const table = page.locator('.variant-table');
+  for (let i = 0; i < 10; i++) await table.evaluate((element, to) => (element.scrollTop = to * element.scrollHeight), i / 10);
+});
+
+await chapter('a brush', async () => {
+  const box = await page.locator('.coordinates canvas').boundingBox();
+  const before = await count.textContent();
+  await page.mouse.move(box.x + 46, box.y + 35);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 46, box.y + 90, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction(text => document.querySelector('.study-detail > .figure-note').textContent !== text, before);
+  note(await count.textContent());
+  const kept = await rows.count();
+  ok(kept > 0 && (JOB || kept < 24), 'keeps the rows of a range');
+  await page.getByRole('button', { name: 'show all rows' }).click();
+  await page.waitForFunction(
+    () => !document.querySelector('.study-detail > .figure-note').textContent.includes('show all rows'),
+  );
+  ok(true, 'and lets them go again');
+});
+
+const longest = await page.evaluate(() => window.longest);
+note(`longest task ${longest.toFixed(0)} ms`);
+if (JOB) ok(longest < MOST_TASK, `no task of the table over ${MOST_TASK} ms: ${longest.toFixed(0)} ms`);
+
+await chapter('a variant', async () => {
+  await rows.first().click();
+  await page.locator('.picked-variant strong').waitFor();
+  const name = await page.locator('.picked-variant strong').textContent();
+  await page.locator('.picked-variant').getByRole('button', { name: 'Open' }).click();
+  await page.waitForFunction(() => location.hash.startsWith('#design'));
+  ok((await page.content()).includes(name.toLowerCase()), 'a click on a row opens its design');
+});
+
+ok(troubles.length === 0, `nothing went wrong in the page: ${troubles.join('; ')}`);
+await browser.close();
+await server.remove();
+finish();
