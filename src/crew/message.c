@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "crew/message.h"
 
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -72,9 +73,11 @@ enum eo_code eo_crew_receive(const struct eo_crew *crew, bool *there, struct eo_
   return EO_OK;
 }
 
-/* A twentieth of a millisecond while there is traffic, then longer: an evaluation takes some milliseconds. */
+/* Each rest is an eighth longer than the one before, so that a message waits for at most an eighth of the time that
+   nothing came, and hundreds of ranks on one machine do not keep it busy with looking. */
 void eo_crew_rest(int idle)
 {
-  long microseconds = idle < 20 ? 50 : idle < 200 ? 200 : 2000;
-  nanosleep(&(struct timespec){0, 1000 * microseconds}, NULL);
+  static const double FIRST = 50e-6, LONGEST = 20e-3, GROWTH = 1.125; /* s */
+  double rest = fmin(FIRST * pow(GROWTH, idle), LONGEST);
+  nanosleep(&(struct timespec){0, (long)(1e9 * rest)}, NULL);
 }

@@ -107,6 +107,15 @@ static enum eo_code take_page(struct search *search, const struct eo_variant_que
   return EO_OK;
 }
 
+/* Without them a row is found in a tenth of the time. */
+static bool needs_numbers(const struct eo_variant_conditions *conditions)
+{
+  bool needed = conditions->sort.kind == EO_NAME_COLUMN;
+  for (int i = 0; i < conditions->count; i++)
+    needed = needed || conditions->condition[i].name.kind == EO_NAME_COLUMN;
+  return needed;
+}
+
 enum eo_code eo_variant_table_init(struct eo_variant_table *table, struct eo_store *store, int64_t job,
                                    const struct eo_variant_query *query, struct eo_error *error)
 {
@@ -115,7 +124,8 @@ enum eo_code eo_variant_table_init(struct eo_variant_table *table, struct eo_sto
   table->job = job;
   EO_TRY(open_study(table, store, error));
   EO_TRY(eo_variant_query_read(table, query, &search.conditions, error));
-  enum eo_code code = eo_store_each_variant(store, job, -1, table->scalars.count, look_at, &search, error);
+  enum eo_code code = eo_store_each_variant(store, job, -1, needs_numbers(&search.conditions) ? table->scalars.count : -1,
+                                            look_at, &search, error);
   if (!code)
     code = take_page(&search, query, error);
   free(search.pick);

@@ -31,7 +31,18 @@ page.setDefaultTimeout(30000);
 const troubles = [];
 page.on('pageerror', error => troubles.push(error.message));
 const rows = page.locator('.variant-table tbody:not(.space) tr');
+/** Milliseconds of a processor that the page's longest task took: what else runs here does not count. */
+function longestTask(trace) {
+  const { traceEvents: events } = JSON.parse(trace.toString());
+  const mains = events.filter(event => event.name === 'thread_name' && event.args.name === 'CrRendererMain');
+  const threads = new Set(mains.map(event => `${event.pid} ${event.tid}`));
+  const tasks = events.filter(event => /RunTask$/.test(event.name) && threads.has(`${event.pid} ${event.tid}`));
+  return Math.max(0, ...tasks.map(event => event.tdur ?? 0)) / 1000;
+}
+
 const count = page.locator('.study-detail > .figure-note');
+
+if (JOB) await browser.startTracing(page, { categories: ['toplevel', 'disabled-by-default-devtools.timeline'] });
 
 await chapter('a study is ordered', async () => {
   await page.goto(`${server.address}#study?from=paper-case-a&${LOOSE}${JOB ? `&job=${JOB}` : ''}`);
@@ -58,7 +69,6 @@ await chapter('its table', async () => {
     { polling: 200 },
   );
   note(await count.textContent());
-  if (JOB) await page.evaluate(() => (window.longest = 0)); // the page's own start is judged elsewhere
   const there = await rows.count();
   ok(there > 10 && there < 80, `${there} rows are in the document`);
   await page.getByRole('button', { name: 'J', exact: true }).click();
@@ -81,6 +91,7 @@ await chapter('a brush', async () => {
   await page.mouse.up();
   await page.waitForFunction(text => document.querySelector('.study-detail > .figure-note').textContent !== text, before);
   note(await count.textContent());
+  await page.waitForFunction(() => document.querySelector('.variant-table tbody:not(.space) tr'));
   const kept = await rows.count();
   ok(kept > 0 && (JOB || kept < 24), 'keeps the rows of a range');
   await page.getByRole('button', { name: 'show all rows' }).click();
@@ -90,9 +101,12 @@ await chapter('a brush', async () => {
   ok(true, 'and lets them go again');
 });
 
-const longest = await page.evaluate(() => window.longest);
-note(`longest task ${longest.toFixed(0)} ms`);
-if (JOB) ok(longest < MOST_TASK, `no task of the table over ${MOST_TASK} ms: ${longest.toFixed(0)} ms`);
+const wall = await page.evaluate(() => window.longest);
+note(`longest task ${wall.toFixed(0)} ms by the clock`);
+if (JOB) {
+  const longest = longestTask(await browser.stopTracing());
+  ok(longest > 0 && longest < MOST_TASK, `the longest task of the table took ${longest.toFixed(1)} ms of a processor`);
+}
 
 await chapter('a variant', async () => {
   await rows.first().click();

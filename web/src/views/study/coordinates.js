@@ -9,7 +9,7 @@ const HEIGHT = 230;
 const TOP = 30;
 const BOTTOM = 22;
 const SIDE = 46;
-const PIECE = 800; // lines drawn at a time: a few milliseconds
+const PIECE = 300; // lines drawn at a time: a few milliseconds
 const LEAST = 4; // px of a drag that is none
 
 export class Coordinates {

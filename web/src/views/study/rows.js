@@ -2,7 +2,8 @@
 // The rows of a study in columns of numbers: which are shown, in which order.
 import { get } from '../../base/api.js';
 
-const PAGE = 2000; // rows of one answer: read in a few milliseconds
+const PAGE = 2500; // rows of one answer
+const PIECE = 1000; // rows of one piece of work: a few milliseconds
 
 /** @typedef {{ name: string, unit: string, varies: boolean, value: Float64Array, words: string[] | null }} Column */
 
@@ -42,11 +43,11 @@ export class Rows extends EventTarget {
     }
     this.study = study;
     this.variants = page.variants;
-    await this.#take(page, items);
+    await this.#take(page, items, turn);
   }
 
-  /** @param {any} page @param {any[]} items */
-  async #take(page, items) {
+  /** @param {any} page @param {any[]} items @param {number} turn */
+  async #take(page, items, turn) {
     const keys = page.keys.length;
     /** @type {Column[]} */
     const columns = [...page.keys, ...page.columns].map((column, at) => ({
@@ -57,13 +58,16 @@ export class Rows extends EventTarget {
       words: at < keys && items.some(item => typeof item.values[at] === 'string') ? [] : null,
     }));
     const variant = new Int32Array(items.length);
-    items.forEach((item, row) => {
+    for (let row = 0; row < items.length; row++) {
+      const item = items[row];
       variant[row] = item.variant;
       for (let at = 0; at < columns.length; at++) {
         const given = at < keys ? item.values[at] : item.numbers[at - keys];
         columns[at].value[row] = numberOf(columns[at], given);
       }
-    });
+      if (row % PIECE === PIECE - 1) await breath();
+    }
+    if (turn !== this.#turn) return;
     this.count = items.length;
     this.columns = columns;
     this.variant = variant;
