@@ -230,7 +230,11 @@ static const struct action {
   const char *name;
   int operands; /* with the name */
   int (*run)(struct request *request);
-} actions[] = {{"list", 1, run_list}, {"show", 2, run_show}, {"export", 2, run_export}, {"prune", 1, run_prune}, {"import", 2, run_import}};
+} actions[] = {{"list", 1, run_list},
+               {"show", 2, run_show},
+               {"export", 2, run_export},
+               {"prune", 1, run_prune},
+               {"import", 2, run_import}};
 
 static const struct action *find_action(const struct request *q, int operands, struct eo_error *error)
 {
@@ -239,14 +243,14 @@ static const struct action *find_action(const struct request *q, int operands, s
       bool by_job = actions[i].run == run_export && q->job;
       if (operands == actions[i].operands - by_job)
         return &actions[i];
-      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s; see easeoff history --help.",
-                   actions[i].name,
-                   actions[i].run == run_import                ? "one folder"
+      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s; see easeoff history --help.", actions[i].name,
+                   actions[i].run == run_import          ? "one folder"
                    : actions[i].operands == 2 && !by_job ? "one number"
                                                          : "no number");
       return NULL;
     }
-  eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export, import or prune.", q->operand[0]);
+  eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export, import or prune.",
+               q->operand[0]);
   return NULL;
 }
 
@@ -288,7 +292,8 @@ const struct eo_command eo_command_history = {
     "  show JOB        the result of a search, as optimize printed it\n"
     "  export PROBLEM  every true row as comma-separated values: modification, values per load case\n"
     "  export --job JOB  the path of a search: each individual, whether computed, known or predicted\n"
-    "  import DIR      adds the evaluations and the rows of studies of another data folder; what is here stays. The same "
+    "  import DIR      adds the evaluations and the rows of studies of another data folder; what is here stays. The "
+    "same "
     "study or search\n"
     "                  once more then finds them\n"
     "  prune           removes predictions of searches that have ended; or instead\n"

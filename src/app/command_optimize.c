@@ -165,8 +165,7 @@ static enum eo_code find_job(struct request *q, struct eo_store *store, struct e
     return error->code;
   q->note = (struct eo_work_note){.store = store, .job = job};
   EO_TRY(eo_queue_find(store, job, take_job, q, &outcome, error));
-  return outcome == EO_JOB_OUTCOME_DONE ? EO_OK
-                                        : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
+  return outcome == EO_JOB_OUTCOME_DONE ? EO_OK : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
 }
 
 static int run_request(struct request *q)
@@ -175,7 +174,8 @@ static int run_request(struct request *q)
   struct eo_store *store = NULL;
   struct eo_text directory = {0};
   struct eo_study_space space;
-  bool checked = q->work || (apply_options(q, &error) && !eo_study_space_init(&space, &q->design, &q->geometry, &error));
+  bool checked = q->work ||
+                 (apply_options(q, &error) && !eo_study_space_init(&space, &q->design, &q->geometry, &error));
   if (!checked)
     return eo_app_fail(*error.pointer ? q->file : NULL, &error);
   enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
@@ -231,7 +231,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
 }
 
 const struct eo_command eo_command_optimize = {
-    "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] [--json] | --work N",
+    "optimize",
+    "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] "
+    "[--json] | --work N",
     "searches the modification that runs quietest over the duty cycle",
     "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
     "whatever their\n"
@@ -244,5 +246,6 @@ const struct eo_command eo_command_optimize = {
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
     "  --json            the result document, as the server returns it\n"
-    "  --work N          works on that job of a server's queue\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    "  --work N          works on that job of a server's queue\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP
+        EO_APP_DATA_HELP,
     run};

@@ -86,8 +86,8 @@ static enum eo_code add_axis(json_t *list, const char *option, struct eo_error *
   json_t *axis = json_object();
   if (!option[length] || !length || !option[length + 1]) {
     json_decref(axis);
-    return eo_error_set(error, EO_ERROR_INPUT, "",
-                        "--vary %.60s is not KEY=VALUE,VALUE,... or KEY=FIRST:LAST:POINTS.", option);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--vary %.60s is not KEY=VALUE,VALUE,... or KEY=FIRST:LAST:POINTS.",
+                        option);
   }
   json_object_set_new(axis, "key", json_stringn(option, length));
   if (!strchr(option + length, ':') || !add_range(axis, option + length + 1)) {
@@ -263,8 +263,8 @@ static void summarise(const struct eo_variant_result *r, struct eo_text *text)
 {
   eo_text_print(text,
                 "Study %lld%s: %d of %d variants, %d known before, %d computed now, %d refused, %d not converged%s\n",
-                (long long)r->job, r->resumed ? " (taken up)" : "", r->done, r->rows, r->reused, r->computed, r->refused,
-                r->not_converged, r->cancelled ? "; stopped" : "");
+                (long long)r->job, r->resumed ? " (taken up)" : "", r->done, r->rows, r->reused, r->computed,
+                r->refused, r->not_converged, r->cancelled ? "; stopped" : "");
 }
 
 static enum eo_code write_table(struct request *q, const struct eo_variant_table *table,
@@ -351,10 +351,7 @@ static int run_request(struct request *q)
   else if (code || (number && !eo_app_read_whole(number, q->job ? "--job" : "--work", 1, INT32_MAX, &job, &error)))
     status = eo_app_fail(NULL, &error);
   else
-    status = q->dry_run ? tell_cost(q, q->store)
-             : q->work  ? work(q, job)
-             : q->job   ? show(q, job, NULL)
-                        : run_study(q);
+    status = q->dry_run ? tell_cost(q, q->store) : q->work ? work(q, job) : q->job ? show(q, job, NULL) : run_study(q);
   eo_store_close(q->store);
   eo_text_done(&directory);
   return status;
@@ -421,7 +418,8 @@ const struct eo_command eo_command_study = {
     "                       (modification.pinion.*.tip_relief_um); KEY+KEY: the same value; KEY [unit]: values in that "
     "unit\n"
     "  --table FILE.csv     a heading of keys, a row for each variant, in place of --vary\n"
-    "  --sampling NAME      factorial (every value with every other one), latin or sobol with --samples N and --seed N\n"
+    "  --sampling NAME      factorial (every value with every other one), latin or sobol with --samples N and --seed "
+    "N\n"
     "  --columns LIST       numbers of the result to keep, by their path, * for anything; --list-columns lists them\n"
     "  --filter LIST        rows to show: objectives.J<0.4,outcome=converged; --sort NAME, --descending, --limit N\n"
     "  --csv FILE           the table as comma-separated values (-: standard output); --json: as the server gives it\n"

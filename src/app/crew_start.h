@@ -7,8 +7,9 @@
 #include "format/text.h"
 
 #define EO_APP_CREW_HELP                                                                                              \
-  "mpirun -n N easeoff ... does the same on N processes: the first keeps the history, the others evaluate, each with\n" \
-  "--threads of its own (default 1); --cache DIR is the folder of prepared pairs of each machine (default: that of\n"  \
+  "mpirun -n N easeoff ... does the same on N processes: the first keeps the history, the others evaluate, each "     \
+  "with\n"                                                                                                            \
+  "--threads of its own (default 1); --cache DIR is the folder of prepared pairs of each machine (default: that of\n" \
   "--data).\n\n"
 
 struct eo_app_crew {

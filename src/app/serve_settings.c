@@ -15,7 +15,8 @@ static const struct eo_field server_fields[] = {
             "name under which clients call the server, beside localhost and plain addresses; any with a token"),
     EO_TEXT(struct eo_serve_settings, web, "web", "folder of the page's files"),
     EO_TEXT(struct eo_serve_settings, launcher, "launcher",
-            "command that runs optimizations and studies, \"mpirun -n 64 --hostfile hosts\"; without one this process does"),
+            "command that runs optimizations and studies, \"mpirun -n 64 --hostfile hosts\"; without one this process "
+            "does"),
     {.key = "threads",
      .kind = EO_FIELD_INTEGER,
      .flags = EO_FIELD_NULLABLE,

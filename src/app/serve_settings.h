@@ -10,7 +10,7 @@
 
 struct eo_serve_settings {
   char listen[120], data[2000], token_file[2000], host[256], web[2000], launcher[1000]; /* "": not said */
-  int threads;                                                          /* 0: not said */
+  int threads;                                                                          /* 0: not said */
   bool allow_anyone, quiet;
   struct eo_http_limits limits;
   struct eo_service_limits work;

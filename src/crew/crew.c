@@ -164,9 +164,8 @@ static enum eo_code open_order(struct eo_crew *crew, const struct eo_crew_task *
   if (crew->order.failed)
     return eo_error_memory(error);
   crew->trade = task->trade;
-  return works_alone(crew)
-             ? eo_hands_new(&crew->hands, task->trade, task->order, task->size, &crew->place, error)
-             : spread_order(crew, task, error);
+  return works_alone(crew) ? eo_hands_new(&crew->hands, task->trade, task->order, task->size, &crew->place, error)
+                           : spread_order(crew, task, error);
 }
 
 /* A task on its way: */
@@ -174,12 +173,12 @@ static enum eo_code open_order(struct eo_crew *crew, const struct eo_crew_task *
 struct course {
   struct eo_crew *crew;
   const struct eo_crew_task *task;
-  struct eo_hands *hands;     /* of this process alone; else NULL */
-  int next, lowest;           /* items: to be given next; not taken yet */
+  struct eo_hands *hands;      /* of this process alone; else NULL */
+  int next, lowest;            /* items: to be given next; not taken yet */
   struct eo_crew_parcel *ring; /* [EO_CREW_AHEAD] answers ahead of the lowest; item: -1 where none is */
-  int *load;                  /* [size] items that a rank has */
-  int flying, turn;           /* of all ranks; the rank to be looked at first */
-  double watched;             /* ms */
+  int *load;                   /* [size] items that a rank has */
+  int flying, turn;            /* of all ranks; the rank to be looked at first */
+  double watched;              /* ms */
 };
 
 /* So that no thread waits for the way to rank 0 and back. */
@@ -224,8 +223,8 @@ static enum eo_code give(struct course *c, int rank, struct eo_error *error)
 static enum eo_code give_all(struct course *c, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  for (int rank; !code && c->next < c->task->items && c->next - c->lowest < EO_CREW_AHEAD &&
-                 (rank = find_room(c)) >= 0;)
+  for (int rank;
+       !code && c->next < c->task->items && c->next - c->lowest < EO_CREW_AHEAD && (rank = find_room(c)) >= 0;)
     code = give(c, rank, error);
   return code;
 }

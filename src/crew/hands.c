@@ -70,11 +70,10 @@ static void work_off(struct eo_hands *hands, int thread, struct eo_crew_parcel *
   struct eo_text item = parcel->text;
   parcel->text = (struct eo_text){0};
   parcel->error = (struct eo_error){0};
-  enum eo_code code =
-      atomic_load(&hands->stopped)
-          ? eo_error_set(&parcel->error, EO_ERROR_CANCELLED, "", "The work was cancelled.")
-          : hands->trade->work(&hands->bench, thread, item.data ? item.data : "", item.size, &parcel->text,
-                               &parcel->error);
+  enum eo_code code = atomic_load(&hands->stopped)
+                          ? eo_error_set(&parcel->error, EO_ERROR_CANCELLED, "", "The work was cancelled.")
+                          : hands->trade->work(&hands->bench, thread, item.data ? item.data : "", item.size,
+                                               &parcel->text, &parcel->error);
   if (!code && parcel->text.failed)
     code = eo_error_memory(&parcel->error);
   parcel->error.code = code;

@@ -15,8 +15,8 @@ struct eo_ranks {
   int (*send)(int to, int tag, const void *data, size_t size); /* copies; returns at once */
   int (*probe)(bool *there, int *from, int *tag, size_t *size);
   int (*receive)(int from, int tag, void *data, size_t size); /* what probe found */
-  int (*end)(void);        /* waits until all have come here */
-  void (*abort)(int status); /* ends all processes of the run */
+  int (*end)(void);                                           /* waits until all have come here */
+  void (*abort)(int status);                                  /* ends all processes of the run */
   const char *(*message)(void);
 };
 

@@ -12,8 +12,8 @@
 
 /* Where a process works. */
 struct eo_crew_place {
-  const char *cache; /* folder of prepared pairs; NULL: none */
-  int threads;       /* items at a time, 1..EO_MAX_THREADS */
+  const char *cache;      /* folder of prepared pairs; NULL: none */
+  int threads;            /* items at a time, 1..EO_MAX_THREADS */
   double memory, seconds; /* most bytes and s of a processor that preparing a pair may take; 0: no bound */
 };
 

@@ -9,9 +9,10 @@
 #include "document/result_private.h"
 
 #define EACH "objectives.load_cases.*."
-const char eo_scalars_usual[] = "objectives.f1_um,objectives.f2_N,objectives.f3_m_per_s2,objectives.J,objectives.fitness,"
-                                "objectives.violation," EACH "peak_to_peak_um," EACH "impact_N," EACH "rms_m_per_s2," EACH
-                                "contact_pressure_MPa," EACH "edge_load_share," EACH "contact_loss";
+const char eo_scalars_usual[] =
+    "objectives.f1_um,objectives.f2_N,objectives.f3_m_per_s2,objectives.J,objectives.fitness,"
+    "objectives.violation," EACH "peak_to_peak_um," EACH "impact_N," EACH "rms_m_per_s2," EACH
+    "contact_pressure_MPa," EACH "edge_load_share," EACH "contact_loss";
 
 /* Parts of the document that hold results. */
 static const char *const parts[] = {"geometry", "unloaded_contact", "load_cases", "objectives", "rating", "tribology"};
@@ -51,14 +52,14 @@ static void add(struct listing *list, const char *name, const char *unit, const 
     return;
   if (scalars->count == list->capacity) {
     int capacity = 2 * list->capacity + 64;
-    struct eo_scalar *more = realloc(scalars->scalar, sizeof *more * (size_t)capacity);
+    struct eo_result_number *more = realloc(scalars->scalar, sizeof *more * (size_t)capacity);
     list->failed = list->failed || !more;
     if (!more)
       return;
     scalars->scalar = more;
     list->capacity = capacity;
   }
-  struct eo_scalar *scalar = &scalars->scalar[scalars->count++];
+  struct eo_result_number *scalar = &scalars->scalar[scalars->count++];
   snprintf(scalar->name, sizeof scalar->name, "%s", name);
   scalar->unit = unit;
   scalar->help = help;

@@ -9,7 +9,7 @@
 
 enum { EO_SCALAR_NAME = 160 };
 
-struct eo_scalar {
+struct eo_result_number {
   char name[EO_SCALAR_NAME];
   const char *unit; /* for people, "" without */
   const char *help;
@@ -17,9 +17,9 @@ struct eo_scalar {
 
 struct eo_scalars {
   int count;
-  struct eo_scalar *scalar; /* [count], in the order of the document; owned */
-  int want;                 /* EO_WANT_... that they need */
-  bool objectives;          /* all of them stand in "objectives" */
+  struct eo_result_number *scalar; /* [count], in the order of the document; owned */
+  int want;                        /* EO_WANT_... that they need */
+  bool objectives;                 /* all of them stand in "objectives" */
 };
 
 /* What is taken where nobody chooses: objectives, and for each load case what they are made of. */

@@ -72,10 +72,10 @@ static json_t *encode_range(const struct eo_query *query)
 
 static json_t *encode_query(const struct eo_query *query)
 {
-  json_t *schema = eo_query_is_list(query) ? encode_many(query->words)
+  json_t *schema = eo_query_is_list(query)   ? encode_many(query->words)
                    : eo_query_is_text(query) ? json_pack("{s:s, s:i}", "type", "string", "maxLength", EO_QUERY_TEXT)
-                   : query->words          ? encode_words(query->words)
-                                           : encode_range(query);
+                   : query->words            ? encode_words(query->words)
+                                             : encode_range(query);
   json_t *parameter = encode_parameter(query->name, strlen(query->name), "query", schema, query->help);
   if (eo_query_is_list(query)) {
     json_object_set_new(parameter, "style", json_string("form"));

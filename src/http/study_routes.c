@@ -31,7 +31,7 @@ static void submit(struct eo_request *request, const struct eo_variant_plan *pla
                                      .design = plan->design,
                                      .spec = spec,
                                      .name = plan->name,
-                                     .algorithm = plan->table ? "table" : eo_samplings[plan->sampling],
+                                     .algorithm = plan->table ? "table" : eo_study_samplings[plan->sampling],
                                      .key = key};
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
@@ -175,7 +175,8 @@ const struct eo_route eo_routes_studies[] = {
      .pattern = "/studies",
      .handle = add,
      .name = "addStudy",
-     .summary = "Orders a study: any numbers of a design over lists, ranges or samples. Its job is listed with the others.",
+     .summary =
+         "Orders a study: any numbers of a design over lists, ranges or samples. Its job is listed with the others.",
      .takes = "StudyOrder",
      .order = &eo_study_order_table,
      .design_at = "design",

@@ -21,7 +21,7 @@ static const double OWN_END_MS = 30e3, TOLD_END_MS = 10e3;
 extern char **environ;
 
 struct command {
-  char *words;                      /* of the launcher, cut; owned */
+  char *words;                     /* of the launcher, cut; owned */
   char *argument[MOST_WORDS + 10]; /* ends with NULL */
   char job[24];
 };
@@ -33,14 +33,14 @@ static enum eo_code compose(const struct eo_launch *launch, struct command *comm
   command->words = strdup(launch->launcher);
   if (!command->words)
     return eo_error_memory(error);
-  for (char *word = strtok_r(command->words, " ", &rest); word && count < MOST_WORDS;
-       word = strtok_r(NULL, " ", &rest))
+  for (char *word = strtok_r(command->words, " ", &rest); word && count < MOST_WORDS; word = strtok_r(NULL, " ", &rest))
     command->argument[count++] = word;
   if (!count)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The launcher is empty.");
   snprintf(command->job, sizeof command->job, "%lld", (long long)launch->job);
-  char *const own[] = {(char *)launch->program, (char *)eo_store_job_kind_name(launch->kind), "--work", command->job,
-                       "--data", (char *)launch->data};
+  char *const own[] = {
+      (char *)launch->program, (char *)eo_store_job_kind_name(launch->kind), "--work", command->job, "--data",
+      (char *)launch->data};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
     command->argument[count++] = own[i];
   return EO_OK;

@@ -497,17 +497,16 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
                                    : order->algorithm;
   eo_pairs_key(order->design, pair);
   hash_request(order, design, request);
-  const struct eo_queue_entry entry = {
-      .kind = order->kind,
-      .design = design->data,
-      .spec = order->spec,
-      .name = order->name ? order->name : order->design->name,
-      .algorithm = algorithm ? algorithm : "",
-      .pair = order->kind == EO_JOB_PREPARE ? pair : NULL,
-      .key = keyed ? order->key : NULL,
-      .request = keyed ? request : NULL,
-      .fresh = order->fresh,
-      .priority = order->priority};
+  const struct eo_queue_entry entry = {.kind = order->kind,
+                                       .design = design->data,
+                                       .spec = order->spec,
+                                       .name = order->name ? order->name : order->design->name,
+                                       .algorithm = algorithm ? algorithm : "",
+                                       .pair = order->kind == EO_JOB_PREPARE ? pair : NULL,
+                                       .key = keyed ? order->key : NULL,
+                                       .request = keyed ? request : NULL,
+                                       .fresh = order->fresh,
+                                       .priority = order->priority};
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_add(s->store, &entry, s->settings.limits.queued_jobs, id, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);

@@ -76,12 +76,12 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
 {
   enum eo_code code = eo_store_last_evaluation(store, &job->import_upto, error);
   if (!code)
-    code =
-        EO_STATEMENT_RUN(store, error,
-                         "INSERT INTO job (kind, spec, problem, study, space, design, name, algorithm, fresh, import_upto,"
-                         " state, attempts, started) VALUES (?, ?, nullif(?, 0), ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")",
-                         "ttitttttnit", eo_store_job_kinds[job->kind], job->spec, job->problem, job->study, job->space, job->design, job->name, job->algorithm,
-                         (int)job->fresh, job->import_upto, eo_store_job_states[job->state]);
+    code = EO_STATEMENT_RUN(
+        store, error,
+        "INSERT INTO job (kind, spec, problem, study, space, design, name, algorithm, fresh, import_upto,"
+        " state, attempts, started) VALUES (?, ?, nullif(?, 0), ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")",
+        "ttitttttnit", eo_store_job_kinds[job->kind], job->spec, job->problem, job->study, job->space, job->design,
+        job->name, job->algorithm, (int)job->fresh, job->import_upto, eo_store_job_states[job->state]);
   job->id = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
@@ -147,11 +147,12 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
     code = forget_path(store, job->id, error);
   if (code)
     return code;
-  s = eo_statement_begin(store,
-                         "UPDATE job SET state = 'running', problem = nullif(?, 0), study = ?, space = ?, updated = " EO_NOW ","
-                         " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id "
-                         "= ? RETURNING import_upto",
-                         "itti", job->problem, job->study, job->space, job->id);
+  s = eo_statement_begin(
+      store,
+      "UPDATE job SET state = 'running', problem = nullif(?, 0), study = ?, space = ?, updated = " EO_NOW ","
+      " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id "
+      "= ? RETURNING import_upto",
+      "itti", job->problem, job->study, job->space, job->id);
   while (eo_statement_step(&s))
     job->import_upto = eo_column_integer(&s, 0);
   return eo_statement_end(&s, error);
@@ -224,8 +225,8 @@ enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store
                                struct eo_error *error)
 {
   struct eo_statement s = eo_statement_begin(
-      store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i",
-      problem);
+      store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id",
+      "i", problem);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {
     const struct eo_stored_job job = eo_job_row_read(&s);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Jobs of optimizations and studies, and the path each took: which evaluations it asked for, in its order, and what it predicted. Adding
-   needs a transaction (eo_store_begin()). */
+/* Jobs of optimizations and studies, and the path each took: which evaluations it asked for, in its order, and what it
+   predicted. Adding needs a transaction (eo_store_begin()). */
 #ifndef EASEOFF_STORE_JOBS_H
 #define EASEOFF_STORE_JOBS_H
 
@@ -49,7 +49,8 @@ struct eo_stored_job {
   const char *started, *finished; /* "" without */
 };
 
-/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study". find: -1 when it is none. */
+/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study". find: -1 when it is
+ * none. */
 const char *eo_store_job_state_name(enum eo_job_state state);
 const char *eo_store_job_kind_name(enum eo_job_kind kind);
 extern const char *const eo_store_job_states[], *const eo_store_job_kinds[]; /* by number; end with NULL */

@@ -10,8 +10,9 @@
 /* Numbers of rows mean nothing in another folder: problems are the same by their hash, evaluations by problem and
    modification, rows of studies by what was evaluated. */
 #define OTHER_PROBLEM "other.problem o JOIN main.problem p ON p.hash = o.hash"
-#define SAME_EVALUATION \
-  OTHER_PROBLEM " JOIN other.evaluation e ON e.problem = o.id JOIN main.evaluation m ON m.problem = p.id AND m.modification = e.modification"
+#define SAME_EVALUATION                                                                                        \
+  OTHER_PROBLEM " JOIN other.evaluation e ON e.problem = o.id JOIN main.evaluation m ON m.problem = p.id AND " \
+                "m.modification = e.modification"
 
 static enum eo_code add_problems(struct eo_store *store, int64_t *count, struct eo_error *error)
 {
@@ -27,12 +28,13 @@ static enum eo_code add_problems(struct eo_store *store, int64_t *count, struct 
 /* In the order in which they were found there, so that searches import them in the same order. */
 static enum eo_code add_evaluations(struct eo_store *store, int64_t *count, struct eo_error *error)
 {
-  EO_TRY(EO_STATEMENT_RUN(store, error,
-                          "INSERT INTO main.evaluation (problem, modification, outcome, reason, cost_s, created, digest)"
-                          " SELECT p.id, e.modification, e.outcome, e.reason, e.cost_s, e.created, e.digest"
-                          " FROM " OTHER_PROBLEM " JOIN other.evaluation e ON e.problem = o.id WHERE true ORDER BY e.id"
-                          " ON CONFLICT (problem, modification) DO NOTHING",
-                          ""));
+  EO_TRY(
+      EO_STATEMENT_RUN(store, error,
+                       "INSERT INTO main.evaluation (problem, modification, outcome, reason, cost_s, created, digest)"
+                       " SELECT p.id, e.modification, e.outcome, e.reason, e.cost_s, e.created, e.digest"
+                       " FROM " OTHER_PROBLEM " JOIN other.evaluation e ON e.problem = o.id WHERE true ORDER BY e.id"
+                       " ON CONFLICT (problem, modification) DO NOTHING",
+                       ""));
   *count = sqlite3_changes64(store->handle);
   /* of those that were here already all raw values are here too */
   return EO_STATEMENT_RUN(
@@ -49,11 +51,12 @@ static enum eo_code add_evaluations(struct eo_store *store, int64_t *count, stru
 
 static enum eo_code add_points(struct eo_store *store, int64_t *count, struct eo_error *error)
 {
-  EO_TRY(EO_STATEMENT_RUN(store, error,
-                          "INSERT INTO main.point (evaluation, space, x) SELECT m.id, t.space, t.x FROM " SAME_EVALUATION
-                          " JOIN other.point t ON t.evaluation = e.id WHERE true"
-                          " ON CONFLICT (evaluation, space) DO NOTHING",
-                          ""));
+  EO_TRY(
+      EO_STATEMENT_RUN(store, error,
+                       "INSERT INTO main.point (evaluation, space, x) SELECT m.id, t.space, t.x FROM " SAME_EVALUATION
+                       " JOIN other.point t ON t.evaluation = e.id WHERE true"
+                       " ON CONFLICT (evaluation, space) DO NOTHING",
+                       ""));
   *count = sqlite3_changes64(store->handle);
   return EO_OK;
 }

@@ -11,8 +11,8 @@ struct eo_merge_counts {
 };
 
 /* directory: of the other folder; nothing is written there but what brings an older one to the present schema. What
-   is here already stays as it is. All or nothing, in one transaction. Errors: EO_ERROR_INPUT (the same folder), EO_ERROR_FILE, EO_ERROR_DAMAGED
-   (rows there without their sum). */
+   is here already stays as it is. All or nothing, in one transaction. Errors: EO_ERROR_INPUT (the same folder),
+   EO_ERROR_FILE, EO_ERROR_DAMAGED (rows there without their sum). */
 enum eo_code eo_store_merge(struct eo_store *store, const char *directory, struct eo_merge_counts *counts,
                             struct eo_error *error);
 

@@ -53,12 +53,13 @@ static enum eo_code count_waiting(struct eo_store *store, enum eo_job_kind kind,
 static enum eo_code insert(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
                            struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(
-      store, error,
-      "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state, idempotency, request)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)",
-      "ttttttnntt", eo_store_job_kind_name(entry->kind), entry->design, entry->spec, entry->name, entry->algorithm, entry->pair,
-      (int)entry->fresh, entry->priority, entry->key, entry->request);
+  enum eo_code code = EO_STATEMENT_RUN(store, error,
+                                       "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, "
+                                       "priority, state, idempotency, request)"
+                                       " VALUES (?, ?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)",
+                                       "ttttttnntt", eo_store_job_kind_name(entry->kind), entry->design, entry->spec,
+                                       entry->name, entry->algorithm, entry->pair, (int)entry->fresh, entry->priority,
+                                       entry->key, entry->request);
   *id = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
@@ -132,7 +133,8 @@ static enum eo_code count_unclean(struct eo_store *store, int64_t id, struct eo_
 {
   return EO_STATEMENT_RUN(store, error,
                           "UPDATE job SET unclean = CASE WHEN now > reached THEN 1 ELSE unclean + 1 END, reached = now"
-                          " FROM (SELECT (SELECT count(*) FROM candidate WHERE job = ?1) + (SELECT count(*) FROM variant WHERE job = ?1) AS now)"
+                          " FROM (SELECT (SELECT count(*) FROM candidate WHERE job = ?1) + (SELECT count(*) FROM "
+                          "variant WHERE job = ?1) AS now)"
                           " WHERE id = ?1 AND stop = 0 AND state IN ('preparing', 'running')",
                           "i", id);
 }
@@ -275,12 +277,13 @@ static enum eo_code clone(struct eo_store *store, int64_t id, const int *priorit
     return EO_OK;
   }
   if (!code)
-    code = EO_STATEMENT_RUN(
-        store, error,
-        "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state)"
-        " SELECT kind, design, spec, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE priority END, 'queued'"
-        " FROM job WHERE id = ?1",
-        "inn", id, priority != NULL, priority ? *priority : 0);
+    code =
+        EO_STATEMENT_RUN(store, error,
+                         "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state)"
+                         " SELECT kind, design, spec, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE "
+                         "priority END, 'queued'"
+                         " FROM job WHERE id = ?1",
+                         "inn", id, priority != NULL, priority ? *priority : 0);
   *copy = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
@@ -382,11 +385,12 @@ enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter 
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT " EO_JOB_COLUMNS(
-          "''", "''", "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL "
-                                                                  "OR state = ?2)"
-                                                                  " AND (?3 IS NULL OR kind = ?3) AND (?4 = 0 OR state "
-                                                                  "IN ('queued', 'preparing', 'running')) ORDER BY id "
-                                                                  "DESC LIMIT ?5",
+          "''", "''",
+          "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL "
+                                                            "OR state = ?2)"
+                                                            " AND (?3 IS NULL OR kind = ?3) AND (?4 = 0 OR state "
+                                                            "IN ('queued', 'preparing', 'running')) ORDER BY id "
+                                                            "DESC LIMIT ?5",
       "ittnn", filter->before, filter->state < 0 ? NULL : eo_store_job_state_name((enum eo_job_state)filter->state),
       filter->kind < 0 ? NULL : eo_store_job_kind_name((enum eo_job_kind)filter->kind), (int)filter->active,
       filter->limit);

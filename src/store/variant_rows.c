@@ -105,12 +105,13 @@ enum eo_code eo_store_add_variant(struct eo_store *store, struct eo_stored_varia
   static const double nothing;
   settle(row);
   find_digest(row, digest);
-  EO_TRY(EO_STATEMENT_RUN(store, error,
-                          "INSERT INTO variant_row (design, evaluator, columns, outcome, reason, cost_s, numbers, digest)"
-                          " VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (design, evaluator, columns) DO NOTHING",
-                          "tnittrbt", row->design, row->evaluator, row->columns, eo_store_outcome_name(row->outcome),
-                          row->reason, row->cost, (const void *)(row->numbers ? row->number : &nothing),
-                          sizeof *row->number * (size_t)row->numbers, digest));
+  EO_TRY(
+      EO_STATEMENT_RUN(store, error,
+                       "INSERT INTO variant_row (design, evaluator, columns, outcome, reason, cost_s, numbers, digest)"
+                       " VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (design, evaluator, columns) DO NOTHING",
+                       "tnittrbt", row->design, row->evaluator, row->columns, eo_store_outcome_name(row->outcome),
+                       row->reason, row->cost, (const void *)(row->numbers ? row->number : &nothing),
+                       sizeof *row->number * (size_t)row->numbers, digest));
   if (sqlite3_changes(store->handle) == 0)
     return eo_store_find_variant(store, row, error);
   row->id = sqlite3_last_insert_rowid(store->handle);

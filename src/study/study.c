@@ -103,8 +103,8 @@ static enum eo_code compute(struct study *s, struct eo_error *error)
     s->fraction_before = budget_fraction(s, s->batch.count - s->missing_count);
   }
   double start = wall();
-  enum eo_code code =
-      s->plan->crew ? eo_study_compute_on_crew(s, error) : eo_parallel_run(&parallel, s->missing_count, error);
+  enum eo_code code = s->plan->crew ? eo_study_compute_on_crew(s, error)
+                                    : eo_parallel_run(&parallel, s->missing_count, error);
   s->result->model_seconds += wall() - start;
   return code;
 }

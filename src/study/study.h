@@ -34,7 +34,7 @@ struct eo_study_plan {
   const struct eo_design *design; /* complete (eo_design_complete()); borrowed, as all here */
   const struct eo_pair *pair;     /* serves the design */
   struct eo_store *store;         /* of the calling thread */
-  struct eo_crew *crew;         /* that computes the rows in place of threads; NULL: none */
+  struct eo_crew *crew;           /* that computes the rows in place of threads; NULL: none */
   int threads;                    /* 0: eo_parallel_cores() */
   int64_t job;                    /* a queued job to work on; 0: the one to take up, or a new one */
   bool fresh;            /* the algorithm is told nothing of earlier jobs; what it asks for is still looked up */

@@ -31,7 +31,7 @@ struct study {
   int missing_count, missing_capacity;
   struct worker worker[EO_MAX_THREADS];
   struct eo_batch batch;
-  int computed_of_batch; /* by a crew, of the missing ones */
+  int computed_of_batch;          /* by a crew, of the missing ones */
   double started, first_computed; /* s; first_computed: 0 until something was */
   double fraction_before;         /* of the work that was done then */
 };

@@ -10,9 +10,9 @@
 
 struct eo_racked_pair {
   struct eo_pair_identity identity;
-  struct eo_pair *pair;   /* owned; NULL while it is being prepared, and where that failed */
-  struct eo_error error;  /* where it failed */
-  bool ready;             /* prepared, or failed */
+  struct eo_pair *pair;  /* owned; NULL while it is being prepared, and where that failed */
+  struct eo_error error; /* where it failed */
+  bool ready;            /* prepared, or failed */
   int holders;
   struct eo_racked_pair *next;
 };
@@ -25,8 +25,8 @@ struct eo_pair_rack {
   struct eo_racked_pair *first;
 };
 
-enum eo_code eo_pair_rack_new(struct eo_pair_rack **result, const struct eo_crew_place *place, const struct eo_progress *progress,
-                              struct eo_error *error)
+enum eo_code eo_pair_rack_new(struct eo_pair_rack **result, const struct eo_crew_place *place,
+                              const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_pair_rack *rack = calloc(1, sizeof *rack);
   if (!rack)
@@ -87,9 +87,10 @@ static enum eo_code admit(const struct eo_crew_place *place, const struct eo_des
     return EO_OK; /* the preparation says what is wrong with it */
   if (cost.memory <= place->memory && cost.seconds <= place->seconds)
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "/resolution",
-                      "Preparing this pair would take %.0f MB and %.0f s of a processor; %.0f MB and %.0f s are allowed.",
-                      cost.memory / 1e6, cost.seconds, place->memory / 1e6, place->seconds);
+  return eo_error_set(
+      error, EO_ERROR_INPUT, "/resolution",
+      "Preparing this pair would take %.0f MB and %.0f s of a processor; %.0f MB and %.0f s are allowed.",
+      cost.memory / 1e6, cost.seconds, place->memory / 1e6, place->seconds);
 }
 
 /* Called and left with the mutex locked, which it lets go of meanwhile. */
@@ -121,11 +122,11 @@ static struct eo_racked_pair *add(struct eo_pair_rack *rack, const struct eo_pai
   return held;
 }
 
-enum eo_code eo_pair_rack_take(struct eo_pair_rack *rack, const struct eo_design *design, struct eo_racked_pair **result,
-                               struct eo_error *error)
+enum eo_code eo_pair_rack_take(struct eo_pair_rack *rack, const struct eo_design *design,
+                               struct eo_racked_pair **result, struct eo_error *error)
 {
-  const struct eo_pair_identity identity =
-      eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution);
+  const struct eo_pair_identity identity = eo_pair_identity_of(&design->gear_pair, &design->material,
+                                                               &design->resolution);
   enum eo_code code = EO_OK;
   pthread_mutex_lock(&rack->mutex);
   struct eo_racked_pair *held = find(rack, &identity);

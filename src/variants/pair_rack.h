@@ -11,8 +11,8 @@ struct eo_racked_pair;
 
 /* place: its folder of prepared pairs and its bounds; borrowed, as progress, which is called from any thread. Errors:
    memory. */
-enum eo_code eo_pair_rack_new(struct eo_pair_rack **rack, const struct eo_crew_place *place, const struct eo_progress *progress,
-                              struct eo_error *error);
+enum eo_code eo_pair_rack_new(struct eo_pair_rack **rack, const struct eo_crew_place *place,
+                              const struct eo_progress *progress, struct eo_error *error);
 void eo_pair_rack_free(struct eo_pair_rack *rack); /* everything was put back; NULL is fine */
 
 /* The pair that serves a complete design, prepared when nobody has it; others who ask meanwhile wait. Those that nobody

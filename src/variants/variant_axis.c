@@ -69,8 +69,10 @@ static bool add_name(struct eo_variant_axis *axis, const char *name, const struc
         return false;
     }
     if (!count)
-      eo_faults_add(faults, pointer, "\"%.100s\": * stands for load cases (load_cases.*.torque_Nm) or for both ends "
-                                     "(modification.pinion.*.tip_relief_um).", name);
+      eo_faults_add(faults, pointer,
+                    "\"%.100s\": * stands for load cases (load_cases.*.torque_Nm) or for both ends "
+                    "(modification.pinion.*.tip_relief_um).",
+                    name);
     return count > 0;
   }
   return add_key(axis, name, pointer, faults);
@@ -106,8 +108,8 @@ void eo_variant_axis_name(struct eo_variant_axis *axis, const char *name, const 
   else if (*unit && !eo_design_key_convert(axis->field, unit, &axis->factor))
     eo_faults_add(faults, pointer, "The unit \"%.20s\" is not one of %.100s.", unit, axis->path[0]);
   for (int i = 0; i < axis->paths; i++)
-    axis->of_pair = axis->of_pair || starts_with(axis->path[i], "gear_pair.") || starts_with(axis->path[i], "material.") ||
-                    starts_with(axis->path[i], "resolution.");
+    axis->of_pair = axis->of_pair || starts_with(axis->path[i], "gear_pair.") ||
+                    starts_with(axis->path[i], "material.") || starts_with(axis->path[i], "resolution.");
 }
 
 void eo_variant_axis_done(struct eo_variant_axis *axis)
@@ -131,7 +133,8 @@ static json_t *number(const struct eo_variant_axis *axis, double value)
 
 static bool is_word(const struct eo_variant_axis *axis)
 {
-  return axis->field->kind == EO_FIELD_CHOICE || axis->field->kind == EO_FIELD_TEXT || axis->field->kind == EO_FIELD_FLAG;
+  return axis->field->kind == EO_FIELD_CHOICE || axis->field->kind == EO_FIELD_TEXT ||
+         axis->field->kind == EO_FIELD_FLAG;
 }
 
 json_t *eo_variant_axis_read(const struct eo_variant_axis *axis, const char *cell)
@@ -160,8 +163,8 @@ static void read_words(struct eo_variant_axis *axis, const char *words, const ch
   }
 }
 
-static void check_range(struct eo_variant_axis *axis, const struct eo_study_axis *asked, enum eo_sampling sampling,
-                        const char *pointer, struct eo_faults *faults)
+static void check_range(struct eo_variant_axis *axis, const struct eo_study_axis *asked,
+                        enum eo_study_sampling sampling, const char *pointer, struct eo_faults *faults)
 {
   axis->from = asked->from;
   axis->to = isnan(asked->to) ? asked->from : asked->to;
@@ -170,14 +173,14 @@ static void check_range(struct eo_variant_axis *axis, const struct eo_study_axis
     eo_faults_add(faults, pointer, "%.100s takes words, not a range.", axis->path[0]);
   else if (axis->to < axis->from)
     eo_faults_add(faults, pointer, "The range ends at %.9g, below its start %.9g.", axis->to, axis->from);
-  else if ((axis->to > axis->from) != (axis->points > 1) && sampling == EO_SAMPLING_FACTORIAL)
+  else if ((axis->to > axis->from) != (axis->points > 1) && sampling == EO_STUDY_FACTORIAL)
     eo_faults_add(faults, pointer, "%d points from %.9g to %.9g are no range.", axis->points, axis->from, axis->to);
   else if (is_whole(axis) && (axis->from != floor(axis->from) || axis->to != floor(axis->to)))
     eo_faults_add(faults, pointer, "%.100s takes whole numbers.", axis->path[0]);
 }
 
-void eo_variant_axis_fill(struct eo_variant_axis *axis, const struct eo_study_axis *asked, enum eo_sampling sampling,
-                          const char *pointer, struct eo_faults *faults)
+void eo_variant_axis_fill(struct eo_variant_axis *axis, const struct eo_study_axis *asked,
+                          enum eo_study_sampling sampling, const char *pointer, struct eo_faults *faults)
 {
   int ways = (asked->values.count > 0) + (*asked->words != '\0') + !isnan(asked->from);
   if (!axis->paths)

@@ -11,8 +11,8 @@ void eo_variant_axis_name(struct eo_variant_axis *axis, const char *name, const 
                           const char *pointer, struct eo_faults *faults);
 
 /* Takes its values: a list, words or a range. */
-void eo_variant_axis_fill(struct eo_variant_axis *axis, const struct eo_study_axis *asked, enum eo_sampling sampling,
-                          const char *pointer, struct eo_faults *faults);
+void eo_variant_axis_fill(struct eo_variant_axis *axis, const struct eo_study_axis *asked,
+                          enum eo_study_sampling sampling, const char *pointer, struct eo_faults *faults);
 
 void eo_variant_axis_done(struct eo_variant_axis *axis);
 
@@ -23,7 +23,7 @@ json_t *eo_variant_axis_read(const struct eo_variant_axis *axis, const char *cel
 int eo_variant_axis_count(const struct eo_variant_axis *axis);
 json_t *eo_variant_axis_level(const struct eo_variant_axis *axis, int level);
 
-/* The value at x in [0, 1). */
+/* The value at x in (0, 1). */
 json_t *eo_variant_axis_at(const struct eo_variant_axis *axis, double x);
 
 #endif

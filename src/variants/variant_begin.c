@@ -22,7 +22,7 @@ static enum eo_code new_job(struct variant_study *s, struct eo_error *error)
   s->job.design = design.data;
   s->job.spec = spec.data;
   s->job.name = s->run->plan->name;
-  s->job.algorithm = s->run->plan->table ? "table" : eo_samplings[s->run->plan->sampling];
+  s->job.algorithm = s->run->plan->table ? "table" : eo_study_samplings[s->run->plan->sampling];
   s->job.state = EO_JOB_RUNNING;
   enum eo_code code = design.failed || spec.failed ? eo_error_memory(error)
                                                    : eo_store_add_job(s->run->store, &s->job, error);

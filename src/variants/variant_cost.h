@@ -8,11 +8,11 @@
 #include "variants/variant_plan.h"
 
 struct eo_variant_cost {
-  int rows, pairs, refused_pairs;     /* variants; gear pairs to be prepared; first variants of a pair that are refused */
-  double memory;                      /* bytes of the largest preparation */
-  double preparation;                 /* s of a processor of 2023, for all pairs that are not kept already */
-  double evaluation;                  /* s of a processor for one variant, mean of earlier ones; NaN: none is known */
-  double kept;                        /* bytes of the rows in the data folder */
+  int rows, pairs, refused_pairs; /* variants; gear pairs to be prepared; first variants of a pair that are refused */
+  double memory;                  /* bytes of the largest preparation */
+  double preparation;             /* s of a processor of 2023, for all pairs that are not kept already */
+  double evaluation;              /* s of a processor for one variant, mean of earlier ones; NaN: none is known */
+  double kept;                    /* bytes of the rows in the data folder */
 };
 
 extern const struct eo_outline eo_variant_cost_outline;

@@ -22,8 +22,7 @@ static enum eo_code find_document(struct eo_store *store, int64_t job, json_t **
 {
   enum eo_job_outcome outcome;
   EO_TRY(eo_queue_find(store, job, take_spec, document, &outcome, error));
-  return *document ? EO_OK
-                   : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job);
+  return *document ? EO_OK : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job);
 }
 
 enum eo_code eo_variant_job_run(struct eo_store *store, int64_t job, struct eo_crew *crew, eo_variant_watch *watch,

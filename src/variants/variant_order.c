@@ -3,14 +3,15 @@
 
 #include "document/result_scalars.h"
 
-const char *const eo_samplings[] = {"factorial", "latin", "sobol", NULL};
+const char *const eo_study_samplings[] = {"factorial", "latin", "sobol", NULL};
 
 static const struct eo_field axis_fields[] = {
     EO_TEXT(struct eo_study_axis, key, "key",
             "path of the number, load_cases.1.torque_Nm, or a symbol of the standards; * or `both` in it: every load "
             "case, both ends; keys joined by + take the same value; a unit in brackets behind it: the values are in "
             "that"),
-    EO_SERIES(struct eo_study_axis, values, "values", NULL, EO_STUDY_MOST_LEVELS, -1e12, 1e12, 0, "one after the other"),
+    EO_SERIES(struct eo_study_axis, values, "values", NULL, EO_STUDY_MOST_LEVELS, -1e12, 1e12, 0,
+              "one after the other"),
     EO_TEXT_DERIVED(struct eo_study_axis, words, "words", 0, "none",
                     "in place of values for keys that are words, true or false: separated by commas"),
     EO_NUMBER_DERIVED(struct eo_study_axis, from, "from", NULL, -1e12, 1e12, "no range", "in place of values: a range"),
@@ -44,8 +45,9 @@ static const struct eo_field order_fields[] = {
      .derived = "none",
      .help = "in place of vary: comma-separated values, a heading of keys (units in brackets) and a row for each "
              "variant"},
-    EO_CHOICE(struct eo_study_order, sampling, "sampling", eo_samplings, EO_SAMPLING_FACTORIAL,
-              "factorial: every value of one with every value of the others; latin, sobol: samples that fill the space"),
+    EO_CHOICE(
+        struct eo_study_order, sampling, "sampling", eo_study_samplings, EO_STUDY_FACTORIAL,
+        "factorial: every value of one with every value of the others; latin, sobol: samples that fill the space"),
     EO_INTEGER(struct eo_study_order, samples, "samples", 1, EO_STUDY_MOST_ROWS, 64, "of a latin or sobol study"),
     {.key = "seed",
      .kind = EO_FIELD_SEED,
@@ -53,7 +55,7 @@ static const struct eo_field order_fields[] = {
      .low = 0,
      .high = 9007199254740991.,
      .fallback = 1,
-     .help = "of a latin or sobol study; sobol with 0: the sequence as it is, without a shift"},
+     .help = "of a latin or sobol study"},
     {.key = "columns",
      .kind = EO_FIELD_TEXT,
      .flags = EO_FIELD_NULLABLE,

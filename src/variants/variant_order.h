@@ -17,13 +17,13 @@ enum {
   EO_STUDY_BYTES = 64 << 20, /* largest document, with its table */
 };
 
-enum eo_sampling { EO_SAMPLING_FACTORIAL, EO_SAMPLING_LATIN, EO_SAMPLING_SOBOL };
-extern const char *const eo_samplings[]; /* by number; ends with NULL */
+enum eo_study_sampling { EO_STUDY_FACTORIAL, EO_STUDY_LATIN, EO_STUDY_SOBOL };
+extern const char *const eo_study_samplings[]; /* by number; ends with NULL */
 
 /* One thing that varies. */
 struct eo_study_axis {
   char key[400];
-  struct eo_series values; /* none: a range or words */
+  struct eo_numbers values; /* none: a range or words */
   char words[400];
   double from, to; /* NaN: no range */
   int points;      /* 0: 2 */
@@ -34,7 +34,7 @@ struct eo_study_order {
   const json_t *design; /* borrowed from the document */
   int axes;
   struct eo_study_axis axis[EO_STUDY_AXES];
-  int sampling; /* enum eo_sampling */
+  int sampling; /* enum eo_study_sampling */
   int samples;
   uint64_t seed;
   char columns[2000];

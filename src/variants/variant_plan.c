@@ -8,7 +8,6 @@
 
 #include "exchange/cells.h"
 #include "format/json.h"
-#include "variants/sampling.h"
 #include "variants/variant_axis.h"
 
 static void read_base(struct eo_variant_plan *plan, const json_t *design, struct eo_faults *faults)
@@ -87,8 +86,9 @@ static void read_table(struct eo_variant_plan *plan, const char *text, struct eo
 
 static void count_rows(struct eo_variant_plan *plan, struct eo_faults *faults)
 {
-  double rows = plan->sampling == EO_SAMPLING_FACTORIAL ? 1 : plan->samples;
-  for (int i = 0; i < plan->axes && plan->sampling == EO_SAMPLING_FACTORIAL && !plan->table; i++)
+  struct eo_error error;
+  double rows = plan->sampling == EO_STUDY_FACTORIAL ? 1 : plan->samples;
+  for (int i = 0; i < plan->axes && plan->sampling == EO_STUDY_FACTORIAL && !plan->table; i++)
     rows *= eo_variant_axis_count(&plan->axis[i]);
   if (plan->table)
     rows = (double)json_array_size(plan->table);
@@ -96,16 +96,11 @@ static void count_rows(struct eo_variant_plan *plan, struct eo_faults *faults)
     eo_faults_add(faults, "", "%.0f variants are more than %d.", rows, EO_STUDY_MOST_ROWS);
   else
     plan->rows = (int)rows;
-  if (plan->sampling == EO_SAMPLING_SOBOL && plan->axes > EO_SOBOL_DIMENSIONS)
-    eo_faults_add(faults, "/sampling", "A Sobol study varies at most %d things; latin has no such bound.",
-                  EO_SOBOL_DIMENSIONS);
-  for (int i = 0; i < plan->axes && plan->sampling == EO_SAMPLING_LATIN && !plan->table && !faults->count; i++) {
-    plan->latin[i] = malloc(sizeof(int) * (size_t)plan->rows);
-    if (plan->latin[i])
-      eo_latin_order(plan->seed, i, plan->rows, plan->latin[i]);
-    else
-      eo_faults_add(faults, "", "There is not enough memory.");
-  }
+  if (plan->table || plan->sampling == EO_STUDY_FACTORIAL || faults->count)
+    return;
+  enum eo_sampling sampling = plan->sampling == EO_STUDY_SOBOL ? EO_SAMPLING_SOBOL : EO_SAMPLING_LATIN;
+  if (eo_sampler_new(&plan->sampler, sampling, plan->axes, plan->rows, plan->seed, &error))
+    eo_faults_add(faults, "/sampling", "%s", error.text);
 }
 
 static bool hash_document(const json_t *document, const char *kind, char hash[EO_HASH_LENGTH + 1])
@@ -154,7 +149,7 @@ bool eo_variant_plan_init(struct eo_variant_plan *plan, const json_t *document, 
     return false;
   }
   if (eo_study_order_decode(document, order, &table, faults)) {
-    plan->sampling = (enum eo_sampling)order->sampling;
+    plan->sampling = (enum eo_study_sampling)order->sampling;
     plan->samples = order->samples;
     plan->seed = order->seed;
     snprintf(plan->columns, sizeof plan->columns, "%s", order->columns);
@@ -177,10 +172,9 @@ bool eo_variant_plan_init(struct eo_variant_plan *plan, const json_t *document, 
 
 void eo_variant_plan_done(struct eo_variant_plan *plan)
 {
-  for (int i = 0; i < EO_STUDY_AXES; i++) {
+  for (int i = 0; i < EO_STUDY_AXES; i++)
     eo_variant_axis_done(&plan->axis[i]);
-    free(plan->latin[i]);
-  }
+  eo_sampler_free(plan->sampler);
   json_decref(plan->base);
   json_decref(plan->table);
   free(plan->design);
@@ -206,17 +200,18 @@ json_t *eo_variant_values(const struct eo_variant_plan *plan, int row)
     return json_incref(json_array_get(plan->table, (size_t)row));
   json_t *values = json_array();
   int rest = row, size = plan->rows;
+  double u[EO_STUDY_AXES];
+  if (plan->sampler)
+    eo_sampler_at(plan->sampler, row, u);
   for (int i = 0; i < plan->axes && values; i++) {
     const struct eo_variant_axis *axis = &plan->axis[i];
     json_t *value;
-    if (plan->sampling == EO_SAMPLING_FACTORIAL) { /* the last one varies fastest */
+    if (plan->sampling == EO_STUDY_FACTORIAL) { /* the last one varies fastest */
       size /= eo_variant_axis_count(axis);
       value = eo_variant_axis_level(axis, rest / size);
       rest %= size;
-    } else if (plan->sampling == EO_SAMPLING_SOBOL)
-      value = eo_variant_axis_at(axis, eo_sobol(plan->seed, i, (uint64_t)row));
-    else
-      value = eo_variant_axis_at(axis, eo_latin(plan->seed, i, plan->rows, plan->latin[i], row));
+    } else
+      value = eo_variant_axis_at(axis, u[i]);
     if (json_array_append_new(values, value) != 0) {
       json_decref(values);
       values = NULL;

@@ -5,6 +5,7 @@
 
 #include "document/design_document.h"
 #include "exchange/design_keys.h"
+#include "tolerance/sampler.h"
 #include "variants/variant_order.h"
 
 struct eo_variant_axis {
@@ -27,10 +28,10 @@ struct eo_variant_plan {
   int axes, rows;
   struct eo_variant_axis axis[EO_STUDY_AXES];
   json_t *table; /* array of rows of values; NULL: from the axes; owned */
-  enum eo_sampling sampling;
+  enum eo_study_sampling sampling;
   int samples;
   uint64_t seed;
-  int *latin[EO_STUDY_AXES];            /* eo_latin_order(); owned */
+  struct eo_sampler *sampler;           /* of samples; owned */
   bool of_modification;                 /* nothing but the modification varies: all are of one problem of the history */
   char study_hash[EO_HASH_LENGTH + 1];  /* equal studies have equal rows */
   char design_hash[EO_HASH_LENGTH + 1]; /* of what is evaluated of the base design */

@@ -150,7 +150,7 @@ bool eo_variant_fits(const struct eo_variant_table *table, const struct eo_varia
   for (int i = 0; i < conditions->count && fits; i++) {
     const struct eo_variant_condition *condition = &conditions->condition[i];
     double value = eo_variant_number(table, &condition->name, row), limit = condition->value;
-    const bool holds[] = {value < limit, value <= limit, value > limit, value >= limit, value == limit, value != limit};
+    const bool holds[] = {value<limit, value <= limit, value> limit, value >= limit, value == limit, value != limit};
     fits = holds[condition->relation];
   }
   return fits;

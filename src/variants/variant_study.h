@@ -14,11 +14,11 @@
 
 struct eo_variant_report {
   int64_t job;
-  int rows;                              /* of the study */
-  int done, reused;                      /* that have a result; of them known before the study asked */
-  int computed, refused, not_converged;  /* by this run; of all that are done */
+  int rows;                               /* of the study */
+  int done, reused;                       /* that have a result; of them known before the study asked */
+  int computed, refused, not_converged;   /* by this run; of all that are done */
   double fraction, seconds, seconds_left; /* NaN: not known yet */
-  const char *what;                      /* for people */
+  const char *what;                       /* for people */
 };
 
 /* Several times a second, on the thread that runs the study; non-zero asks for a stop. */
@@ -29,8 +29,8 @@ struct eo_variant_run {
   const json_t *document; /* of eo_variant_plan_encode(): kept with the job */
   struct eo_store *store; /* of the calling thread */
   struct eo_crew *crew;
-  int64_t job;  /* a queued job to work on; 0: the one to take up, or a new one */
-  bool restart; /* a new job even where one of the same study could be taken up */
+  int64_t job;             /* a queued job to work on; 0: the one to take up, or a new one */
+  bool restart;            /* a new job even where one of the same study could be taken up */
   eo_variant_watch *watch; /* may be NULL */
   void *context;
 };
@@ -43,8 +43,8 @@ struct eo_variant_result {
   double cost;                                    /* s of processors, of what was computed */
 };
 
-/* A stop that was asked for is no error: result->cancelled tells. Errors: EO_ERROR_INPUT (job, columns), of the crew, of
-   the history; what was kept before stays. */
+/* A stop that was asked for is no error: result->cancelled tells. Errors: EO_ERROR_INPUT (job, columns), of the crew,
+   of the history; what was kept before stays. */
 enum eo_code eo_variant_study_run(const struct eo_variant_run *run, struct eo_variant_result *result,
                                   struct eo_error *error);
 

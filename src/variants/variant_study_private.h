@@ -22,14 +22,14 @@ struct variant_study {
   int64_t columns;
   int *missing; /* [rows] variants that have no row yet, in the order of evaluation; owned */
   int missing_count;
-  double *number; /* [scalars.count]; owned */
+  double *number;                       /* [scalars.count]; owned */
   double started, computing, committed; /* s of the clock */
   struct waiting_answer waiting[MOST_WAITING];
   int waiting_count;
   double waits_since;    /* s of the clock, the first of them */
   struct eo_error fault; /* of writing, where it could not be told at once */
-  bool open;                            /* a transaction is */
-  int unsaved;                          /* rows in it */
+  bool open;             /* a transaction is */
+  int unsaved;           /* rows in it */
   /* The history of searches, where the study shares it: */
   bool shared;
   int64_t problem;

@@ -67,8 +67,8 @@ static enum eo_code look_at(void *context, const struct eo_stored_variant *row, 
     search->pick = more;
     search->capacity = capacity;
   }
-  search->pick[search->count++] =
-      (struct pick){row->ordinal, eo_variant_number(search->table, &search->conditions.sort, row)};
+  search->pick[search->count++] = (struct pick){row->ordinal,
+                                                eo_variant_number(search->table, &search->conditions.sort, row)};
   return EO_OK;
 }
 
@@ -124,8 +124,8 @@ enum eo_code eo_variant_table_init(struct eo_variant_table *table, struct eo_sto
   table->job = job;
   EO_TRY(open_study(table, store, error));
   EO_TRY(eo_variant_query_read(table, query, &search.conditions, error));
-  enum eo_code code = eo_store_each_variant(store, job, -1, needs_numbers(&search.conditions) ? table->scalars.count : -1,
-                                            look_at, &search, error);
+  enum eo_code code = eo_store_each_variant(
+      store, job, -1, needs_numbers(&search.conditions) ? table->scalars.count : -1, look_at, &search, error);
   if (!code)
     code = take_page(&search, query, error);
   free(search.pick);
@@ -179,9 +179,9 @@ static const struct eo_outline_row key_rows[] = {
 static const struct eo_outline key_outline = EO_OUTLINE("StudyKey", key_rows);
 
 static const struct eo_outline_row column_rows[] = {
-    EO_KEY("name", "text", "path in the result document", EO_AT(struct eo_scalar, name)),
-    EO_KEY("unit", "text", "of its numbers; empty without", EO_AT(struct eo_scalar, unit)),
-    EO_KEY("help", "text", "what it is", EO_AT(struct eo_scalar, help)),
+    EO_KEY("name", "text", "path in the result document", EO_AT(struct eo_result_number, name)),
+    EO_KEY("unit", "text", "of its numbers; empty without", EO_AT(struct eo_result_number, unit)),
+    EO_KEY("help", "text", "what it is", EO_AT(struct eo_result_number, help)),
 };
 static const struct eo_outline column_outline = EO_OUTLINE("StudyColumn", column_rows);
 

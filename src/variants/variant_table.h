@@ -11,8 +11,8 @@
 
 /* Which rows, in which order. */
 struct eo_variant_query {
-  const char *filter; /* "objectives.J<0.4, outcome=converged": NAME and one of < <= > >= = !=, a number or an outcome; all
-                         of them hold. NULL or "": every row */
+  const char *filter; /* "objectives.J<0.4, outcome=converged": NAME and one of < <= > >= = !=, a number or an outcome;
+                         all of them hold. NULL or "": every row */
   const char *sort;   /* name of what varies, of a column, "variant" or "outcome"; NULL or "": variant */
   bool descending;
   int first, most; /* of the rows that fit; most -1: all */
@@ -24,9 +24,9 @@ struct eo_variant_table {
   int64_t job;
   struct eo_variant_plan plan;
   struct eo_scalars scalars;
-  int done, fits;  /* rows that have a result; of them those that the filter lets pass */
-  int count;       /* rows below */
-  int *variant;    /* [count], in order; owned */
+  int done, fits; /* rows that have a result; of them those that the filter lets pass */
+  int count;      /* rows below */
+  int *variant;   /* [count], in order; owned */
 };
 
 /* Reads the study of a job and finds the rows. Errors: EO_ERROR_INPUT (no such job or no study, a filter or sort that
@@ -41,8 +41,8 @@ extern const struct eo_outline eo_variant_table_outline, eo_variant_columns_outl
 json_t *eo_variant_columns_encode(const struct eo_scalars *scalars);
 
 /* { "job", "name", "keys" [ { name, unit, paths } ], "columns" [ { name, unit, help } ], "variants", "done", "fits",
-   "first", "items" [ { "variant", "outcome", "reason", "values" (of the keys), "numbers" (of the columns) } ] }. Errors:
-   memory, the store's. */
+   "first", "items" [ { "variant", "outcome", "reason", "values" (of the keys), "numbers" (of the columns) } ] }.
+   Errors: memory, the store's. */
 enum eo_code eo_variant_table_encode(const struct eo_variant_table *table, struct eo_store *store,
                                      const struct eo_variant_query *query, json_t **document, struct eo_error *error);
 

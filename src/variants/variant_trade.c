@@ -43,8 +43,8 @@ enum eo_code eo_variant_trade_order(const struct eo_variant_plan *plan, struct e
       json_array_append_new(paths, json_string(plan->axis[i].path[k]));
     json_array_append_new(axes, json_pack("{s:o, s:f}", "paths", paths, "factor", plan->axis[i].factor));
   }
-  json_t *document = json_pack("{s:O, s:o, s:s, s:i, s:i}", "design", plan->base, "axes", axes, "columns", plan->columns,
-                               "cases", plan->design->load_cases, "ends", plan->design->gear_pair.ends);
+  json_t *document = json_pack("{s:O, s:o, s:s, s:i, s:i}", "design", plan->base, "axes", axes, "columns",
+                               plan->columns, "cases", plan->design->load_cases, "ends", plan->design->gear_pair.ends);
   if (document)
     eo_json_write(order, document, EO_JSON_COMPACT);
   bool good = document && !order->failed;

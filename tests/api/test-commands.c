@@ -310,12 +310,14 @@ static const struct command after[] = {
 };
 
 static const struct command studies[] = {
-    {"what a study takes", "POST", API "/study-cost", .body = &study, .status = 200, .pointer = "variants", .value = "6"},
+    {"what a study takes", "POST", API "/study-cost", .body = &study, .status = 200, .pointer = "variants",
+     .value = "6"},
     {"a study that varies nothing", "POST", API "/studies", .body = &named, .status = 422,
      .pointer = "errors/0/pointer", .value = "/vary"},
-    {"a study as any job", "POST", API "/jobs", .text = "{\"kind\":\"study\",\"design\":{\"gear_pair\":{}}}", .status = 422},
-    {"a study", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202, .header = "Location",
-     .holds = API "/jobs/5", .pointer = "kind", .value = "study"},
+    {"a study as any job", "POST", API "/jobs", .text = "{\"kind\":\"study\",\"design\":{\"gear_pair\":{}}}",
+     .status = 422},
+    {"a study", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202,
+     .header = "Location", .holds = API "/jobs/5", .pointer = "kind", .value = "study"},
     {"the same study again", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202,
      .pointer = "id", .value = "5"},
     {"no study", "GET", API "/studies/99/table", .status = 404},
