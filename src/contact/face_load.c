@@ -3,16 +3,28 @@
 
 #include <math.h>
 
-/* Adds a force that lies evenly over `width` around eta to the slices it covers; what hangs over a face end counts in
-   the last slice. */
-static void spread(struct eo_face_load *face, double face_width, double eta, double width, double force)
+/* Of two numbers, none of them NaN. */
+static inline double larger(double a, double b)
 {
-  double slice = face_width / EO_FACE_SLICES;
-  double from = (eta - width / 2 + face_width / 2) / slice, to = (eta + width / 2 + face_width / 2) / slice;
-  from = fmin(fmax(from, 0), EO_FACE_SLICES - 1e-9);
-  to = fmin(fmax(to, from + 1e-9), EO_FACE_SLICES);
-  for (int i = (int)from; i < EO_FACE_SLICES && i < to; i++)
-    face->load[i] += force * (fmin(to, i + 1) - fmax(from, i)) / (to - from);
+  return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+/* Adds a force that lies evenly between two places, in slices from the face end on, to the slices it covers; what hangs
+   over a face end counts in the last slice. */
+static void spread(struct eo_face_load *face, double from, double to, double force)
+{
+  static const double LEAST = 1e-9; /* of a slice */
+  from = smaller(larger(from, 0), EO_FACE_SLICES - LEAST);
+  to = smaller(larger(to, from + LEAST), EO_FACE_SLICES);
+  double per_slice = force / (to - from);
+  int first = (int)from, last = smaller(to, EO_FACE_SLICES - 1) > first ? (int)smaller(to, EO_FACE_SLICES - 1) : first;
+  for (int i = first; i <= last; i++)
+    face->load[i] += per_slice * (smaller(to, i + 1) - larger(from, i));
 }
 
 /* What one mesh position adds: forces to the slices, lengths of its lines, the largest load of a pair on the real
@@ -43,12 +55,16 @@ static void add_position(struct eo_face_load *face, struct sums *sums, const str
 {
   const struct eo_contact_position *p = &grid->position[position];
   const double *line_load = end->line_load + p->first;
-  double axial = cos(grid->geometry.base_helix_angle), lines = 0, longest = 0, heaviest = 0;
+  double slices = EO_FACE_SLICES / grid->geometry.face_width, lines = 0, longest = 0, heaviest = 0;
+  double half = cos(grid->geometry.base_helix_angle) * slices / 2;
   for (int i = 0; i < p->points; i++) {
-    double force = line_load[i] * p->length[i];
-    spread(face, grid->geometry.face_width, p->point[i].eta, p->length[i] * axial, force);
+    if (line_load[i] == 0)
+      continue;
+    double force = line_load[i] * p->length[i], middle = p->point[i].eta * slices + EO_FACE_SLICES / 2.0,
+           reach = p->length[i] * half;
+    spread(face, middle - reach, middle + reach, force);
     sums->force += force;
-    sums->line_load = fmax(sums->line_load, line_load[i]);
+    sums->line_load = larger(sums->line_load, line_load[i]);
   }
   for (int l = 0; l < p->lines; l++) {
     double length = 0;

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "numerics/minimise.h"
+
 /* The slices in mesh with the share of shaft angle errors, z from their pivot; *slope by s. */
 static double even_slices_at(const struct eo_gap_field *field, double s, double z, double *slope)
 {
@@ -236,45 +238,50 @@ bool eo_gap_field_line_range(const struct eo_geometry *g, double c, double low, 
   return range[1] > range[0];
 }
 
+/* The gap along one contact line. */
+struct along_line {
+  const struct eo_gap_field *field;
+  double phase;
+};
+
+static double gap_along(void *context, double eta)
+{
+  const struct along_line *line = context;
+  return eo_gap_field_at(line->field, line->phase + eta * line->field->lean, eta, NULL, NULL);
+}
+
+double eo_gap_field_line_descend(const struct eo_gap_field *field, double c, const double range[2], double step,
+                                 double gap, double *eta)
+{
+  static const double SETTLED = 2e-4; /* of a step: some picometres of gap */
+  struct along_line line = {field, c};
+  return eo_minimise_along(gap_along, &line, fmax(range[0], *eta - step), fmin(range[1], *eta + step), SETTLED * step,
+                           gap, eta);
+}
+
+bool eo_gap_field_edge_range(const struct eo_gap_field *field, double c, bool edges, double range[2])
+{
+  const struct eo_geometry *g = field->geometry;
+  double reach = edges ? field->corner[0].reach / 2 : 0;
+  return eo_gap_field_line_range(g, c, g->path_start - reach, g->path_end + reach, range);
+}
+
 double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, bool edges, double *at)
 {
-  enum { SAMPLES = 32, GOLDEN_STEPS = 18 };
-  const struct eo_geometry *g = field->geometry;
-  double range[2], tangent = field->lean, best = INFINITY, best_eta = 0;
-  double reach = edges ? field->corner[0].reach / 2 : 0;
-  if (!eo_gap_field_line_range(g, c, g->path_start - reach, g->path_end + reach, range))
+  enum { SAMPLES = 32 };
+  struct along_line line = {field, c};
+  double range[2], best = INFINITY, best_eta = 0;
+  if (!eo_gap_field_edge_range(field, c, edges, range))
     return INFINITY;
   double step = (range[1] - range[0]) / SAMPLES;
   for (int i = 0; i <= SAMPLES; i++) {
-    double eta = range[0] + i * step, gap = eo_gap_field_at(field, c + eta * tangent, eta, NULL, NULL);
+    double eta = range[0] + i * step, gap = gap_along(&line, eta);
     if (gap < best) {
       best = gap;
       best_eta = eta;
     }
   }
-  double low = fmax(range[0], best_eta - step), high = fmin(range[1], best_eta + step), ratio = 0.6180339887498949;
-  double a = high - ratio * (high - low), b = low + ratio * (high - low);
-  double fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL),
-         fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
-  for (int i = 0; i < GOLDEN_STEPS; i++) {
-    if (fmin(fa, fb) < best) {
-      best = fmin(fa, fb);
-      best_eta = fa < fb ? a : b;
-    }
-    if (fa < fb) {
-      high = b;
-      b = a;
-      fb = fa;
-      a = high - ratio * (high - low);
-      fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL);
-    } else {
-      low = a;
-      a = b;
-      fa = fb;
-      b = low + ratio * (high - low);
-      fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
-    }
-  }
+  best = eo_gap_field_line_descend(field, c, range, step, best, &best_eta);
   if (at)
     *at = best_eta;
   return best;

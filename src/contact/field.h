@@ -85,6 +85,13 @@ double eo_gap_field_datum(const struct eo_gap_field *field);
    corners within reach of it; *at: the eta where it is. Returns INFINITY when the line misses the flank. */
 double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, bool edges, double *at);
 
+/* Where that line lies over the face: range[2] of eta, m; false: it misses. */
+bool eo_gap_field_edge_range(const struct eo_gap_field *field, double c, bool edges, double range[2]);
+
+/* The smallest gap of the line within a step of *eta, where it is `gap`, and within the range; *eta: where it is. */
+double eo_gap_field_line_descend(const struct eo_gap_field *field, double c, const double range[2], double step,
+                                 double gap, double *eta);
+
 /* The eta range of the contact line at phase c whose s lies in [low, high]; false when empty. */
 bool eo_gap_field_line_range(const struct eo_geometry *geometry, double c, double low, double high, double range[2]);
 

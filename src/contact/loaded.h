@@ -101,8 +101,10 @@ void eo_loaded_prepare_response(struct eo_loaded_workspace *workspace, const str
 double eo_loaded_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
                           double compliance_factor, const double *change, double *load_change);
 
-/* First contact of the unloaded flanks over the mesh cycle: Z0 [positions], m. */
-void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded);
+/* First contact of the unloaded flanks over the mesh cycle: Z0 [positions], m. gap [grid->points]: the gaps at the
+   points where they are known, else NULL, which takes longer. */
+void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, const double *gap,
+                             double *unloaded);
 
 /* Peak Hertz pressure of line contact, Pa, at line load q, N/m, and relative radius, m. */
 double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius);

@@ -3,36 +3,63 @@
 #include "contact/loaded.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
-void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded)
+/* First contact of the pair that line `first` of a position begins; with the gaps [points] at its points, which may be
+   NULL: within the width of a cell of the lowest of them. INFINITY where an earlier line has the pair already. */
+static double pair_contact(const struct eo_contact_grid *grid, const struct eo_contact_position *p,
+                           const struct eo_gap_field *field, int first, const double *gap)
+{
+  double lowest = INFINITY, eta = 0, step = 0, range[2], axial = cos(grid->geometry.base_helix_angle),
+         c = p->phase + p->line[first].pair * grid->geometry.transverse_base_pitch;
+  bool edges = false;
+  for (int l = 0; l < p->lines; l++) {
+    const struct eo_contact_line *line = &p->line[l];
+    edges = edges || line->kind != EO_POINT_LINE;
+    if (line->pair != p->line[first].pair)
+      continue;
+    if (l < first)
+      return INFINITY;
+    for (int i = line->first; gap && i < line->first + line->cells; i++)
+      if (gap[i] < lowest) {
+        lowest = gap[i];
+        eta = p->point[i].eta;
+      }
+    step = fmax(step, p->length[line->first] * axial);
+  }
+  if (!gap || !eo_gap_field_edge_range(field, c, edges, range))
+    return eo_gap_field_line_minimum(field, c, edges, NULL);
+  range[0] = fmin(range[0], eta);
+  range[1] = fmax(range[1], eta);
+  return eo_gap_field_line_descend(field, c, range, step, lowest, &eta);
+}
+
+void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, const double *gap,
+                             double *unloaded)
 {
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
-    bool edges = false;
     unloaded[j] = INFINITY;
     for (int l = 0; l < p->lines; l++)
-      edges |= p->line[l].kind != EO_POINT_LINE;
-    for (int l = 0; l < p->lines; l++) {
-      bool seen = false;
-      for (int m = 0; m < l; m++)
-        seen |= p->line[m].pair == p->line[l].pair;
-      double c = p->phase + p->line[l].pair * grid->geometry.transverse_base_pitch;
-      if (!seen)
-        unloaded[j] = fmin(unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
-    }
+      unloaded[j] = fmin(unloaded[j], pair_contact(grid, p, field, l, gap ? gap + p->first : NULL));
+  }
+}
+
+static void set_gaps(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *gap)
+{
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *p = &grid->position[j];
+    for (int i = 0; i < p->points; i++)
+      gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
   }
 }
 
 void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                         const struct eo_gap_field *field)
 {
-  for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
-  }
-  eo_loaded_first_contact(grid, field, gaps->unloaded);
+  set_gaps(grid, field, gaps->gap);
+  eo_loaded_first_contact(grid, field, gaps->gap, gaps->unloaded);
 }
 
 double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius)

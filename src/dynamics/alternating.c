@@ -71,11 +71,22 @@ void eo_alternating_free(struct eo_alternating *g)
   free(g);
 }
 
+/* The series of f(phase + shift). */
+static void turn_series(int order, const double *series, double shift, double *turned)
+{
+  turned[0] = series[0];
+  for (int k = 1; k <= order; k++) {
+    double c = cos(2 * M_PI * k * shift), s = sin(2 * M_PI * k * shift);
+    turned[2 * k - 1] = series[2 * k - 1] * c + series[2 * k] * s;
+    turned[2 * k] = series[2 * k] * c - series[2 * k - 1] * s;
+  }
+}
+
 enum eo_code eo_alternating_prepare(struct eo_alternating *g, int end, const struct eo_law *law, double shift,
                                     struct eo_error *error)
 {
   struct eo_time_end *e = &g->end[end];
-  int needed = g->samples * law->rows;
+  int needed = g->samples * law->rows, n = g->samples;
   if (needed > e->capacity) {
     double *row = malloc(sizeof *row * needed);
     if (!row)
@@ -85,8 +96,17 @@ enum eo_code eo_alternating_prepare(struct eo_alternating *g, int end, const str
     e->capacity = needed;
   }
   e->rows = law->rows;
-  for (int i = 0; i < g->samples; i++)
-    eo_law_rows(law, (double)i / g->samples + shift, e->row + (size_t)i * law->rows);
+  if (law->order > 2 * g->harmonics) {
+    for (int i = 0; i < n; i++)
+      eo_law_rows(law, (double)i / n + shift, e->row + (size_t)i * law->rows);
+    return EO_OK;
+  }
+  for (int r = 0; r < law->rows; r++) {
+    turn_series(law->order, law->series + (size_t)r * eo_fourier_terms(law->order), shift, g->scratch);
+    eo_dense_multiply_transposed(eo_fourier_terms(law->order), n, g->basis, g->scratch, e->work);
+    for (int i = 0; i < n; i++)
+      e->row[(size_t)i * law->rows + r] = e->work[i];
+  }
   return EO_OK;
 }
 

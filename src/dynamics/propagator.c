@@ -4,18 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = EO_MAX_COORDINATES, TAYLOR = 12 };
+#include "numerics/dense.h"
 
-void eo_propagator_multiply(int size, const double *a, const double *b, double *c)
-{
-  memset(c, 0, sizeof *c * (size_t)(size * size));
-  for (int i = 0; i < size; i++)
-    for (int k = 0; k < size; k++) {
-      double factor = a[i * size + k];
-      for (int j = 0; j < size; j++)
-        c[i * size + j] += factor * b[k * size + j];
-    }
-}
+enum { N = EO_MAX_COORDINATES, TAYLOR = 12 };
 
 /* exp(a) by a Taylor polynomial of a / 2^n and n squarings, in place. */
 static void exponential(int size, double *a)
@@ -35,13 +26,13 @@ static void exponential(int size, double *a)
     sum[i] = power[i] = i % (size + 1) == 0;
   }
   for (int term = 1; term <= TAYLOR; term++) {
-    eo_propagator_multiply(size, power, a, next);
+    eo_dense_product(size, power, a, next);
     for (int i = 0; i < size * size; i++)
       sum[i] += power[i] = next[i] / term;
   }
   memcpy(a, sum, sizeof *a * (size_t)(size * size));
   for (int i = 0; i < squarings; i++) {
-    eo_propagator_multiply(size, a, a, next);
+    eo_dense_product(size, a, a, next);
     memcpy(a, next, sizeof *a * (size_t)(size * size));
   }
 }

@@ -11,9 +11,6 @@
 void eo_propagator_fill(const struct eo_oscillator *oscillator, double mesh_damping, const double mean[2], double rate,
                         double step, double *propagator);
 
-/* c = a b, all [size][size]. */
-void eo_propagator_multiply(int size, const double *a, const double *b, double *c);
-
 /* Angular frequency of the meshes alone, all their stiffness together, rad/s. */
 double eo_propagator_mesh_rate(const struct eo_oscillator *oscillator, const double mean[2]);
 

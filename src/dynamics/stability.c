@@ -210,15 +210,18 @@ enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_
   }
   double rate = eo_propagator_mesh_rate(o, mean), step = orbit.period / kicks;
   eo_propagator_fill(o, cycle->mesh_damping, mean, rate, step, w->trial);
+  double *now = w->y, *next = w->k[0];
   for (int i = 0; i < size; i++)
-    w->y[i * size + i] = 1;
+    now[i * size + i] = 1;
   for (int i = 0; i < kicks; i++) {
     for (int end = 0; end < o->ends; end++)
-      kick(o, end, (stiffness[i][end] - mean[end]) * step / rate, w->y);
-    eo_propagator_multiply(size, w->trial, w->y, w->k[3]);
-    memcpy(w->y, w->k[3], sizeof *w->y * (size_t)(size * size));
+      kick(o, end, (stiffness[i][end] - mean[end]) * step / rate, now);
+    eo_dense_product(size, w->trial, now, next);
+    double *swap = now;
+    now = next;
+    next = swap;
   }
-  int failed = eo_dense_eigenvalues(size, w->y, multiplier);
+  int failed = eo_dense_eigenvalues(size, now, multiplier);
   for (int i = 0; i < size && !failed; i++)
     *largest = fmax(i ? *largest : 0, cabs(multiplier[i]));
   free(w);

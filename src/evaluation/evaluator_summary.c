@@ -32,7 +32,7 @@ static void find_first_contact(const struct eo_evaluator *evaluator, struct eo_c
     struct eo_gap_field bent;
     const struct eo_gap_field *field = loaded_field(evaluator, load_case, end, &bent);
     result->loaded_datum = eo_gap_field_datum(field);
-    eo_loaded_first_contact(eo_evaluator_grid(evaluator, end), field, first_contact);
+    eo_loaded_first_contact(eo_evaluator_grid(evaluator, end), field, NULL, first_contact);
   }
 }
 

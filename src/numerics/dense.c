@@ -41,6 +41,11 @@ void eo_dense_multiply_transposed(int rows, int columns, const double *a, const 
   cblas_dgemv(CblasRowMajor, CblasTrans, rows, columns, 1, a, columns, x, 1, 0, y, 1);
 }
 
+void eo_dense_product(int n, const double *a, const double *b, double *c)
+{
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, n, n, 1, a, n, b, n, 0, c, n);
+}
+
 void eo_dense_add_gram(int rows, int columns, const double *a, double *gram)
 {
   if (rows > 0)

@@ -21,6 +21,9 @@ int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, do
 void eo_dense_multiply(int rows, int columns, const double *a, const double *x, double *y);
 void eo_dense_multiply_transposed(int rows, int columns, const double *a, const double *x, double *y);
 
+/* c = a b, all [n][n]. */
+void eo_dense_product(int n, const double *a, const double *b, double *c);
+
 /* gram[columns][columns] += a' a in its upper triangle, a[rows][columns]. */
 void eo_dense_add_gram(int rows, int columns, const double *a, double *gram);
 

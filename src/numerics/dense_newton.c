@@ -1,8 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "numerics/dense_newton.h"
 
+#include <lapacke.h>
 #include <stdlib.h>
 #include <string.h>
+
+static SUNLinearSolver_Type type_of(SUNLinearSolver solver)
+{
+  (void)solver;
+  return SUNLINEARSOLVER_DIRECT;
+}
+
+/* Factors the matrix in place; the pivots are the solver's content. */
+static int set_up(SUNLinearSolver solver, SUNMatrix matrix)
+{
+  int n = (int)SUNDenseMatrix_Columns(matrix),
+      singular = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, SUNDenseMatrix_Data(matrix), n, solver->content);
+  return singular ? SUNLS_LUFACT_FAIL : SUNLS_SUCCESS;
+}
+
+static int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector right, realtype tolerance)
+{
+  (void)tolerance;
+  int n = (int)SUNDenseMatrix_Columns(matrix);
+  N_VScale(1, right, x);
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, SUNDenseMatrix_Data(matrix), n, solver->content,
+                      N_VGetArrayPointer(x), n);
+  return SUNLS_SUCCESS;
+}
+
+static int free_solver(SUNLinearSolver solver)
+{
+  free(solver->content);
+  solver->content = NULL;
+  SUNLinSolFreeEmpty(solver);
+  return SUNLS_SUCCESS;
+}
+
+static SUNLinearSolver new_solver(int n, SUNContext context)
+{
+  SUNLinearSolver solver = SUNLinSolNewEmpty(context);
+  if (!solver)
+    return NULL;
+  solver->ops->gettype = type_of;
+  solver->ops->setup = set_up;
+  solver->ops->solve = solve;
+  solver->ops->free = free_solver;
+  solver->content = malloc(sizeof(int) * (size_t)n);
+  if (solver->content)
+    return solver;
+  free_solver(solver);
+  return NULL;
+}
 
 int eo_dense_newton_init(struct eo_dense_newton *newton, int n)
 {
@@ -14,7 +63,7 @@ int eo_dense_newton_init(struct eo_dense_newton *newton, int n)
   newton->jacobian = malloc(sizeof *newton->jacobian * n * n);
   if (!newton->x || !newton->matrix || !newton->jacobian)
     return -1;
-  newton->solver = SUNLinSol_Dense(newton->x, newton->matrix, newton->context);
+  newton->solver = new_solver(n, newton->context);
   return newton->solver ? 0 : -1;
 }
 

@@ -129,3 +129,69 @@ double eo_minimise(eo_smooth_function *function, void *context, const double *lo
   memcpy(x, it.x, (size_t)n * sizeof *x);
   return it.value;
 }
+
+/* The best place met, the second best and the one before, and the last two moves. */
+struct line_search {
+  double low, high;
+  double place[3], value[3];
+  double move, before;
+};
+
+/* The parabola through the three places, if its bottom lies inside and it moves less than half the move before last. */
+static bool along_parabola(struct line_search *l, double tolerance, double *move)
+{
+  double x = l->place[0], r = (x - l->place[1]) * (l->value[0] - l->value[2]),
+         q = (x - l->place[2]) * (l->value[0] - l->value[1]), p = (x - l->place[2]) * q - (x - l->place[1]) * r,
+         twice = 2 * (q - r);
+  if (fabs(l->before) <= tolerance || twice == 0)
+    return false;
+  *move = -p / twice;
+  if (!(fabs(*move) < fabs(l->before) / 2) || x + *move <= l->low || x + *move >= l->high)
+    return false;
+  if (x + *move - l->low < 2 * tolerance || l->high - x - *move < 2 * tolerance)
+    *move = copysign(tolerance, (l->low + l->high) / 2 - x);
+  return true;
+}
+
+/* Takes in a value: the interval shrinks towards the better of it and the best one. */
+static void take_value(struct line_search *l, double x, double value)
+{
+  int at = value <= l->value[0] ? 0 : value <= l->value[1] || l->place[1] == l->place[0] ? 1 : 2;
+  double bound = at == 0 ? l->place[0] : x, inside = at == 0 ? x : l->place[0];
+  if (inside < bound)
+    l->high = bound;
+  else
+    l->low = bound;
+  if (at == 2 && value > l->value[2] && l->place[2] != l->place[0] && l->place[2] != l->place[1])
+    return;
+  for (int i = 2; i > at; i--) {
+    l->place[i] = l->place[i - 1];
+    l->value[i] = l->value[i - 1];
+  }
+  l->place[at] = x;
+  l->value[at] = value;
+}
+
+double eo_minimise_along(eo_line_function *function, void *context, double low, double high, double tolerance,
+                         double value, double *x)
+{
+  enum { STEPS = 100 };
+  static const double GOLDEN = 0.3819660112501051; /* (3 - sqrt 5) / 2 */
+  struct line_search l = {low, high, {*x, *x, *x}, {value, value, value}, 0, 0};
+  for (int i = 0; i < STEPS; i++) {
+    double middle = (l.low + l.high) / 2, move = 0;
+    if (fabs(l.place[0] - middle) <= 2 * tolerance - (l.high - l.low) / 2)
+      break;
+    if (along_parabola(&l, tolerance, &move)) {
+      l.before = l.move;
+    } else {
+      l.before = (l.place[0] < middle ? l.high : l.low) - l.place[0];
+      move = GOLDEN * l.before;
+    }
+    l.move = move;
+    double next = l.place[0] + (fabs(move) < tolerance ? copysign(tolerance, move) : move);
+    take_value(&l, next, function(context, next));
+  }
+  *x = l.place[0];
+  return l.value[0];
+}
