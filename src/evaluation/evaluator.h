@@ -68,6 +68,8 @@ struct eo_evaluation {
   struct eo_case_result *load_case;    /* [cases] */
   struct eo_objective_case *objective; /* [cases] */
   struct eo_dynamics_modes modes;      /* with the mean mesh stiffness of the heaviest share */
+  int solutions; /* of loaded contact over the whole mesh cycle, one end and load each, that this run took; those on
+                    elastic bodies and of held pinions apart */
   /* where the time went, ms; root: of both threads, beside impact and dynamics */
   double static_ms, impact_ms, dynamics_ms, root_ms;
 };

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/evaluator_private.h"
 
+#include "base/parallel.h"
+
 #include <string.h>
 
 /* Forgets what belongs to the last run alone. */
@@ -25,6 +27,7 @@ void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run 
   result->ends = run->design->gear_pair.ends;
   result->cases = run->design->load_cases;
   result->static_ms = result->impact_ms = result->dynamics_ms = result->root_ms = 0;
+  result->solutions = 0;
   for (int k = 0; k < result->cases; k++) {
     struct eo_case_result *load_case = &result->load_case[k];
     load_case->load_case = run->design->load_case[k];
@@ -111,9 +114,8 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
   return share_thrust(evaluator, design, error);
 }
 
-void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
+void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, int end)
 {
-  (void)thread;
   if (!evaluator->needs_solving[end])
     return;
   for (int m = 0; m < evaluator->meetings; m++) {
@@ -121,35 +123,83 @@ void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, i
     const enum eo_flank_side side = meeting->running.flank;
     const struct eo_flank_spline *const spline[2] = {evaluator->spline[side][EO_PINION][end],
                                                      evaluator->spline[side][EO_GEAR][end]};
-    eo_meeting_field_init(&meeting->field[end], eo_pair_half(evaluator->pair, end), run->design, spline, &meeting->running, end);
+    eo_meeting_field_init(&meeting->field[end], eo_pair_half(evaluator->pair, end), run->design, spline,
+                          &meeting->running, end);
     eo_loaded_gaps_set(&meeting->gaps[end], eo_evaluator_grid(evaluator, end), &meeting->field[end]);
     meeting->datum[end] = eo_gap_field_datum(&meeting->field[end]);
   }
 }
 
-/* The load cases of one meeting. */
-static void solve_meeting(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end, int m)
+/* Solutions in batches: one thread's share of those that stand together and have the same gaps. */
+struct batches {
+  struct eo_evaluator *evaluator;
+  const struct eo_run *run;
+  const struct eo_solution *solution;
+  int solutions, most; /* most: in a batch */
+};
+
+/* Where the batch that begins at `first` ends. */
+static int end_of_batch(const struct batches *batches, int first)
 {
-  struct eo_evaluation *result = &evaluator->result;
-  double force[EO_MAX_LOAD_CASES] = {0};
-  struct eo_loaded_end loaded[EO_MAX_LOAD_CASES];
-  int loads = 0, of[EO_MAX_LOAD_CASES];
-  for (int k = 0; k < result->cases; k++)
-    if (evaluator->meeting_of[k] == m) {
-      of[loads] = k;
-      force[loads] = result->load_case[k].end_force[end];
-      loaded[loads++] = result->load_case[k].end[end].loaded;
-    }
-  eo_loaded_solve(eo_evaluator_workspace(evaluator, thread, end), eo_evaluator_grid(evaluator, end),
-                  &evaluator->meeting[m]->gaps[end], run->scenario.compliance, loads, force, loaded);
-  for (int i = 0; i < loads; i++)
-    result->load_case[of[i]].end[end].loaded.failures = loaded[i].failures;
+  int last = first + 1;
+  while (last < batches->solutions && last < first + batches->most &&
+         batches->solution[last].gaps == batches->solution[first].gaps)
+    last++;
+  return last;
 }
 
-void eo_end_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
+static enum eo_code solve_batch(void *context, int thread, int batch, struct eo_error *error)
 {
-  for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++)
-    solve_meeting(evaluator, run, thread, end, m);
+  const struct batches *batches = context;
+  struct eo_loaded_end loaded[EO_EVALUATOR_BATCH];
+  double load[EO_EVALUATOR_BATCH] = {0};
+  int first = 0, last = end_of_batch(batches, 0);
+  (void)error;
+  for (int i = 0; i < batch; i++) {
+    first = last;
+    last = end_of_batch(batches, first);
+  }
+  for (int i = first; i < last; i++) {
+    load[i - first] = batches->solution[i].load;
+    loaded[i - first] = *batches->solution[i].result;
+  }
+  int end = batches->solution[first].end;
+  eo_loaded_solve(eo_evaluator_workspace(batches->evaluator, thread, end), eo_evaluator_grid(batches->evaluator, end),
+                  batches->solution[first].gaps, batches->run->scenario.compliance, last - first, load, loaded);
+  for (int i = first; i < last; i++)
+    batches->solution[i].result->failures = loaded[i - first].failures;
+  return EO_OK;
+}
+
+void eo_evaluator_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int solutions,
+                        const struct eo_solution *solution)
+{
+  int share = (solutions + evaluator->threads - 1) / evaluator->threads, count = 0;
+  struct batches batches = {evaluator, run, solution, solutions,
+                            share < EO_EVALUATOR_BATCH ? share : EO_EVALUATOR_BATCH};
+  for (int first = 0; first < solutions; first = end_of_batch(&batches, first))
+    count++;
+  const struct eo_parallel parallel = {
+      .threads = count < 2 ? 1 : evaluator->threads, .work = solve_batch, .context = &batches};
+  struct eo_error none;
+  eo_parallel_run(&parallel, count, &none); /* nothing in it can fail */
+  evaluator->result.solutions += solutions;
+}
+
+void eo_evaluator_solve_cases(struct eo_evaluator *evaluator, const struct eo_run *run)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  struct eo_solution solution[2 * EO_MAX_LOAD_CASES];
+  int solutions = 0;
+  EO_TIMED(result->static_ms);
+  for (int end = 0; end < result->ends; end++)
+    for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++)
+      for (int k = 0; k < result->cases; k++)
+        if (evaluator->meeting_of[k] == m)
+          solution[solutions++] = (struct eo_solution){end, &evaluator->meeting[m]->gaps[end],
+                                                       result->load_case[k].end_force[end],
+                                                       &result->load_case[k].end[end].loaded};
+  eo_evaluator_solve(evaluator, run, solutions, solution);
 }
 
 static void copy_loads(const struct eo_contact_grid *grid, struct eo_loaded_end *to, const struct eo_loaded_end *from)
@@ -182,8 +232,8 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_ru
                                  eo_evaluator_stagger(evaluator->pair, run->design, running)};
   struct eo_loaded_workspace *const workspace[2] = {eo_evaluator_workspace(evaluator, 0, EO_LEFT),
                                                     eo_evaluator_workspace(evaluator, 0, EO_RIGHT)};
-  eo_elastic_solve(eo_meeting_bodies(evaluator, running), workspace,
-                   eo_meeting_of(evaluator, load_case)->gaps, &load, both, report);
+  eo_elastic_solve(eo_meeting_bodies(evaluator, running), workspace, eo_meeting_of(evaluator, load_case)->gaps, &load,
+                   both, report);
   both[EO_LEFT].failures += report->failures;
 }
 

@@ -23,7 +23,7 @@ static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.1,  0.
 
 /* What is solved for the default law: forces of ends that act on each other swing, and those of a held pinion need not
    be anywhere near P. */
-enum tangent_form { FORM_STRAIGHT, FORM_BENT, FORM_TABLE };
+enum tangent_form { FORM_STRAIGHT = 1, FORM_BENT, FORM_TABLE };
 static enum tangent_form tangent_form(const struct eo_evaluator *evaluator, const struct eo_design *design,
                                       const struct eo_dynamics_parameters *parameters)
 {
@@ -85,10 +85,12 @@ static enum eo_code solve_table(struct eo_evaluator *evaluator, const struct eo_
                                 const struct eo_law_request *request, int loads, const double *load,
                                 struct eo_error *error)
 {
+  struct eo_solution solution[EO_EVALUATOR_TABLE_LOADS];
   EO_TRY(make_table_storage(evaluator, error));
-  eo_loaded_solve(eo_evaluator_workspace(evaluator, 0, request->end), eo_evaluator_grid(evaluator, request->end),
-                  eo_evaluator_gaps_of(evaluator, run, request->load_case, request->end), run->scenario.compliance,
-                  loads, load, evaluator->table);
+  const struct eo_loaded_gaps *gaps = eo_evaluator_gaps_of(evaluator, run, request->load_case, request->end);
+  for (int i = 0; i < loads; i++)
+    solution[i] = (struct eo_solution){request->end, gaps, load[i], &evaluator->table[i]};
+  eo_evaluator_solve(evaluator, run, loads, solution);
   return EO_OK;
 }
 
@@ -162,32 +164,66 @@ static const double *secant_deflections(struct eo_evaluator *evaluator, const st
   return evaluator->shifted;
 }
 
-/* back: where the other flanks meet, behind the backlash. */
-static enum eo_code set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
-                            const struct eo_law_request *request, struct eo_law *law, struct eo_error *error)
+/* Mesh harmonics of the laws. */
+static int order_of(const struct eo_evaluator *evaluator, const struct eo_design *design)
 {
-  const struct eo_design *design = run->design;
-  const struct eo_loaded_end *loaded = request->loaded;
-  const struct eo_end_result *end = &request->load_case->end[request->end];
-  int n = evaluator->result.positions, most = n / 2 - 1;
-  int order = design->resolution.te_harmonics < n / 2 ? design->resolution.te_harmonics : most;
-  double force = request->load_case->force;
-  double back = end->deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
-  if (eo_evaluator_law_is_table(evaluator, design, request->parameters))
-    return set_table_law(evaluator, run, request, order, law, error);
-  if (design->resolution.mesh_law == EO_LAW_SECANT)
-    return eo_law_set_secant(law, n, secant_deflections(evaluator, request), force, end->loaded_datum, order, back,
-                             error);
-  if (tangent_form(evaluator, design, request->parameters) == FORM_BENT)
-    return set_bent_law(evaluator, run, request, order, back, law, error);
-  return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, force, order, back, error);
+  int n = evaluator->result.positions;
+  return design->resolution.te_harmonics < n / 2 ? design->resolution.te_harmonics : n / 2 - 1;
 }
 
+/* What a law is made from that takes more solutions of loaded contact; no form: one that takes none. back: where the
+   other flanks meet, behind the backlash. */
+static struct eo_law_key key_of(const struct eo_evaluator *evaluator, const struct eo_run *run,
+                                const struct eo_law_request *request)
+{
+  const struct eo_design *design = run->design;
+  const struct eo_end_result *end = &request->load_case->end[request->end];
+  struct eo_law_key key = {.order = order_of(evaluator, design),
+                           .force = request->load_case->force,
+                           .compliance = run->scenario.compliance,
+                           .back = end->deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash};
+  if (eo_evaluator_law_is_table(evaluator, design, request->parameters))
+    key.form = FORM_TABLE;
+  else if (design->resolution.mesh_law == EO_LAW_TANGENT &&
+           tangent_form(evaluator, design, request->parameters) == FORM_BENT)
+    key.form = FORM_BENT;
+  return key;
+}
+
+static enum eo_code set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
+                            const struct eo_law_request *request, const struct eo_law_key *key, struct eo_law *law,
+                            struct eo_error *error)
+{
+  const struct eo_loaded_end *loaded = request->loaded;
+  int n = evaluator->result.positions;
+  if (key->form == FORM_TABLE)
+    return set_table_law(evaluator, run, request, key->order, law, error);
+  if (key->form == FORM_BENT)
+    return set_bent_law(evaluator, run, request, key->order, key->back, law, error);
+  if (run->design->resolution.mesh_law == EO_LAW_SECANT)
+    return eo_law_set_secant(law, n, secant_deflections(evaluator, request), key->force,
+                             request->load_case->end[request->end].loaded_datum, key->order, key->back, error);
+  return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, key->force, key->order, key->back, error);
+}
+
+static bool same_key(const struct eo_law_key *a, const struct eo_law_key *b)
+{
+  return a->form == b->form && a->order == b->order && a->force == b->force && a->compliance == b->compliance &&
+         a->back == b->back;
+}
+
+/* A law that took more solutions is kept as long as its loads are: reuse.c. */
 enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
                                   const struct eo_law_request *request, struct eo_law *law, struct eo_error *error)
 {
-  EO_TRY(set_law(evaluator, run, request, law, error));
+  struct eo_law_key key = key_of(evaluator, run, request),
+                    *kept = &evaluator->law_of[request->load_case - evaluator->result.load_case][request->end];
+  if (key.form && same_key(&key, kept))
+    return EO_OK;
+  kept->form = 0;
+  EO_TRY(set_law(evaluator, run, request, &key, law, error));
   if (request->load_case->running.backwards)
     eo_law_reverse(law);
+  *kept = key;
   return EO_OK;
 }

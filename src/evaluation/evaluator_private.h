@@ -13,7 +13,8 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
-enum { EO_EVALUATOR_SAMPLES = 256, EO_EVALUATOR_TABLE_LOADS = 12 };
+/* BATCH: loads that pass over the mesh cycle together, so that what they share stays in the cache. */
+enum { EO_EVALUATOR_SAMPLES = 256, EO_EVALUATOR_TABLE_LOADS = 12, EO_EVALUATOR_BATCH = 12 };
 
 /* Beside EO_WANT_...: stop after the entering impact. */
 enum { EO_WANT_CONTACT_ALONE = 1 << 8 };
@@ -36,6 +37,13 @@ struct eo_end_key {
   double force[EO_MAX_LOAD_CASES];
 };
 
+/* What a mesh law that takes more solutions of loaded contact was made from, beside the loads that are stored. */
+struct eo_law_key {
+  int form; /* 0: nothing is stored */
+  int order;
+  double force, compliance, back;
+};
+
 struct eo_design_rating;
 
 /* One way in which the teeth meet, with all load cases that do so: a flank, a sense, an alignment. */
@@ -55,6 +63,7 @@ struct eo_evaluator {
   struct eo_end_key solved_for[2]; /* [end] */
   bool needs_solving[2];           /* [end]: in this run; the other end is as the last run left it */
   bool root_valid[2];              /* [end]: its root stress belongs to the loads that are stored */
+  struct eo_law_key (*law_of)[2];  /* [most_cases][end]: its mesh law does */
 
   /* contact */
   int meetings;
@@ -139,13 +148,31 @@ void eo_meetings_done(struct eo_evaluator *evaluator);
 
 /* In evaluator_contact.c. */
 
+/* Loaded contact of one end under one load. */
+struct eo_solution {
+  int end;
+  const struct eo_loaded_gaps *gaps; /* borrowed */
+  double load;
+  struct eo_loaded_end *result; /* borrowed */
+};
+
+/* Solves them at the compliance of the run, on both threads where there are two; those with the same gaps stand together.
+   Each is as it would be alone. */
+void eo_evaluator_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int solutions,
+                        const struct eo_solution *solution);
+
 void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
 enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
 
-/* Steps of one end, on any thread; they pass over an end that is kept. */
-typedef void eo_end_step(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end);
-eo_end_step eo_end_set_gaps, eo_end_solve;
+/* Steps of one end, on any thread. */
+typedef void eo_end_step(struct eo_evaluator *evaluator, const struct eo_run *run, int end);
+
+/* Of an end that is not kept. */
+eo_end_step eo_end_set_gaps;
+
+/* Every end and load that is not kept. */
+void eo_evaluator_solve_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
 
 void eo_evaluator_copy_equal_end(struct eo_evaluator *evaluator);
 void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
@@ -172,8 +199,8 @@ void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_r
 
 /* In evaluator_threads.c. */
 
-/* Takes each end through the steps (NULL ends the list), two ends at once where there are two threads. */
-enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *const *step,
+/* Takes each end through a step, two ends at once where there are two threads. */
+enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step,
                                    struct eo_error *error);
 
 /* Work of a second thread beside the calling one. */
@@ -260,6 +287,9 @@ void eo_evaluator_rate(struct eo_evaluator *evaluator, const struct eo_run *run)
 
 /* Tells equal ends, and which ends need solving; notes what will be stored after this run. */
 void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run);
+
+/* The mesh laws of an end belong to no loads. */
+void eo_reuse_forget_laws(struct eo_evaluator *evaluator, int end);
 
 /* Nothing that is stored is valid. */
 void eo_reuse_forget(struct eo_evaluator *evaluator);

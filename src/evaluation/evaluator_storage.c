@@ -67,9 +67,10 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   result->load_case = calloc(most, sizeof *result->load_case);
   result->objective = calloc(most, sizeof *result->objective);
   evaluator->law = calloc(most, sizeof *evaluator->law);
+  evaluator->law_of = calloc(most, sizeof *evaluator->law_of);
   evaluator->problem = calloc(most, sizeof *evaluator->problem);
   evaluator->shifted = calloc((size_t)grid->positions, sizeof *evaluator->shifted);
-  if (!result->load_case || !result->objective || !evaluator->law || !evaluator->problem || !evaluator->shifted)
+  if (!result->load_case || !result->objective || !evaluator->law || !evaluator->law_of || !evaluator->problem || !evaluator->shifted)
     return eo_error_memory(error);
   for (int k = 0; k < evaluator->most_cases; k++)
     EO_TRY(init_case(&result->load_case[k], both, error));
@@ -122,6 +123,7 @@ static void done_results(struct eo_evaluator *evaluator)
   free(result->load_case);
   free(result->objective);
   free(evaluator->law);
+  free(evaluator->law_of);
   free(evaluator->problem);
 }
 

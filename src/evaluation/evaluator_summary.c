@@ -75,10 +75,9 @@ static void summarise(const struct eo_evaluator *evaluator, struct eo_case_resul
   result->transmission_peak = (high - low) / cos(grid->geometry.base_helix_angle);
 }
 
-void eo_end_summarise(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
+void eo_end_summarise(struct eo_evaluator *evaluator, const struct eo_run *run, int end)
 {
   (void)run;
-  (void)thread;
   for (int k = 0; k < evaluator->result.cases; k++)
     summarise(evaluator, &evaluator->result.load_case[k], end);
 }

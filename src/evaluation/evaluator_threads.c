@@ -6,19 +6,19 @@
 struct ends {
   struct eo_evaluator *evaluator;
   const struct eo_run *run;
-  eo_end_step *const *step;
+  eo_end_step *step;
 };
 
 static enum eo_code take_end(void *context, int thread, int end, struct eo_error *error)
 {
   const struct ends *ends = context;
+  (void)thread;
   (void)error;
-  for (int i = 0; ends->step[i]; i++)
-    ends->step[i](ends->evaluator, ends->run, thread, end);
+  ends->step(ends->evaluator, ends->run, end);
   return EO_OK;
 }
 
-enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *const *step,
+enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step,
                                    struct eo_error *error)
 {
   EO_TIMED(evaluator->result.static_ms);

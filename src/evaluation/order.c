@@ -32,13 +32,10 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   /* which ends differ from what the last run solved; the others are kept */
   eo_reuse_compare(evaluator, run);
 
-  /* each end alone, both at once: */
-  EO_TRY(eo_evaluator_each_end(
-      evaluator, run,
-      (eo_end_step *const[]){eo_end_set_gaps, /* slice gap, lead, tip corners, misalignment at every point */
-                             eo_end_solve,    /* loaded contact: Z, k_tan, line loads at every position and P */
-                             NULL},
-      error));
+  /* slice gap, lead, tip corners, misalignment at every point of each end, both at once */
+  EO_TRY(eo_evaluator_each_end(evaluator, run, eo_end_set_gaps, error));
+  /* loaded contact, each end alone: Z, k_tan, line loads at every position and P */
+  eo_evaluator_solve_cases(evaluator, run);
   /* equal ends: the right one carries what the left one does */
   eo_evaluator_copy_equal_end(evaluator);
   /* elastic bodies: gaps and loads until they agree */
@@ -46,7 +43,7 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   /* a held pinion: the ends share the torque as the springs have it */
   eo_evaluator_balance_cases(evaluator, run);
   /* first contact, secant stiffness, pressure, edge load, load over the face of each end */
-  EO_TRY(eo_evaluator_each_end(evaluator, run, (eo_end_step *const[]){eo_end_summarise, NULL}, error));
+  EO_TRY(eo_evaluator_each_end(evaluator, run, eo_end_summarise, error));
   /* transmission error of the pair */
   eo_evaluator_summarise_pairs(evaluator, run);
 

@@ -104,8 +104,8 @@ static bool differs_from_solved(const struct eo_end_key *key, const struct eo_en
 }
 
 /* An end is solved when it differs from what is stored, unless it is a copy. Stored are the loads of an end alone: what
-   bodies or a held pinion make of them belongs to this run only, the root stress of it as well; and a copied end leaves
-   its own gaps and field behind. */
+   bodies or a held pinion make of them belongs to this run only, the root stress and the mesh laws of it as well; and a
+   copied end leaves its own gaps and field behind. */
 void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   evaluator->result.equal_ends = equal_ends(evaluator, run);
@@ -115,10 +115,18 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
     struct eo_end_key key = key_of(evaluator, run, end);
     evaluator->needs_solving[end] = !copied && differs_from_solved(&key, &evaluator->solved_for[end]);
     evaluator->root_valid[end] = evaluator->root_valid[end] && alone && !copied && !evaluator->needs_solving[end];
+    if (!alone || copied || evaluator->needs_solving[end])
+      eo_reuse_forget_laws(evaluator, end);
     evaluator->solved_for[end] = key;
     if (copied || !alone)
       evaluator->solved_for[end].cases = 0;
   }
+}
+
+void eo_reuse_forget_laws(struct eo_evaluator *evaluator, int end)
+{
+  for (int k = 0; k < evaluator->most_cases; k++)
+    evaluator->law_of[k][end] = (struct eo_law_key){0};
 }
 
 void eo_reuse_forget(struct eo_evaluator *evaluator)
@@ -126,5 +134,6 @@ void eo_reuse_forget(struct eo_evaluator *evaluator)
   for (int end = 0; end < 2; end++) {
     evaluator->solved_for[end].cases = 0;
     evaluator->root_valid[end] = false;
+    eo_reuse_forget_laws(evaluator, end);
   }
 }
