@@ -7,12 +7,21 @@
 
 #include "contact/loaded.h"
 
+/* The smallest gaps of the incoming line of one gap field on its way towards mesh, as far as they are known: no load
+   changes them. known = 0 for another field. */
+struct eo_incoming_gaps {
+  bool backwards;
+  int known;
+  double gap[512];
+};
+
 struct eo_impact_settings {
   double patch;      /* length of the impact patch along the face, m */
   double inertia[2]; /* of one end about its axis, kg m2; see eo_impact_inertia() */
   bool backwards;    /* the gear drives: the pinion's tip edge comes in, at the other end of the path */
   int stations;      /* 0: the touch is found anywhere on the face; n > 1: at n stations over the face, as a sampled
                         reference does */
+  struct eo_incoming_gaps *incoming; /* what searches in the same field share, borrowed; NULL: nothing */
 };
 
 /* Solid disc of the pitch cylinder over the face width of one end, kg m2. */

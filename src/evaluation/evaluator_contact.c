@@ -127,6 +127,7 @@ void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, i
                           &meeting->running, end);
     eo_loaded_gaps_set(&meeting->gaps[end], eo_evaluator_grid(evaluator, end), &meeting->field[end]);
     meeting->datum[end] = eo_gap_field_datum(&meeting->field[end]);
+    meeting->incoming[end].known = 0;
   }
 }
 

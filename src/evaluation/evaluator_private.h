@@ -52,6 +52,7 @@ struct eo_meeting {
   struct eo_gap_field field[2]; /* [end] */
   double datum[2];              /* [end] smallest gap anywhere on the flank, m */
   struct eo_loaded_gaps gaps[2];
+  struct eo_incoming_gaps incoming[2]; /* [end] on rigid bodies */
 };
 
 struct eo_evaluator {

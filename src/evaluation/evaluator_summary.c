@@ -118,6 +118,8 @@ static void find_impact(const struct eo_evaluator *evaluator, const struct eo_ru
   struct eo_impact_settings settings = pair->impact;
   struct eo_gap_field bent;
   settings.backwards = load_case->running.backwards;
+  if (!evaluator->bodies_are_elastic)
+    settings.incoming = &eo_meeting_of(evaluator, load_case)->incoming[eo_reuse_stored_at(evaluator, end)];
   eo_impact_find(&load_case->end[end].impact, pair->grid, loaded_field(evaluator, load_case, end, &bent), pair->kernel,
                  &settings, load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
                  run->scenario.compliance);
