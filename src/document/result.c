@@ -291,14 +291,14 @@ static const struct eo_outline_row result_rows[] = {
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
 enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
 
-static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating, bool whole)
+static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating, bool whole, bool assumed)
 {
   char hash[EO_HASH_LENGTH + 1];
   eo_object_put(o, "program", json_string(PACKAGE_STRING));
   eo_object_put(o, "design", whole ? eo_design_encode(design) : json_null());
   eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
   eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(o, "assumed", whole ? eo_assumptions_encode(design, rating) : json_null());
+  eo_object_put(o, "assumed", assumed ? eo_assumptions_encode(design, rating) : json_null());
   eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
@@ -306,10 +306,11 @@ json_t *eo_result_head(struct eo_result_source *source)
 {
   struct eo_object o = eo_object_open_as(&eo_result_outline);
   bool whole = eo_result_has(source, EO_RESULT_NO_DESIGN, NULL);
-  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING, whole);
+  bool assumed = eo_result_has(source, EO_RESULT_NO_ASSUMED, NULL);
+  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING, whole, assumed);
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
   eo_object_put(&o, "dimensions",
-                whole ? eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry) : json_null());
+                assumed ? eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry) : json_null());
   eo_object_put(&o, "flexibility", eo_result_flexibility(source));
   eo_object_put(&o, "modification",
                 eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL) ? eo_result_modification(source) : json_null());

@@ -43,16 +43,24 @@ enum {
   EO_RESULT_NO_PATTERN = 256,
   EO_RESULT_NO_ORDERS = 512,
   EO_RESULT_NO_TRIBOLOGY = 1024,
-  EO_RESULT_NO_DESIGN = 2048, /* resolved, what is assumed of it, dimensions */
-  EO_RESULT_NO_PITCH = 4096,  /* curves of the hunting period */
+  EO_RESULT_NO_DESIGN = 2048,      /* resolved */
+  EO_RESULT_NO_PITCH = 4096,       /* curves of the hunting period */
+  EO_RESULT_NO_ASSUMED = 8192,     /* what is assumed of the design; dimensions */
+  EO_RESULT_NO_END_ORDERS = 16384, /* of the vibration, all channels of each end */
   EO_RESULT_FIRST_PART = EO_RESULT_NO_MODIFICATION,
-  EO_RESULT_PARTS = 11,
+  EO_RESULT_PARTS = 13,
 };
-#define EO_RESULT_PART_WORDS \
-  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design|pitch"
+#define EO_RESULT_PART_WORDS                                                                                           \
+  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design|pitch|"       \
+  "assumed|end_orders"
 
-/* Added to what is left out: of all load cases only number k (from 0) has curves, maps and histories. */
+/* Added to what is left out. Of all load cases only number k (from 0) has curves, maps and histories. Whatever is left
+   out, every load case has the curves that load cases are compared by: the transmission error over the mesh cycle, its
+   orders and those of the pair's vibration. Curves have at most n significant digits, LEAST or more; maps and histories
+   two fewer. */
 #define EO_RESULT_CURVES_OF(k) ((unsigned)((k) + 1) << 16)
+enum { EO_RESULT_OVERVIEW = 1 << 15, EO_RESULT_LEAST_DIGITS = 5 };
+#define EO_RESULT_DIGITS(n) ((unsigned)(n) << 24)
 json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design,
                               const struct eo_warnings *warnings, unsigned left_out);
 

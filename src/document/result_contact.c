@@ -26,9 +26,9 @@ static double mean(int n, const double *value)
 }
 
 /* Mean, then the amplitudes of the mesh harmonics. */
-static json_t *encode_orders(int n, const double *value, const struct eo_unit *unit)
+static json_t *encode_orders(const struct eo_result_source *source, const double *value, const struct eo_unit *unit)
 {
-  int harmonics = (n - 1) / 2;
+  int n = source->positions, harmonics = (n - 1) / 2;
   double(*amplitude)[2] = malloc(sizeof *amplitude * (size_t)(harmonics + 1)),
   *order = malloc(sizeof *order * (size_t)(harmonics + 1));
   json_t *column = NULL;
@@ -36,7 +36,7 @@ static json_t *encode_orders(int n, const double *value, const struct eo_unit *u
     order[0] = eo_periodic_harmonics(n, value, harmonics, amplitude);
     for (int h = 1; h <= harmonics; h++)
       order[h] = hypot(amplitude[h - 1][0], amplitude[h - 1][1]);
-    column = eo_json_reals(harmonics + 1, order, 1, unit, EO_DIGITS_CURVE);
+    column = eo_json_reals(harmonics + 1, order, 1, unit, source->digits);
   }
   free(amplitude);
   free(order);
@@ -61,7 +61,7 @@ static json_t *encode_float(const struct eo_result_source *source, const double 
   double scale = (inwards ? -1 : 1) / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
   for (int j = 0; j < n; j++)
     source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n];
-  return eo_json_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, scale, &eo_unit_um, source->digits);
 }
 
 static const struct eo_outline_row lte_rows[] = {
@@ -109,7 +109,7 @@ static void put_second_derivative(struct eo_object *o, const struct eo_result_so
   }
   eo_object_put(o, "second_derivative_m_per_s2",
                 eo_result_has(source, EO_RESULT_NO_LTE, c)
-                    ? eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE)
+                    ? eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, source->digits)
                     : json_null());
   eo_object_put_number(o, "second_derivative_rms_m_per_s2", sqrt(squares));
 }
@@ -118,9 +118,9 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
 {
   const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
   struct eo_object o = eo_object_open_as(&eo_outline_lte);
-  bool curves = eo_result_has(source, EO_RESULT_NO_LTE, c);
+  bool curves = eo_result_has_overview(source, EO_RESULT_NO_LTE, c);
   eo_object_put(&o, "pair_um",
-                curves ? eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE)
+                curves ? eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, source->digits)
                        : json_null());
   put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um, curves);
   eo_object_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
@@ -130,10 +130,12 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
   eo_object_put_number(&o, "hub_windup_um",
                        (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) * c->force /
                            source->pair->geometry.face_width / source->normal);
-  eo_object_put(&o, "orders_um", curves ? encode_orders(source->positions, c->transmission, &eo_unit_um) : json_null());
+  eo_object_put(&o, "orders_um", curves ? encode_orders(source, c->transmission, &eo_unit_um) : json_null());
   put_second_derivative(&o, source, c);
   if (source->ends == 2 && source->design->alignment.pinion_axial != EO_AXIAL_FIXED)
-    eo_object_put(&o, "axial_float_um", curves ? encode_float(source, approach, c->running.inwards) : json_null());
+    eo_object_put(&o, "axial_float_um",
+                  eo_result_has(source, EO_RESULT_NO_LTE, c) ? encode_float(source, approach, c->running.inwards)
+                                                             : json_null());
   return eo_object_close(&o);
 }
 
@@ -159,9 +161,10 @@ static const struct eo_outline_row stiffness_rows[] = {
            "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
     EO_KEY("tangent_right_N_per_um", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_um,
            .when = EO_TWO_ENDS),
-    EO_KEY("left_orders_N_per_um", "[number?]",
+    EO_KEY("left_orders_N_per_um", "[number?]?",
            "mean of left_N_per_um, then the amplitudes of its mesh harmonics 1, 2, ...", .unit = &eo_unit_N_per_um),
-    EO_KEY("right_orders_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("right_orders_N_per_um", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_um,
+           .when = EO_TWO_ENDS),
     EO_KEY("mean", "object", "means over the mesh cycle", .outline = &stiffness_mean),
 };
 const struct eo_outline eo_outline_stiffness = EO_OUTLINE("MeshStiffness", stiffness_rows);
@@ -176,7 +179,7 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
   put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um, curves);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, end ? "right_orders_N_per_um" : "left_orders_N_per_um",
-                  encode_orders(source->positions, secant[end], &eo_unit_N_per_um));
+                  curves ? encode_orders(source, secant[end], &eo_unit_N_per_um) : json_null());
   for (int end = 0; end < source->ends; end++) {
     eo_object_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
     eo_object_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
@@ -250,7 +253,7 @@ static json_t *encode_unloaded_pair(struct eo_result_source *source, double *pea
   for (int j = 0; j < n; j++)
     source->scratch[j] = (c->end[0].unloaded[j] + c->end[last].unloaded[(j + n - source->lag) % n]) / 2;
   *peak = swing(n, source->scratch) / source->normal;
-  return eo_json_column(n, source->scratch, 1 / source->normal, &eo_unit_um, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, 1 / source->normal, &eo_unit_um, source->digits);
 }
 
 static const struct eo_outline_row unloaded_rows[] = {
@@ -485,11 +488,11 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
   struct eo_object o = eo_object_open_as(&eo_outline_bodies);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
-  eo_object_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, source->digits));
   eo_result_put_right_face(&o, "right_eta_mm", source, EO_DEFLECTION_NODES, eta, true);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, end ? "right_um" : "left_um",
-                  eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+                  eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, source->digits));
   eo_object_put(&o, "most_iterations", json_integer(c->body_iterations));
   return eo_object_close(&o);
 }
@@ -598,7 +601,7 @@ static const struct eo_outline_row root_member_rows[] = {
     EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa),
     EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration",
            .unit = &eo_unit_MPa),
-    EO_KEY("position", "[number]?", "phase of the tooth's way through the mesh, in mesh cycles"),
+    EO_KEY("position", "[number]?", "phase of the tooth's way through the mesh, in mesh cycles; null without histories"),
     EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa),
     EO_KEY("left", "object", "left end", .outline = &root_end),
     EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &root_end),
@@ -610,14 +613,14 @@ static json_t *encode_root_member(const struct eo_result_source *source, const s
   const struct eo_root_history *history[2] = {&c->end[0].root[member], &c->end[1].root[member]};
   int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
   double dynamic = 0;
-  bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, c), place = eo_result_has(source, 0, c);
+  bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
   struct eo_object o = eo_object_open_as(&root_member);
   for (int end = 0; end < source->ends; end++)
     dynamic = isnan(force_factor(c, end)) ? NAN : fmax(dynamic, history[end]->maximum * force_factor(c, end));
   eo_object_put_number(&o, "max_MPa", history[worst]->maximum);
   eo_object_put_number(&o, "max_dynamic_MPa", dynamic);
   eo_object_put(&o, "position",
-                place ? eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE) : json_null());
+                wanted ? eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE) : json_null());
   eo_object_put(&o, "history_MPa", encode_root_history(history[worst], wanted));
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_root_end(history[end], force_factor(c, end), wanted));

@@ -9,9 +9,9 @@
 
 enum { POINTS = 61, MAP_ROWS = 31, MAP_COLUMNS = 41 };
 
-static json_t *encode_curve(const double *value)
+static json_t *encode_curve(const double *value, int digits)
 {
-  return eo_json_reals(POINTS, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
+  return eo_json_reals(POINTS, value, 1, &eo_unit_um, digits);
 }
 
 static const struct eo_outline_row start_rows[] = {
@@ -69,7 +69,7 @@ static json_t *encode_start(const struct eo_geometry *g, int member, const struc
   return eo_object_close(&o);
 }
 
-static json_t *encode_surface(const struct eo_modification_shape *shape, const struct places *places)
+static json_t *encode_surface(const struct eo_modification_shape *shape, const struct places *places, int digits)
 {
   json_t *rows = shape->varies ? json_array() : json_null();
   bool failed = !rows;
@@ -77,7 +77,7 @@ static json_t *encode_surface(const struct eo_modification_shape *shape, const s
     double row[MAP_COLUMNS];
     for (int j = 0; j < MAP_COLUMNS; j++)
       row[j] = eo_modification_at(shape, places->map_u[i], places->map_eta[j]);
-    failed = json_array_append_new(rows, eo_json_reals(MAP_COLUMNS, row, 1, &eo_unit_um, EO_DIGITS_CURVE)) != 0;
+    failed = json_array_append_new(rows, eo_json_reals(MAP_COLUMNS, row, 1, &eo_unit_um, digits)) != 0;
   }
   if (!failed)
     return rows;
@@ -85,10 +85,11 @@ static json_t *encode_surface(const struct eo_modification_shape *shape, const s
   return NULL;
 }
 
-static void put_curves(struct eo_object *o, const struct eo_geometry *g, int member,
+static void put_curves(struct eo_object *o, const struct eo_result_source *source, int member,
                        const struct eo_flank_modification *flank, const struct eo_modification_shape *shape,
                        const struct places *places)
 {
+  const struct eo_geometry *g = &source->pair->geometry;
   double profile[POINTS], lead[POINTS], slope[2];
   for (int i = 0; i < POINTS; i++) {
     profile[i] = eo_modification_profile(shape, places->u[i], slope);
@@ -99,9 +100,9 @@ static void put_curves(struct eo_object *o, const struct eo_geometry *g, int mem
   eo_object_put_number(o, "lead_crowning_per_um", eo_modification_lead_coefficient(g, flank->lead_crowning));
   eo_object_put(o, "tip_relief_start", encode_start(g, member, flank, EO_TIP_SIDE));
   eo_object_put(o, "root_relief_start", encode_start(g, member, flank, EO_ROOT_SIDE));
-  eo_object_put(o, "profile_um", encode_curve(profile));
-  eo_object_put(o, "lead_um", encode_curve(lead));
-  eo_object_put(o, "surface_um", encode_surface(shape, places));
+  eo_object_put(o, "profile_um", encode_curve(profile, source->digits));
+  eo_object_put(o, "lead_um", encode_curve(lead, source->digits));
+  eo_object_put(o, "surface_um", encode_surface(shape, places, source->digits));
 }
 
 static json_t *encode_coast(const struct eo_result_source *source, int member, int end, const struct places *places)
@@ -114,7 +115,7 @@ static json_t *encode_coast(const struct eo_result_source *source, int member, i
   json_t *encoded = json_null();
   if (!failed && (spline || !eo_modification_is_none(flank))) {
     struct eo_object o = eo_object_open_as(&coast_curves);
-    put_curves(&o, g, member, flank, &shape, places);
+    put_curves(&o, source, member, flank, &shape, places);
     encoded = eo_object_close(&o);
   }
   eo_flank_spline_free(spline);
@@ -131,7 +132,7 @@ static json_t *encode_flank(const struct eo_result_source *source, int member, i
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline;
   o.failed = eo_flank_shape(source->design, g, EO_DRIVE_FLANK, member, end, &shape, &spline);
-  put_curves(&o, g, member, &source->design->modification.flank[member][end], &shape, places);
+  put_curves(&o, source, member, &source->design->modification.flank[member][end], &shape, places);
   eo_object_put(&o, "coast", encode_coast(source, member, end, places));
   eo_flank_spline_free(spline);
   return eo_object_close(&o);
@@ -155,8 +156,8 @@ static json_t *encode_member(const struct eo_result_source *source, int member, 
   eo_active_profile(&source->pair->geometry, member, ends);
   spread(POINTS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->u);
   spread(MAP_ROWS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->map_u);
-  eo_object_put(&o, "u_mm", eo_json_reals(POINTS, places->u, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_object_put(&o, "surface_u_mm", eo_json_reals(MAP_ROWS, places->map_u, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "u_mm", eo_json_reals(POINTS, places->u, 1, &eo_unit_mm, source->digits));
+  eo_object_put(&o, "surface_u_mm", eo_json_reals(MAP_ROWS, places->map_u, 1, &eo_unit_mm, source->digits));
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_flank(source, member, end, places));
   return eo_object_close(&o);
@@ -181,8 +182,8 @@ json_t *eo_result_modification(struct eo_result_source *source)
   double half = source->pair->geometry.face_width / 2;
   spread(POINTS, -half, half, places.eta);
   spread(MAP_COLUMNS, -half, half, places.map_eta);
-  eo_object_put(&o, "eta_mm", eo_json_reals(POINTS, places.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_object_put(&o, "surface_eta_mm", eo_json_reals(MAP_COLUMNS, places.map_eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "eta_mm", eo_json_reals(POINTS, places.eta, 1, &eo_unit_mm, source->digits));
+  eo_object_put(&o, "surface_eta_mm", eo_json_reals(MAP_COLUMNS, places.map_eta, 1, &eo_unit_mm, source->digits));
   eo_result_put_right_face(&o, "right_eta_mm", source, POINTS, places.eta, true);
   eo_result_put_right_face(&o, "right_surface_eta_mm", source, MAP_COLUMNS, places.map_eta, true);
   for (int member = 0; member < 2; member++)

@@ -16,7 +16,8 @@ struct eo_result_source {
   const struct eo_design *design;
   int ends, positions, lag;           /* lag: positions by which the right end's columns are shifted */
   double normal;                      /* cos(beta_b): normal = transverse times it */
-  unsigned left_out;                  /* EO_RESULT_NO_..., EO_RESULT_CURVES_OF() */
+  unsigned left_out;                  /* EO_RESULT_NO_..., EO_RESULT_CURVES_OF(), EO_RESULT_OVERVIEW */
+  int digits, map_digits;             /* of curves; of maps and histories */
   struct eo_contact_pattern *pattern; /* [half] scratch: eo_result_pattern() */
   double *scratch;                    /* [positions] */
   double (*edge_pressure)[2];         /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
@@ -28,6 +29,10 @@ extern const char *const eo_result_member[2];
 
 /* Whether what EO_RESULT_NO_... stands for is written; of a load case (NULL: of none). */
 bool eo_result_has(const struct eo_result_source *source, unsigned part, const struct eo_case_result *load_case);
+
+/* The same for a curve of a part that belongs to the overview. */
+bool eo_result_has_overview(const struct eo_result_source *source, unsigned part,
+                            const struct eo_case_result *load_case);
 
 /* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,

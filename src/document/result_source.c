@@ -9,8 +9,21 @@ const char *const eo_result_member[2] = {"pinion", "gear"};
 
 bool eo_result_has(const struct eo_result_source *source, unsigned part, const struct eo_case_result *load_case)
 {
-  int only = (int)(source->left_out >> 16) - 1;
+  int only = (int)(source->left_out >> 16 & 0xff) - 1;
   return !(source->left_out & part) && (!load_case || only < 0 || load_case == &source->evaluation->load_case[only]);
+}
+
+bool eo_result_has_overview(const struct eo_result_source *source, unsigned part,
+                            const struct eo_case_result *load_case)
+{
+  return source->left_out & EO_RESULT_OVERVIEW || eo_result_has(source, part, load_case);
+}
+
+/* The usual number of digits, or fewer where the answer is to have at most so many, and `less` of that. */
+static int digits_of(int usual, unsigned left_out, int less)
+{
+  int most = (int)(left_out >> 24) - less;
+  return left_out >> 24 && most < usual ? most : usual;
 }
 
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
@@ -19,7 +32,7 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
   int n = source->positions, lag = end == EO_RIGHT ? source->lag : 0;
   for (int j = 0; j < n; j++)
     source->scratch[j] = value[(j + n - lag) % n];
-  return eo_json_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, scale, unit, source->digits);
 }
 
 struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *source, int end)
@@ -36,7 +49,7 @@ void eo_result_put_right_face(struct eo_object *o, const char *key, const struct
     return;
   for (int i = 0; i < count && i < MOST; i++)
     right[i] = place[i] * source->pair->right->geometry.face_width / source->pair->geometry.face_width;
-  eo_object_put(o, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, EO_DIGITS_CURVE) : json_null());
+  eo_object_put(o, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, source->digits) : json_null());
 }
 
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
@@ -46,7 +59,7 @@ json_t *eo_result_map(const struct eo_result_source *source, int rows, int colum
     return json_null();
   json_t *map = json_array();
   for (int i = 0; i < rows && map; i++)
-    if (json_array_append_new(map, eo_json_reals(columns, value + i * columns, 1, unit, EO_DIGITS_MAP)) != 0) {
+    if (json_array_append_new(map, eo_json_reals(columns, value + i * columns, 1, unit, source->map_digits)) != 0) {
       json_decref(map);
       map = NULL;
     }
@@ -58,7 +71,7 @@ json_t *eo_result_position(const struct eo_result_source *source)
   for (int j = 0; j < source->positions; j++)
     source->scratch[j] = source->pair->grid->position[j].phase;
   return eo_json_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL,
-                        EO_DIGITS_CURVE);
+                        source->digits);
 }
 
 bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
@@ -73,7 +86,9 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
                                       .positions = r->positions,
                                       .lag = eo_evaluator_stagger(analysis->pair, design, &r->load_case[0].running),
                                       .normal = cos(analysis->pair->geometry.base_helix_angle),
-                                      .left_out = left_out};
+                                      .left_out = left_out,
+                                      .digits = digits_of(EO_DIGITS_CURVE, left_out, 0),
+                                      .map_digits = digits_of(EO_DIGITS_MAP, left_out, 2)};
   source->pattern = malloc(2 * sizeof *source->pattern);
   source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
   for (int half = 0; source->pattern && half <= (source->pair->right != NULL); half++)

@@ -96,7 +96,8 @@ static json_t *encode_curves(const struct eo_result_source *source, const struct
   for (int i = 0; i < EO_CHANNELS; i++)
     eo_object_put(&o, channels[i].key,
                   orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
-                         : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit, EO_DIGITS_MAP));
+                         : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit,
+                                         source->map_digits));
   return eo_object_close(&o);
 }
 
@@ -140,7 +141,7 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
                          known * v->bearing_force_max[member][end]);
   }
   bool histories = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
-  bool orders = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_ORDERS, c);
+  bool orders = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_END_ORDERS, c);
   eo_object_put(&o, "history", histories ? encode_curves(source, &c->end[end], false) : json_null());
   eo_object_put(&o, "orders", orders ? encode_curves(source, &c->end[end], true) : json_null());
   return eo_object_close(&o);
@@ -149,7 +150,7 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
 /* Mean of the ends' amplitudes, as the RMS of the pair is the mean of theirs. */
 static void put_pair_orders(struct eo_object *o, const struct eo_result_source *source, const struct eo_case_result *c)
 {
-  bool wanted = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_ORDERS, c);
+  bool wanted = has_curves(source, c) && eo_result_has_overview(source, EO_RESULT_NO_ORDERS, c);
   for (int i = EO_CHANNEL_NORMAL; i <= EO_CHANNEL_ROTATIONAL; i++) {
     char key[64];
     double complex *const order[2] = {c->end[0].order[i], c->end[1].order[i]};
@@ -227,7 +228,7 @@ static const struct eo_outline_row vibration_rows[] = {
     EO_KEY("mean_pinion_thrust_N", "number?", "of the pinion's axial support, + to the right; 0: floating",
            .unit = &eo_unit_N),
     EO_KEY("max_pinion_thrust_N", "number?", "largest size of it", .unit = &eo_unit_N),
-    EO_KEY("position", "[number]?", "phase of the mesh cycle, 0..1, of the histories"),
+    EO_KEY("position", "[number]?", "phase of the mesh cycle, 0..1, of the histories; null without them"),
     EO_KEY("orders_normal_m_per_s2", "[number?]?",
            "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
            .unit = &eo_unit_m_per_s2),
@@ -268,9 +269,8 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
   eo_object_put(&o, "back_contact", json_boolean(v->back_contact));
   eo_object_put_number(&o, "mean_pinion_thrust_N", known * v->pinion_thrust_mean);
   eo_object_put_number(&o, "max_pinion_thrust_N", known * v->pinion_thrust_max);
-  /* A request that names no parts has it without histories too. */
-  bool place = eo_result_has(source, EO_RESULT_NO_ORDERS, c) || eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
-  eo_object_put(&o, "position", place ? encode_samples(source) : json_null());
+  eo_object_put(&o, "position",
+                eo_result_has(source, EO_RESULT_NO_HISTORIES, c) ? encode_samples(source) : json_null());
   put_pair_orders(&o, source, c);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_end(source, c, end, known));

@@ -9,6 +9,7 @@
 #include "document/result.h"
 #include "evaluation/evaluator.h"
 #include "format/inch.h"
+#include "format/object.h"
 #include "http/request_body.h"
 #include "http/deferred.h"
 #include "http/service_reply.h"
@@ -61,14 +62,15 @@ static void check(struct eo_request *request)
 /* What the answer leaves out: the curves of parts that are not named, where any are. */
 static unsigned left_out_of(const struct eo_request *request)
 {
-  enum { MAPS = EO_RESULT_PARTS, HISTORIES };
+  enum { MAPS = EO_RESULT_PARTS, HISTORIES, OVERVIEW };
   bool some;
   unsigned named = eo_route_words(request, "parts", &some), left_out = 0;
   for (int i = 0; i < EO_RESULT_PARTS && some; i++)
     left_out |= named & 1u << i ? 0 : EO_RESULT_FIRST_PART << i;
   bool maps = some ? named >> MAPS & 1 : eo_route_number(request, "maps") != 0;
   bool histories = some ? named >> HISTORIES & 1 : eo_route_number(request, "histories") != 0;
-  int of = (int)eo_route_number(request, "curves_of");
+  int of = (int)eo_route_number(request, "curves_of"), digits = (int)eo_route_number(request, "digits");
+  left_out |= EO_RESULT_DIGITS(digits) | (some && named >> OVERVIEW & 1 ? EO_RESULT_OVERVIEW : 0);
   return left_out | (maps ? 0 : EO_RESULT_NO_MAPS) | (histories ? 0 : EO_RESULT_NO_HISTORIES) |
          (of < 0 ? 0 : EO_RESULT_CURVES_OF(of));
 }
@@ -215,11 +217,14 @@ const struct eo_route eo_routes_analysis[] = {
                 "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"},
                {"pitch", 0, 1, 1, NULL,
                 "1: the hunting period of a design that states single teeth too, a second or two; 0 answers sooner"},
-               {"parts", 0, EO_SEVERAL_WORDS, 0, EO_RESULT_PART_WORDS "|maps|histories",
+               {"parts", 0, EO_SEVERAL_WORDS, 0, EO_RESULT_PART_WORDS "|maps|histories|overview",
                 "only these have their curves, maps and histories, the others null; all numbers stand in any case. "
+                "overview: the transmission error, its orders and those of the pair's vibration, of every load case. "
                 "Absent: all parts, with maps and histories as those parameters say"},
                {"curves_of", -1, EO_MAX_LOAD_CASES - 1, -1, NULL,
                 "number of the only load case, from 0, that has curves; -1: all"},
+               {"digits", EO_RESULT_LEAST_DIGITS, EO_DIGITS_CURVE, EO_DIGITS_CURVE, NULL,
+                "significant digits of curves, at most; maps and histories have two fewer, at most 6"},
                UNITS}},
     {.method = EO_POST,
      .pattern = "/sweep",

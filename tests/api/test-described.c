@@ -60,6 +60,85 @@ static void test_analyses(void)
   expect_answer("an unmodified pair", API "/analyze", design);
 }
 
+/* What the page asks while a slider moves: the string of its source that names an overview. Owned by the caller. */
+static char *stroke_path(void)
+{
+  char name[2000];
+  snprintf(name, sizeof name, "%s/web/src/base/analyst.js", getenv("SOURCES") ? getenv("SOURCES") : "..");
+  FILE *file = fopen(name, "r");
+  char *text = calloc(1, 1 << 16), *path = calloc(1, 1000);
+  if (file && text && path && fread(text, 1, (1 << 16) - 1, file) > 0) {
+    char *named = strstr(text, ",overview'"), *from = named;
+    while (from && from > text && *from != '\'')
+      from--;
+    if (named)
+      snprintf(path, 1000, API "/%.*s,overview&curves_of=1", (int)(named - from - 1), from + 1);
+  }
+  if (file)
+    fclose(file);
+  free(text);
+  return path;
+}
+
+/* Case A at 0.1 deg with as many positions, cells and harmonics as by default, on a coarse mesh. */
+static json_t *design_of_stroke(void)
+{
+  struct eo_design design;
+  eo_example_build("paper-case-a", &design);
+  design.alignment.shaft_angle_in_plane = 0.1 * M_PI / 180;
+  design.resolution.body = EO_BODY_SECTOR;
+  design.resolution.sector_teeth = 3;
+  design.resolution.neighbour_coupling = false;
+  design.resolution.layers = 6;
+  design.resolution.flank_rows = 4;
+  design.resolution.fillet_elements = 6;
+  return eo_design_encode(&design);
+}
+
+/* The value at a path of keys; NULL: there is none. */
+static const json_t *at_path(const json_t *value, const char *path)
+{
+  char key[100];
+  while (value && *path) {
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(path, "/"), path);
+    value = json_object_get(value, key);
+    path += strcspn(path, "/");
+    path += *path == '/';
+  }
+  return value;
+}
+
+/* A step of the page's slider is short, and has everything that moves on the screen. */
+static void test_stroke(void)
+{
+  enum { MOST = 60000 };
+  static const char *const shown[] = {"mesh_stiffness/tangent_left_N_per_um", "contact/load_share/left",
+                                      "contact/pattern/right/pressure_MPa"};
+  static const char *const compared[] = {"lte/pair_um", "lte/right_um", "lte/orders_um",
+                                         "vibration/orders_normal_m_per_s2"};
+  char *path = stroke_path(), *text;
+  json_t *design = design_of_stroke();
+  text = json_dumps(design, JSON_COMPACT);
+  struct reply reply = call("POST", path, "Prefer: wait=100\r\n", text);
+  ok(reply.status == 200 && reply.size > 10000 && reply.size <= MOST, "a stroke's step has %zu bytes, at most %d: %s",
+     reply.size, MOST, path);
+  json_t *answer = json_loadb(reply.body ? reply.body : "", reply.size, 0, NULL);
+  ok(json_is_object(json_object_get(answer, "design")) && json_is_object(json_object_get(answer, "modification")),
+     "it has the resolved design and the flanks");
+  for (int k = 0; k < 3; k++) {
+    const json_t *row = json_array_get(json_object_get(answer, "load_cases"), (size_t)k);
+    for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
+      ok(json_is_array(at_path(row, shown[i])) == (k == 1), "load case %d: %s", k, shown[i]);
+    for (size_t i = 0; i < sizeof compared / sizeof *compared; i++)
+      ok(json_is_array(at_path(row, compared[i])), "load case %d: %s", k, compared[i]);
+  }
+  json_decref(answer);
+  json_decref(design);
+  free_reply(&reply);
+  free(text);
+  free(path);
+}
+
 static void test_sweeps(void)
 {
   static const struct {
@@ -130,6 +209,7 @@ int main(void)
     return 1;
   ok(listen_to_replies(), "it describes itself");
   test_analyses();
+  test_stroke();
   test_sweeps();
   test_jobs();
   test_lists();

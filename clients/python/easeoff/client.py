@@ -168,10 +168,11 @@ class Client:
         pitch: bool = True,
         parts: str | None = None,
         curves_of: int | None = None,
+        digits: int | None = None,
         easeoff_lane: str | None = None,
     ) -> doc.Result:
-        """One true evaluation. parts, curves_of: leave the rest of a long answer out. easeoff_lane: a newer question with
-        the same word takes the place of one that waits."""
+        """One true evaluation. parts, curves_of, digits: leave the rest of a long answer out. easeoff_lane: a newer
+        question with the same word takes the place of one that waits."""
         flags = {
             "root_stress": root_stress,
             "band": band,
@@ -181,7 +182,7 @@ class Client:
             "pitch": pitch,
         }
         query: dict[str, Any] = {name: int(value) for name, value in flags.items()}
-        query.update(parts=parts, curves_of=curves_of)
+        query.update(parts=parts, curves_of=curves_of, digits=digits)
         return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
 
     @operation("sweep")

@@ -5,8 +5,12 @@ import { Lane } from './lane.js';
 import { unmodified } from './store.js';
 
 const ANALYZE = 'analyze?histories=1&rating=0';
-/** While a slider moves: without histories over time, which are half of an answer. */
-const STROKE = 'analyze?rating=0&parts=design,modification,lte,mesh_stiffness,load_share,pattern,orders,maps';
+/**
+ * While a slider moves: what figures show of the load case on the screen, what they compare between load cases, and the
+ * design as resolved, which the form shows; no histories over time, and no more digits than a screen has points for.
+ */
+const STROKE =
+  'analyze?rating=0&digits=6&parts=design,modification,mesh_stiffness,load_share,pattern,maps,overview';
 const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
 const REST = 900; // ms without a change before the design is rated
 
@@ -25,6 +29,10 @@ export class Analyst extends EventTarget {
   /** @type {import('./api.js').Fault[]} */ faults = [];
   message = '';
   ms = 0;
+  /** Load case that figures of one load case show; the only one with all its curves in a stroke's answers. */
+  shown = 0;
+  /** The result is a stroke's. */
+  partial = false;
   /** The last result with a rating. @type {any} */ rated = null;
   #rest = 0;
   #plainKey = '';
@@ -37,13 +45,14 @@ export class Analyst extends EventTarget {
     this.own = new Lane({
       result: (task, data, ms) => {
         this.result = data;
+        this.partial = task.note === 'stroke';
         this.ms = ms;
         this.faults = [];
         this.message = '';
         this.#state('');
         this.#tell('result');
         clearTimeout(this.#rest);
-        if (task.path === STROKE) return;
+        if (this.partial) return;
         this.#rest = window.setTimeout(() => this.rating.submit({ path: RATE, body: this.store.design }), REST);
       },
       preparing: (_task, job) => {
@@ -90,7 +99,9 @@ export class Analyst extends EventTarget {
     }
     const { design } = store;
     if (this.state !== 'preparing') this.#state('busy');
-    this.own.submit({ path: stroke ? STROKE : ANALYZE, body: design });
+    const last = design.load_cases.length - 1;
+    if (stroke) this.own.submit({ path: `${STROKE}&curves_of=${Math.min(this.shown, last)}`, body: design, note: 'stroke' });
+    else this.own.submit({ path: ANALYZE, body: design });
     const key = loadKey(design);
     if (key !== this.#plainKey) {
       this.#plainKey = key;

@@ -81,7 +81,9 @@ class DesignView {
     if (!result) return null;
     const count = result.load_cases.length;
     const chosen = store.loadCase >= 0 && store.loadCase < count ? store.loadCase : mainCase(result.design);
-    return { result, references: analyst.references(), loadCase: chosen };
+    // another load case has its curves with the full answer, which comes when the slider rests
+    if (!analyst.partial) analyst.shown = chosen;
+    return { result, references: analyst.references(), loadCase: Math.min(analyst.shown, count - 1) };
   }
 
   #drawResult() {
