@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MANY = 32 }; /* unknowns from which LAPACK is the faster one */
+
 static SUNLinearSolver_Type type_of(SUNLinearSolver solver)
 {
   (void)solver;
@@ -37,7 +39,7 @@ static int free_solver(SUNLinearSolver solver)
   return SUNLS_SUCCESS;
 }
 
-static SUNLinearSolver new_solver(int n, SUNContext context)
+static SUNLinearSolver new_lapack(int n, SUNContext context)
 {
   SUNLinearSolver solver = SUNLinSolNewEmpty(context);
   if (!solver)
@@ -63,7 +65,8 @@ int eo_dense_newton_init(struct eo_dense_newton *newton, int n)
   newton->jacobian = malloc(sizeof *newton->jacobian * n * n);
   if (!newton->x || !newton->matrix || !newton->jacobian)
     return -1;
-  newton->solver = new_solver(n, newton->context);
+  newton->solver = n < MANY ? SUNLinSol_Dense(newton->x, newton->matrix, newton->context)
+                            : new_lapack(n, newton->context);
   return newton->solver ? 0 : -1;
 }
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the users of SUNDIALS share: a context, the unknowns, and the dense matrix of Newton's method with its solver,
-   which is LAPACK's: the one of SUNDIALS itself takes ten times as long on a hundred unknowns. For one thread. */
+/* What the users of SUNDIALS share: a context, the unknowns, and the dense matrix of Newton's method with its solver.
+   With many unknowns that is LAPACK's: the one of SUNDIALS itself takes ten times as long on a hundred. For one thread.
+ */
 #ifndef EASEOFF_NUMERICS_DENSE_NEWTON_H
 #define EASEOFF_NUMERICS_DENSE_NEWTON_H
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sundials/sundials_linearsolver.h>
+#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 struct eo_dense_newton {

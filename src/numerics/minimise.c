@@ -156,7 +156,7 @@ static bool along_parabola(struct line_search *l, double tolerance, double *move
 /* Takes in a value: the interval shrinks towards the better of it and the best one. */
 static void take_value(struct line_search *l, double x, double value)
 {
-  int at = value <= l->value[0] ? 0 : value <= l->value[1] || l->place[1] == l->place[0] ? 1 : 2;
+  int at = value < l->value[0] ? 0 : value <= l->value[1] || l->place[1] == l->place[0] ? 1 : 2;
   double bound = at == 0 ? l->place[0] : x, inside = at == 0 ? x : l->place[0];
   if (inside < bound)
     l->high = bound;
