@@ -490,6 +490,79 @@ static void test_coupled_law(void)
     near(tangent[k], r->load_case[k].vibration.rms_pair[0], 0.03, "coupled ends: default law against the table");
 }
 
+static void ask_again(struct eo_design *design)
+{
+  (void)design;
+}
+static void change_left_end(struct eo_design *design)
+{
+  design->modification.flank[EO_PINION][EO_LEFT].tip_relief += 1e-6;
+}
+static void change_both_ends(struct eo_design *design)
+{
+  change_left_end(design);
+  design->modification.flank[EO_GEAR][EO_RIGHT].tip_relief += 1e-6;
+}
+static void change_harmonics(struct eo_design *design)
+{
+  design->resolution.te_harmonics -= 4;
+}
+static void change_backlash(struct eo_design *design)
+{
+  design->gear_pair.backlash /= 2;
+}
+static void change_damping(struct eo_design *design)
+{
+  design->supports.mesh_damping_ratio /= 2;
+}
+static void ask_for_tables(struct eo_design *design)
+{
+  design->resolution.mesh_law = EO_LAW_TABLE;
+}
+static void ask_for_tangents(struct eo_design *design)
+{
+  design->resolution.mesh_law = EO_LAW_TANGENT;
+}
+
+/* Ends that differ have laws that take two more solutions of loaded contact each; an end that has not changed keeps
+   them as it keeps its loads, and nothing that comes out depends on it. */
+static void test_kept_laws(void)
+{
+  enum { ALONE = 1, LAW = 2, TABLE = 12 };
+  static const struct {
+    const char *what;
+    void (*change)(struct eo_design *design);
+    int solutions; /* of each load case */
+  } step[] = {{"from nothing", ask_again, 2 * (ALONE + LAW)},
+              {"the same again", ask_again, 0},
+              {"one end changes", change_left_end, ALONE + LAW},
+              {"and again", change_left_end, ALONE + LAW},
+              {"both ends change", change_both_ends, 2 * (ALONE + LAW)},
+              {"the damping changes", change_damping, 0},
+              {"the harmonics of the laws change", change_harmonics, 2 * LAW},
+              {"the backlash changes", change_backlash, 2 * LAW},
+              {"tables of many loads", ask_for_tables, 2 * TABLE},
+              {"one end of them changes", change_left_end, ALONE + TABLE},
+              {"the usual law again", ask_for_tangents, 2 * LAW}};
+  struct eo_design design = design_of("paper-case-b");
+  struct eo_evaluator *shared = evaluator, *kept = make_evaluator(pair);
+  for (size_t i = 0; i < sizeof step / sizeof *step; i++) {
+    step[i].change(&design);
+    evaluator = kept;
+    const struct eo_evaluation *r = run(&design, NULL, 0);
+    int solutions = r->solutions, expected = step[i].solutions * r->cases;
+    const struct record here = record_of(r);
+    evaluator = make_evaluator(pair);
+    const struct record alone = record_of(run(&design, NULL, 0));
+    eo_evaluator_free(evaluator);
+    ok(solutions == expected && same(&here, &alone),
+       "%s: %d solutions of loaded contact, to be %d; the numbers are those of an evaluator of its own", step[i].what,
+       solutions, expected);
+  }
+  eo_evaluator_free(kept);
+  evaluator = shared;
+}
+
 int main(void)
 {
   struct eo_design design = design_of("paper");
@@ -511,6 +584,7 @@ int main(void)
   test_axial();
   test_held_share();
   test_coupled_law();
+  test_kept_laws();
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return tap_done();
