@@ -50,8 +50,8 @@ enum {
   EO_RESULT_FIRST_PART = EO_RESULT_NO_MODIFICATION,
   EO_RESULT_PARTS = 13,
 };
-#define EO_RESULT_PART_WORDS                                                                                           \
-  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design|pitch|"       \
+#define EO_RESULT_PART_WORDS                                                                                     \
+  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design|pitch|" \
   "assumed|end_orders"
 
 /* Added to what is left out. Of all load cases only number k (from 0) has curves, maps and histories. Whatever is left

@@ -94,10 +94,10 @@ static json_t *encode_curves(const struct eo_result_source *source, const struct
 {
   struct eo_object o = eo_object_open_as(&channel_curves);
   for (int i = 0; i < EO_CHANNELS; i++)
-    eo_object_put(&o, channels[i].key,
-                  orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
-                         : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit,
-                                         source->map_digits));
+    eo_object_put(
+        &o, channels[i].key,
+        orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
+               : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit, source->map_digits));
   return eo_object_close(&o);
 }
 
