@@ -380,6 +380,39 @@ await chapter('pictures of curves have curves', async () => {
   );
 });
 
+await chapter('a slider is felt in every figure', async () => {
+  await open();
+  await settled();
+  const slider = page.locator('.field.slider input[type=range]').first();
+  const shown = ['Loaded TE', 'Mesh stiffness', 'Load sharing', 'Contact pressure'];
+  const pictures = async () => {
+    const each = [];
+    for (const title of shown) each.push((await figureMenu(title, 'Save as PNG')).bytes.toString('base64'));
+    return each;
+  };
+  const before = await pictures();
+  const step = page.waitForResponse(response => response.url().includes('overview'));
+  await slider.evaluate(each => {
+    each.value = String(Number(each.min) + 0.7 * (Number(each.max) - Number(each.min)));
+    each.dispatchEvent(new Event('input', { bubbles: true }));
+  });
+  const size = (await (await step).body()).length;
+  ok(size <= 60000, `a step's answer has ${size} bytes`);
+  await rest(500);
+  const waiting = await page.locator('.figure.waiting h3').allInnerTexts();
+  ok(
+    waiting.every(title => /^(Vibration|Root stress)| over /.test(title)),
+    `histories and sweeps alone wait for the slider: ${waiting.join(', ')}`,
+  );
+  (await pictures()).forEach((picture, i) => ok(picture !== before[i], `${shown[i]} has moved`));
+  const whole = page.waitForResponse(response => response.url().includes('histories=1'));
+  await slider.evaluate(each => each.dispatchEvent(new Event('change', { bubbles: true })));
+  await whole;
+  await rest(500);
+  ok((await page.locator('.figure.waiting').count()) === 0, 'and come when it rests');
+  await page.keyboard.press('Control+z');
+});
+
 await chapter('legends switch', async () => {
   const figure = page.locator('.figure', { has: page.locator('h3', { hasText: 'Loaded TE' }) }).first();
   await figure.scrollIntoViewIfNeeded();

@@ -10,7 +10,7 @@ const ANALYZE = 'analyze?histories=1&rating=0';
  * design as resolved, which the form shows; no histories over time, and no more digits than a screen has points for.
  */
 const STROKE =
-  'analyze?rating=0&digits=6&parts=design,modification,mesh_stiffness,load_share,pattern,maps,overview';
+  'analyze?rating=0&pitch=0&digits=6&parts=design,modification,mesh_stiffness,load_share,pattern,maps,overview';
 const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
 const REST = 900; // ms without a change before the design is rated
 
@@ -99,9 +99,9 @@ export class Analyst extends EventTarget {
     }
     const { design } = store;
     if (this.state !== 'preparing') this.#state('busy');
-    const last = design.load_cases.length - 1;
-    if (stroke) this.own.submit({ path: `${STROKE}&curves_of=${Math.min(this.shown, last)}`, body: design, note: 'stroke' });
-    else this.own.submit({ path: ANALYZE, body: design });
+    const last = (design.load_cases?.length ?? 1) - 1;
+    const path = stroke ? `${STROKE}&curves_of=${Math.min(this.shown, last)}` : ANALYZE;
+    this.own.submit({ path, body: design, note: stroke ? 'stroke' : '' });
     const key = loadKey(design);
     if (key !== this.#plainKey) {
       this.#plainKey = key;
