@@ -286,7 +286,7 @@ static void resolve_scenarios(struct eo_objective *objective, const struct eo_al
     fill(&objective->scenario[i].in_plane, in);
     fill(&objective->scenario[i].out_of_plane, out);
   }
-  if (objective->robust == EO_ROBUST_OFF || objective->scenarios)
+  if (objective->robust == EO_ROBUST_OFF || objective->scenarios || objective->scatter_pairs)
     return;
   add_scenario(objective, in, out, 1, 1);
   for (int sign = -1; sign <= 1; sign += 2) {

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "contact/shaft.h"
+#include "design/drawn_pairs.h"
 #include "dynamics/parameters.h"
 #include "flexibility/body_model.h"
 #include "gear/gear_pair.h"
@@ -77,7 +78,7 @@ struct eo_running {
 };
 
 enum eo_normalise { EO_NORMALISE_UNMODIFIED, EO_NORMALISE_NONE };
-enum eo_robust { EO_ROBUST_OFF, EO_ROBUST_MEAN, EO_ROBUST_WORST };
+enum eo_robust { EO_ROBUST_OFF, EO_ROBUST_MEAN, EO_ROBUST_WORST, EO_ROBUST_PERCENTILE, EO_ROBUST_SIGMAS };
 struct eo_objective {
   double weight[3];
   enum eo_normalise normalise;
@@ -94,7 +95,9 @@ struct eo_objective {
   bool no_worse_than_unmodified;
   double penalty; /* factor on every violated constraint */
   enum eo_robust robust;
-  int scenarios; /* number of rows below */
+  double robust_percent, robust_sigmas; /* of the last two */
+  int scatter_pairs;                    /* drawn from the block tolerance instead of the rows below; 0: none */
+  int scenarios;                        /* number of rows below */
   struct eo_scenario {
     double in_plane, out_of_plane, compliance, speed;
   } scenario[EO_MAX_SCENARIOS]; /* rad, rad (NaN: nominal), factor, factor */
@@ -166,6 +169,7 @@ struct eo_design {
   struct eo_objective objective;
   struct eo_optimization optimization;
   struct eo_resolution resolution;
+  struct eo_drawn_pairs drawn;      /* for objective.scatter_pairs */
   uint64_t stated[EO_STATED_WORDS]; /* a bit for each key that the user stated: document/assumption.h */
 };
 

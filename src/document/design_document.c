@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/design_document.h"
 
+#include "document/scatter_document.h"
+
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -307,6 +309,8 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (!code)
     code = eo_design_check(&complete, &made, error);
+  if (!code)
+    code = eo_scatter_draw_pairs(&complete, error);
   if (!code) {
     *design = complete;
     *geometry = made;
@@ -354,7 +358,10 @@ static json_t *encode_wants(const struct eo_design *design)
 {
   json_t *wants = json_object();
   bool failed = !wants;
-  if (design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0) {
+  if (design->objective.robust != EO_ROBUST_OFF && design->drawn.pairs > 0) {
+    eo_json_put(wants, "tolerance", eo_table_encode(&eo_tolerance_table, &design->tolerance), &failed);
+    eo_json_put(wants, "scatter_pairs", json_integer(design->drawn.pairs), &failed);
+  } else if (design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0) {
     json_t *objective = eo_table_encode(&eo_objective_table, &design->objective);
     eo_json_put(wants, "scenarios", json_incref(json_object_get(objective, "scenarios")), &failed);
     json_decref(objective);
@@ -371,8 +378,8 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"version", "name",      "modification", "rating",
-                                        "pitch",   "tolerance", "objective",    "optimization"};
+  static const char *const without[] = {"version",   "name",      "modification", "rating",      "pitch",
+                                        "tolerance", "tolerance", "objective",    "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;

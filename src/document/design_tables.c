@@ -57,7 +57,7 @@ static const struct eo_field load_case[] = {
 };
 
 static const char *const normalise[] = {"unmodified", "none", NULL};
-static const char *const robust[] = {"off", "mean", "worst", NULL};
+static const char *const robust[] = {"off", "mean", "worst", "percentile", "mean_plus_sigmas", NULL};
 
 static const struct eo_field constraints[] = {
     EO_NUMBER_DERIVED(struct eo_objective, contact_pressure, "contact_pressure_MPa", &eo_unit_MPa, 1, 1e5, "off",
@@ -103,7 +103,22 @@ static const struct eo_field objective[] = {
     EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10,
               "factor on the relative excess over each limit"),
     EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF,
-              "objective over the scenarios: their mean, the worst, or the nominal one alone"),
+              "objective over the scenarios: their mean, the worst, a percentile, the mean and a number of standard "
+              "deviations, or the nominal one alone; limits hold in every scenario"),
+    EO_NUMBER(struct eo_objective, robust_percent, "robust_percent", NULL, 50, 99, 95,
+              "with robust percentile: which one of J over the scenarios, as of f1, f2, f3 each"),
+    EO_NUMBER(struct eo_objective, robust_sigmas, "robust_sigmas", NULL, 0, 10, 2,
+              "with robust mean_plus_sigmas: how many standard deviations"),
+    {.key = "scatter_pairs",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_objective, scatter_pairs),
+     .low = 2,
+     .high = EO_MAX_DRAWN_PAIRS,
+     .fallback = NAN,
+     .derived = "none: the scenarios count",
+     .help = "pairs as made, drawn from the block tolerance, that stand in place of the scenarios when robust is not "
+             "off: the same deviations for every flank that is tried"},
     {.key = "scenarios",
      .kind = EO_FIELD_LIST,
      .offset = offsetof(struct eo_objective, scenario),

@@ -313,6 +313,55 @@ enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_de
   return eo_scatter_settle(scatter, error);
 }
 
+/* Deviations alone: bounds count for the design that is tried. */
+static enum eo_code draw(struct eo_design *design, struct eo_scatter *scatter, struct eo_error *error)
+{
+  struct eo_drawn_pairs *drawn = &design->drawn;
+  struct eo_sampler *sampler;
+  int pairs = design->objective.scatter_pairs;
+  double value[EO_MAX_SCATTER_INPUTS];
+  if (scatter->inputs > EO_MAX_DRAWN_INPUTS)
+    return eo_error_set(error, EO_ERROR_INPUT, "/objective/scatter_pairs",
+                        "%d inputs scatter, and a robust objective draws %d at most: state fewer.", scatter->inputs,
+                        EO_MAX_DRAWN_INPUTS);
+  for (int i = 0; i < scatter->inputs; i++) {
+    struct eo_scatter_input *input = &scatter->input[i];
+    drawn->input[i] = (struct eo_drawn_input){.target = input->target,
+                                              .offset = input->offset,
+                                              .low = input->least * input->unit,
+                                              .high = input->most * input->unit};
+    input->nominal = 0;
+    input->least = -INFINITY;
+    input->most = INFINITY;
+  }
+  EO_TRY(eo_sampler_new(&sampler, (enum eo_sampling)design->tolerance.sampling, scatter->dimensions, pairs,
+                        design->tolerance.seed, error));
+  for (int pair = 0; pair < pairs; pair++) {
+    eo_scatter_draw(scatter, sampler, pair, value);
+    for (int i = 0; i < scatter->inputs; i++)
+      drawn->deviation[pair][i] = value[i] * scatter->input[i].unit;
+  }
+  eo_sampler_free(sampler);
+  drawn->inputs = scatter->inputs;
+  drawn->pairs = pairs;
+  return EO_OK;
+}
+
+enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *error)
+{
+  memset(&design->drawn, 0, sizeof design->drawn);
+  if (design->objective.robust == EO_ROBUST_OFF || design->objective.scatter_pairs == 0)
+    return EO_OK;
+  struct eo_scatter *scatter = malloc(sizeof *scatter);
+  if (!scatter)
+    return eo_error_memory(error);
+  enum eo_code code = eo_scatter_of_design(scatter, design, true, NULL, error);
+  if (!code)
+    code = draw(design, scatter, error);
+  free(scatter);
+  return code;
+}
+
 void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size)
 {
   const struct eo_distribution *d = &input->deviation;

@@ -13,6 +13,10 @@
 enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_design *design, bool assume_class,
                                   bool *assumed, struct eo_error *error);
 
+/* Draws the pairs of a robust objective into design->drawn; none are drawn where it asks for none. Errors: as above,
+   and too many inputs. */
+enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *error);
+
 /* A row's distribution in words, "normal, sigma 3.25, cut at 2.5 sigma". */
 void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size);
 

@@ -92,7 +92,7 @@ static bool is_unmodified(const struct eo_design *design)
 
 static bool is_robust(const struct eo_design *design)
 {
-  return design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0;
+  return eo_design_scenarios(design) > 1;
 }
 
 static enum eo_code find_unmodified(struct eo_analysis *analysis, const struct eo_design *bare, int want,

@@ -57,6 +57,7 @@ struct eo_meeting {
 
 struct eo_evaluator {
   const struct eo_pair *pair;
+  struct eo_design *made; /* a pair as drawn for a robust objective; owned; NULL until there is one */
   int most_cases;
   int threads; /* 1 or 2 */
 

@@ -152,6 +152,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
   }
   for (int half = 0; half < 2; half++)
     free(evaluator->peaks[half]);
+  free(evaluator->made);
   eo_meetings_done(evaluator);
   eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);
   eo_vibration_free(evaluator->vibration);

@@ -304,12 +304,60 @@ static void test_robust(void)
        1e-14, "fitness of the mean");
   near(worst.fitness, fmin(one[0].fitness, fmin(one[1].fitness, one[2].fitness)), 0, "worst fitness");
   ok(one[0].violation > 0 || one[2].violation > 0, "with a constraint that bites");
+  double j[3] = {one[0].objective, one[1].objective, one[2].objective}, largest = fmax(j[0], fmax(j[1], j[2])),
+         middle = j[0] + j[1] + j[2] - largest - fmin(j[0], fmin(j[1], j[2])), centre = (j[0] + j[1] + j[2]) / 3;
+  design.objective.robust = EO_ROBUST_PERCENTILE;
+  design.objective.robust_percent = 75;
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
+  near(mean.objective, (middle + largest) / 2, 1e-14, "75 % of three lies half way to the largest");
+  design.objective.robust = EO_ROBUST_SIGMAS;
+  design.objective.robust_sigmas = 2;
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
+  near(mean.objective, centre + 2 * sqrt((pow(j[0] - centre, 2) + pow(j[1] - centre, 2) + pow(j[2] - centre, 2)) / 2),
+       1e-12, "mean and two standard deviations");
+  ok(mean.violation > 0, "a limit that one scenario does not meet is not met");
   raw[1].failed = true;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
   design.objective.robust = EO_ROBUST_MEAN;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
   ok(worst.fitness == EO_FITNESS_WORST && mean.fitness == EO_FITNESS_WORST,
      "one scenario that failed spoils mean and worst");
+}
+
+/* Drawn pairs: the same deviations for both designs; a relief that is not there does not scatter. */
+static void test_drawn(void)
+{
+  static struct eo_design design, made;
+  struct eo_geometry geometry;
+  struct eo_objective_case raw[4 * MOST_CASES], again[4 * MOST_CASES];
+  struct eo_scenario scenario;
+  struct eo_error error;
+  design = design_of("paper-case-a");
+  design.objective.robust = EO_ROBUST_PERCENTILE;
+  design.objective.scatter_pairs = 4;
+  design.tolerance.rows = 2;
+  for (int i = 0; i < 2; i++) {
+    design.tolerance.row[i] = (struct eo_scatter_row){.sigma = 5, .cut = NAN};
+    strcpy(design.tolerance.row[i].key, i ? "modification.*.*.tip_relief_um" : "modification.*.*.helix_slope_um");
+  }
+  ok(eo_design_complete(&design, &geometry, &error) == EO_OK && design.drawn.pairs == 4 && design.drawn.inputs == 8,
+     "four pairs of eight inputs");
+  ok(eo_evaluator_scenarios(&design) == 4, "they count");
+  eo_drawn_pair_apply(&design, 1, &made, &scenario);
+  ok(made.modification.flank[EO_PINION][EO_LEFT].tip_relief != design.modification.flank[EO_PINION][EO_LEFT].tip_relief,
+     "a relief scatters");
+  ok(made.modification.flank[EO_GEAR][EO_LEFT].tip_relief == 0, "one that is not made does not");
+  near(made.modification.flank[EO_GEAR][EO_LEFT].helix_slope, design.drawn.deviation[1][2], 1e-12,
+       "a slope has its deviation");
+  ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK &&
+         eo_evaluator_raw(evaluator, &design, again, &error) == EO_OK,
+     "raw values of four pairs");
+  ok(memcmp(raw, again, sizeof *raw * 4 * (size_t)design.load_cases) == 0 &&
+         raw[0].peak_to_peak != raw[design.load_cases].peak_to_peak,
+     "pairs differ, and are the same each time");
+  design.objective.robust = EO_ROBUST_OFF;
+  ok(eo_design_complete(&design, &geometry, &error) == EO_OK && design.drawn.pairs == 0,
+     "none where none are asked for");
 }
 
 static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_solver solver)
@@ -576,6 +624,7 @@ int main(void)
   test_threads();
   test_scenarios();
   test_robust();
+  test_drawn();
   test_laws();
   test_band();
   test_curves();
