@@ -378,8 +378,8 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"version",   "name",      "modification", "rating",      "pitch",
-                                        "tolerance", "tolerance", "objective",    "optimization"};
+  static const char *const without[] = {"version", "name",      "modification", "rating",
+                                        "pitch",   "tolerance", "objective",    "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;
