@@ -87,7 +87,7 @@ static void settle(const struct eo_objective *objective, int states, const struc
   value->fitness = value->sums.failed ? EO_FITNESS_WORST : 1 / value->objective - objective->penalty * value->violation;
 }
 
-/* EO_ROBUST_WORST: all numbers are those of the state with the lowest fitness. */
+/* theory (O4); EO_ROBUST_WORST: all numbers are those of the state with the lowest fitness. */
 void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry,
                           const struct eo_objective_case *raw, const struct eo_objective_case *unmodified,
                           struct eo_objective_value *value)

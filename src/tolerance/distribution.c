@@ -26,7 +26,7 @@ double eo_normal_quantile(double p)
   return p < 0.5 ? -x : x;
 }
 
-/* q(u) = mean + sigma Phi^-1(Phi(-c) + u (Phi(c) - Phi(-c))): (A1). */
+/* q(u) = mean + sigma Phi^-1(Phi(-c) + u (Phi(c) - Phi(-c))): theory (A1). */
 static double normal_quantile(const struct eo_distribution *d, double u)
 {
   double below = isinf(d->cut) ? 0 : eo_normal_probability(-d->cut);

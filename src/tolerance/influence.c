@@ -39,7 +39,7 @@ static double product(int n, const double *a, const double *b)
   return sum;
 }
 
-/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: (A7). */
+/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: theory (A7). */
 static enum eo_code solve(struct eo_regression *regression, int n, int varying, const double *column, const int *of,
                           struct eo_error *error)
 {
@@ -142,7 +142,7 @@ struct sums {
 };
 
 /* One pair of points a, b and those of a with one coordinate of b each:
-   V_i = mean of f(b) (f(a_b^i) - f(a)), T_i = mean of (f(a) - f(a_b^i))^2 / 2: (A9). */
+   V_i = mean of f(b) (f(a_b^i) - f(a)), T_i = mean of (f(a) - f(a_b^i))^2 / 2: theory (A9). */
 static void add_point(eo_unit_function *function, void *context, int inputs, double *u, double shift, struct sums *sums)
 {
   const double *other = u + inputs;

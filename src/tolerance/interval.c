@@ -34,7 +34,7 @@ static int binomial_quantile(int n, double p, double share)
   return low;
 }
 
-/* X values lie below the quantile, X binomial: x_(low) <= quantile < x_(high) when low <= X < high: (A4). */
+/* X values lie below the quantile, X binomial: x_(low) <= quantile < x_(high) when low <= X < high: theory (A4). */
 struct eo_rank_interval eo_order_statistic_ranks(int n, double p, double level)
 {
   struct eo_rank_interval r = {.low = binomial_quantile(n, p, (1 - level) / 2),
@@ -57,7 +57,7 @@ static double share_at(int n, int k, double probability)
   return (low + high) / 2;
 }
 
-/* The shares at which as few, or as many, would be seen with half of what the level leaves: (A5). */
+/* The shares at which as few, or as many, would be seen with half of what the level leaves: theory (A5). */
 struct eo_share_interval eo_clopper_pearson(int inside, int n, double level)
 {
   double tail = (1 - level) / 2;
@@ -65,7 +65,7 @@ struct eo_share_interval eo_clopper_pearson(int inside, int n, double level)
                                     .high = inside == n ? 1 : share_at(n, inside, tail)};
 }
 
-/* (A6); Wilson 1927. */
+/* theory (A6); Wilson 1927. */
 struct eo_share_interval eo_wilson(int inside, int n, double level)
 {
   double z = eo_normal_quantile((1 + level) / 2), share = (double)inside / n, weight = z * z / n;

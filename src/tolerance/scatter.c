@@ -57,7 +57,7 @@ enum eo_code eo_scatter_settle(struct eo_scatter *scatter, struct eo_error *erro
 }
 
 /* Normals under the condition that their deviations cancel: each gives up its share of the variance of what is over,
-   which leaves sigma_i^2 (1 - sigma_i^2 / sum): (A2). */
+   which leaves sigma_i^2 (1 - sigma_i^2 / sum): theory (A2). */
 static void keep_sums(const struct eo_scatter *scatter, double *value)
 {
   for (int i = 0; i < scatter->inputs; i++) {

@@ -35,7 +35,7 @@ void eo_sort_numbers(int n, double *value)
   qsort(value, (size_t)n, sizeof *value, ascending);
 }
 
-/* (A3) */
+/* theory (A3) */
 double eo_percentile(int n, const double *sorted, double percent)
 {
   double rank = (n - 1) * percent / 100;

@@ -84,7 +84,7 @@ static void hold_constant_inputs(struct fit *fit)
   }
 }
 
-/* Normal equations; the residual without its own row is e/(1 - h), h = a' G^-1 a (Allen 1974): (A8). */
+/* Normal equations; the residual without its own row is e/(1 - h), h = a' G^-1 a (Allen 1974): theory (A8). */
 static enum eo_code solve(struct fit *fit, const double *output, struct eo_error *error)
 {
   int p = fit->terms, n = fit->n;
@@ -193,7 +193,7 @@ double eo_surface_at(const struct eo_surface *surface, const double *input)
   return y;
 }
 
-/* Variance of b z + q z^2 with E z = 0, E z^2 = 1: b^2 + 2 b q E z^3 + q^2 (E z^4 - 1); of q z_i z_j: q^2: (A10). */
+/* theory (A10): variance of b z + q z^2 with E z = 0, E z^2 = 1, and of q z_i z_j. */
 void eo_surface_indices(const struct eo_surface *surface, double *first, double *total)
 {
   double variance = 0;
