@@ -323,6 +323,11 @@ static bool solve(struct eo_tolerance_bench *bench, const struct eo_gap_field fi
   return failures == 0;
 }
 
+static void put_number(struct eo_design *design, size_t offset, double si)
+{
+  memcpy((char *)design + offset, &si, sizeof si);
+}
+
 bool eo_bench_evaluate(struct eo_tolerance_bench *bench, const double *value, double *output)
 {
   struct eo_design design = bench->nominal;
@@ -333,7 +338,7 @@ bool eo_bench_evaluate(struct eo_tolerance_bench *bench, const double *value, do
     if (input->index >= 0)
       index[input->index] = value[i] * input->unit;
     else
-      *(double *)((char *)&design + input->offset) = value[i] * input->unit;
+      put_number(&design, input->offset, value[i] * input->unit);
   }
   set_fields(bench, &design, index, field);
   output[EO_BENCH_UNLOADED] = 0;

@@ -81,11 +81,10 @@ static enum eo_code check_variables(const struct trial *t, struct eo_case *varia
     const struct eo_bench_input *input = &t->bench->input[i];
     EO_TRY(check_limit(t, row, input, grade, error));
     eo_verify_uncompared(t->v, eo_case_find(row, "limit_unrounded"), "tolerances are computed as the standard rounds");
-    double nominal = eo_case_number(row, "nominal");
+    double nominal = eo_case_number(row, "nominal"), si;
+    memcpy(&si, (const char *)&t->bench->nominal + input->offset, sizeof si);
     if (input->index < 0)
-      eo_verify_derived(t->v, eo_case_find(row, "nominal"), "the nominal flanks",
-                        *(const double *)((const char *)&t->bench->nominal + input->offset) / input->unit, nominal,
-                        1e-9);
+      eo_verify_derived(t->v, eo_case_find(row, "nominal"), "the nominal flanks", si / input->unit, nominal, 1e-9);
   }
   return EO_OK;
 }
@@ -290,9 +289,10 @@ static enum eo_code check_output(const struct trial *t, struct eo_case *block, i
                                     0.005);
   struct eo_summary s = eo_summary_of(t->rows, value);
   struct eo_case *percentiles = eo_case_need(block, "percentiles");
-  double *sorted = malloc(sizeof *sorted * 2 * (size_t)t->rows), *other = sorted + t->rows;
+  double *sorted = malloc(sizeof *sorted * 2 * (size_t)t->rows);
   if (!sorted)
     return eo_error_memory(error);
+  double *other = sorted + t->rows;
   memcpy(sorted, value, sizeof *sorted * (size_t)t->rows);
   memcpy(other, again, sizeof *sorted * (size_t)t->rows);
   eo_sort_numbers(t->rows, sorted);

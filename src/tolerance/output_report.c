@@ -74,7 +74,8 @@ static enum eo_code regress(const struct rows *rows, struct eo_output_report *re
                             struct eo_error *error)
 {
   struct eo_error found;
-  struct eo_regression regression = {.coefficient = size};
+  struct eo_regression regression = {0};
+  regression.coefficient = size;
   enum eo_code code = eo_regression_run(&regression, rows->count, rows->inputs, rows->input, rows->output, &found);
   if (code == EO_ERROR_NUMERIC)
     return EO_OK;
