@@ -24,14 +24,14 @@ static const struct eo_outline input_outline = EO_OUTLINE("ScatterInput", input_
 static const struct eo_outline_row percentile_rows[] = {
     EO_KEY("percent", "number", "0 .. 100"),
     EO_KEY("value", "number", "by linear interpolation of the sorted values (type 7)"),
-    EO_KEY("from", "number?", "95 % interval by the ranks, whatever the distribution; null: open"),
-    EO_KEY("to", "number?", "the other end"),
+    EO_KEY("low", "number?", "95 % interval by the ranks, whatever the distribution; null: open"),
+    EO_KEY("high", "number?", "the other end"),
 };
 static const struct eo_outline percentile_outline = EO_OUTLINE("ScatterPercentile", percentile_rows);
 
 static const struct eo_outline_row histogram_rows[] = {
-    EO_KEY("from", "number", "least value"),
-    EO_KEY("to", "number", "largest value"),
+    EO_KEY("least", "number", "least value"),
+    EO_KEY("largest", "number", "largest value"),
     EO_KEY("count", "[integer]", "pairs in equal parts of that range"),
 };
 static const struct eo_outline histogram_outline = EO_OUTLINE("ScatterHistogram", histogram_rows);
@@ -102,7 +102,7 @@ static const struct eo_outline_row tolerance_rows[] = {
     EO_KEY("bounded", "integer", "drawn values that met a bound of their key and were put there"),
     EO_KEY("inputs", "[object]", "what scatters", .outline = &input_outline),
     EO_KEY("outputs", "[object]", "numbers of every load case", .outline = &output_outline),
-    EO_KEY("yield", "[object]", "against the limits; the last row: all of them", .outline = &yield_outline),
+    EO_KEY("yields", "[object]", "against the limits; the last row: all of them", .outline = &yield_outline),
     EO_KEY("correlation", "object", "between the numbers of one load case", .outline = &correlation_outline),
     EO_KEY("worst", "object", "the worst pair", .outline = &worst_outline),
     EO_KEY("warnings", "[text]", "in plain words"),
@@ -158,8 +158,8 @@ static json_t *encode_percentiles(const struct eo_output_report *r)
     struct eo_object o = eo_object_open_as(&percentile_outline);
     eo_object_put(&o, "percent", number(p->percent));
     eo_object_put(&o, "value", number(p->value));
-    eo_object_put(&o, "from", number(p->low));
-    eo_object_put(&o, "to", number(p->high));
+    eo_object_put(&o, "low", number(p->low));
+    eo_object_put(&o, "high", number(p->high));
     if (!append(&list, eo_object_close(&o)))
       break;
   }
@@ -173,8 +173,8 @@ static json_t *encode_histogram(const struct eo_output_report *r)
   for (int i = 0; i < EO_REPORT_BINS; i++)
     if (!append(&counts, json_integer(r->count[i])))
       break;
-  eo_object_put(&o, "from", number(r->summary.least));
-  eo_object_put(&o, "to", number(r->summary.largest));
+  eo_object_put(&o, "least", number(r->summary.least));
+  eo_object_put(&o, "largest", number(r->summary.largest));
   eo_object_put(&o, "count", counts);
   return eo_object_close(&o);
 }
@@ -348,7 +348,7 @@ json_t *eo_tolerance_encode(const struct eo_tolerance_report *report, const stru
   eo_object_put(&o, "bounded", json_integer(report->run->bounded));
   eo_object_put(&o, "inputs", encode_inputs(report));
   eo_object_put(&o, "outputs", encode_outputs(report));
-  eo_object_put(&o, "yield", encode_yields(report));
+  eo_object_put(&o, "yields", encode_yields(report));
   eo_object_put(&o, "correlation", encode_correlation(report));
   eo_object_put(&o, "worst", encode_worst(report));
   eo_object_put(&o, "warnings", encode_warnings(report, warnings));

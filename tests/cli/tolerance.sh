@@ -86,7 +86,7 @@ result $? "a file of another scatter is refused"
 
 "$EASEOFF" analyze "$folder/worst.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
 result $? "the worst pair is a design"
-"$numbers" "$folder/one.json" /outputs/0/histogram/to >"$folder/expected"
+"$numbers" "$folder/one.json" /outputs/0/histogram/largest >"$folder/expected"
 near "with the largest swing" /load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
 
 # ---- people and tables ----

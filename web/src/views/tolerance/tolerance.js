@@ -219,7 +219,7 @@ class ToleranceView {
     this.#drawHistogram(output, unit);
     fill(this.percentiles, percentiles(result, output, unit));
     fill(this.influences, influences(output));
-    fill(this.yields, yields(result.yield));
+    fill(this.yields, yields(result.yields));
     fill(this.inputs, inputTable(result));
     fill(
       this.notes,
@@ -229,7 +229,7 @@ class ToleranceView {
 
   /** A step for each part. @param {any} output @param {string} unit */
   #drawHistogram(output, unit) {
-    const { from, to, count } = output.histogram;
+    const { least: from, largest: to, count } = output.histogram;
     const width = (to - from) / count.length;
     const x = count.flatMap((/** @type {number} */ _n, /** @type {number} */ i) => [
       from + i * width,

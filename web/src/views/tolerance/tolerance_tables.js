@@ -22,7 +22,7 @@ export function percentiles(result, output, unit) {
       null,
       h('th', { scope: 'row' }, `${row.percent} %`),
       h('td', null, sig(row.value, 4)),
-      h('td', null, `${sig(row.from, 4)} to ${sig(row.to, 4)}`),
+      h('td', null, `${sig(row.low, 4)} to ${sig(row.high, 4)}`),
     );
   return h(
     'table.numbers',
