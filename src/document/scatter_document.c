@@ -222,8 +222,8 @@ static enum eo_code add_normal(struct eo_scatter *scatter, const struct eo_desig
   return add_preset_row(scatter, design, &row, error);
 }
 
-static enum eo_code tolerance_of(const struct eo_design *design, int member, struct eo_flank_tolerance *tolerance,
-                                 struct eo_error *error)
+static enum eo_code tolerance_of(const struct eo_design *design, int member, int end,
+                                 struct eo_flank_tolerance *tolerance, struct eo_error *error)
 {
   const struct eo_tolerance_settings *t = &design->tolerance;
   const struct eo_gear_pair *pair = &design->gear_pair;
@@ -231,7 +231,7 @@ static enum eo_code tolerance_of(const struct eo_design *design, int member, str
   struct eo_tolerance_input in = {.reference_diameter = pair->normal_module / cos(pair->helix_angle) *
                                                         pair->teeth[member],
                                   .normal_module = pair->normal_module,
-                                  .face_width = pair->face_width,
+                                  .face_width = eo_gear_pair_face_width(pair, end),
                                   .teeth = pair->teeth[member],
                                   .grade = t->grade,
                                   .total_contact_ratio = NAN};
@@ -288,10 +288,12 @@ static enum eo_code add_preset(struct eo_scatter *scatter, const struct eo_desig
 {
   struct eo_flank_tolerance t = {0};
   for (int member = 0; member < 2; member++) {
-    EO_TRY(tolerance_of(design, member, &t, error));
-    for (int end = 0; end < design->gear_pair.ends; end++)
+    for (int end = 0; end < design->gear_pair.ends; end++) {
+      EO_TRY(tolerance_of(design, member, end, &t, error));
       EO_TRY(add_flank(scatter, design, &t, member, end, error));
+    }
   }
+  EO_TRY(tolerance_of(design, EO_GEAR, EO_LEFT, &t, error));
   struct eo_axis_tolerance axis = eo_axis_tolerance(t.helix_total, 1);
   double per_width = 180 / M_PI / design->gear_pair.face_width;
   EO_TRY(add_normal(scatter, design, "alignment.shaft_angle_error_in_plane_deg", axis.in_plane * per_width, error));
