@@ -59,7 +59,7 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
 {
   const struct eo_contact_grid *const both[2] = {eo_evaluator_grid(evaluator, EO_LEFT),
                                                  eo_evaluator_grid(evaluator, EO_RIGHT)},
-                                     *grid = both[EO_LEFT];
+                                      *grid = both[EO_LEFT];
   struct eo_evaluation *result = &evaluator->result;
   size_t most = (size_t)evaluator->most_cases;
   result->positions = grid->positions;
@@ -70,7 +70,8 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   evaluator->law_of = calloc(most, sizeof *evaluator->law_of);
   evaluator->problem = calloc(most, sizeof *evaluator->problem);
   evaluator->shifted = calloc((size_t)grid->positions, sizeof *evaluator->shifted);
-  if (!result->load_case || !result->objective || !evaluator->law || !evaluator->law_of || !evaluator->problem || !evaluator->shifted)
+  if (!result->load_case || !result->objective || !evaluator->law || !evaluator->law_of || !evaluator->problem ||
+      !evaluator->shifted)
     return eo_error_memory(error);
   for (int k = 0; k < evaluator->most_cases; k++)
     EO_TRY(init_case(&result->load_case[k], both, error));
