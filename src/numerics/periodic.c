@@ -54,13 +54,18 @@ double eo_periodic_mean(int count, const double *value)
 
 double eo_periodic_harmonics(int count, const double *value, int harmonics, double (*amplitude)[2])
 {
-  double mean = eo_periodic_mean(count, value);
+  enum { TABLE = 512 }; /* angles of a round that are kept */
+  double mean = eo_periodic_mean(count, value), cosine[TABLE], sine[TABLE];
+  for (int i = 0; i < count && i < TABLE; i++) {
+    cosine[i] = cos(2 * M_PI * i / count);
+    sine[i] = sin(2 * M_PI * i / count);
+  }
   for (int h = 1; h <= harmonics; h++) {
     double re = 0, im = 0;
     for (int i = 0; i < count; i++) {
-      double angle = 2 * M_PI * (double)((long)h * i % count) / count;
-      re += (value[i] - mean) * cos(angle);
-      im -= (value[i] - mean) * sin(angle);
+      int at = (int)((long)h * i % count);
+      re += (value[i] - mean) * (at < TABLE ? cosine[at] : cos(2 * M_PI * at / count));
+      im -= (value[i] - mean) * (at < TABLE ? sine[at] : sin(2 * M_PI * at / count));
     }
     amplitude[h - 1][0] = 2 * re / count;
     amplitude[h - 1][1] = 2 * im / count;
