@@ -36,7 +36,7 @@ static int floored(int number, int by)
   return (number - wrap(number, by)) / by;
 }
 
-/* (P2): C_Halpha xi/2 + C_Hbeta zeta/2 of one member. */
+/* theory (P2): C_Halpha xi/2 + C_Hbeta zeta/2 of one member. */
 static double slopes_at(const struct eo_geometry *g, const struct eo_flank_point *point, bool inwards, int member,
                         const struct eo_tooth_deviation *tooth)
 {
@@ -52,6 +52,7 @@ double eo_hunting_gap(const struct eo_geometry *g, const struct eo_flank_point *
   double gap = 0, normal = cos(g->transverse_pressure_angle) * cos(g->base_helix_angle);
   for (int member = 0; member < 2; member++)
     if (tooth[member])
+      /* theory (P1) */
       gap += slopes_at(g, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
   return gap;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact over whole revolutions: every tooth with its own deviations, over the hunting period of
-   lcm(z_1, z_2) mesh cycles after which the same teeth meet again ((P1) to (P4) of doc/theory.md).
+   lcm(z_1, z_2) mesh cycles after which the same teeth meet again (doc/theory/single-teeth.md).
 
    Pair m is the one whose contact line stands at the roll C - m p_bt; in mesh cycle n (C = n p_bt + c) the line k of
    the contact grid is pair m = n - k. Its teeth are m mod z_1 of the pinion and m mod z_2 of the gear. Compliance and

@@ -228,8 +228,8 @@ static void find_pushes(struct response *r, int i, const double *state, double *
   }
 }
 
-/* One step to instant i: exact but for the pushes, which are straight in it; those at its end follow from the state
-   there, which they hardly change. */
+/* theory (P6): one step to instant i, exact but for the pushes, which are straight in it; those at its end follow from
+   the state there, which they hardly change. */
 static void take_step(struct response *r, int i)
 {
   enum { CORRECTIONS = 2 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vibration under a sequence of mesh cycles that differ from each other and repeat after many: the lumped model
    with the tangent law sample by sample, by equal steps in time, exact for forces that are
-   straight in a step ((P6) of doc/theory.md). Stiffness varies with the
+   straight in a step (doc/theory/single-teeth.md). Stiffness varies with the
    teeth and they may part; impact pulses are not in it. */
 #ifndef EASEOFF_DYNAMICS_LONG_RESPONSE_H
 #define EASEOFF_DYNAMICS_LONG_RESPONSE_H

@@ -79,6 +79,7 @@ enum eo_code eo_fft_any(int n, double complex *x, struct eo_error *error)
   return EO_OK;
 }
 
+/* theory (P4) */
 enum eo_code eo_fft_spectrum(int n, const double *value, double complex *line, struct eo_error *error)
 {
   double complex *x = malloc(sizeof *x * (size_t)n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Deviations of single teeth as a design states them: index deviations and flank slopes tooth by tooth, drawn from a
-   tolerance class, eccentricity and axial wobble of a member; and what they come to in the order of meshing ((P1), (P5)
-   of doc/theory.md). */
+   tolerance class, eccentricity and axial wobble of a member; and what they come to in the order of meshing
+   (doc/theory/ single-teeth.md). */
 #ifndef EASEOFF_RATING_PITCH_DEVIATION_H
 #define EASEOFF_RATING_PITCH_DEVIATION_H
 
