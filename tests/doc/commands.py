@@ -21,7 +21,7 @@ from pathlib import Path
 SOURCES = Path(os.environ.get("SOURCES", ".")).resolve()
 PROGRAM = Path(os.environ.get("EASEOFF", "./easeoff")).resolve()
 DOCUMENTS = ["README.md", "doc/guide.md", "doc/api.md"]
-PATIENCE = 120  # seconds of one document
+PATIENCE = 500  # seconds of one document, on a busy machine
 COARSE = {
     "body": "sector",
     "sector_teeth": 3,
