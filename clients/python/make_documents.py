@@ -7,6 +7,7 @@ usage: make_documents.py [ADDRESS] > easeoff/documents.py   (of a running servic
 
 import sys
 import textwrap
+from keyword import iskeyword
 
 from easeoff import Client
 
@@ -82,7 +83,9 @@ def body(fields):
 def main():
     schemas = Client(*sys.argv[1:2]).openapi()["components"]["schemas"]
     def plain(schema):
-        return schema.get("type") == "object" and all(key.isidentifier() for key in schema.get("properties", {}))
+        """Whether a class can spell it: no member is called as a word of the language is."""
+        names = schema.get("properties", {})
+        return schema.get("type") == "object" and all(name.isidentifier() and not iskeyword(name) for name in names)
 
     parts = [
         write_class(name, schema) if plain(schema) else f"{name} = {type_of(schema)}"

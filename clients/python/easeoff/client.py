@@ -149,9 +149,10 @@ class Client:
         self.transport.request("DELETE", f"/designs/{id}", headers={"If-Match": if_match})
 
     @operation("checkDesign")
-    def check(self, design: Design) -> doc.Check:
-        """Fills in every default and works out the geometry; Problem 422 names everything that is wrong."""
-        return self._json("POST", "/check", document=design)
+    def check(self, design: Design, *, units: str | None = None) -> doc.Check:
+        """Fills in every default and works out the geometry; Problem 422 names everything that is wrong. units: "inch"
+        for lengths in inches, by keys that end in _in."""
+        return self._json("POST", "/check", document=design, query={"units": units})
 
     # -- computations
 
@@ -169,10 +170,11 @@ class Client:
         parts: str | None = None,
         curves_of: int | None = None,
         digits: int | None = None,
+        units: str | None = None,
         easeoff_lane: str | None = None,
     ) -> doc.Result:
-        """One true evaluation. parts, curves_of, digits: leave the rest of a long answer out. easeoff_lane: a newer
-        question with the same word takes the place of one that waits."""
+        """One true evaluation. parts, curves_of, digits: leave the rest of a long answer out. units: "inch" for lengths in
+        inches. easeoff_lane: a newer question with the same word takes the place of one that waits."""
         flags = {
             "root_stress": root_stress,
             "band": band,
@@ -182,7 +184,7 @@ class Client:
             "pitch": pitch,
         }
         query: dict[str, Any] = {name: int(value) for name, value in flags.items()}
-        query.update(parts=parts, curves_of=curves_of, digits=digits)
+        query.update(parts=parts, curves_of=curves_of, digits=digits, units=units)
         return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
 
     @operation("sweep")
