@@ -11,6 +11,7 @@ const MANUALS = [
   ['index.md', 'Manuals'],
   ['guide.md', 'User guide'],
   ['api.md', 'API guide'],
+  ['cluster.md', 'Studies and clusters'],
   ['theory.md', 'Theory'],
   ['validation.md', 'Validation'],
 ];
