@@ -145,13 +145,15 @@ static bool is_open(const struct eo_crew *crew, const struct eo_crew_task *task)
 
 static enum eo_code spread_order(struct eo_crew *crew, const struct eo_crew_task *task, struct eo_error *error)
 {
-  struct eo_text text = {0};
+  struct eo_crew_parcel parcel = {.order = ++crew->order_number};
   enum eo_code code = EO_OK;
-  eo_text_add_bytes(&text, task->trade->name, strlen(task->trade->name) + 1);
-  eo_text_add_bytes(&text, task->order, task->size);
+  eo_text_add_bytes(&parcel.text, task->trade->name, strlen(task->trade->name) + 1);
+  eo_text_add_bytes(&parcel.text, task->order, task->size);
+  if (parcel.text.failed)
+    code = eo_error_memory(error);
   for (int rank = 1; !code && rank < crew->size; rank++)
-    code = eo_crew_send(crew, rank, EO_CREW_ORDER, &text, error);
-  eo_text_done(&text);
+    code = eo_crew_send_parcel(crew, rank, EO_CREW_ORDER, &parcel, error);
+  eo_text_done(&parcel.text);
   return code;
 }
 
@@ -202,7 +204,7 @@ static int find_room(struct course *c)
 
 static enum eo_code give(struct course *c, int rank, struct eo_error *error)
 {
-  struct eo_crew_parcel parcel = {.item = c->next};
+  struct eo_crew_parcel parcel = {.order = c->crew->order_number, .item = c->next};
   enum eo_code code = c->task->write(c->task->context, c->next, &parcel.text, error);
   if (!code && parcel.text.failed)
     code = eo_error_memory(error);
@@ -248,6 +250,10 @@ static enum eo_code file_answer(struct course *c, const struct eo_crew_letter *l
   if (letter->tag != EO_CREW_ANSWER)
     return EO_OK;
   bool sound = eo_crew_open_parcel(letter, &parcel);
+  if (sound && parcel.order != c->crew->order_number) { /* it came too late */
+    eo_text_done(&parcel.text);
+    return EO_OK;
+  }
   if (sound && parcel.item < 0) { /* the order failed there */
     *error = parcel.error;
     return parcel.error.code ? parcel.error.code : EO_ERROR_NUMERIC;

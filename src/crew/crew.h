@@ -27,6 +27,7 @@ struct eo_crew {
   /* The order that the benches are open for: the next task with the same one goes on at them. */
   const struct eo_crew_trade *trade; /* NULL: none */
   struct eo_text order;
+  int order_number;       /* between ranks: grows with every order */
   struct eo_hands *hands; /* of a process alone */
 };
 

@@ -8,6 +8,7 @@
 /* An item on its way. */
 struct eo_crew_parcel {
   int item;
+  int order;           /* between ranks: number of the order it belongs to */
   struct eo_text text; /* the item, then its answer; owned by whoever has the parcel */
   struct eo_error error;
 };

@@ -23,7 +23,7 @@ enum eo_code eo_crew_send(const struct eo_crew *crew, int to, enum eo_crew_tag t
 enum eo_code eo_crew_send_parcel(const struct eo_crew *crew, int to, enum eo_crew_tag tag,
                                  const struct eo_crew_parcel *parcel, struct eo_error *error)
 {
-  const struct eo_crew_head head = {parcel->item, parcel->error.code};
+  const struct eo_crew_head head = {parcel->order, parcel->item, parcel->error.code};
   struct eo_text text = {0};
   eo_text_add_bytes(&text, &head, sizeof head);
   if (head.code)
@@ -44,6 +44,7 @@ bool eo_crew_open_parcel(const struct eo_crew_letter *letter, struct eo_crew_par
   memcpy(&head, letter->text.data, sizeof head);
   const char *rest = letter->text.data + sizeof head;
   size_t size = letter->text.size - sizeof head;
+  parcel->order = head.order;
   parcel->item = head.item;
   if (head.code && size == sizeof parcel->error)
     memcpy(&parcel->error, rest, size);

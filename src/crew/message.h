@@ -10,7 +10,7 @@
 
 enum eo_crew_tag {
   EO_CREW_HELLO = 1, /* to rank 0: struct eo_crew_member */
-  EO_CREW_ORDER,     /* name of the trade, NUL, the order */
+  EO_CREW_ORDER,     /* struct eo_crew_head, name of the trade, NUL, the order */
   EO_CREW_ITEM,      /* struct eo_crew_head, the item */
   EO_CREW_ANSWER,    /* to rank 0: struct eo_crew_head, the answer or a struct eo_error */
   EO_CREW_STOP,      /* end early what is being worked on */
@@ -19,6 +19,7 @@ enum eo_crew_tag {
 };
 
 struct eo_crew_head {
+  int32_t order;      /* its number: an answer to an earlier one may still be on its way */
   int32_t item, code; /* item -1: the order itself failed */
 };
 

@@ -7,6 +7,7 @@
 struct serving {
   const struct eo_crew *crew;
   const struct eo_crew_trade *const *trades;
+  int order;              /* number of the last order */
   struct eo_hands *hands; /* of the order that is being worked on; NULL: none */
   bool home;
 };
@@ -14,24 +15,30 @@ struct serving {
 /* What does not go well here is said to rank 0, which ends the run. */
 static enum eo_code complain(struct serving *s, const struct eo_error *why, struct eo_error *error)
 {
-  const struct eo_crew_parcel parcel = {.item = -1, .error = *why};
+  const struct eo_crew_parcel parcel = {.order = s->order, .item = -1, .error = *why};
   return eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
 }
 
-static enum eo_code take_order(struct serving *s, const struct eo_text *text, struct eo_error *error)
+static enum eo_code begin_order(struct serving *s, const struct eo_text *text, struct eo_error *why)
 {
-  struct eo_error why;
   const char *name = text->data ? text->data : "";
   size_t length = strlen(name) + 1;
-  for (int i = 0; s->trades[i]; i++) {
-    if (strcmp(s->trades[i]->name, name) != 0)
-      continue;
-    if (!eo_hands_new(&s->hands, s->trades[i], text->data + length, text->size - length, &s->crew->place, &why))
-      return EO_OK;
-    return complain(s, &why, error);
-  }
-  eo_error_set(&why, EO_ERROR_INPUT, "", "Rank %d does not know the work \"%.40s\".", s->crew->rank, name);
-  return complain(s, &why, error);
+  for (int i = 0; s->trades[i]; i++)
+    if (strcmp(s->trades[i]->name, name) == 0)
+      return eo_hands_new(&s->hands, s->trades[i], text->data + length, text->size - length, &s->crew->place, why);
+  return eo_error_set(why, EO_ERROR_INPUT, "", "Rank %d does not know the work \"%.40s\".", s->crew->rank, name);
+}
+
+static enum eo_code take_order(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+{
+  struct eo_error why;
+  struct eo_crew_parcel parcel;
+  if (!eo_crew_open_parcel(letter, &parcel))
+    return eo_error_memory(error);
+  s->order = parcel.order;
+  enum eo_code code = begin_order(s, &parcel.text, &why);
+  eo_text_done(&parcel.text);
+  return code ? complain(s, &why, error) : EO_OK;
 }
 
 static enum eo_code take_item(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
@@ -57,7 +64,7 @@ static enum eo_code take_letter(struct serving *s, const struct eo_crew_letter *
 {
   switch (letter->tag) {
   case EO_CREW_ORDER:
-    return take_order(s, &letter->text, error);
+    return take_order(s, letter, error);
   case EO_CREW_ITEM:
     return take_item(s, letter, error);
   case EO_CREW_STOP:
@@ -78,6 +85,7 @@ static enum eo_code answer(struct serving *s, bool *busy, struct eo_error *error
   struct eo_crew_parcel parcel;
   enum eo_code code = EO_OK;
   while (!code && s->hands && eo_hands_collect(s->hands, 0, &parcel)) {
+    parcel.order = s->order;
     code = eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
     eo_text_done(&parcel.text);
     *busy = true;

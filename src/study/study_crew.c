@@ -69,7 +69,7 @@ static enum eo_code work(struct eo_crew_bench *bench, int thread, const char *it
                          struct eo_error *error)
 {
   struct shop *shop = bench->state;
-  size_t values = (size_t)(shop->result.scenarios * shop->result.cases);
+  size_t values = (size_t)shop->result.scenarios * (size_t)shop->result.cases;
   struct eo_row_data row = {0};
   struct head head;
   (void)size;

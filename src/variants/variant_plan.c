@@ -241,6 +241,14 @@ static json_t *in_unit(const struct eo_variant_axis *axis, const json_t *value)
   return json_real(json_number_value(value) * axis->factor);
 }
 
+/* 10 and 10.0 are one number. */
+static bool is_same(const json_t *one, const json_t *other)
+{
+  if (json_is_number(one) && json_is_number(other))
+    return json_number_value(one) == json_number_value(other);
+  return json_equal((json_t *)one, (json_t *)other);
+}
+
 /* What a variant states otherwise than the base, by path; sorted by the writer of canonical JSON. */
 static json_t *find_changes(const struct eo_variant_plan *plan, const json_t *values)
 {
@@ -252,7 +260,7 @@ static json_t *find_changes(const struct eo_variant_plan *plan, const json_t *va
       continue;
     json_t *own = in_unit(axis, value);
     for (int k = 0; k < axis->paths && own; k++)
-      if (!json_equal(own, (json_t *)stated_at(plan->base, axis->path[k])))
+      if (!is_same(own, stated_at(plan->base, axis->path[k])))
         json_object_set(changes, axis->path[k], own);
     json_decref(own);
   }

@@ -335,7 +335,7 @@ enum eo_code eo_variant_table_csv(const struct eo_variant_table *table, struct e
                                   struct eo_error *error)
 {
   struct sheet sheet = {.columns = table->scalars.count};
-  const char **headings = calloc((size_t)(table->plan.axes + table->scalars.count + 3), sizeof *headings);
+  const char **headings = calloc((size_t)table->plan.axes + (size_t)table->scalars.count + 3, sizeof *headings);
   if (!headings)
     return eo_error_memory(error);
   for (int i = 0; i < table->plan.axes; i++)
@@ -364,8 +364,8 @@ enum eo_code eo_variant_table_print(const struct eo_variant_table *table, struct
   enum { DIGITS = 5, MOST = 8 };
   int shown = table->scalars.count < MOST ? table->scalars.count : MOST, axes = table->plan.axes;
   struct sheet sheet = {.columns = shown, .digits = DIGITS};
-  const char **headings = calloc((size_t)(axes + shown + 3), sizeof *headings);
-  char(*name)[EO_SCALAR_NAME + 400] = calloc((size_t)(axes + shown), sizeof *name);
+  const char **headings = calloc((size_t)axes + (size_t)shown + 3, sizeof *headings);
+  char(*name)[EO_SCALAR_NAME + 400] = calloc((size_t)axes + (size_t)shown, sizeof *name);
   enum eo_code code = headings && name ? EO_OK : eo_error_memory(error);
   for (int i = 0; i < axes + shown && !code; i++) {
     shorten(i < axes ? table->plan.axis[i].name : table->scalars.scalar[i - axes].name, name[i], sizeof *name);
