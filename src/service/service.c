@@ -242,13 +242,20 @@ struct copying {
 static enum eo_code copy(void *context, const struct eo_stored_job *row, struct eo_error *error)
 {
   const struct copying *c = context;
+  struct eo_stored_job shown = *row;
   const struct eo_job_live *live = NULL;
   if (c->only && row->id != c->only)
     return EO_OK;
-  for (int kind = 0; kind < EO_JOB_KINDS; kind++)
-    if (c->service->worker[kind].live.id == row->id && !c->service->worker[kind].launched)
-      live = &c->service->worker[kind].live;
-  return eo_job_view_init(c->job, row, live, c->with_design, error);
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
+    const struct eo_service_worker *w = &c->service->worker[kind];
+    if (w->live.id != row->id)
+      continue;
+    if (!w->launched)
+      live = &w->live;
+    else if (row->state > EO_JOB_RUNNING) /* its process has still to write the result, and to end */
+      shown.state = EO_JOB_RUNNING;
+  }
+  return eo_job_view_init(c->job, &shown, live, c->with_design, error);
 }
 
 /* Without the design and the result, which may be long. False: there is no such job, or an error. */

@@ -12,27 +12,54 @@
 
 enum { LOOKED_UP_BETWEEN_REPORTS = 256 };
 
-static enum eo_code new_job(struct variant_study *s, struct eo_error *error)
+/* What is written of a study when it begins. */
+struct wording {
+  struct eo_text design, spec, names, problem; /* JSON; names: of the columns */
+  char hash[EO_HASH_LENGTH + 1];               /* of the problem */
+};
+
+/* Rows of a robust objective have more than one scenario, of a rated one more than an analysis looks at. */
+static enum eo_code compose_problem(struct variant_study *s, struct wording *wording, struct eo_error *error)
 {
-  struct eo_text design = {0}, spec = {0};
+  const struct eo_design *design = s->run->plan->design;
+  s->shared = s->run->plan->of_modification && eo_evaluator_scenarios(design) == 1 &&
+              !eo_objective_wants_rating(&design->objective);
+  if (!s->shared)
+    return EO_OK;
+  s->raw = calloc((size_t)design->load_cases, sizeof *s->raw);
+  s->unmodified = calloc((size_t)design->load_cases, sizeof *s->unmodified);
+  return s->raw && s->unmodified ? eo_design_problem(design, &wording->problem, wording->hash, error)
+                                 : eo_error_memory(error);
+}
+
+static enum eo_code compose(struct variant_study *s, struct wording *wording, struct eo_error *error)
+{
+  json_t *names = json_array();
+  for (int i = 0; i < s->scalars.count; i++)
+    json_array_append_new(names, json_string(s->scalars.scalar[i].name));
+  eo_json_write(&wording->names, names, EO_JSON_COMPACT);
+  eo_design_write(s->run->plan->design, &wording->design);
+  eo_json_write(&wording->spec, s->run->document, EO_JSON_COMPACT);
+  bool good = names && !wording->names.failed && !wording->design.failed && !wording->spec.failed;
+  json_decref(names);
+  return good ? compose_problem(s, wording, error) : eo_error_memory(error);
+}
+
+static enum eo_code new_job(struct variant_study *s, const struct wording *wording, struct eo_error *error)
+{
   bool taken = false;
-  eo_design_write(s->run->plan->design, &design);
-  eo_json_write(&spec, s->run->document, EO_JSON_COMPACT);
   s->job.kind = EO_JOB_STUDY;
-  s->job.design = design.data;
-  s->job.spec = spec.data;
+  s->job.design = wording->design.data;
+  s->job.spec = wording->spec.data;
   s->job.name = s->run->plan->name;
   s->job.algorithm = s->run->plan->table ? "table" : eo_study_samplings[s->run->plan->sampling];
   s->job.state = EO_JOB_RUNNING;
-  enum eo_code code = design.failed || spec.failed ? eo_error_memory(error)
-                                                   : eo_store_add_job(s->run->store, &s->job, error);
-  eo_text_done(&design);
-  eo_text_done(&spec);
+  enum eo_code code = eo_store_add_job(s->run->store, &s->job, error);
   s->job.design = s->job.spec = "";
   return code ? code : eo_store_claim_job(s->run->store, s->job.id, &taken, error);
 }
 
-static enum eo_code find_job(struct variant_study *s, struct eo_error *error)
+static enum eo_code find_job(struct variant_study *s, const struct wording *wording, struct eo_error *error)
 {
   struct eo_store *store = s->run->store;
   s->job.study = s->run->plan->study_hash;
@@ -43,21 +70,7 @@ static enum eo_code find_job(struct variant_study *s, struct eo_error *error)
     EO_TRY(eo_store_resume_job(store, s->job.study, false, &s->job, error));
     s->result->resumed = s->job.id != 0;
   }
-  return s->job.id ? EO_OK : new_job(s, error);
-}
-
-static enum eo_code find_columns(struct variant_study *s, struct eo_error *error)
-{
-  json_t *names = json_array();
-  struct eo_text text = {0};
-  for (int i = 0; i < s->scalars.count; i++)
-    json_array_append_new(names, json_string(s->scalars.scalar[i].name));
-  eo_json_write(&text, names, EO_JSON_COMPACT);
-  enum eo_code code = names && !text.failed ? eo_store_variant_columns(s->run->store, text.data, &s->columns, error)
-                                            : eo_error_memory(error);
-  json_decref(names);
-  eo_text_done(&text);
-  return code;
+  return s->job.id ? EO_OK : new_job(s, wording, error);
 }
 
 /* Variants that have their row, of an earlier run of this job. */
@@ -99,52 +112,48 @@ static enum eo_code find_missing(struct variant_study *s, struct eo_error *error
   return code;
 }
 
-enum eo_code eo_variant_study_begin(struct variant_study *s, struct eo_error *error)
+static enum eo_code write_down(struct variant_study *s, const struct wording *wording, struct eo_error *error)
 {
-  EO_TRY(eo_variant_scalars(s->run->plan, &s->scalars, error));
+  const struct eo_stored_problem problem = {.hash = wording->hash,
+                                            .spec = wording->problem.data,
+                                            .name = s->run->plan->design->name,
+                                            .evaluator = EO_EVALUATOR_VERSION,
+                                            .scenarios = 1,
+                                            .cases = s->run->plan->design->load_cases};
+  EO_TRY(find_job(s, wording, error));
+  EO_TRY(eo_store_variant_columns(s->run->store, wording->names.data, &s->columns, error));
+  return s->shared ? eo_store_find_problem(s->run->store, &problem, &s->problem, error) : EO_OK;
+}
+
+/* Nobody waits for the database while this is composed. */
+static enum eo_code begin_job(struct variant_study *s, struct wording *wording, struct eo_error *error)
+{
+  EO_TRY(compose(s, wording, error));
   EO_TRY(eo_store_begin(s->run->store, error));
-  enum eo_code code = find_job(s, error);
-  if (!code)
-    code = find_columns(s, error);
-  if (!code)
-    code = eo_variant_share_history(s, error);
+  enum eo_code code = write_down(s, wording, error);
   if (!code)
     code = eo_store_commit(s->run->store, error);
   if (code) {
     eo_store_rollback(s->run->store);
     s->job.id = 0;
-    return code;
   }
   s->result->job = s->job.id;
-  return find_missing(s, error);
+  return code;
+}
+
+enum eo_code eo_variant_study_begin(struct variant_study *s, struct eo_error *error)
+{
+  struct wording wording = {0};
+  EO_TRY(eo_variant_scalars(s->run->plan, &s->scalars, error));
+  enum eo_code code = begin_job(s, &wording, error);
+  eo_text_done(&wording.design);
+  eo_text_done(&wording.spec);
+  eo_text_done(&wording.names);
+  eo_text_done(&wording.problem);
+  return code ? code : find_missing(s, error);
 }
 
 /* The history of searches: */
-
-/* Rows of a robust objective have more than one scenario, of a rated one more than an analysis looks at. */
-enum eo_code eo_variant_share_history(struct variant_study *s, struct eo_error *error)
-{
-  const struct eo_design *design = s->run->plan->design;
-  char hash[EO_HASH_LENGTH + 1];
-  struct eo_text spec = {0};
-  s->shared = s->run->plan->of_modification && eo_evaluator_scenarios(design) == 1 &&
-              !eo_objective_wants_rating(&design->objective);
-  if (!s->shared)
-    return EO_OK;
-  s->raw = calloc((size_t)design->load_cases, sizeof *s->raw);
-  s->unmodified = calloc((size_t)design->load_cases, sizeof *s->unmodified);
-  enum eo_code code = s->raw && s->unmodified ? eo_design_problem(design, &spec, hash, error) : eo_error_memory(error);
-  const struct eo_stored_problem problem = {.hash = hash,
-                                            .spec = spec.data,
-                                            .name = design->name,
-                                            .evaluator = EO_EVALUATOR_VERSION,
-                                            .scenarios = 1,
-                                            .cases = design->load_cases};
-  if (!code)
-    code = eo_store_find_problem(s->run->store, &problem, &s->problem, error);
-  eo_text_done(&spec);
-  return code;
-}
 
 static struct eo_stored_evaluation evaluation_of(const struct variant_study *s, struct eo_objective_case *raw)
 {

@@ -44,9 +44,6 @@ enum eo_code eo_variant_study_begin(struct variant_study *s, struct eo_error *er
 /* Gives what is known its place, and leaves the rest in s->missing. */
 enum eo_code eo_variant_look_up(struct variant_study *s, struct eo_error *error);
 
-/* The problem of the history, when the study shares it. */
-enum eo_code eo_variant_share_history(struct variant_study *s, struct eo_error *error);
-
 /* A row for a variant, in the transaction that is open. */
 enum eo_code eo_variant_keep(struct variant_study *s, int variant, struct eo_stored_variant *row, bool reused,
                              struct eo_error *error);

@@ -342,6 +342,28 @@ static const struct command studied[] = {
      .value = "1"},
 };
 
+/* A launcher that starts one process, and one that starts none. */
+static const struct command launched[] = {
+    {"a study for a launcher", "POST", API "/studies", .body = &study, .status = 202, .header = "Location",
+     .holds = API "/jobs/6"},
+    {"a search for a launcher", "POST", API "/jobs", .body = &order, .status = 202, .header = "Location",
+     .holds = API "/jobs/7"},
+};
+static const struct command after_launch[] = {
+    {"its table", "GET", API "/studies/6/table", .status = 200, .pointer = "items/5/outcome", .value = "converged"},
+    {"its progress", "GET", API "/jobs/6", .status = 200, .pointer = "progress/true_evaluations", .value = "6"},
+    {"the result of its search", "GET", API "/jobs/7/result", .status = 200, .pointer = "true_evaluations",
+     .value = "60"},
+};
+static const struct command not_launched[] = {
+    {"a study for no launcher", "POST", API "/studies", .body = &study, .status = 202, .header = "Location",
+     .holds = API "/jobs/8"},
+};
+static const struct command after_no_launch[] = {
+    {"why it failed", "GET", API "/jobs/8", .status = 200, .pointer = "error/detail",
+     .value = "The launcher ended without a result (status 1); the server's log has what it said."},
+};
+
 #define RUN(table)                                            \
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) \
   run_command(&table[i])
@@ -612,6 +634,16 @@ int main(void)
   RUN(studied);
   check_export();
   ok(stop_server(SIGTERM) == 0, "it stops when told");
+  ok(start_server("--quiet", "--launcher", "env"), "a server with a launcher");
+  RUN(launched);
+  ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "its jobs end");
+  RUN(after_launch);
+  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(start_server("--quiet", "--launcher", "false"), "a server with a launcher that does nothing");
+  RUN(not_launched);
+  ok(wait_for_job(8, "failed", 60), "its job fails");
+  RUN(after_no_launch);
+  ok(stop_server(SIGTERM) == 0, "it stops");
   setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
   ok(start_server("--quiet"), "a server with a token");
   check_token();
