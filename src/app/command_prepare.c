@@ -124,8 +124,8 @@ static enum eo_code prepare_half(const struct request *request, const struct eo_
     eo_text_add(&cache, request->cache);
   else if (!eo_app_cache_directory(request->data, &cache))
     return eo_error_set(error, EO_ERROR_INPUT, "", "There is no place for prepared pairs; --data names one.");
-  enum eo_code code = eo_flexibility_prepare(geometry, &pair, &design->material, &settings, cache.data,
-                                             progress, &flexibility, error);
+  enum eo_code code = eo_flexibility_prepare(geometry, &pair, &design->material, &settings, cache.data, progress,
+                                             &flexibility, error);
   if (!code && !is_kept(cache.data, eo_flexibility_report(flexibility)))
     code = eo_error_set(error, EO_ERROR_FULL, "", "The prepared pair cannot be kept: %.200s",
                         eo_flexibility_report(flexibility)->note);
@@ -146,7 +146,8 @@ static enum eo_code prepare(const struct request *request, const struct eo_desig
                             const struct eo_geometry *geometry, const struct eo_progress *progress,
                             struct eo_error *error)
 {
-  for (int end = 0; end <= eo_gear_pair_is_uneven(&design->gear_pair); end++)
+  int halves = eo_gear_pair_is_uneven(&design->gear_pair) ? 2 : 1;
+  for (int end = 0; end < halves; end++)
     EO_TRY(prepare_half(request, design, geometry, end, progress, error));
   return EO_OK;
 }

@@ -204,8 +204,9 @@ static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *c,
 /* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number
    of iterations, 0 when they did not converge. The contact's answer is asked for once, and again when the iteration
    slows down. */
-static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2], const struct eo_loaded_gaps *gaps,
-                          const struct eo_elastic_case *c, double soft, const int at[2], struct eo_loaded_end *result)
+static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2],
+                          const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c, double soft,
+                          const int at[2], struct eo_loaded_end *result)
 {
   enum { ITERATIONS = 40 };
   static const double DONE = 1e-11, SLOW = 0.1;

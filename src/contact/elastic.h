@@ -40,8 +40,8 @@ struct eo_elastic_report {
   int failures;                    /* positions that did not converge */
 };
 
-/* workspace[2]: of the ends, may be one. gaps[ends]: of rigid bodies. result[ends]: of eo_loaded_solve() for the same load on them; becomes that on elastic
-   bodies. */
+/* workspace[2]: of the ends, may be one. gaps[ends]: of rigid bodies. result[ends]: of eo_loaded_solve() for the same
+   load on them; becomes that on elastic bodies. */
 void eo_elastic_solve(struct eo_elastic *elastic, struct eo_loaded_workspace *const workspace[2],
                       const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *load,
                       struct eo_loaded_end *result, struct eo_elastic_report *report);

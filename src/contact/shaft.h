@@ -52,8 +52,9 @@ struct eo_shaft_influence {
 
 bool eo_shafts_equal(const struct eo_shafts *a, const struct eo_shafts *b);
 
-/* pair: resolved; geometry: of its left end. inwards: eta runs towards the groove on both ends, as where the face ends there meet
-   first; the axial part of the normals has the other sign then. Errors: memory; EO_ERROR_NUMERIC from the eigenvalues.
+/* pair: resolved; geometry: of its left end. inwards: eta runs towards the groove on both ends, as where the face ends
+   there meet first; the axial part of the normals has the other sign then. Errors: memory; EO_ERROR_NUMERIC from the
+   eigenvalues.
  */
 enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry,
                                      const struct eo_gear_pair *pair, const struct eo_material *material,

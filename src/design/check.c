@@ -47,7 +47,8 @@ static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_erro
                         1e3 * pair->groove_width);
   for (int i = 0; i < 2 && pair->ends == 2; i++)
     if (eo_gear_pair_groove_width(pair, i) < 1e-4)
-      return eo_error_set(error, EO_ERROR_INPUT, i ? "/gear_pair/gear_face_width_mm" : "/gear_pair/pinion_face_width_mm",
+      return eo_error_set(error, EO_ERROR_INPUT,
+                          i ? "/gear_pair/gear_face_width_mm" : "/gear_pair/pinion_face_width_mm",
                           "The own faces of the %s, %.6g mm, leave %.6g mm of the groove of %.6g mm between them, less "
                           "than 0.1 mm: a wider groove or narrower faces.",
                           member_name[i], 1e3 * pair->member_width[i], 1e3 * eo_gear_pair_groove_width(pair, i),
@@ -303,8 +304,8 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
   const double *bearing = shafts->bearing_position[i];
   char key[64];
   for (int k = 0; k < 2; k++) {
-    double face = eo_gear_pair_face_width(pair, k), half = (pair->ends == 2 ? pair->groove_width / 2 + face : face / 2) +
-                                                           eo_gear_pair_extra_width(pair, i) / 2;
+    double face = eo_gear_pair_face_width(pair, k),
+           half = (pair->ends == 2 ? pair->groove_width / 2 + face : face / 2) + eo_gear_pair_extra_width(pair, i) / 2;
     snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);
     if (k == EO_LEFT ? bearing[k] > -half : bearing[k] < half)
       return eo_error_set(error, EO_ERROR_INPUT, key,

@@ -82,13 +82,13 @@ static enum eo_code helix_tolerance(const struct eo_design *design, double *larg
   for (int i = 0; i < 2; i++) {
     struct eo_flank_tolerance tolerance;
     struct eo_error found;
-    const struct eo_tolerance_input in = {
-        .reference_diameter = pair->normal_module / cos(pair->helix_angle) * pair->teeth[i],
-        .normal_module = pair->normal_module,
-        .face_width = pair->face_width + eo_gear_pair_extra_width(pair, i),
-        .teeth = pair->teeth[i],
-        .grade = design->alignment.error_grade,
-        .total_contact_ratio = NAN};
+    const struct eo_tolerance_input in = {.reference_diameter = pair->normal_module / cos(pair->helix_angle) *
+                                                                pair->teeth[i],
+                                          .normal_module = pair->normal_module,
+                                          .face_width = pair->face_width + eo_gear_pair_extra_width(pair, i),
+                                          .teeth = pair->teeth[i],
+                                          .grade = design->alignment.error_grade,
+                                          .total_contact_ratio = NAN};
     if (eo_flank_tolerance(&tolerance, eo_rating_tolerance_edition(&design->rating), &in, &found))
       return eo_error_set(error, EO_ERROR_INPUT, "/alignment/shaft_error_grade",
                           "%.300s State the errors themselves instead.", found.text);
@@ -251,10 +251,8 @@ static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pa
   const struct eo_material own = eo_material_of(both, i), *material = &own;
   double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2, length = eo_gear_pair_groove_width(pair, i);
   double shear_modulus = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
-  fill(&supports->groove_axial_stiffness[i],
-       material->youngs_modulus * M_PI * (body * body - bore * bore) / length);
-  fill(&supports->groove_torsional_stiffness[i],
-       shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / length);
+  fill(&supports->groove_axial_stiffness[i], material->youngs_modulus * M_PI * (body * body - bore * bore) / length);
+  fill(&supports->groove_torsional_stiffness[i], shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / length);
 }
 
 static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *pair)

@@ -37,8 +37,7 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
 
 /* At mid face (profile), at the pitch point (helix). */
 void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *design,
-                         const struct eo_geometry *geometry, enum eo_flank_side side, int member, int end,
-                         bool helix);
+                         const struct eo_geometry *geometry, enum eo_flank_side side, int member, int end, bool helix);
 
 /* One <svg>. */
 void eo_flank_chart_svg(const struct eo_flank_chart *chart, const struct eo_design *design, struct eo_text *text);

@@ -15,7 +15,7 @@ static const char *const other_modules[] = {"transverse_module_mm", "normal_diam
 
 static const char *const own_widths[] = {"pinion_face_width_mm", "gear_face_width_mm", NULL};
 
-#define OWN_WIDTH(member_)                                                                                           \
+#define OWN_WIDTH(member_)                                                                                             \
   "own face width of the " member_ " at one end, centred on its mate's: what is beyond the common width supports the " \
   "teeth and the root; modifications are laid out over the common width"
 
@@ -284,8 +284,9 @@ static const struct eo_field alignment[] = {
      .high = 11,
      .fallback = NAN,
      .derived = "the errors are stated",
-     .help = "grade or class of ISO 1328-1, in the edition that belongs to the rating's, whose F_beta limits both shaft "
-             "angle errors: f_Sigma_beta = L/(2 b) F_beta, f_Sigma_delta twice that over the bearing span L"},
+     .help =
+         "grade or class of ISO 1328-1, in the edition that belongs to the rating's, whose F_beta limits both shaft "
+         "angle errors: f_Sigma_beta = L/(2 b) F_beta, f_Sigma_delta twice that over the bearing span L"},
     EO_NUMBER(struct eo_alignment, pinion_axial_clearance, "pinion_axial_clearance_um", &eo_unit_um, 0, 1e5, 200,
               "whole play of the pinion between its stops, half to each side of where its apex meets the gear's, used "
               "with \"stops\"; at a stop pinion_axial_stiffness_N_per_um holds it"),

@@ -83,8 +83,9 @@ static const char *const own_shape[] = {"as_relief_shape", "parabolic", "linear"
   FLANK_TRIANGLE(NUMBER, EO_TIP_SIDE, EO_TRAILING_SIDE, "tip_trailing", "tip, face end that meets last")           \
   FLANK_TRIANGLE(NUMBER, EO_ROOT_SIDE, EO_LEADING_SIDE, "root_leading", "root, face end that meets first")         \
   FLANK_TRIANGLE(NUMBER, EO_ROOT_SIDE, EO_TRAILING_SIDE, "root_trailing", "root, face end that meets last")        \
-  NUMBER(grid_gain, "grid_gain", NULL, -2, 10, 0,                                                                  \
-         "what of the grid is laid on beyond it, as a share: 0 as it stands, -1 none, 1 twice; of a flank with a grid")
+  NUMBER(                                                                                                          \
+      grid_gain, "grid_gain", NULL, -2, 10, 0,                                                                     \
+      "what of the grid is laid on beyond it, as a share: 0 as it stands, -1 none, 1 twice; of a flank with a grid")
 
 /* What earlier documents called lead_slope_um was half of it. */
 #define HELIX_SLOPE                                                                                                 \

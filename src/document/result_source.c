@@ -91,7 +91,7 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
                                       .map_digits = digits_of(EO_DIGITS_MAP, left_out, 2)};
   source->pattern = malloc(2 * sizeof *source->pattern);
   source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
-  for (int half = 0; source->pattern && half < (source->pair->right ? 2 : 1); half++)
+  for (int half = 0; source->pattern && half < eo_pair_halves(source->pair); half++)
     eo_contact_pattern_init(&source->pattern[half], eo_pair_half(source->pair, half)->grid);
   return source->pattern && source->scratch;
 }

@@ -191,7 +191,8 @@ static enum eo_code set_single_axial(struct eo_dynamics_parameters *p, double he
 static void set_pinion_axial(struct eo_dynamics_parameters *p, double held, const struct eo_supports *supports)
 {
   p->pinion_axial_stiffness = held;
-  p->pinion_axial_damping = damper(supports->bearing_damping_ratio, p->pinion_axial_stiffness, 2 * mean_mass(p, EO_PINION));
+  p->pinion_axial_damping = damper(supports->bearing_damping_ratio, p->pinion_axial_stiffness,
+                                   2 * mean_mass(p, EO_PINION));
 }
 
 static void set_machines(struct eo_dynamics_parameters *p, const struct eo_supports *supports)

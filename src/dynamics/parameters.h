@@ -21,10 +21,10 @@ struct eo_supports {
   double groove_torsional_stiffness[2];          /* N m/rad; NaN: G J / L of the groove body */
   enum eo_torsional_coupling torsional_coupling; /* paper: off for equal ends, on when they differ or
                                                     pinion held */
-  double mass[2];    /* of one end with half the groove, kg; NaN: solid of the pitch cylinder */
-  double inertia[2]; /* likewise, kg m2 */
+  double mass[2];                         /* of one end with half the groove, kg; NaN: solid of the pitch cylinder */
+  double inertia[2];                      /* likewise, kg m2 */
   double right_mass[2], right_inertia[2]; /* of the right end of halves of unequal width; not above 0: as the left one
-                                             */
+                                           */
   double bearing_damping_ratio;
   double groove_damping_ratio;
   double mesh_damping_ratio;
@@ -42,10 +42,10 @@ void eo_supports_make_rigid(struct eo_supports *supports);
 /* [2] is [member] unless it says [end]. SI. A stiffness may be INFINITY where it says so: the motion is then left out,
    and the damper with it. */
 struct eo_dynamics_parameters {
-  int ends;                   /* 2: herringbone, 12 degrees of freedom; 1: single helical or spur, 6 */
-  double base_radius[2];      /* R_p, R_g, m */
-  double base_helix_angle;    /* rad */
-  double mass[2], inertia[2]; /* of one end with half the groove, kg, kg m2 */
+  int ends;                               /* 2: herringbone, 12 degrees of freedom; 1: single helical or spur, 6 */
+  double base_radius[2];                  /* R_p, R_g, m */
+  double base_helix_angle;                /* rad */
+  double mass[2], inertia[2];             /* of one end with half the groove, kg, kg m2 */
   double right_mass[2], right_inertia[2]; /* of the right end where it differs; not above 0: as the left one */
   double bearing_stiffness[2], bearing_damping[2];       /* k_py, k_gy per end, N/m, N s/m; may be INFINITY */
   double gear_axial_stiffness[2], gear_axial_damping[2]; /* [end] k_g1z, k_g2z, gear to ground; may be INFINITY */
@@ -70,12 +70,13 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
 /* Parameters of a design whose supports are resolved (eo_design_resolve(), design/): masses, inertias and the springs
    of the groove that are used must be numbers here. Damping is c = 2 zeta sqrt(k m) at the bearings, 2 zeta sqrt(k m /
    2) in the groove, 2 zeta sqrt(k_a 2 m) at the axial support of the whole pinion, 2 zeta sqrt(k J) with the reduced
-   inertia 1/J = 1/J_machine + 1/(J of both ends) at a machine (m, J, m_e of ends that differ: the mean), c_m = 2 zeta sqrt(k m_e) / cos(beta_b) with k the
-   mesh_damping_stiffness of the supports or, when that is NaN, mean_mesh_stiffness (normal, one end, N/m). Torsional
-   coupling follows supports: `paper` couples when ends_differ or the pinion is held along its axis, since what one end
-   carries more than the other can only come through the groove. pinion_axial: stiffness with which the pinion is held,
-   N/m, 0: floating, INFINITY: fixed; with one end a pinion that is said to float is held like its gear (without a
-   bearing its thrust would carry it away). Errors: EO_ERROR_INPUT with the key. */
+   inertia 1/J = 1/J_machine + 1/(J of both ends) at a machine (m, J, m_e of ends that differ: the mean), c_m = 2 zeta
+   sqrt(k m_e) / cos(beta_b) with k the mesh_damping_stiffness of the supports or, when that is NaN, mean_mesh_stiffness
+   (normal, one end, N/m). Torsional coupling follows supports: `paper` couples when ends_differ or the pinion is held
+   along its axis, since what one end carries more than the other can only come through the groove. pinion_axial:
+   stiffness with which the pinion is held, N/m, 0: floating, INFINITY: fixed; with one end a pinion that is said to
+   float is held like its gear (without a bearing its thrust would carry it away). Errors: EO_ERROR_INPUT with the key.
+ */
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
                                          int ends, double pinion_axial, const struct eo_supports *supports,
                                          bool ends_differ, double mean_mesh_stiffness, struct eo_error *error);

@@ -26,7 +26,7 @@ struct eo_design_rating {
   bool rated;             /* false: `reason` says why ISO 6336 gives no rating; tribology is there all the same */
   struct eo_error reason; /* with the pointer of the key */
   int ends, cases, most_cases;
-  struct eo_rating_basis basis[2]; /* [end] alike but for the faces of halves of unequal width */
+  struct eo_rating_basis basis[2];  /* [end] alike but for the faces of halves of unequal width */
   struct eo_case_rating *load_case; /* [cases] */
   struct eo_rated_spectrum end[2];
   /* What decides: least S_H and S_F of the spectrum, and of the static strength, over members and ends. */

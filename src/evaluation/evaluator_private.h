@@ -228,10 +228,10 @@ struct eo_root_half {
 };
 struct eo_roots {
   struct eo_evaluator *evaluator;
-  bool wanted, copies_left;     /* copies_left: the right end is a copy of the left one */
-  struct eo_root_half half[2];  /* both ends in the first where they are alike */
-  atomic_int next;              /* piece of work to be taken */
-  double milliseconds[2]; /* [thread] */
+  bool wanted, copies_left;    /* copies_left: the right end is a copy of the left one */
+  struct eo_root_half half[2]; /* both ends in the first where they are alike */
+  atomic_int next;             /* piece of work to be taken */
+  double milliseconds[2];      /* [thread] */
   struct eo_beside beside;
 };
 

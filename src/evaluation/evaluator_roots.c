@@ -75,7 +75,7 @@ enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluat
                              .beside = {.work = find_teeth, .context = roots}};
   if (!run->root)
     return EO_OK;
-  for (int half = 0; half <= (evaluator->pair->right != NULL); half++) {
+  for (int half = 0; half < eo_pair_halves(evaluator->pair); half++) {
     int range[2];
     eo_contact_grid_pairs(eo_evaluator_grid(evaluator, half), range);
     roots->half[half].teeth = range[1] - range[0] + 1;

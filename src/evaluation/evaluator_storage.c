@@ -50,7 +50,7 @@ static enum eo_code init_case(struct eo_case_result *load_case, const struct eo_
 /* The workspaces of a thread. */
 static enum eo_code add_workspaces(struct eo_evaluator *evaluator, int thread, struct eo_error *error)
 {
-  for (int half = 0; half < (evaluator->pair->right ? 2 : 1); half++)
+  for (int half = 0; half < eo_pair_halves(evaluator->pair); half++)
     EO_TRY(eo_loaded_workspace_new(&evaluator->loaded[thread][half], eo_evaluator_grid(evaluator, half), error));
   return EO_OK;
 }

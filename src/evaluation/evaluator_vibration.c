@@ -206,7 +206,8 @@ static void load_spare_ends(struct eo_evaluator *evaluator, const struct eo_run 
     loaded[end] = &spare[stored];
     if (stored == end)
       eo_loaded_solve(eo_evaluator_workspace(evaluator, 0, end), eo_evaluator_grid(evaluator, end),
-                      &eo_meeting_of(evaluator, load_case)->gaps[end], run->scenario.compliance, 1, &load_case->end_force[end], &spare[end]);
+                      &eo_meeting_of(evaluator, load_case)->gaps[end], run->scenario.compliance, 1,
+                      &load_case->end_force[end], &spare[end]);
   }
   if (evaluator->bodies_are_elastic)
     eo_evaluator_bend_bodies(evaluator, run, load_case, spare, &(struct eo_elastic_report){0});

@@ -99,8 +99,9 @@ enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design
 }
 
 /* Both halves, where they are alike. */
-static enum eo_code new_half(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
-                         const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code new_half(struct eo_pair **result, const struct eo_design *design,
+                             const struct eo_pair_options *options, const struct eo_progress *progress,
+                             struct eo_error *error)
 {
   double start = (1e-3 * eo_clock_milliseconds());
   eo_threads_limit();
@@ -121,9 +122,8 @@ static enum eo_code new_half(struct eo_pair **result, const struct eo_design *de
                                              .stations = options->impact_stations};
   eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
   for (int end = 0; end < 2; end++)
-    pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1
-                           ? 0
-                           : eo_gear_pair_mid_face(&pair->gear_pair, end);
+    pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1 ? 0
+                                                                        : eo_gear_pair_mid_face(&pair->gear_pair, end);
   pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *result = pair;
   return EO_OK;

@@ -26,10 +26,10 @@ struct eo_pair {
   struct eo_root_modes *root[2]; /* [member]; NULL with a foreign kernel */
 
   struct eo_impact_settings impact;
-  double pivot[2]; /* [end]: mid face from the pivot of the shaft angle errors, m */
+  double pivot[2];       /* [end]: mid face from the pivot of the shaft angle errors, m */
   struct eo_pair *right; /* owned: the right half where it differs; NULL: as the left one */
   int ahead[2];          /* [inwards]: positions by which the right half's phase is ahead of the left one's */
-  double seconds;  /* wall time of the preparation */
+  double seconds;        /* wall time of the preparation */
 };
 
 /* How to prepare otherwise than a design says: reference cases bring their own compliance and discretisation. */
@@ -53,6 +53,12 @@ void eo_pair_free(struct eo_pair *pair);
 static inline const struct eo_pair *eo_pair_half(const struct eo_pair *pair, int end)
 {
   return end == EO_RIGHT && pair->right ? pair->right : pair;
+}
+
+/* 2 where the halves differ. */
+static inline int eo_pair_halves(const struct eo_pair *pair)
+{
+  return pair->right ? 2 : 1;
 }
 
 /* What ISO 6336-1 asks of this pair: solid discs, C_M = 0.8. */

@@ -60,8 +60,7 @@ static bool equal_ends(const struct eo_evaluator *evaluator, const struct eo_run
 {
   const double *offset = run->design->alignment.apex_offset;
   bool equal = evaluator->result.ends == 2 && !evaluator->pair->right && eo_reuse_same_flanks(run->design) &&
-               !evaluator->bodies_are_elastic &&
-               offset[EO_PINION] == offset[EO_GEAR];
+               !evaluator->bodies_are_elastic && offset[EO_PINION] == offset[EO_GEAR];
   for (int k = 0; k < evaluator->result.cases && equal; k++) {
     const struct eo_case_result *c = &evaluator->result.load_case[k];
     equal = c->running.in_plane == 0 && c->running.out_of_plane == 0 && c->end_force[EO_LEFT] == c->end_force[EO_RIGHT];

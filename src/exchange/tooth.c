@@ -123,8 +123,8 @@ static int face_breaks(const struct eo_tooth *tooth, const struct eo_modificatio
   int parts = 0, count = 1;
   for (int i = 0; i < 2; i++)
     for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)
-      part[parts++] = 0.5 +
-                      side * shape->end[i].start * cos(tooth->geometry->helix_angle) / tooth->geometry->member_width[tooth->member];
+      part[parts++] = 0.5 + side * shape->end[i].start * cos(tooth->geometry->helix_angle) /
+                                tooth->geometry->member_width[tooth->member];
   qsort(part, (size_t)parts, sizeof *part, compare_numbers);
   for (int i = 0; i < parts; i++)
     count = add_break(at, count, part[i]);

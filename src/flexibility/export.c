@@ -369,8 +369,8 @@ enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, cons
   out.floating = settings->section.floating;
   enum eo_code code = eo_section_init(&section, geometry, member, settings->bore_radius, &settings->section, error);
   if (!code)
-    code = eo_sector_init(&sector, &section, settings->layers, geometry->member_width[member], eo_sector_twist(geometry, member),
-                          material, EO_WHOLE_SECTOR, error);
+    code = eo_sector_init(&sector, &section, settings->layers, geometry->member_width[member],
+                          eo_sector_twist(geometry, member), material, EO_WHOLE_SECTOR, error);
   if (!code && (find_edges(&out, &section) || number_own(&out, &section) || weigh_cuts(&out, &section)))
     code = eo_error_memory(error);
   if (!code) {

@@ -110,9 +110,9 @@ out:
 static enum eo_code solve_whole(struct eo_member_job *job)
 {
   double start = (1e-3 * eo_clock_milliseconds());
-  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
-                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR,
-                                     job->error);
+  enum eo_code code =
+      eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
+                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error);
   job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
   if (code)
     return code;

@@ -103,10 +103,11 @@ static enum eo_code settle_widths(struct eo_gear_pair *pair, struct eo_error *er
                         own[EO_PINION] / MM, own[EO_GEAR] / MM, common / MM, pair->face_width / MM);
   for (int i = 0; i < 2; i++) {
     if (own[i] < pair->face_width * (1 - SAME))
-      return eo_error_set(error, EO_ERROR_INPUT, key[i],
-                          "The member's own face, %.9g mm, is narrower than the face common to both, %.9g mm: state the "
-                          "own widths alone, or a common width of at most the narrower one.",
-                          own[i] / MM, pair->face_width / MM);
+      return eo_error_set(
+          error, EO_ERROR_INPUT, key[i],
+          "The member's own face, %.9g mm, is narrower than the face common to both, %.9g mm: state the "
+          "own widths alone, or a common width of at most the narrower one.",
+          own[i] / MM, pair->face_width / MM);
     if (fabs(own[i] - pair->face_width) <= DERIVED * own[i])
       own[i] = NAN;
   }

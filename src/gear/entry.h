@@ -7,10 +7,11 @@
 #include "gear/gear_pair.h"
 
 /* Replaces what pair->entry states by the members of the pair, and NaN where a member follows from others: alpha_n 20
-   deg (ISO 53), the face width common to both members, x of the pinion 0, of the gear what shift sum, working pressure angle or centre distance ask for, else
-   0. What is worked out is rounded to 12 digits in the unit of the document; a centre distance, tip diameter or face width
-   that is what the others give anyway becomes NaN (derived), so that every path to one gear ends in the same bits. Idempotent.
-   EO_ERROR_INPUT with the key: no module, statements that contradict each other, no working pressure angle. */
+   deg (ISO 53), the face width common to both members, x of the pinion 0, of the gear what shift sum, working pressure
+   angle or centre distance ask for, else 0. What is worked out is rounded to 12 digits in the unit of the document; a
+   centre distance, tip diameter or face width that is what the others give anyway becomes NaN (derived), so that every
+   path to one gear ends in the same bits. Idempotent. EO_ERROR_INPUT with the key: no module, statements that
+   contradict each other, no working pressure angle. */
 enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *error);
 
 /* Largest rho_fP* that fits into the tip of a rack. */

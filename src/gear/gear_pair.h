@@ -29,12 +29,12 @@ struct eo_gear_pair {
   double normal_module;         /* m_n, m */
   double normal_pressure_angle; /* alpha_n, rad; NaN: 20 deg (settled) */
   double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
-  double face_width;            /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
-  double member_width[2];       /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
-  double right_face_width;      /* b of the right end, m; NaN: face_width, which is that of the left one then */
-  double groove_width;          /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
-  double addendum_coefficient;  /* h_aP*; NaN, of all three: profile A of ISO 53 */
-  double dedendum_coefficient;  /* h_fP* = h_aP* + c* */
+  double face_width;           /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
+  double member_width[2];      /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
+  double right_face_width;     /* b of the right end, m; NaN: face_width, which is that of the left one then */
+  double groove_width;         /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
+  double addendum_coefficient; /* h_aP*; NaN, of all three: profile A of ISO 53 */
+  double dedendum_coefficient; /* h_fP* = h_aP* + c* */
   double fillet_radius_coefficient; /* rho_fP* of the basic rack */
   struct eo_rack {                  /* what one member's basic rack has otherwise; not above 0, or NaN: as above */
     double addendum_coefficient, dedendum_coefficient, fillet_radius_coefficient;

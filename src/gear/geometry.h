@@ -16,12 +16,12 @@ struct eo_geometry {
   double normal_pressure_angle, transverse_pressure_angle; /* alpha_n, alpha_t at the reference cylinder */
   double working_pressure_angle;                           /* alpha_wt, transverse */
   double helix_angle, base_helix_angle;                    /* beta, beta_b */
-  double face_width;            /* b of one end, common to both members */
-  double member_width[2];       /* of the member's own face, centred on the common one */
-  double reference_radius[2];   /* r */
-  double working_radius[2];     /* r_w */
-  double base_radius[2];        /* r_b */
-  double tip_radius[2];         /* r_a */
+  double face_width;                                       /* b of one end, common to both members */
+  double member_width[2];                                  /* of the member's own face, centred on the common one */
+  double reference_radius[2];                              /* r */
+  double working_radius[2];                                /* r_w */
+  double base_radius[2];                                   /* r_b */
+  double tip_radius[2];                                    /* r_a */
   double shortened[2];          /* by how much the tip radius is below d_a/2 of the rack so that it clears the mate */
   double tip_form_radius[2];    /* r_Fa, where a tip chamfer ends the flank; r_a without one */
   double root_radius[2];        /* r_f */

@@ -147,7 +147,8 @@ enum eo_code eo_rating_basis_init(struct eo_rating_basis *basis, const struct eo
     EO_TRY(set_root(basis, i, error));
     basis->flank_life[i] = eo_life_flank(r->member[i].material, r->some_pitting, r->long_life);
     basis->root_life[i] = eo_life_root(r->member[i].material, r->long_life);
-    basis->width_over_depth = fmin(basis->width_over_depth, g->member_width[i] / (g->tip_radius[i] - g->root_radius[i]));
+    basis->width_over_depth = fmin(basis->width_over_depth,
+                                   g->member_width[i] / (g->tip_radius[i] - g->root_radius[i]));
   }
   return EO_OK;
 }

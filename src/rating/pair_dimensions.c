@@ -39,8 +39,8 @@ static void set_span(struct eo_member_dimensions *m, const struct eo_geometry *g
   struct eo_error error;
   double anvil = g->normal_module / 2;
   m->teeth_spanned = wanted;
-  if (wanted ? eo_tooth_span_check(&middle, wanted, m->form_diameter[EO_LOWER], m->tip_diameter, g->member_width[i], anvil,
-                                   &error)
+  if (wanted ? eo_tooth_span_check(&middle, wanted, m->form_diameter[EO_LOWER], m->tip_diameter, g->member_width[i],
+                                   anvil, &error)
              : eo_tooth_span_choose(&middle, m->form_diameter[EO_LOWER], m->tip_diameter, g->member_width[i], anvil,
                                     &m->teeth_spanned, &error)) {
     m->teeth_spanned = 0;

@@ -61,7 +61,8 @@ int main(int argc, char **argv)
     run(i, &done, &fair, &error);
     analysed += done;
     refused += fair;
-    printf("# gear %d: %s%s %s\n", i, done ? "analysed" : "refused at ", done ? "" : error.pointer, done ? "" : error.text);
+    printf("# gear %d: %s%s %s\n", i, done ? "analysed" : "refused at ", done ? "" : error.pointer,
+           done ? "" : error.text);
     fflush(stdout);
     if (!done && !fair)
       ok(false, "gear %d: %d/%d teeth, m %.4g mm: %s: %s", i, geometry.teeth[0], geometry.teeth[1],

@@ -182,8 +182,7 @@ static void test_refusals(void)
      "a right half like the left one is not stated");
   eo_example_build("single", &design);
   design.gear_pair.right_face_width = 20e-3;
-  ok(eo_design_complete(&design, &geometry, &error) &&
-         strcmp(error.pointer, "/gear_pair/right_face_width_mm") == 0,
+  ok(eo_design_complete(&design, &geometry, &error) && strcmp(error.pointer, "/gear_pair/right_face_width_mm") == 0,
      "one end has no right half: %s", error.text);
 }
 

@@ -127,8 +127,8 @@ static void check_frame(const char *name, bool coast)
     char member[8], end[8], flank[8];
     int row, column;
     double x, y, z, point[3];
-    if (sscanf(line, "%7[a-z],%7[a-z],%d,%d,%lf,%lf,%lf,%*f,%*f,%*f,%*f,%7[a-z]", member, end, &row, &column, &x, &y, &z,
-               flank) != 8 ||
+    if (sscanf(line, "%7[a-z],%7[a-z],%d,%d,%lf,%lf,%lf,%*f,%*f,%*f,%*f,%7[a-z]", member, end, &row, &column, &x, &y,
+               &z, flank) != 8 ||
         column % 5)
       continue;
     struct eo_tooth tooth;
@@ -139,7 +139,8 @@ static void check_frame(const char *name, bool coast)
     double p = (eo_geometry_own_path(tooth.member, s) - tooth.start_path) / (tooth.tip_path - tooth.start_path);
     bool on_coast = strcmp(flank, "coast") == 0;
     coasts += on_coast;
-    eo_tooth_point(&tooth, on_coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30., point, NULL);
+    eo_tooth_point(&tooth, on_coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30.,
+                   point, NULL);
     largest = fmax(largest, hypot(hypot(1e3 * point[0] - x, 1e3 * point[1] - y), 1e3 * point[2] - z));
     compared++;
   }

@@ -327,8 +327,8 @@ static json_t *with_every_object(const struct eo_example *example)
   json_t *ends;
   size_t i;
   json_array_foreach(list, i, row) json_object_set_new(row, "alignment", json_object());
-  json_object_foreach(json_object_get(document, "modification"), member, ends)
-    json_object_foreach(ends, end, flank) json_object_set_new(flank, "coast", json_object());
+  json_object_foreach(json_object_get(document, "modification"), member, ends) json_object_foreach(ends, end, flank)
+      json_object_set_new(flank, "coast", json_object());
   if (!json_object_get(document, "rating"))
     json_object_set_new(document, "rating", json_pack("{s:{},s:{},s:{}}", "pinion", "gear", "lubricant"));
   return document;
