@@ -33,6 +33,7 @@ static void expect_answer(const char *what, const char *path, json_t *body)
 static const char
     plain[] = "{}",
     single[] = "{\"gear_pair\": {\"ends\": 1, \"groove_width_mm\": 0}}",
+    uneven[] = "{\"gear_pair\": {\"right_face_width_mm\": 48}, \"shafts\": {\"enabled\": true}}",
     held[] = "{\"alignment\": {\"pinion_axial\": \"fixed\"}}", shafts[] = "{\"shafts\": {\"enabled\": true}}",
     coast[] = "{\"modification\": {\"pinion\": {\"left\": {\"twist_um\": 3, \"coast\": {\"tip_relief_um\": 9, "
               "\"root_relief_um\": 9, \"twist_um\": 4}}}}}",
@@ -49,6 +50,7 @@ static void test_analyses(void)
              {"analysis with one part", API "/analyze?parts=lte&curves_of=1", plain},
              {"analysis with no part", API "/analyze?parts=", plain},
              {"one end", API "/analyze?histories=1&band=1", single},
+             {"halves of unequal width", API "/analyze", uneven},
              {"a pinion that is held", API "/analyze", held},
              {"elastic shafts", API "/analyze", shafts},
              {"coast flanks with twist", API "/analyze", coast},
