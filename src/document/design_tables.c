@@ -118,7 +118,7 @@ static const struct eo_field objective[] = {
      .fallback = NAN,
      .derived = "none: the scenarios count",
      .help = "pairs as made, drawn from the block tolerance, that stand in place of the scenarios when robust is not "
-             "off: the same deviations for every flank that is tried"},
+             "off: the same deviations for every flank that is tried; each costs an evaluation"},
     {.key = "scenarios",
      .kind = EO_FIELD_LIST,
      .offset = offsetof(struct eo_objective, scenario),

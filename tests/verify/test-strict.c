@@ -55,8 +55,8 @@ static const struct part parts[] = {
     {"ring", "line", {"macro", "supports", "tolerances"}, 61, true},
     {"calculix", "unmodified", {"what", "boundary"}, 61, true},
     {"deviations", "cases", {"pairs", "conventions"}, 211, true},
-    {"tolerance", "cases", {"pairs", "conventions", "statistics"}, 997, true},
-    {"tolerance", "analytic", {"pairs", "conventions", "statistics"}, 211, true},
+    {"tolerance", "cases", {"pairs", "conventions", "statistics"}, 1997, true},
+    {"tolerance", "analytic", {"pairs", "conventions", "statistics"}, 997, true},
     {"evaluation", "cases", {"defaults", "pairs", "dynamics_params", "mods"}, 61, true},
     {"rating", "rows", {NULL}, 1, false},
 };
