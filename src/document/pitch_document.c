@@ -114,15 +114,20 @@ static const struct eo_field pitch_fields[] = {
 };
 const struct eo_table eo_pitch_table = EO_TABLE("deviations of single teeth", struct pitch_document, pitch_fields);
 
-/* Every text of a table below becomes arrays beside it; a copy. */
+/* The text of a table becomes arrays beside it; an empty one, and arrays that are null, are not there. */
 static void expand_text(json_t *object, bool whole, const struct eo_path *path, struct eo_faults *faults)
 {
   json_t *text = json_incref(json_object_get(object, "csv"));
   struct eo_path place = {path, "csv", 0};
   struct eo_error error;
-  if (!text)
-    return;
+  for (int term = 0; term < EO_TOOTH_TERMS; term++)
+    if (json_is_null(json_object_get(object, term_key[term])))
+      json_object_del(object, term_key[term]);
   json_object_del(object, "csv");
+  if (!text || json_is_null(text) || (json_is_string(text) && json_string_length(text) == 0)) {
+    json_decref(text);
+    return;
+  }
   if (!json_is_string(text) || json_string_length(text) >= MOST_TEXT)
     eo_faults_at(faults, &place, "A table is a text of at most %d bytes.", MOST_TEXT - 1);
   else if (eo_pitch_from_text(json_string_value(text), whole, object, &error))

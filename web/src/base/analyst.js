@@ -4,14 +4,15 @@ import { Refusal, connection } from './api.js';
 import { Lane } from './lane.js';
 import { unmodified } from './store.js';
 
-const ANALYZE = 'analyze?histories=1&rating=0';
+const ANALYZE = 'analyze?histories=1&rating=0&pitch=0';
 /**
  * While a slider moves: what figures show of the load case on the screen, what they compare between load cases, and the
  * design as resolved, which the form shows; no histories over time, and no more digits than a screen has points for.
  */
 const STROKE =
   'analyze?rating=0&pitch=0&digits=6&parts=design,modification,mesh_stiffness,load_share,pattern,maps,overview';
-const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
+const RATE = 'analyze?maps=0&pitch=0'; // with the rating, which takes two more contact analyses
+const TEETH = 'analyze?rating=0&parts=design,pitch'; // single teeth over the hunting period: seconds
 const REST = 900; // ms without a change before the design is rated
 
 /** What the results of a reference depend on. @param {any} design */
@@ -34,6 +35,7 @@ export class Analyst extends EventTarget {
   /** The result is a stroke's. */
   partial = false;
   /** The last result with a rating. @type {any} */ rated = null;
+  /** The result with single teeth, where the design states some. @type {any} */ teeth = null;
   #rest = 0;
   #plainKey = '';
   #pinKey = '';
@@ -53,7 +55,7 @@ export class Analyst extends EventTarget {
         this.#tell('result');
         clearTimeout(this.#rest);
         if (this.partial) return;
-        this.#rest = window.setTimeout(() => this.rating.submit({ path: RATE, body: this.store.design }), REST);
+        this.#rest = window.setTimeout(() => this.#atRest(), REST);
       },
       preparing: (_task, job) => {
         this.job = job;
@@ -81,12 +83,29 @@ export class Analyst extends EventTarget {
         this.#tell('rating');
       },
     });
+    this.period = new Lane({
+      result: (_task, data) => {
+        this.teeth = data;
+        this.#tell('teeth');
+      },
+    });
     store.addEventListener('change', event => {
       const what = /** @type {CustomEvent} */ (event).detail;
       if (what === 'view') this.#tell('result');
       else this.update(what === 'live');
     });
     connection.addEventListener('change', () => this.#tell('state'));
+  }
+
+  /** What takes longer is asked for when the design rests. */
+  #atRest() {
+    const { design } = this.store;
+    this.rating.submit({ path: RATE, body: design });
+    if (design.pitch) this.period.submit({ path: TEETH, body: design });
+    else if (this.teeth) {
+      this.teeth = null;
+      this.#tell('teeth');
+    }
   }
 
   /** @param {boolean} [stroke] more changes are to come at once */

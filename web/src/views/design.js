@@ -64,6 +64,7 @@ class DesignView {
       this.#sweep();
     });
     app.analyst.addEventListener('rating', () => this.#drawRating());
+    app.analyst.addEventListener('teeth', () => this.#drawTeeth());
     app.analyst.addEventListener('state', () => this.#drawState());
     app.form.finders.push(pointer => this.#find(pointer));
   }
@@ -95,6 +96,7 @@ class DesignView {
     form.showFindings(context.result.findings ?? []);
     this.headline.set(context);
     this.results.set(context);
+    this.#drawTeeth();
     if (this.#drawn) return;
     this.#drawn = true;
     form.refresh();
@@ -104,6 +106,10 @@ class DesignView {
     const { rated } = this.app.analyst;
     this.results.rating.set(rated);
     this.headline.rate(rated);
+  }
+
+  #drawTeeth() {
+    this.results.teeth.set(this.app.analyst.teeth, this.#context()?.loadCase ?? 0);
   }
 
   #drawState() {

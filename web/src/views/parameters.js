@@ -6,6 +6,7 @@ import { inInches, useInches } from '../base/units.js';
 import { group, more } from '../form/group.js';
 import { Flank } from './flank.js';
 import { LoadCases } from './load_cases.js';
+import { Teeth } from './teeth.js';
 
 const PAIR = ['pinion_teeth', 'gear_teeth', 'normal_module_mm', 'helix_angle_deg', 'face_width_mm', 'groove_width_mm'];
 const SHORT = /** @type {Record<string, string>} */ ({
@@ -18,7 +19,7 @@ const ALIGNMENT = {
 };
 const FLAGS = ['ends'];
 /** Groups with a place of their own; every other object of the tables follows in their order. */
-const PLACED = ['gear_pair', 'material', 'modification', 'alignment', 'supports', 'shafts', 'resolution'];
+const PLACED = ['gear_pair', 'material', 'modification', 'alignment', 'supports', 'shafts', 'resolution', 'pitch'];
 const ELSEWHERE = ['objective', 'optimization', 'tolerance'];
 
 export class Parameters {
@@ -30,6 +31,7 @@ export class Parameters {
     this.pairText = h('span.aside');
     this.flank = new Flank(store, form);
     this.cases = new LoadCases(store, form);
+    this.teeth = new Teeth(store, form);
     const { fields } = this;
     const others = form.fields.filter(
       field => field.kind === 'object' && !PLACED.includes(field.key) && !ELSEWHERE.includes(field.key),
@@ -43,6 +45,7 @@ export class Parameters {
       group('cases', 'Load cases', true, [this.cases.element]),
       group('modification', 'Modification', true, [this.flank.element]),
       group('alignment', 'Alignment', false, fields.fieldsOf('/alignment', { looks: ALIGNMENT })),
+      group('pitch', 'Single teeth', false, [this.teeth.element]),
       rest.map(key => group(key, labelOf(key), false, fields.fieldsOf(`/${key}`))),
     );
     store.addEventListener('change', () => this.refresh());
@@ -88,5 +91,6 @@ export class Parameters {
     this.pairText.textContent = `${pair.pinion_teeth ?? '–'}/${pair.gear_teeth ?? '–'}`;
     this.flank.refresh();
     this.cases.refresh();
+    this.teeth.refresh();
   }
 }

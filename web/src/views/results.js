@@ -6,6 +6,7 @@ import { GearDrawing } from '../figures/gear.js';
 import { Impact } from '../figures/impact.js';
 import { RootStress, Sharing, Stiffness } from '../figures/mesh.js';
 import { ModificationCharts } from '../figures/modification.js';
+import { SingleTeeth } from '../figures/single_teeth.js';
 import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
 import { Topography } from '../figures/topography.js';
 import { Rating } from '../figures/rating.js';
@@ -34,6 +35,7 @@ export class Results {
     this.rating = new Rating();
     this.speed = new SpeedSweep();
     this.torque = new TorqueSweep();
+    this.teeth = new SingleTeeth();
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
     this.notes = h('section.notes', { 'aria-label': 'Warnings' });
     /** In the order of the page and of the report. */
@@ -51,6 +53,7 @@ export class Results {
       sharing.chart.frame,
       root.chart.frame,
       this.rating.frame,
+      ...this.teeth.frames,
       charts.profile.frame,
       charts.lead.frame,
       drawing.painting.frame,
