@@ -66,6 +66,11 @@ static const struct eo_outline_row lte_rows[] = {
         "are left out",
         .unit = &eo_unit_um),
     EO_KEY("cycle_mean_um", "[number]?", "mean of each mesh cycle; null when curves are left out", .unit = &eo_unit_um),
+    EO_KEY("pinion_turn_um", "[number]?",
+           "time-synchronous average over the turns of the pinion, less the mean, in the order of time; null when "
+           "curves are left out",
+           .unit = &eo_unit_um),
+    EO_KEY("gear_turn_um", "[number]?", "the same over the turns of the gear", .unit = &eo_unit_um),
 };
 static const struct eo_outline lte_outline = EO_OUTLINE("PitchLte", lte_rows);
 
@@ -83,6 +88,10 @@ static json_t *encode_lte(const struct written_case *w)
   eo_object_put(&o, "peak_to_peak_of_one_cycle_um", encode_cycle_swing(own));
   eo_object_put(&o, "pair_um", column(has_curves(w), own->hunting.instants, own->transmission, &eo_unit_um));
   eo_object_put(&o, "cycle_mean_um", column(has_curves(w), own->hunting.cycles, own->cycle_mean, &eo_unit_um));
+  for (int member = 0; member < 2; member++)
+    eo_object_put(
+        &o, member == EO_PINION ? "pinion_turn_um" : "gear_turn_um",
+        column(has_curves(w), own->hunting.teeth[member] * own->hunting.positions, own->turn[member], &eo_unit_um));
   return eo_object_close(&o);
 }
 

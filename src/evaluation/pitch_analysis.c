@@ -141,6 +141,23 @@ static enum eo_code read_curves(const struct work *w, struct eo_pitch_case *own,
   return own->line ? eo_fft_spectrum(h->instants, own->transmission, own->line, error) : eo_error_memory(error);
 }
 
+/* Time-synchronous averages: of each position of a member's turn the mean over all its turns. */
+static enum eo_code average_turns(struct eo_pitch_case *own, bool backwards, struct eo_error *error)
+{
+  const struct eo_hunting *h = &own->hunting;
+  for (int member = 0; member < 2; member++) {
+    int bins = h->teeth[member] * h->positions;
+    own->turn[member] = calloc((size_t)bins, sizeof(double));
+    if (!own->turn[member])
+      return eo_error_memory(error);
+    for (int i = 0; i < h->instants; i++) {
+      int from = backwards ? (h->instants - i) % h->instants : i;
+      own->turn[member][i % bins] += (own->transmission[from] - own->mean) * bins / h->instants;
+    }
+  }
+  return EO_OK;
+}
+
 /* A member's tables of both hands are the same. */
 static bool hands_alike(const struct work *w, const struct eo_pitch_case *own)
 {
@@ -298,6 +315,7 @@ static enum eo_code run_cases(struct work *w, struct eo_error *error)
     arrange(w, load_case, own);
     EO_TRY(hunt(w, load_case, own, error));
     EO_TRY(read_curves(w, own, error));
+    EO_TRY(average_turns(own, load_case->running.backwards, error));
   }
   const struct eo_parallel parallel = {.threads = w->threads, .work = respond, .context = w};
   return eo_parallel_run(&parallel, w->result->cases, error);
@@ -331,6 +349,8 @@ void eo_pitch_analysis_done(struct eo_pitch_analysis *analysis)
     free(own->transmission);
     free(own->cycle_mean);
     free(own->cycle_swing);
+    free(own->turn[EO_PINION]);
+    free(own->turn[EO_GEAR]);
     free(own->line);
   }
   free(analysis->load_case);

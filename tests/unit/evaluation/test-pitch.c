@@ -195,6 +195,14 @@ static void test_parseval(void)
   for (int k = 1; k < c->lines; k++)
     lines += pow(cabs(c->line[k]), 2) / (k == c->hunting.instants / 2 ? 1 : 2);
   near(lines, square, 1e-12, "Parseval: the lines' mean square is the curve's");
+  for (int member = 0; member < 2; member++) {
+    double complex first = 0;
+    int bins = c->hunting.teeth[member] * POSITIONS;
+    for (int i = 0; i < bins; i++)
+      first += 2 * c->turn[member][i] * cexp(-2 * M_PI * I * i / bins) / bins;
+    near(cabs(first), amplitude(c, member ? "gear 1" : "pinion 1"), 1e-9,
+         "the average over the turns of a member keeps its order");
+  }
   ok(c->hunting.cycles == 90 && c->peak_to_peak > 10e-6, "%d cycles, %.1f um peak to peak", c->hunting.cycles,
      1e6 * c->peak_to_peak);
 }

@@ -92,6 +92,7 @@ class RigView {
     const { store } = this.app;
     const isOpen = () => this.app.current === 'rig';
     this.bench.addEventListener('change', () => this.#draw());
+    this.app.analyst.addEventListener('teeth', () => isOpen() && this.#drawChosen());
     store.addEventListener('change', () => {
       if (isOpen()) this.bench.later();
     });
@@ -168,6 +169,14 @@ class RigView {
     this.#drawChosen();
   }
 
+  /** What single teeth do, of the load case nearest in torque; null where teeth are alike. @param {number} torque */
+  #teethAt(torque) {
+    /** @type {any[]} */
+    const cases = this.app.analyst.teeth?.pitch?.load_cases ?? [];
+    const apart = (/** @type {any} */ row) => Math.abs(Math.log(row.torque_Nm / torque));
+    return cases.reduce((best, row) => (best && apart(best) <= apart(row) ? best : row), null);
+  }
+
   #drawChosen() {
     const { bench, figures } = this;
     const item = bench.items.find(each => each.id === this.#chosen);
@@ -175,7 +184,12 @@ class RigView {
     figures.drawOrders(bench, item);
     figures.drawTe(bench, item);
     if (this.#whole?.id !== this.#chosen) return;
-    figures.drawSpectrum(item, this.#whole.result, Boolean(this.app.store.design.gear_pair?.pinion_teeth));
+    figures.drawSpectrum(
+      item,
+      this.#whole.result,
+      Boolean(this.app.store.design.gear_pair?.pinion_teeth),
+      this.#teethAt(item.torque_Nm),
+    );
     drawAbout(this.about, item, this.#whole, bench.of(item.id));
     this.recordings.layout.show(this.#whole.layout);
   }

@@ -61,6 +61,27 @@ function seriesOver(bench, across, chosen, choose) {
   return all;
 }
 
+const MEMBERS = ['pinion', 'gear'];
+
+/**
+ * A predicted average over a turn at the places of a measured one, turned to where it lies nearest: the zero of the
+ * encoders is arbitrary. Encoders see the gear's lag with the other sign.
+ * @param {number[]} measured @param {number[]} lag of the prediction
+ */
+function alongside(measured, lag) {
+  const n = measured.length;
+  const seen = measured.map((_, i) => -lag[Math.floor(((i + 0.5) / n) * lag.length)]);
+  const mean = measured.reduce((sum, value) => sum + (value ?? 0), 0) / n;
+  let best = 0;
+  let most = -Infinity;
+  for (let shift = 0; shift < n; shift++) {
+    let sum = 0;
+    for (let i = 0; i < n; i++) sum += ((measured[i] ?? mean) - mean) * seen[(i + shift) % n];
+    if (sum > most) [most, best] = [sum, shift];
+  }
+  return seen.map((_, i) => mean + seen[(i + best) % n]);
+}
+
 export class RigFigures {
   constructor() {
     this.speed = new MeasuredPoints({
@@ -92,7 +113,9 @@ export class RigFigures {
     this.spectrum = new Chart({
       title: 'Spectrum',
       unit: 'm/s²',
-      help: 'Acceleration over orders of the pinion; upright lines: mesh orders.',
+      help:
+        'Acceleration over orders of the pinion; upright lines: mesh orders. Where the design states single teeth, ' +
+        'what they excite, mean of the ends, stands beside it.',
       xLabel: 'order of the pinion',
       zero: true,
       wide: true,
@@ -100,7 +123,9 @@ export class RigFigures {
     this.turn = new Chart({
       title: 'TE over one turn',
       unit: 'µm',
-      help: 'Average over the turns of each shaft, without drift: its first orders are eccentricity.',
+      help:
+        'Average over the turns of each shaft, without drift: its first orders are eccentricity, a bad tooth a step. ' +
+        'Where the design states single teeth, their loaded transmission error is turned to where it lies nearest.',
       xLabel: 'turn',
     });
   }
@@ -159,11 +184,29 @@ export class RigFigures {
     this.te.set({ x: position ?? [], curves });
   }
 
-  /** @param {any} item @param {any} result of the whole measurement @param {boolean} named the orders have names */
-  drawSpectrum(item, result, named) {
+  /**
+   * @param {any} item @param {any} result of the whole measurement @param {boolean} named the orders have names
+   * @param {any} teeth what single teeth do over the hunting period in the load case nearest to it, or null
+   */
+  drawSpectrum(item, result, named, teeth) {
+    /** @type {number[] | undefined} */
+    const lines = teeth?.spectrum?.rotational_m_per_s2;
     this.spectrum.set({
       x: result.spectrum.order,
-      curves: [{ label: item.file, y: result.spectrum.acceleration_m_per_s2, colour: 'measured', width: 1 }],
+      curves: [
+        { label: item.file, y: result.spectrum.acceleration_m_per_s2, colour: 'measured', width: 1 },
+        ...(lines
+          ? [
+              {
+                label: 'predicted from single teeth',
+                x: lines.map((_, i) => i * teeth.spectrum.step),
+                y: lines,
+                colour: 'predicted',
+                width: 1,
+              },
+            ]
+          : []),
+      ],
       marks: result.mesh.order.map((/** @type {number} */ order, /** @type {number} */ i) => ({
         x: order,
         label: named ? `${i + 1}×` : '',
@@ -171,12 +214,17 @@ export class RigFigures {
       })),
     });
     const count = result.te.pinion_turn_um.length;
+    const x = Array.from({ length: count }, (_, i) => (i + 0.5) / count);
+    const measured = [result.te.pinion_turn_um, result.te.gear_turn_um];
     this.turn.set({
-      x: Array.from({ length: count }, (_, i) => (i + 0.5) / count),
-      curves: [
-        { label: 'pinion', y: result.te.pinion_turn_um, colour: 'member-pinion', width: 1 },
-        { label: 'gear', y: result.te.gear_turn_um, colour: 'member-gear', width: 1 },
-      ],
+      x,
+      curves: MEMBERS.flatMap((member, i) => {
+        const colour = `member-${member}`;
+        const own = { label: member, y: measured[i], colour, width: 1 };
+        const other = teeth?.lte?.[`${member}_turn_um`];
+        if (!other) return [own];
+        return [own, { label: `${member}, predicted`, y: alongside(measured[i], other), colour, line: 'dashed' }];
+      }),
     });
   }
 }
