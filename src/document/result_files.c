@@ -229,12 +229,90 @@ void eo_result_summary_csv(const json_t *result, struct eo_text *text)
   save_summary(result, text);
 }
 
+/* i times step, as many as the column has. */
+static json_t *steps(size_t count, double step, struct eo_text *text)
+{
+  json_t *list = json_array();
+  for (size_t i = 0; i < count && text; i++)
+    text->failed = text->failed || json_array_append_new(list, json_real((double)i * step)) != 0;
+  return list;
+}
+
+/* The transmission error over the hunting period. */
+static void save_period(const json_t *pitch, const json_t *load_case, struct eo_text *text)
+{
+  struct table table = {0};
+  const json_t *curve = eo_json_find(load_case, "lte/pair_um");
+  size_t count = json_array_size(curve);
+  json_t *turns = steps(count, eo_json_find_number(pitch, "pinion_revolutions") / (double)(count ? count : 1), text);
+  add_column(&table, turns, "pinion_revolutions");
+  add_column(&table, curve, "lte_pair_um");
+  save_table(&table, text);
+  json_decref(turns);
+}
+
+static void save_period_orders(const json_t *load_case, struct eo_text *text)
+{
+  struct table table = {0};
+  const json_t *spectrum = json_object_get(load_case, "spectrum"), *lines = json_object_get(spectrum, "lte_um");
+  json_t *order = steps(json_array_size(lines), eo_json_find_number(spectrum, "step"), text);
+  add_column(&table, order, "order_per_pinion_revolution");
+  add_column(&table, lines, "lte_pair_um");
+  add_column(&table, json_object_get(spectrum, "normal_m_per_s2"), "normal_m_per_s2");
+  add_column(&table, json_object_get(spectrum, "rotational_m_per_s2"), "rotational_m_per_s2");
+  save_table(&table, text);
+  json_decref(order);
+}
+
+/* Tooth by tooth: what it is off on drive flanks, and what it carries. */
+static void save_teeth(const json_t *pitch, const json_t *load_case, struct eo_text *text)
+{
+  static const char *const member[2] = {"pinion", "gear"};
+  struct table table = {0};
+  size_t most = 0;
+  for (int i = 0; i < 2; i++) {
+    char path[64];
+    snprintf(path, sizeof path, "teeth/%s/left/load_N", member[i]);
+    size_t own = json_array_size(eo_json_find(load_case, path));
+    most = own > most ? own : most;
+  }
+  json_t *tooth = steps(most, 1, text);
+  add_column(&table, tooth, "tooth");
+  for (int i = 0; i < 2; i++) {
+    char heading[HEADING], path[96];
+    snprintf(heading, sizeof heading, "%s_%%s_index_um", member[i]);
+    snprintf(path, sizeof path, "deviations/%s/%%s/drive/index_um", member[i]);
+    add_ends(&table, pitch, heading, path);
+    snprintf(heading, sizeof heading, "%s_%%s_load_N", member[i]);
+    snprintf(path, sizeof path, "teeth/%s/%%s/load_N", member[i]);
+    add_ends(&table, load_case, heading, path);
+    snprintf(heading, sizeof heading, "%s_%%s_root_stress_MPa", member[i]);
+    snprintf(path, sizeof path, "teeth/%s/%%s/root_stress_MPa", member[i]);
+    add_ends(&table, load_case, heading, path);
+  }
+  save_table(&table, text);
+  json_decref(tooth);
+}
+
+static void save_pitch(const json_t *result, struct eo_file_set *bundle)
+{
+  const json_t *pitch = json_object_get(result, "pitch"), *load_case;
+  size_t k;
+  json_array_foreach(json_object_get(pitch, "load_cases"), k, load_case)
+  {
+    save_period(pitch, load_case, eo_file_set_add(bundle, "case-%d-period.csv", (int)k + 1));
+    save_period_orders(load_case, eo_file_set_add(bundle, "case-%d-period-orders.csv", (int)k + 1));
+    save_teeth(pitch, load_case, eo_file_set_add(bundle, "case-%d-teeth.csv", (int)k + 1));
+  }
+}
+
 void eo_result_files(const json_t *result, struct eo_file_set *bundle)
 {
   const json_t *cases = json_object_get(result, "load_cases");
   save_summary(result, eo_file_set_add(bundle, "summary.csv"));
   save_modification(result, eo_file_set_add(bundle, "modification.csv"));
   save_unloaded(result, eo_file_set_add(bundle, "unloaded.csv"));
+  save_pitch(result, bundle);
   for (size_t k = 0; k < json_array_size(cases); k++) {
     const json_t *load_case = json_array_get(cases, k);
     int number = (int)k + 1;

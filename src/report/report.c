@@ -170,7 +170,7 @@ void eo_report_write(const json_t *result, const struct eo_design *design, const
 static enum eo_code write_report(const struct eo_analysis *analysis, const struct eo_design *design,
                                  const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
 {
-  json_t *result = eo_result_encode_part(analysis, design, warnings, EO_RESULT_NO_HISTORIES);
+  json_t *result = eo_result_encode_part(analysis, design, warnings, EO_RESULT_NO_HISTORIES | EO_RESULT_NO_PITCH);
   if (!result)
     return eo_error_memory(error);
   eo_report_write(result, design, &analysis->pair->geometry, text);
@@ -184,8 +184,8 @@ enum eo_code eo_report_make(const struct eo_pair *pair, const struct eo_design *
 {
   struct eo_analysis *analysis;
   EO_TRY(eo_analysis_new(&analysis, pair, error));
-  enum eo_code code = eo_analysis_run(analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING,
-                                      error);
+  enum eo_code code = eo_analysis_run(
+      analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING | EO_WANT_PITCH, error);
   if (!code && eo_progress_report(progress, "report", 1))
     code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   if (!code)

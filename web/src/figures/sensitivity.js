@@ -11,7 +11,7 @@ import { Chart } from './chart.js';
 import { OWN_COLOUR, REFERENCE_COLOUR, mainCase } from './context.js';
 
 const REST = 500; // ms without a change
-const ASK = 'analyze?maps=0&root_stress=0&rating=0';
+const ASK = 'analyze?maps=0&root_stress=0&rating=0&pitch=0';
 const IN_PLANE = '/alignment/shaft_angle_error_in_plane_deg';
 const OUT_OF_PLANE = '/alignment/shaft_angle_error_out_of_plane_deg';
 const MISALIGNMENT = 0.05; // deg on either side, as shafts and housings bring

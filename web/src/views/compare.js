@@ -43,7 +43,7 @@ class Results {
     const first = this.#busy === '' ? this.#queue.shift() : undefined;
     if (!first) return;
     this.#busy = first.key;
-    this.lane.submit({ path: 'analyze?histories=1&maps=0&rating=0', body: first.body });
+    this.lane.submit({ path: 'analyze?histories=1&maps=0&rating=0&pitch=0', body: first.body });
   }
 
   /** @param {any} data @param {() => void} tell */

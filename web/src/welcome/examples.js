@@ -145,7 +145,7 @@ class Examples {
 
   #ask() {
     const first = this.waiting[0];
-    if (first) this.lane.submit({ path: 'analyze?maps=0&rating=0', body: first.design, note: first.gain });
+    if (first) this.lane.submit({ path: 'analyze?maps=0&rating=0&pitch=0', body: first.design, note: first.gain });
   }
 
   #next() {

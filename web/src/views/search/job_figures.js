@@ -54,7 +54,7 @@ class Compared {
   #next() {
     const first = this.#left.shift();
     if (first)
-      this.lane.submit({ path: 'analyze?maps=0&root_stress=0&rating=0', body: first.design, note: first.name });
+      this.lane.submit({ path: 'analyze?maps=0&root_stress=0&rating=0&pitch=0', body: first.design, note: first.name });
   }
 }
 
