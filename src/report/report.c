@@ -150,6 +150,16 @@ static void put_tribology(const json_t *result, struct eo_text *text)
   eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "tribology"), json_object_get(result, "tribology"), 3, NULL);
 }
 
+/* Nothing where the design states no single teeth. */
+static void put_pitch(const json_t *result, struct eo_text *text)
+{
+  const json_t *pitch = json_object_get(result, "pitch");
+  if (!json_is_object(pitch))
+    return;
+  eo_page_heading(text, 2, "Single teeth over the hunting period");
+  eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "pitch"), pitch, 3, NULL);
+}
+
 void eo_report_write(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
                      struct eo_text *text)
 {
@@ -163,6 +173,7 @@ void eo_report_write(const json_t *result, const struct eo_design *design, const
   put_flanks(design, geometry, text);
   put_rating(result, text);
   put_tribology(result, text);
+  put_pitch(result, text);
   put_contact(result, text);
   eo_page_end(text);
 }
