@@ -14,8 +14,8 @@
 
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,
     eo_supports_table, eo_shafts_table, eo_load_case_table, eo_flank_modification_table, eo_member_modification_table,
-    eo_modification_table, eo_modification_terms_table, eo_tolerance_table, eo_rating_table, eo_rating_member_table, eo_lubricant_table,
-    eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
+    eo_modification_table, eo_modification_terms_table, eo_tolerance_table, eo_rating_table, eo_rating_member_table,
+    eo_lubricant_table, eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
 /* Keys of a flank's modification that may be optimized; ends with NULL. */
 extern const char *const eo_variable_parameters[];
@@ -74,7 +74,8 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */
 enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
-/* The same over what the raw values of one evaluation depend on: without name, rating, objective and optimization. */
+/* The same over what the raw values of one evaluation depend on: without name, rating, pitch, objective and
+ * optimization. */
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error);
 

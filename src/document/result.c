@@ -260,7 +260,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("design", "object?", "with every default resolved; null when left out", .table = &eo_design_table,
            .name = "ResolvedDesign"),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("evaluation_hash", "text", "the same without name, rating, objective and optimization"),
+    EO_KEY("evaluation_hash", "text", "the same without name, rating, pitch, objective and optimization"),
     EO_KEY("assumed", "[object]?",
            "what the design does not state, the value taken, and by which rule; null when left out",
            .outline = &eo_outline_assumption),

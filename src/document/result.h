@@ -3,9 +3,9 @@
    nothing else.
 
    Top level: program, design (every default resolved), design_hash (SHA-256 of the canonical design), evaluation_hash
-   (the same without name, rating, objective and optimization), resolution, geometry, modification, unloaded_contact,
-   load_cases, objectives, eigenfrequencies_Hz, damping_ratios, warnings, timing_ms (the only part that differs between
-   two runs).
+   (the same without name, rating, pitch, objective and optimization), resolution, geometry, modification,
+   unloaded_contact, load_cases, objectives, eigenfrequencies_Hz, damping_ratios, warnings, timing_ms (the only part
+   that differs between two runs).
 
    Curves are columns over a `position` beside them (0..1 of the mesh cycle of the left end; the right end's columns are
    shifted by the stagger). Transmission error is transverse, along the line of action; stiffness, forces and pressure

@@ -60,6 +60,12 @@ static void test_analyses(void)
   json_t *design = design_with("ga", 10, plain);
   json_object_del(design, "modification");
   expect_answer("an unmodified pair", API "/analyze", design);
+  design = design_with("ga", 10, plain);
+  json_object_set_new(
+      design, "pitch",
+      json_loads("{\"pinion\": {\"tolerance_class\": 5}, \"gear\": {\"axial_wobble_um\": 2}}", 0, NULL));
+  json_object_set_new(json_array_get(json_object_get(design, "load_cases"), 0), "direction", json_string("astern"));
+  expect_answer("single teeth on both flanks", API "/analyze", design);
 }
 
 /* What the page asks while a slider moves: the string of its source that names an overview. Owned by the caller. */
