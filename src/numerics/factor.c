@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "numerics/factor.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,12 +35,13 @@ void eo_saddle_done(struct eo_saddle *saddle)
   *saddle = (struct eo_saddle){0};
 }
 
-/* Multiplies b, [columns][rows of Q], by Q or Q' of the tail's QR factorisation. */
-static void apply_basis(struct eo_saddle *s, char side, char transposed, double *b, int columns)
+/* Multiplies b, [columns][stride], by Q or Q' of the tail's QR factorisation, from the left; or [rows][rows] from the
+   right. */
+static void apply_basis(struct eo_saddle *s, char side, char transposed, double *b, int columns, int stride)
 {
   const int m = side == 'L' ? s->rows : columns, n = side == 'L' ? columns : s->rows;
-  LAPACKE_dormqr_work(LAPACK_COL_MAJOR, side, transposed, m, n, s->columns, s->basis, s->rows, s->tau, b, m, s->work,
-                      s->work_size);
+  LAPACKE_dormqr_work(LAPACK_COL_MAJOR, side, transposed, m, n, s->columns, s->basis, s->rows, s->tau, b, stride,
+                      s->work, s->work_size);
 }
 
 static bool basis_has_full_rank(const struct eo_saddle *s)
@@ -66,24 +68,26 @@ bool eo_saddle_factor(struct eo_saddle *saddle, int rows, int columns, const dou
       !basis_has_full_rank(saddle))
     return false;
   memcpy(saddle->projected, a, m * m * sizeof *a);
-  apply_basis(saddle, 'L', 'T', saddle->projected, rows);
-  apply_basis(saddle, 'R', 'N', saddle->projected, rows);
+  apply_basis(saddle, 'L', 'T', saddle->projected, rows, rows);
+  apply_basis(saddle, 'R', 'N', saddle->projected, rows, rows);
   return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', rows - columns, saddle->projected + q * m + q, rows) == 0;
 }
 
-void eo_saddle_solve(struct eo_saddle *saddle, const double *y, double *c, double *b)
+void eo_saddle_solve(struct eo_saddle *saddle, int count, const double *y, double *c, int stride, double *b)
 {
   const int m = saddle->rows, q = saddle->columns;
-  memcpy(c, y, (size_t)m * sizeof *y);
-  apply_basis(saddle, 'L', 'T', c, 1);
-  memcpy(b, c, (size_t)q * sizeof *b);
-  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', m - q, 1, saddle->projected + q * m + q, m, c + q, m);
-  for (int j = q; j < m; j++)
-    for (int k = 0; k < q; k++)
-      b[k] -= saddle->projected[j * m + k] * c[j];
-  LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'U', 'N', 'N', q, 1, saddle->basis, m, b, q);
-  memset(c, 0, (size_t)q * sizeof *c);
-  apply_basis(saddle, 'L', 'N', c, 1);
+  for (int i = 0; i < count; i++)
+    memcpy(c + (size_t)i * stride, y + (size_t)i * m, (size_t)m * sizeof *y);
+  apply_basis(saddle, 'L', 'T', c, count, stride);
+  for (int i = 0; i < count; i++)
+    memcpy(b + (size_t)i * q, c + (size_t)i * stride, (size_t)q * sizeof *b);
+  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', m - q, count, saddle->projected + q * m + q, m, c + q, stride);
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, q, count, m - q, -1, saddle->projected + q * m, m, c + q,
+              stride, 1, b, q);
+  LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'U', 'N', 'N', q, count, saddle->basis, m, b, q);
+  for (int i = 0; i < count; i++)
+    memset(c + (size_t)i * stride, 0, (size_t)q * sizeof *c);
+  apply_basis(saddle, 'L', 'N', c, count, stride);
 }
 
 void eo_saddle_inverse_diagonal(struct eo_saddle *saddle, double *diagonal)
@@ -97,7 +101,7 @@ void eo_saddle_inverse_diagonal(struct eo_saddle *saddle, double *diagonal)
   LAPACKE_dtrtri_work(LAPACK_COL_MAJOR, 'U', 'N', inner, inverse + q, m);
   for (int j = 0; j < inner; j++)
     memset(inverse + j * m, 0, (size_t)q * sizeof *inverse);
-  apply_basis(saddle, 'L', 'N', inverse, inner);
+  apply_basis(saddle, 'L', 'N', inverse, inner, m);
   memset(diagonal, 0, (size_t)m * sizeof *diagonal);
   for (int j = 0; j < inner; j++)
     for (int k = 0; k < m; k++)

@@ -29,8 +29,8 @@ void eo_saddle_done(struct eo_saddle *saddle);
    positive definite in its null space: then nothing may be solved. Needs m > q. */
 bool eo_saddle_factor(struct eo_saddle *saddle, int rows, int columns, const double *a, const double *p);
 
-/* Solves for one right-hand side y[m]: c[m], b[q]. */
-void eo_saddle_solve(struct eo_saddle *saddle, const double *y, double *c, double *b);
+/* Solves for right-hand sides y[count][m]: c[count][stride], of which m count, and b[count][q]. */
+void eo_saddle_solve(struct eo_saddle *saddle, int count, const double *y, double *c, int stride, double *b);
 
 /* The first m entries of the diagonal of the inverse. */
 void eo_saddle_inverse_diagonal(struct eo_saddle *saddle, double *diagonal);

@@ -2,15 +2,23 @@
 /* `credibility-ga`: a genetic algorithm whose true evaluations go where a surrogate promises most, doubted as far as it
    has not earned its credibility by leave-one-out (surrogate.h). Every member of its population is a true row.
 
-     epoch: a latin hypercube, then batches until too many of them gain nothing: the best joins the taboo list
-     even epochs sample: an evolution strategy (evolution.h) from the best of the hypercube, of whose many samples the
-   surrogate chooses; the trust region (local.h) round the best has a place in each batch, and twice as many after each
-   gain of its own odd epochs breed: half of a batch trust region; half children of the epoch's best rows, bred three
-   times among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing distances from
-   all rows and from each other what is the best of all when an epoch ends is refined once by an evolution strategy of
-   small steps: objectives made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth
-   surrogate stops the last share of the budget polishes the best row of all: trust region only, then refinement */
+   epoch: a latin hypercube, then batches until too many of them gain nothing: the best joins the taboo list.
+   Even epochs sample: an evolution strategy (evolution.h) from the best of the hypercube, of whose many samples the
+   surrogate chooses; the trust region (trust_region.h) round the best has a place in each batch, and twice as many
+   after each gain of its own. Odd epochs breed: half of a batch trust region; half children of the epoch's best rows,
+   bred three times among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing
+   distances from all rows and from each other. What is the best of all when an epoch ends is refined once by an
+   evolution strategy of small steps: objectives made of maxima over load cases, ends and mesh positions lead along
+   kinks, where a smooth surrogate stops. The last share of the budget polishes the best row of all: trust region only,
+   then refinement.
+
+   A value whose parts are known (eo_optimizer_describe()) has surrogates with its kinks (composite.h), which are right
+   from afar. Its even epochs go to the minima of the model of the whole cube (global_minima.h), the trust region beside
+   them, two of eight places to what nobody knows; every epoch but the first begins where the model promises most or
+   knows least away from what is finished, not with a hypercube; they end sooner, and nothing is refined between them.
+ */
 #include "optimizer/credibility_pool.h"
+#include "optimizer/global_minima.h"
 #include "optimizer/optimizer_private.h"
 #include "optimizer/trust_region.h"
 #include "optimizer/operators.h"
@@ -19,7 +27,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum search { BREED, SAMPLE, REFINE };
+enum search { BREED, SAMPLE, MODEL, REFINE };
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
@@ -45,6 +53,7 @@ struct credibility {
   struct eo_credibility_pool pool;
   struct eo_local local;
   struct eo_evolution evolution;
+  struct eo_global_minima global;
 };
 
 static void stop(struct eo_optimizer *o)
@@ -62,14 +71,27 @@ static void stop(struct eo_optimizer *o)
   eo_credibility_pool_done(&c->pool);
   eo_local_done(&c->local);
   eo_evolution_done(&c->evolution);
+  eo_global_minima_done(&c->global);
   free(c);
+}
+
+/* Whether the value's parts are known: a model of them leads to the bottom sooner, and says where to look next. */
+static bool is_described(const struct eo_optimizer *o)
+{
+  return o->anatomy.parts > 0;
+}
+
+static int least_places(const struct eo_optimizer *o)
+{
+  return o->settings.batch > 1 ? 1 : 0;
 }
 
 static void plan_epoch(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   c->fresh = true;
-  c->search = c->epoch % 2 == 0 ? SAMPLE : BREED;
+  c->search = is_described(o) ? (c->epoch % 2 == 0 ? MODEL : SAMPLE) : c->epoch % 2 == 0 ? SAMPLE : BREED;
+  c->local_places = c->search == MODEL ? o->settings.batch / 2 : least_places(o);
   c->evolving = false;
   c->epoch_first = c->epoch ? o->archive.count : 0; /* rows known from elsewhere belong to the first */
   c->epoch_best = INFINITY;
@@ -93,13 +115,15 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   c->parent = malloc((size_t)s->population * sizeof(int));
   if (!c->latin || !c->chosen || !c->generation || !c->generation_x || !c->parent)
     return eo_error_memory(error);
-  enum eo_code code = eo_credibility_model_init(&c->model, s, error);
+  enum eo_code code = eo_credibility_model_init(&c->model, s, &o->anatomy, error);
   if (code == EO_OK)
     code = eo_credibility_pool_init(&c->pool, s, error);
   if (code == EO_OK)
-    code = eo_local_init(&c->local, s->variables, error);
+    code = eo_local_init(&c->local, &o->anatomy, s->variables, error);
   if (code == EO_OK)
     code = eo_evolution_init(&c->evolution, s->variables, error);
+  if (code == EO_OK)
+    code = eo_global_minima_init(&c->global, s->variables, error);
   if (code == EO_OK)
     plan_epoch(o);
   return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
@@ -116,11 +140,17 @@ static bool sees_all(const struct credibility *c)
   return c->polishing || c->search == REFINE;
 }
 
+/* A model of parts finds the bottom of a valley from afar: what is finished is twice as large. */
+static double taboo_radius(const struct eo_optimizer *o)
+{
+  return (is_described(o) ? 2 : 1) * o->settings.taboo_radius * sqrt(o->settings.variables);
+}
+
 static bool is_taboo(const struct eo_optimizer *o, const double *x)
 {
   const struct credibility *c = o->state;
   const int n = o->settings.variables;
-  const double radius = o->settings.taboo_radius * sqrt(n);
+  const double radius = taboo_radius(o);
   for (int i = 0; i < c->taboo_count && !sees_all(c); i++)
     if (eo_unit_distance(row_x(o, c->taboo[i]), x, n) < radius)
       return true;
@@ -159,18 +189,30 @@ static void request_chosen(struct eo_optimizer *o, int count, int local)
   }
 }
 
+/* Fills c->chosen from `first` to `count` with minima of the model, away from what is finished; `unknown` of the places
+   go to what nobody knows. */
+static int choose_minima(struct eo_optimizer *o, int best, int first, int count, int unknown)
+{
+  struct credibility *c = o->state;
+  const struct eo_global_bars bars = {c->taboo, c->taboo_count, taboo_radius(o)};
+  const int minima = count - first > unknown ? count - first - unknown : 0;
+  eo_credibility_model_fit(&c->model, &o->archive, row_x(o, best));
+  return eo_global_minima_choose(&c->global, &c->model, &o->archive, &bars, best, c->batch, minima, c->chosen, first,
+                                 count);
+}
+
 static void propose_epoch(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
-  const int n = o->settings.variables, count = o->settings.initial_factor * n;
+  const int n = o->settings.variables, count = o->settings.initial_factor * n, best = eo_optimizer_best(o);
+  c->fresh = false;
+  if (is_described(o) && c->epoch > 0 && best >= 0) {
+    const int places = 2 * o->settings.batch < count ? 2 * o->settings.batch : count;
+    request_chosen(o, choose_minima(o, best, 0, places, places / 2), 0);
+    return;
+  }
   eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->latin);
   request_chosen(o, count, 0);
-  c->fresh = false;
-}
-
-static int least_places(const struct eo_optimizer *o)
-{
-  return o->settings.batch > 1 ? 1 : 0;
 }
 
 static void begin_sampling(struct eo_optimizer *o, int from)
@@ -210,6 +252,7 @@ static int local_share(const struct eo_optimizer *o)
   const int batch = o->settings.batch;
   switch (c->search) {
   case SAMPLE:
+  case MODEL:
     return c->local_places;
   case REFINE:
     return 0;
@@ -233,6 +276,8 @@ static void propose_batch(struct eo_optimizer *o)
   int chosen = local + batch - share;
   if (c->evolving)
     choose_samples(o, local, chosen);
+  else if (c->search == MODEL)
+    chosen = choose_minima(o, c->parent[0], local, chosen, o->settings.batch / 4);
   else if (share < batch)
     chosen = choose_children(o, parents, local, chosen);
   request_chosen(o, chosen, local);
@@ -355,9 +400,10 @@ static void begin_polishing(struct eo_optimizer *o)
 static int patience(const struct eo_optimizer *o)
 {
   const struct credibility *c = o->state;
-  return c->search == SAMPLE   ? o->settings.sampling_stall
-         : c->search == REFINE ? o->settings.evolution_stall
-                               : o->settings.stall_batches;
+  const int sampling = o->settings.sampling_stall;
+  return c->search == MODEL || c->search == SAMPLE ? (is_described(o) ? (sampling + 1) / 2 : sampling)
+         : c->search == REFINE                     ? o->settings.evolution_stall
+                                                   : o->settings.stall_batches;
 }
 
 /* What follows a batch that gained nothing for long enough: the best row of all is refined once; then a new epoch. */
@@ -368,7 +414,7 @@ static enum eo_code go_on(struct eo_optimizer *o, int best, struct eo_error *err
   const int best_of_all = eo_optimizer_best(o);
   if (c->search == REFINE)
     c->refined = best_of_all;
-  if (c->search != REFINE && best_of_all >= 0 && best_of_all != c->refined)
+  if (!is_described(o) && c->search != REFINE && best_of_all >= 0 && best_of_all != c->refined)
     begin_refinement(o);
   else
     begin_epoch(o);
@@ -402,7 +448,7 @@ static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
   if (c->polishing) {
     if (through || (stalled && c->search != REFINE))
       begin_refinement(o);
-  } else if (eo_optimizer_left(o) <= o->settings.polish_share * o->budget) {
+  } else if (eo_optimizer_left(o) <= (is_described(o) ? 0.5 : 1) * o->settings.polish_share * o->budget) {
     begin_polishing(o);
   } else if (through || stalled) {
     return go_on(o, best, error);

@@ -10,7 +10,7 @@
 static const double ridge = 1e-9;
 
 enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings,
-                                       struct eo_error *error)
+                                       const struct eo_anatomy *anatomy, struct eo_error *error)
 {
   const size_t n = (size_t)settings->variables, rows = (size_t)settings->model_rows;
   *model = (struct eo_credibility_model){.settings = settings};
@@ -20,7 +20,8 @@ enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const
   model->sorted = malloc(rows * sizeof(double));
   if (!model->rows || !model->x || !model->y || !model->sorted)
     return eo_error_memory(error);
-  return eo_surrogate_init(&model->surrogate, settings->variables, settings->model_rows, 1, EO_TAIL_LINEAR, error);
+  return eo_composite_init(&model->composite, anatomy, settings->variables, settings->model_rows, EO_TAIL_LINEAR,
+                           error);
 }
 
 void eo_credibility_model_done(struct eo_credibility_model *model)
@@ -31,7 +32,7 @@ void eo_credibility_model_done(struct eo_credibility_model *model)
   free(model->sorted);
   free(model->ranked);
   free(model->used);
-  eo_surrogate_done(&model->surrogate);
+  eo_composite_done(&model->composite);
 }
 
 static int compare_doubles(const void *a, const void *b)
@@ -77,7 +78,7 @@ static int take_rows(struct eo_credibility_model *model, const struct eo_archive
   const int n = model->settings->variables;
   int count = 0;
   for (int row = 0; row < a->count; row++) {
-    if (eo_archive_failed(a, row) || model->used[row])
+    if (model->used[row] || !eo_composite_takes(&model->composite, a, row))
       continue;
     const double key = ranking == RANK_BY_VALUE ? a->value[row]
                        : ranking == RANK_BY_AGE ? -row
@@ -115,21 +116,21 @@ void eo_credibility_model_fit(struct eo_credibility_model *model, const struct e
   qsort(model->sorted, (size_t)count, sizeof(double), compare_doubles);
   const double median = model->sorted[count / 2];
   model->spread = median - model->sorted[0];
-  for (int j = 0; j < count; j++)
+  for (int j = 0; j < count && model->composite.anatomy->parts == 0; j++)
     model->y[j] = fmin(model->y[j], median);
   if (!(model->spread > 0))
     return;
-  model->fitted = eo_surrogate_fit(&model->surrogate, EO_TAIL_LINEAR, ridge, model->x, model->y, count, 1);
+  const struct eo_composite_rows rows = {archive, count, model->rows, model->x, model->y, 0, 1, model->spread};
+  model->fitted = eo_composite_fit(&model->composite, EO_TAIL_LINEAR, ridge, &rows);
   if (model->fitted)
-    eo_surrogate_set_scale(&model->surrogate, model->spread);
+    eo_surrogate_set_scale(&model->composite.surrogate, model->composite.residual, model->spread);
 }
 
 double eo_credibility_predict(struct eo_credibility_model *model, const double *x)
 {
   if (!model->fitted)
     return 0;
-  eo_surrogate_visit(&model->surrogate, x);
-  return -eo_surrogate_value(&model->surrogate, 0);
+  return -eo_composite_value(&model->composite, x);
 }
 
 double eo_credibility_score(struct eo_credibility_model *model, const double *x)
@@ -138,6 +139,6 @@ double eo_credibility_score(struct eo_credibility_model *model, const double *x)
   if (!model->fitted)
     return 0;
   const double length = model->settings->credibility_length * sqrt(model->settings->variables);
-  const double doubt = 1 - eo_surrogate_credibility(&model->surrogate, length);
+  const double doubt = 1 - eo_surrogate_credibility(&model->composite.surrogate, length);
   return value - model->settings->exploration * model->spread * doubt;
 }

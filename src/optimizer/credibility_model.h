@@ -6,13 +6,13 @@
 
 #include "optimizer/true_rows.h"
 #include "optimizer/settings.h"
-#include "optimizer/surrogate.h"
+#include "optimizer/composite.h"
 
 struct eo_credibility_model {
   const struct eo_optimizer_settings *settings; /* borrowed */
   bool fitted;
   double spread; /* s: median less minimum of the values */
-  struct eo_surrogate surrogate;
+  struct eo_composite composite;
   int *rows;              /* [model_rows] of the archive; owned, as all below */
   double *x, *y, *sorted; /* [model_rows][n], [model_rows], likewise */
   struct eo_ranked_row {
@@ -24,7 +24,7 @@ struct eo_credibility_model {
 };
 
 enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings,
-                                       struct eo_error *error);
+                                       const struct eo_anatomy *anatomy, struct eo_error *error);
 void eo_credibility_model_done(struct eo_credibility_model *model);
 
 /* Room to rank so many rows: once before every fit. */

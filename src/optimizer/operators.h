@@ -19,6 +19,7 @@ enum eo_stream {
   EO_STREAM_LATIN_ORDER = 30,  /* generation = epoch, individual = point, draw = variable */
   EO_STREAM_LATIN_JITTER = 31, /* generation = epoch, individual = cell, draw = variable */
   EO_STREAM_LOCAL = 40,        /* trust region samples */
+  EO_STREAM_GLOBAL = 42,       /* samples of the cube: generation = batch, individual = sample; draws 2 k, 2 k + 1 */
   EO_STREAM_EVOLUTION = 41,    /* evolution strategy: generation = batch, individual = sample, draw = axis */
 };
 

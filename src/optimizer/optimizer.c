@@ -47,6 +47,8 @@ void eo_optimizer_free(struct eo_optimizer *optimizer)
   free(optimizer->candidate);
   free(optimizer->outcome);
   free(optimizer->batch_objective);
+  free(optimizer->batch_part);
+  free(optimizer->anatomy.group);
   free(optimizer->told);
   free(optimizer->prediction_x);
   free(optimizer->prediction);
@@ -67,7 +69,26 @@ static void store(struct eo_optimizer *o, const double *x, const struct eo_outco
 {
   const bool failed = has_failed(o, outcome);
   eo_archive_add(&o->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
-                 failed ? NULL : outcome->objectives, generation, individual);
+                 failed ? NULL : outcome->objectives, failed ? NULL : outcome->parts, generation, individual);
+}
+
+enum eo_code eo_optimizer_describe(struct eo_optimizer *optimizer, const struct eo_anatomy *anatomy,
+                                   struct eo_error *error)
+{
+  if (optimizer->started || optimizer->archive.count)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The value must be described before the first row.");
+  if (optimizer->settings.algorithm != EO_CREDIBILITY_GA)
+    return EO_OK;
+  const size_t bytes = (size_t)anatomy->groups * sizeof *anatomy->group;
+  struct eo_part_group *group = malloc(bytes + 1);
+  if (!group)
+    return eo_error_memory(error);
+  if (bytes)
+    memcpy(group, anatomy->group, bytes);
+  free(optimizer->anatomy.group);
+  optimizer->anatomy = (struct eo_anatomy){anatomy->parts, anatomy->groups, group};
+  eo_archive_set_parts(&optimizer->archive, anatomy->parts);
+  return EO_OK;
 }
 
 enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome,
@@ -127,12 +148,15 @@ enum eo_code eo_optimizer_tell(struct eo_optimizer *optimizer, int candidate, co
   const int m = optimizer->archive.objectives;
   struct eo_outcome *kept = &optimizer->outcome[candidate];
   *kept = *outcome;
-  kept->objectives = NULL;
+  kept->objectives = kept->parts = NULL;
   if (m > 0 && outcome->objectives) {
     double *objectives = optimizer->batch_objective + (size_t)candidate * m;
     memcpy(objectives, outcome->objectives, (size_t)m * sizeof *objectives);
     kept->objectives = objectives;
   }
+  const size_t parts = (size_t)optimizer->anatomy.parts;
+  if (parts > 0 && outcome->parts)
+    kept->parts = memcpy(optimizer->batch_part + (size_t)candidate * parts, outcome->parts, parts * sizeof(double));
   optimizer->told[candidate] = true;
   if (++optimizer->told_count < optimizer->batch_count)
     return EO_OK;
@@ -182,8 +206,11 @@ enum eo_code eo_optimizer_reserve_batch(struct eo_optimizer *o, int count, struc
   o->candidate = malloc(c * sizeof *o->candidate);
   o->outcome = malloc(c * sizeof *o->outcome);
   o->batch_objective = malloc((c * m + 1) * sizeof(double));
+  o->batch_part = malloc((c * (size_t)o->anatomy.parts + 1) * sizeof(double));
   o->told = malloc(c * sizeof *o->told);
-  return o->batch_x && o->candidate && o->outcome && o->batch_objective && o->told ? EO_OK : eo_error_memory(error);
+  return o->batch_x && o->batch_part && o->candidate && o->outcome && o->batch_objective && o->told
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 static enum eo_code reserve_prediction(struct eo_optimizer *o, struct eo_error *error)

@@ -23,6 +23,7 @@
 #define EASEOFF_OPTIMIZER_OPTIMIZER_H
 
 #include "base/error.h"
+#include "optimizer/anatomy.h"
 #include "optimizer/settings.h"
 
 #include <stdbool.h>
@@ -55,6 +56,7 @@ struct eo_outcome {
   double value;             /* to minimise: J + penalties */
   double violation;         /* >= 0: sum of constraint violations; nsga2 ranks by it first */
   const double *objectives; /* [objectives], to minimise; nsga2 only, else may be NULL */
+  const double *parts;      /* [parts] of the anatomy; NULL: not known */
 };
 
 /* A truly evaluated point. */
@@ -84,6 +86,11 @@ struct eo_counters {
 enum eo_code eo_optimizer_new(const struct eo_optimizer_settings *settings, struct eo_optimizer **optimizer,
                               struct eo_error *error);
 void eo_optimizer_free(struct eo_optimizer *optimizer);
+
+/* What the values are made of, before the first row: credibility-ga makes its surrogates of the parts, the others
+   do not look at them. anatomy is copied. */
+enum eo_code eo_optimizer_describe(struct eo_optimizer *optimizer, const struct eo_anatomy *anatomy,
+                                   struct eo_error *error);
 
 /* Adds a true row known from elsewhere, before the first ask. A second row with the same x is ignored. */
 enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome,

@@ -25,6 +25,7 @@ struct eo_optimizer {
   bool started, finished;
   int budget;
   struct eo_archive archive;
+  struct eo_anatomy anatomy; /* owned; empty unless described */
 
   /* the pending batch: candidate i becomes the archive's row archive.count + i */
   int batch_count, batch_capacity, told_count;
@@ -32,6 +33,7 @@ struct eo_optimizer {
   struct eo_candidate *candidate; /* [batch_capacity] */
   struct eo_outcome *outcome;     /* [batch_capacity], objectives pointing into batch_objective */
   double *batch_objective;        /* [batch_capacity][objectives] */
+  double *batch_part;             /* [batch_capacity][parts] */
   bool *told;                     /* [batch_capacity] */
 
   int prediction_count, prediction_capacity;

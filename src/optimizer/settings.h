@@ -22,6 +22,10 @@ extern const char *const eo_algorithm_names[],
     *const eo_mutation_modes[], *const eo_distance_norms[], *const eo_weight_sums[], *const eo_decision_orders[],
                                                                                          *const eo_fitness_forms[];
 
+/* Raised with every change after which a search of the same settings takes another path: a search that was begun by
+   another version is not taken up, its evaluations are known to the new one. */
+enum { EO_OPTIMIZER_VERSION = 2 };
+
 enum { EO_MAX_VARIABLES = 64, EO_MAX_OBJECTIVES = 8 };
 
 /* The settings in the order of a form. Whoever expands the list says what a row becomes:
@@ -67,20 +71,27 @@ enum { EO_MAX_VARIABLES = 64, EO_MAX_OBJECTIVES = 8 };
   FLAG(literal_redundancy, false, "redundancy exactly as printed, which deletes unique rows too (fpga)")               \
   FLAG(reuse, true, "an individual equal to an evaluated one takes its value (ga, fpga)")                              \
   COUNT(batch, 1, 1024, 8, "true evaluations at a time (credibility-ga)")                                              \
-  COUNT(initial_factor, 1, 100, 4, "latin hypercube points per variable at the start of an epoch (credibility-ga)")    \
+  COUNT(initial_factor, 1, 100, 4,                                                                                     \
+        "latin hypercube points per variable at the start of an epoch, of the first alone where parts of the value "   \
+        "are known (credibility-ga)")                                                                                  \
   COUNT(model_rows, 20, 1000, 300, "most rows of the surrogate (credibility-ga, nsga2)")                               \
   COUNT(children, 4, 10000, 100, "children bred for each batch (credibility-ga)")                                      \
   NUMBER(exploration, 0, 100, 0.3, "kappa: how much doubt counts against a predicted gain (credibility-ga)")           \
   NUMBER(credibility_length, 1e-6, 10, 0.05, "length over sqrt n at which credibility fades (credibility-ga)")         \
-  NUMBER(taboo_radius, 0, 1, 0.03, "radius over sqrt n round finished optima (credibility-ga)")                        \
+  NUMBER(taboo_radius, 0, 1, 0.03,                                                                                     \
+         "radius over sqrt n round finished optima, twice that where parts of the value are known (credibility-ga)")   \
   COUNT(stall_batches, 1, 10000, 4, "batches without gain before a new epoch (credibility-ga)")                        \
   NUMBER(stall_gain, 0, 1, 0.002, "gain that counts, relative (credibility-ga)")                                       \
-  NUMBER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)")                  \
+  NUMBER(polish_share, 0, 1, 0.2,                                                                                      \
+         "share of the budget that only improves the best, half of it where parts of the value are known "             \
+         "(credibility-ga)")                                                                                           \
   NUMBER(local_share, 0, 1, 0.5, "share of each batch for the trust region round the best (credibility-ga)")           \
   NUMBER(local_radius, 1e-6, 0.5, 0.3, "radius of that trust region at the start of an epoch (credibility-ga)")        \
   NUMBER(sampling_step, 1e-6, 0.5, 0.25,                                                                               \
          "first step of the evolution strategy that makes every second epoch (credibility-ga)")                        \
-  COUNT(sampling_stall, 1, 10000, 10, "batches without gain that end such an epoch (credibility-ga)")                  \
+  COUNT(sampling_stall, 1, 10000, 10,                                                                                  \
+        "batches without gain that end such an epoch, half as many where parts of the value are known "                \
+        "(credibility-ga)")                                                                                            \
   NUMBER(evolution_step, 1e-6, 0.5, 0.03,                                                                              \
          "first step of the evolution strategy that refines the best (credibility-ga)")                                \
   COUNT(evolution_samples, 1, 100, 12,                                                                                 \

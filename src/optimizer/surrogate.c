@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "optimizer/surrogate.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,14 +24,15 @@ enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, in
   surrogate->residual = malloc(o * m * sizeof(double));
   surrogate->belief = malloc(m * sizeof(double));
   surrogate->distance = malloc(m * sizeof(double));
+  surrogate->cube = malloc(m * sizeof(double));
   surrogate->term = malloc(q * sizeof(double));
   surrogate->point = malloc(n * sizeof(double));
   surrogate->matrix = malloc(m * m * sizeof(double));
   surrogate->columns = malloc(q * m * sizeof(double));
   surrogate->diagonal = malloc(m * sizeof(double));
   if (surrogate->mean && surrogate->x && surrogate->coefficient && surrogate->polynomial && surrogate->residual &&
-      surrogate->belief && surrogate->distance && surrogate->term && surrogate->point && surrogate->matrix &&
-      surrogate->columns && surrogate->diagonal)
+      surrogate->belief && surrogate->distance && surrogate->cube && surrogate->term && surrogate->point &&
+      surrogate->matrix && surrogate->columns && surrogate->diagonal)
     return eo_saddle_init(&surrogate->saddle, rows_max, terms_max, error);
   eo_surrogate_done(surrogate);
   return eo_error_memory(error);
@@ -45,6 +47,7 @@ void eo_surrogate_done(struct eo_surrogate *surrogate)
   free(surrogate->residual);
   free(surrogate->belief);
   free(surrogate->distance);
+  free(surrogate->cube);
   free(surrogate->term);
   free(surrogate->point);
   free(surrogate->matrix);
@@ -123,9 +126,10 @@ bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double 
   if (!eo_saddle_factor(&s->saddle, rows, s->terms, s->matrix, s->columns))
     return false;
   eo_saddle_inverse_diagonal(&s->saddle, s->diagonal);
+  eo_saddle_solve(&s->saddle, outputs, y, s->coefficient, s->rows_max, s->polynomial);
   for (int o = 0; o < outputs; o++) {
-    double *c = s->coefficient + (size_t)o * s->rows_max, *e = s->residual + (size_t)o * s->rows_max;
-    eo_saddle_solve(&s->saddle, y + (size_t)o * rows, c, s->polynomial + (size_t)o * s->terms);
+    const double *c = s->coefficient + (size_t)o * s->rows_max;
+    double *e = s->residual + (size_t)o * s->rows_max;
     for (int j = 0; j < rows; j++)
       e[j] = fabs(c[j] / s->diagonal[j]);
   }
@@ -161,6 +165,16 @@ double eo_surrogate_value(const struct eo_surrogate *surrogate, int output)
   return value;
 }
 
+void eo_surrogate_values(struct eo_surrogate *surrogate, double *value)
+{
+  const struct eo_surrogate *s = surrogate;
+  for (int j = 0; j < s->rows; j++)
+    s->cube[j] = s->distance[j] * s->distance[j] * s->distance[j];
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, s->outputs, s->rows, 1, s->coefficient, s->rows_max, s->cube, 1, 0, value,
+              1);
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, s->outputs, s->terms, 1, s->polynomial, s->terms, s->term, 1, 1, value, 1);
+}
+
 static void add_tail_gradient(const struct eo_surrogate *s, const double *b, double *gradient)
 {
   const int n = s->variables;
@@ -176,9 +190,10 @@ static void add_tail_gradient(const struct eo_surrogate *s, const double *b, dou
     }
 }
 
-void eo_surrogate_gradient(const struct eo_surrogate *surrogate, int output, double *gradient)
+void eo_surrogate_slope(const struct eo_surrogate *surrogate, const double *coefficient, const double *polynomial,
+                        double *gradient)
 {
-  const double *c = surrogate->coefficient + (size_t)output * surrogate->rows_max, *d = surrogate->distance;
+  const double *c = coefficient, *d = surrogate->distance;
   for (int k = 0; k < surrogate->variables; k++) {
     const double *column = surrogate->x + (size_t)k * surrogate->rows_max, z = surrogate->point[k];
     double sum = 0;
@@ -186,13 +201,19 @@ void eo_surrogate_gradient(const struct eo_surrogate *surrogate, int output, dou
       sum += c[j] * d[j] * (z - column[j]);
     gradient[k] = 3 * sum;
   }
-  add_tail_gradient(surrogate, surrogate->polynomial + (size_t)output * surrogate->terms, gradient);
+  add_tail_gradient(surrogate, polynomial, gradient);
 }
 
-void eo_surrogate_set_scale(struct eo_surrogate *surrogate, double scale)
+void eo_surrogate_gradient(const struct eo_surrogate *surrogate, int output, double *gradient)
+{
+  eo_surrogate_slope(surrogate, surrogate->coefficient + (size_t)output * surrogate->rows_max,
+                     surrogate->polynomial + (size_t)output * surrogate->terms, gradient);
+}
+
+void eo_surrogate_set_scale(struct eo_surrogate *surrogate, const double *residual, double scale)
 {
   for (int j = 0; j < surrogate->rows; j++)
-    surrogate->belief[j] = exp(-3 * surrogate->residual[j] / scale);
+    surrogate->belief[j] = exp(-3 * residual[j] / scale);
 }
 
 double eo_surrogate_credibility(const struct eo_surrogate *surrogate, double length)

@@ -28,6 +28,7 @@ struct eo_surrogate {
   double *residual;                    /* [outputs_max][rows_max] leave-one-out, absolute */
   double *belief;                      /* [rows_max] exp(-3 e_j / s) */
   double *distance;                    /* [rows_max] of the point last visited */
+  double *cube;                        /* [rows_max] scratch: of the distances */
   double *term;                        /* [terms] likewise */
   double *point;                       /* [variables] likewise, less the mean */
   double *matrix, *columns, *diagonal; /* scratch of the fit: [rows][rows], [terms][rows], [rows] */
@@ -55,8 +56,14 @@ void eo_surrogate_visit(struct eo_surrogate *surrogate, const double *x);
 double eo_surrogate_value(const struct eo_surrogate *surrogate, int output);
 void eo_surrogate_gradient(const struct eo_surrogate *surrogate, int output, double *gradient);
 
-/* Credibility R in 0..1 at the visited point, by the residuals of output 0, on the scale s set before. */
-void eo_surrogate_set_scale(struct eo_surrogate *surrogate, double scale);
+/* The values of all outputs there; the gradient of a weighted sum of them, made of their coefficients[rows] and
+   polynomials[terms]. */
+void eo_surrogate_values(struct eo_surrogate *surrogate, double *value);
+void eo_surrogate_slope(const struct eo_surrogate *surrogate, const double *coefficient, const double *polynomial,
+                        double *gradient);
+
+/* Credibility R in 0..1 at the visited point, by the residuals[rows] and on the scale s set before. */
+void eo_surrogate_set_scale(struct eo_surrogate *surrogate, const double *residual, double scale);
 double eo_surrogate_credibility(const struct eo_surrogate *surrogate, double length);
 
 #endif

@@ -17,11 +17,19 @@ void eo_archive_done(struct eo_archive *archive)
   free(archive->value);
   free(archive->violation);
   free(archive->objective);
+  free(archive->part);
+  free(archive->whole);
   free(archive->generation);
   free(archive->individual);
   free(archive->next);
   free(archive->bucket);
   *archive = (struct eo_archive){.best = -1};
+}
+
+void eo_archive_set_parts(struct eo_archive *archive, int parts)
+{
+  archive->parts = parts;
+  archive->capacity = 0; /* the next reservation makes room for them */
 }
 
 /* FNV-1a over the bits (Fowler, Noll, Vo). */
@@ -66,6 +74,8 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
   archive->value = grow(archive->value, c, sizeof(double), &failed);
   archive->violation = grow(archive->violation, c, sizeof(double), &failed);
   archive->objective = grow(archive->objective, c * (size_t)archive->objectives, sizeof(double), &failed);
+  archive->part = grow(archive->part, c * (size_t)archive->parts, sizeof(double), &failed);
+  archive->whole = grow(archive->whole, c, sizeof(bool), &failed);
   archive->generation = grow(archive->generation, c, sizeof(int), &failed);
   archive->individual = grow(archive->individual, c, sizeof(int), &failed);
   archive->next = grow(archive->next, c, sizeof(int), &failed);
@@ -82,7 +92,7 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
 }
 
 int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
-                   const double *objectives, int generation, int individual)
+                   const double *objectives, const double *part, int generation, int individual)
 {
   const int row = archive->count++, n = archive->variables, m = archive->objectives;
   memcpy(archive->x + (size_t)row * n, x, (size_t)n * sizeof *x);
@@ -90,6 +100,11 @@ int eo_archive_add(struct eo_archive *archive, const double *x, double value, do
   archive->violation[row] = violation;
   for (int k = 0; k < m; k++)
     archive->objective[(size_t)row * m + k] = objectives ? objectives[k] : archive->value[row];
+  archive->whole[row] = part != NULL;
+  for (int k = 0; k < archive->parts && part; k++) {
+    archive->part[(size_t)row * (size_t)archive->parts + (size_t)k] = part[k];
+    archive->whole[row] = archive->whole[row] && isfinite(part[k]);
+  }
   archive->generation[row] = generation;
   archive->individual[row] = individual;
   chain(archive, row);

@@ -9,12 +9,14 @@
 #include <stdint.h>
 
 struct eo_archive {
-  int variables, objectives;
+  int variables, objectives, parts;
   int count, capacity;
   double *x;         /* [count][variables]; owned, as all below */
   double *value;     /* [count], infinite when failed */
   double *violation; /* [count] */
   double *objective; /* [count][objectives] */
+  double *part;      /* [count][parts] */
+  bool *whole;       /* [count] the parts are there */
   int *generation;   /* [count], -1: imported */
   int *individual;   /* [count] */
   int *next;         /* [count] chain of rows with the same hash */
@@ -26,12 +28,16 @@ struct eo_archive {
 enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int objectives, struct eo_error *error);
 void eo_archive_done(struct eo_archive *archive);
 
+/* So many parts in every row; before the first row. */
+void eo_archive_set_parts(struct eo_archive *archive, int parts);
+
 /* Makes room for this many further rows, so that eo_archive_add() cannot fail. */
 enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_error *error);
 
-/* Adds a row and returns its index. objectives may be NULL. A value that is not finite is stored as infinite. */
+/* Adds a row and returns its index. objectives and part may be NULL. A value that is not finite is stored as infinite.
+ */
 int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
-                   const double *objectives, int generation, int individual);
+                   const double *objectives, const double *part, int generation, int individual);
 
 /* The row bit-equal to x, or -1. */
 int eo_archive_find(const struct eo_archive *archive, const double *x);

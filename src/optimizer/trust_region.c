@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "optimizer/trust_region.h"
 
-#include "numerics/minimise.h"
 #include "optimizer/operators.h"
 
 #include <math.h>
@@ -15,7 +14,8 @@ static const double same = 1e-6;              /* squared distance, in radii, at 
 static const double ridge = 1e-8;
 enum { REACHES = 2, SAMPLES = 200, MINIMISE_STEPS = 60, WANDER_STEPS = 10, SHRINK_STEPS = 8 };
 
-enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error)
+enum eo_code eo_local_init(struct eo_local *local, const struct eo_anatomy *anatomy, int variables,
+                           struct eo_error *error)
 {
   int rows_max = 2 * eo_surrogate_terms(EO_TAIL_QUADRATIC, variables);
   rows_max = rows_max > 200 ? 200 : rows_max < 40 ? 40 : rows_max;
@@ -29,7 +29,7 @@ enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_erro
     return eo_error_memory(error);
   const enum eo_tail tail = eo_surrogate_terms(EO_TAIL_QUADRATIC, variables) < rows_max ? EO_TAIL_QUADRATIC
                                                                                         : EO_TAIL_SEPARABLE;
-  return eo_surrogate_init(&local->surrogate, variables, rows_max, 1, tail, error);
+  return eo_composite_init(&local->composite, anatomy, variables, rows_max, tail, error);
 }
 
 void eo_local_done(struct eo_local *local)
@@ -38,7 +38,7 @@ void eo_local_done(struct eo_local *local)
   free(local->distance);
   free(local->u);
   free(local->y);
-  eo_surrogate_done(&local->surrogate);
+  eo_composite_done(&local->composite);
   *local = (struct eo_local){0};
 }
 
@@ -53,7 +53,7 @@ static int gather(struct eo_local *local, const struct eo_archive *archive, cons
   const int n = local->variables;
   int count = 0;
   for (int row = 0; row < archive->count; row++) {
-    if (eo_archive_failed(archive, row))
+    if (!eo_composite_takes(&local->composite, archive, row))
       continue;
     double sum = 0;
     for (int k = 0; k < n; k++)
@@ -74,16 +74,15 @@ static int gather(struct eo_local *local, const struct eo_archive *archive, cons
 static void scale_rows(struct eo_local *local, const struct eo_archive *archive, const double *centre, int count)
 {
   const int n = local->variables;
-  double low = INFINITY, high = -INFINITY;
+  local->low = INFINITY;
+  local->high = -INFINITY;
   for (int j = 0; j < count; j++) {
     local->y[j] = archive->value[local->row[j]];
-    low = fmin(low, local->y[j]);
-    high = fmax(high, local->y[j]);
+    local->low = fmin(local->low, local->y[j]);
+    local->high = fmax(local->high, local->y[j]);
     for (int k = 0; k < n; k++)
       local->u[(size_t)j * n + k] = (archive->x[(size_t)local->row[j] * n + k] - centre[k]) / local->radius;
   }
-  for (int j = 0; j < count; j++)
-    local->y[j] = high > low ? (local->y[j] - low) / (high - low) : 0;
 }
 
 /* Leave-one-out error where it matters: rows near the centre count most. */
@@ -95,21 +94,27 @@ static double weighted_error(const struct eo_local *local, int count)
     for (int k = 0; k < local->variables; k++)
       square += local->u[(size_t)j * local->variables + k] * local->u[(size_t)j * local->variables + k];
     const double w = 1 / (1 + square * square);
-    sum += w * local->surrogate.residual[j] * local->surrogate.residual[j];
+    sum += w * local->composite.residual[j] * local->composite.residual[j];
     weights += w;
   }
   return sqrt(sum / weights);
 }
 
-/* The tail with the least leave-one-out error stays fitted. */
-static bool fit_best(struct eo_local *local, int count)
+static bool fit(struct eo_local *local, const struct eo_archive *archive, enum eo_tail tail, int count)
 {
-  struct eo_surrogate *s = &local->surrogate;
+  const double range = local->high > local->low ? local->high - local->low : 1;
+  const struct eo_composite_rows rows = {archive, count, local->row, local->u, local->y, local->low, range, 1};
+  return eo_composite_fit(&local->composite, tail, ridge, &rows);
+}
+
+/* The tail with the least leave-one-out error stays fitted. */
+static bool fit_best(struct eo_local *local, const struct eo_archive *archive, int count)
+{
   int best = -1;
   double least = INFINITY;
   for (int tail = EO_TAIL_LINEAR; tail <= EO_TAIL_QUADRATIC; tail++) {
     if (count < eo_surrogate_terms((enum eo_tail)tail, local->variables) + 3 ||
-        !eo_surrogate_fit(s, (enum eo_tail)tail, ridge, local->u, local->y, count, 1))
+        !fit(local, archive, (enum eo_tail)tail, count))
       continue;
     const double error = weighted_error(local, count);
     if (error < least) {
@@ -117,17 +122,9 @@ static bool fit_best(struct eo_local *local, int count)
       best = tail;
     }
   }
-  if (best >= 0 && (int)s->tail != best)
-    return eo_surrogate_fit(s, (enum eo_tail)best, ridge, local->u, local->y, count, 1);
+  if (best >= 0 && (int)local->composite.surrogate.tail != best)
+    return fit(local, archive, (enum eo_tail)best, count);
   return best >= 0;
-}
-
-static double surrogate_at(void *context, const double *x, double *gradient)
-{
-  struct eo_surrogate *s = context;
-  eo_surrogate_visit(s, x);
-  eo_surrogate_gradient(s, 0, gradient);
-  return eo_surrogate_value(s, 0);
 }
 
 static void box(const struct eo_local *local, const double *centre, double reach, double *low, double *high)
@@ -196,8 +193,7 @@ static void step_along(struct eo_local *local, const double *low, const double *
     const double t = least + (most - least) * eo_random_unit(random, 2 * (first_draw + (uint64_t)(n + shrinking)));
     for (int k = 0; k < n; k++)
       trial[k] = fmin(fmax(u[k] + t * direction[k], low[k]), high[k]);
-    eo_surrogate_visit(&local->surrogate, trial);
-    if (eo_surrogate_value(&local->surrogate, 0) <= level) {
+    if (eo_composite_value(&local->composite, trial) <= level) {
       memcpy(u, trial, (size_t)n * sizeof *u);
       return;
     }
@@ -239,7 +235,7 @@ static bool propose_next(struct eo_local *local, struct proposals *p, struct eo_
   if (attempt < REACHES) {
     box(local, p->centre, reaches[attempt], low, high);
     memset(u, 0, (size_t)n * sizeof *u);
-    eo_minimise(surrogate_at, &local->surrogate, low, high, n, MINIMISE_STEPS, 1e-6, u);
+    eo_composite_minimise(&local->composite, low, high, MINIMISE_STEPS, 1e-6, u);
     if (attempt == 0)
       memcpy(p->minimum, u, (size_t)n * sizeof *u);
   } else {
@@ -258,9 +254,8 @@ int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, i
   local->centre_value = archive->value[centre];
   p.rows = gather(local, archive, p.centre);
   scale_rows(local, archive, p.centre, p.rows);
-  if (fit_best(local, p.rows)) {
-    eo_surrogate_visit(&local->surrogate, p.minimum); /* the centre is the origin */
-    p.level = eo_surrogate_value(&local->surrogate, 0);
+  if (fit_best(local, archive, p.rows)) {
+    p.level = eo_composite_value(&local->composite, p.minimum); /* the centre is the origin */
     while (p.attempts < count) {
       p.count += propose_next(local, &p,
                               eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)p.attempts));

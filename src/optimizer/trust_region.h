@@ -7,21 +7,23 @@
 #define EASEOFF_OPTIMIZER_TRUST_REGION_H
 
 #include "optimizer/true_rows.h"
-#include "optimizer/surrogate.h"
+#include "optimizer/composite.h"
 
 struct eo_local {
   int variables, rows_max;
   double radius;       /* of the box, in the unit cube */
   double centre_value; /* when the last proposals were made */
   int reaching;        /* how many of them are minima, the first ones */
-  struct eo_surrogate surrogate;
+  struct eo_composite composite;
   int *row;         /* [rows_max] rows of the local surrogate; owned, as all below */
   double *distance; /* [rows_max] */
   double *u;        /* [rows_max][variables] (x - centre) / radius */
-  double *y;        /* [rows_max] */
+  double *y;        /* [rows_max] values */
+  double low, high; /* the least and the largest of them */
 };
 
-enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error);
+enum eo_code eo_local_init(struct eo_local *local, const struct eo_anatomy *anatomy, int variables,
+                           struct eo_error *error);
 void eo_local_done(struct eo_local *local);
 
 /* Starts anew with the given radius. */

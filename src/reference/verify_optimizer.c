@@ -507,7 +507,7 @@ static void compare_surrogate(const struct verifier *v, struct eo_case *item, st
     return;
   compare_list(v, eo_case_need(item, "loo_abs"), s->rows, s->residual);
   compare_list(v, eo_case_need(item, "loo_by_refit"), s->rows, s->residual);
-  eo_surrogate_set_scale(s, scale);
+  eo_surrogate_set_scale(s, s->residual, scale);
   eo_verify_size(v->v, prediction, queries);
   eo_verify_size(v->v, trust, queries);
   for (int i = 0; i < queries; i++) {

@@ -56,7 +56,7 @@ static void test_saddle(void)
   }
   ok(eo_saddle_init(&saddle, M, Q, &error) == EO_OK && eo_saddle_factor(&saddle, M, Q, a, p),
      "a saddle point is factorised");
-  eo_saddle_solve(&saddle, y, c, b);
+  eo_saddle_solve(&saddle, 1, y, c, M, b);
   for (int i = 0; i < M; i++) {
     double row = -y[i];
     for (int j = 0; j < M; j++)
@@ -77,7 +77,7 @@ static void test_saddle(void)
   for (int j = 0; j < M; j++) { /* column j of the inverse is the solution for a unit vector */
     memset(y, 0, sizeof y);
     y[j] = 1;
-    eo_saddle_solve(&saddle, y, c, b);
+    eo_saddle_solve(&saddle, 1, y, c, M, b);
     worst = fmax(worst, fabs(c[j] - diagonal[j]));
   }
   ok(worst < 1e-13, "the diagonal of the inverse: %.2g", worst);
@@ -142,7 +142,7 @@ static void test_surrogate(void)
   eo_surrogate_visit(&s, q);
   close_to(eo_surrogate_value(&s, 0), quadratic(q), 1e-10, "a quadratic function is reproduced");
   ok(eo_surrogate_error(&s, 0) < 1e-9, "and leaves no residual out");
-  eo_surrogate_set_scale(&s, 1);
+  eo_surrogate_set_scale(&s, s.residual, 1);
   eo_surrogate_visit(&s, x);
   close_to(eo_surrogate_credibility(&s, 0.1), 1, 1e-9, "such a surrogate is fully credible at a row");
 

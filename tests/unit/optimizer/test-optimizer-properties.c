@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { N = 4, ROWS_MAX = 4000, OBJECTIVES = 2 };
+enum { N = 4, ROWS_MAX = 4000, OBJECTIVES = 2, PARTS = 3, NUMBERS = OBJECTIVES + PARTS };
 
 /* One run: every row in the order of the archive, and how it was made. */
 struct run {
@@ -42,11 +42,27 @@ static double value_at(const double *x)
   return f;
 }
 
+/* Whether the searches are told what the value is made of: the larger of two and a rest of its own. */
+static bool described;
+static struct eo_part_group groups[] = {{EO_PART_LARGEST, 2, 1}, {EO_PART_RANGE, 1, 1}};
+
+static enum eo_code make(const struct eo_optimizer_settings *s, struct eo_optimizer **o, struct eo_error *error)
+{
+  const struct eo_anatomy anatomy = {PARTS, 2, groups};
+  enum eo_code code = eo_optimizer_new(s, o, error);
+  return code || !described ? code : eo_optimizer_describe(*o, &anatomy, error);
+}
+
 static struct eo_outcome outcome_at(const struct how *how, const double *x, double *objectives)
 {
   struct eo_outcome outcome = {.value = value_at(x), .objectives = objectives};
   objectives[0] = x[0] + (x[2] - 0.5) * (x[2] - 0.5);
   objectives[1] = (1 - x[0]) * (1 - x[0]) + x[1];
+  double *parts = objectives + OBJECTIVES;
+  parts[0] = 0.2 + 0.5 * x[1];
+  parts[1] = 0.1 + x[0];
+  parts[2] = x[2];
+  outcome.parts = parts;
   outcome.violation = x[3] < 0.2 ? 0.2 - x[3] : 0;
   if (x[0] < how->fail_below) {
     outcome.failed = true;
@@ -67,7 +83,7 @@ struct share {
   const struct how *how;
   const struct eo_batch *batch;
   struct eo_outcome *outcome;
-  double (*objectives)[OBJECTIVES];
+  double (*objectives)[NUMBERS];
   int first, calls;
 };
 
@@ -84,7 +100,7 @@ static void *evaluate_share(void *context)
 }
 
 static int evaluate_batch(const struct how *how, const struct eo_batch *batch, struct eo_outcome *outcome,
-                          double (*objectives)[OBJECTIVES])
+                          double (*objectives)[NUMBERS])
 {
   pthread_t thread[8];
   struct share share[8];
@@ -120,7 +136,7 @@ static void copy_rows(struct run *run, const struct eo_optimizer *o)
 static bool finish(struct eo_optimizer *o, const struct how *how, int stop, struct run *run)
 {
   static struct eo_outcome outcome[2048];
-  static double objectives[2048][OBJECTIVES];
+  static double objectives[2048][NUMBERS];
   struct eo_error error;
   struct eo_batch batch;
   bool good = true;
@@ -156,7 +172,7 @@ static bool run_with(const struct eo_optimizer_settings *s, const struct how *ho
 {
   struct eo_optimizer *o = NULL;
   struct eo_error error;
-  if (eo_optimizer_new(s, &o, &error) != EO_OK)
+  if (make(s, &o, &error) != EO_OK)
     return false;
   const bool good = finish(o, how, INT32_MAX, run);
   eo_optimizer_free(o);
@@ -236,7 +252,7 @@ static void test_resume(int algorithm)
   struct eo_optimizer *o = NULL;
   struct eo_error error;
   run_with(&s, &plainly, &first);
-  eo_optimizer_new(&s, &o, &error);
+  make(&s, &o, &error);
   finish(o, &plainly, 150, &cut);
   eo_optimizer_free(o);
   struct how how = plainly;
@@ -255,9 +271,9 @@ static void test_import(int algorithm)
   struct eo_optimizer *o = NULL;
   struct eo_error error;
   struct eo_batch batch;
-  double objectives[OBJECTIVES];
+  double objectives[NUMBERS];
   run_with(&s, &plainly, &first);
-  eo_optimizer_new(&s, &o, &error);
+  make(&s, &o, &error);
   for (int i = 0; i < first.rows; i += 2) {
     const struct eo_outcome outcome = outcome_at(&plainly, first.x[i], objectives);
     eo_optimizer_import(o, first.x[i], &outcome, &error);
@@ -274,7 +290,7 @@ static void test_import(int algorithm)
   ok(eo_optimizer_import(o, inside, &outcome, &error) == EO_ERROR_INPUT, "%s: too late to import: %s", name,
      error.text);
   eo_optimizer_free(o);
-  eo_optimizer_new(&s, &o, &error);
+  make(&s, &o, &error);
   ok(eo_optimizer_import(o, outside, &outcome, &error) == EO_ERROR_INPUT, "%s: outside: %s", name, error.text);
   ok(eo_optimizer_ask(o, &batch, &error) == EO_OK && eo_optimizer_ask(o, &batch, &error) == EO_ERROR_INPUT,
      "%s: asking twice: %s", name, error.text);
@@ -351,7 +367,7 @@ static void test_front(void)
   const double reference[OBJECTIVES] = {1.2, 2.2};
   struct eo_optimizer *o = NULL;
   struct eo_error error;
-  eo_optimizer_new(&s, &o, &error);
+  make(&s, &o, &error);
   finish(o, &plainly, INT32_MAX, &first);
   const struct eo_front f = eo_optimizer_front(o, front);
   bool rising = true, feasible = true, knee = false, weighted = false;
@@ -376,7 +392,7 @@ static void refused(struct eo_optimizer_settings s, const char *pointer)
 {
   struct eo_optimizer *o = NULL;
   struct eo_error error = {0};
-  ok(eo_optimizer_new(&s, &o, &error) == EO_ERROR_INPUT && !o && strcmp(error.pointer, pointer) == 0, "refused: %s %s",
+  ok(make(&s, &o, &error) == EO_ERROR_INPUT && !o && strcmp(error.pointer, pointer) == 0, "refused: %s %s",
      error.pointer, error.text);
 }
 
@@ -443,15 +459,23 @@ static void test_list(void)
   ok(wrong == 0 && rows == 44 && answers(&standard, "", EO_OK), "%d settings keep to their ranges", rows);
 }
 
+static void test_algorithm(int algorithm)
+{
+  test_repeatable(algorithm);
+  test_accounts(algorithm);
+  test_resume(algorithm);
+  test_import(algorithm);
+  test_failures(algorithm);
+}
+
 int main(void)
 {
-  for (int algorithm = 0; algorithm < EO_ALGORITHMS; algorithm++) {
-    test_repeatable(algorithm);
-    test_accounts(algorithm);
-    test_resume(algorithm);
-    test_import(algorithm);
-    test_failures(algorithm);
-  }
+  for (int algorithm = 0; algorithm < EO_ALGORITHMS; algorithm++)
+    test_algorithm(algorithm);
+  described = true;
+  test_algorithm(EO_CREDIBILITY_GA);
+  test_algorithm(EO_GA); /* which does not look at it */
+  described = false;
   test_family();
   test_quality();
   test_front();
