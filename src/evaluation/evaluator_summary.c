@@ -141,7 +141,7 @@ void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_r
 }
 
 /* The worst of the ends, but for the RMS, which is the mean of theirs. */
-static struct eo_objective_case objective_of(const struct eo_case_result *load_case, int ends, bool root)
+static struct eo_objective_case objective_of(const struct eo_case_result *load_case, int ends, int positions, bool root)
 {
   struct eo_objective_case objective = {.peak_to_peak = load_case->peak_to_peak,
                                         .rms = load_case->vibration.rms_pair[EO_READING_NORMAL],
@@ -152,6 +152,10 @@ static struct eo_objective_case objective_of(const struct eo_case_result *load_c
                                         .contact_temperature = NAN,
                                         .failed = load_case->contact_failures > 0 ||
                                                   load_case->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
+  for (int i = 0; i < EO_OBJECTIVE_SAMPLES; i++)
+    objective.transmission[i] = load_case->transmission[i * positions / EO_OBJECTIVE_SAMPLES] - load_case->mean;
+  for (int end = 0; end < 2; end++)
+    objective.end_impact[end] = load_case->end[end < ends ? end : 0].impact.force;
   for (int end = 0; end < ends; end++) {
     const struct eo_end_result *result = &load_case->end[end];
     objective.impact = fmax(objective.impact, result->impact.force);
@@ -168,5 +172,5 @@ void eo_evaluator_collect_objectives(struct eo_evaluator *evaluator, const struc
 {
   struct eo_evaluation *result = &evaluator->result;
   for (int k = 0; k < result->cases; k++)
-    result->objective[k] = objective_of(&result->load_case[k], result->ends, run->root);
+    result->objective[k] = objective_of(&result->load_case[k], result->ends, result->positions, run->root);
 }

@@ -3,6 +3,26 @@
 
 #include <math.h>
 
+struct eo_objective_case eo_objective_nothing(void)
+{
+  struct eo_objective_case nothing = {.peak_to_peak = NAN,
+                                      .impact = NAN,
+                                      .rms = NAN,
+                                      .contact_pressure = NAN,
+                                      .root_stress = NAN,
+                                      .edge_load_share = NAN,
+                                      .contact_loss = NAN,
+                                      .flank_safety = NAN,
+                                      .root_safety = NAN,
+                                      .film_ratio = NAN,
+                                      .contact_temperature = NAN,
+                                      .failed = true,
+                                      .end_impact = {NAN, NAN}};
+  for (int i = 0; i < EO_OBJECTIVE_SAMPLES; i++)
+    nothing.transmission[i] = NAN;
+  return nothing;
+}
+
 void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
                       struct eo_objective_sums *sums)
 {

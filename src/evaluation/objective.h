@@ -5,6 +5,8 @@
 
 #include "design/design.h"
 
+enum { EO_OBJECTIVE_SAMPLES = 32 }; /* of the transmission error: its mesh harmonics beyond 12 are small */
+
 /* What the objectives need of one load case: raw, before weights, so that a history can serve any later weighting. */
 struct eo_objective_case {
   double peak_to_peak;     /* PPLTE of the pair, m */
@@ -19,6 +21,9 @@ struct eo_objective_case {
   double film_ratio;                /* least specific film thickness */
   double contact_temperature;       /* largest, degrees Celsius */
   bool failed;                      /* contact or vibration did not converge: the numbers above mean nothing */
+  /* What peak_to_peak is the range of, but for what lies between the samples, and impact the largest: LTE of the pair
+     less its mean, m, at phases i / samples; N, of each end (equal where there is one). NaN: not kept. */
+  double transmission[EO_OBJECTIVE_SAMPLES], end_impact[2];
 };
 
 /* f_i = sum_k share_k value_ik / 3: the /3 is kept as printed, for three cases; n cases divide by n. */
@@ -35,6 +40,9 @@ struct eo_objective_value {
 };
 
 static const double EO_FITNESS_WORST = -1e9;
+
+/* No number at all, failed. */
+struct eo_objective_case eo_objective_nothing(void);
 
 void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
                       struct eo_objective_sums *sums);

@@ -24,6 +24,33 @@ static enum eo_evaluation_outcome find_outcome(const char *name)
   return (enum eo_evaluation_outcome)i;
 }
 
+/* The curve of a row: the transmission error, then the impacts of the ends. Kept whole or not at all. */
+enum { CURVE = EO_OBJECTIVE_SAMPLES + 2 };
+
+/* Fills curve[CURVE]; false when it is not there. */
+static bool copy_curve(const struct eo_objective_case *c, double *curve)
+{
+  bool finite = true;
+  memcpy(curve, c->transmission, sizeof c->transmission);
+  memcpy(curve + EO_OBJECTIVE_SAMPLES, c->end_impact, sizeof c->end_impact);
+  for (int i = 0; i < CURVE; i++)
+    finite = finite && isfinite(curve[i]);
+  return finite;
+}
+
+static void read_curve(const struct eo_statement *s, int column, struct eo_objective_case *c)
+{
+  double value[CURVE];
+  const void *bytes = sqlite3_column_blob(s->handle, column);
+  const bool there = bytes && sqlite3_column_bytes(s->handle, column) == (int)sizeof value;
+  for (int i = 0; i < CURVE; i++)
+    value[i] = NAN;
+  if (there)
+    memcpy(value, bytes, sizeof value);
+  memcpy(c->transmission, value, sizeof c->transmission);
+  memcpy(c->end_impact, value + EO_OBJECTIVE_SAMPLES, sizeof c->end_impact);
+}
+
 static void add_raw(struct eo_hash *hash, const struct eo_objective_case *c)
 {
   eo_hash_add_number(hash, "peak_to_peak", c->peak_to_peak);
@@ -44,6 +71,10 @@ static void add_raw(struct eo_hash *hash, const struct eo_objective_case *c)
   for (size_t i = 0; i < sizeof rating / sizeof rating[0]; i++)
     if (!isnan(rating[i].value)) /* rows of before there was a rating have the check sum they had */
       eo_hash_add_number(hash, rating[i].name, rating[i].value);
+  double curve[CURVE];
+  const bool there = copy_curve(c, curve);
+  for (int i = 0; i < CURVE && there; i++) /* likewise */
+    eo_hash_add_number(hash, "curve", curve[i]);
 }
 
 static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_HASH_LENGTH + 1])
@@ -127,6 +158,7 @@ static bool read_raw(const struct eo_statement *s, int first, int expected, cons
                                                   .root_safety = eo_column_number(s, first + 11),
                                                   .film_ratio = eo_column_number(s, first + 12),
                                                   .contact_temperature = eo_column_number(s, first + 13)};
+  read_curve(s, first + 14, &row->raw[expected]);
   return true;
 }
 
@@ -136,7 +168,7 @@ static enum eo_code read_all_raw(struct eo_store *store, struct eo_stored_evalua
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2, contact_pressure_Pa, root_stress_Pa,"
-      " edge_load_share, contact_loss, failed, flank_safety, root_safety, film_ratio, contact_temperature_C"
+      " edge_load_share, contact_loss, failed, flank_safety, root_safety, film_ratio, contact_temperature_C, curve"
       " FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
       "i", row->id);
   bool good = true;
@@ -225,10 +257,13 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
   enum eo_code code = EO_OK;
   for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
     const struct eo_objective_case *c = &row->raw[i];
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                            "innrrrrrrrnrrrr", row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact,
+    double curve[CURVE];
+    const bool there = copy_curve(c, curve);
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                            "innrrrrrrrnrrrrb", row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact,
                             c->rms, c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss,
-                            (int)c->failed, c->flank_safety, c->root_safety, c->film_ratio, c->contact_temperature);
+                            (int)c->failed, c->flank_safety, c->root_safety, c->film_ratio, c->contact_temperature,
+                            there ? (const void *)curve : NULL, sizeof curve);
   }
   return code;
 }
@@ -350,7 +385,7 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
                          " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, "
                          "r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
                          " r.contact_loss, r.failed, r.flank_safety, r.root_safety, r.film_ratio,"
-                         " r.contact_temperature_C"
+                         " r.contact_temperature_C, r.curve"
                          " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 "
                          "OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",
                          "iit", problem, upto, space);

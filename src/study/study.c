@@ -332,6 +332,8 @@ static void release(struct study *s)
   eo_optimizer_free(s->optimizer);
   eo_text_done(&s->design);
   eo_text_done(&s->problem);
+  free(s->anatomy.group);
+  free(s->part);
   free(s->missing);
   free(s->scratch);
   free(s);

@@ -23,9 +23,12 @@ static enum eo_code describe(struct study *s, struct eo_error *error)
   }
   if (!code && (!document || s->design.failed || problem.failed))
     code = eo_error_memory(error);
-  /* the problem's hash carries the evaluator's version: a job of an older model is another study */
-  if (!code)
+  /* the problem's hash carries the evaluator's version: a job of an older model is another study, as is one whose
+     search took another path */
+  if (!code) {
     eo_text_add(&problem, s->hash);
+    eo_text_print(&problem, " %d", EO_OPTIMIZER_VERSION);
+  }
   if (!code && problem.failed)
     code = eo_error_memory(error);
   if (!code)
@@ -113,6 +116,17 @@ static enum eo_code find_unmodified(struct study *s, struct eo_error *error)
   return code;
 }
 
+/* What the values are made of, once the unmodified pair is known. */
+static enum eo_code describe_value(struct study *s, struct eo_error *error)
+{
+  enum eo_code code = eo_objective_anatomy(s->plan->design, s->result->scenarios, s->result->unmodified.raw,
+                                           &s->anatomy, error);
+  if (code || s->anatomy.parts == 0)
+    return code;
+  s->part = malloc((size_t)s->anatomy.parts * sizeof *s->part);
+  return s->part ? eo_optimizer_describe(s->optimizer, &s->anatomy, error) : eo_error_memory(error);
+}
+
 /* One row of other jobs, if this study can ask for it. x: bit for bit as it was asked for in the same space, so that it
    is found again. */
 static enum eo_code import(void *context, const struct eo_stored_evaluation *e, const double *x, int size,
@@ -164,6 +178,8 @@ enum eo_code eo_study_begin(struct study *s, struct eo_error *error)
     code = find_job(s, error);
   if (!code)
     code = find_unmodified(s, error);
+  if (!code)
+    code = describe_value(s, error);
   if (!code && !s->plan->fresh && s->job.import_upto > 0)
     code = eo_store_each_evaluation(s->plan->store, s->job.problem, s->job.import_upto, s->space_hash, r->scenarios,
                                     r->cases, import, s, error);

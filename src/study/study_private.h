@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "evaluation/evaluator.h"
+#include "evaluation/objective_anatomy.h"
 #include "study/study_rows.h"
 #include "study/study.h"
 #include "optimizer/optimizer.h"
@@ -32,6 +33,8 @@ struct study {
   struct worker worker[EO_MAX_THREADS];
   struct eo_batch batch;
   int computed_of_batch;          /* by a crew, of the missing ones */
+  struct eo_anatomy anatomy;      /* of what is minimised; its groups owned */
+  double *part;                   /* [anatomy.parts] of the row told; owned */
   double started, first_computed; /* s; first_computed: 0 until something was */
   double fraction_before;         /* of the work that was done then */
 };
@@ -53,8 +56,8 @@ enum eo_code eo_study_save_row(struct study *s, struct eo_row_data *row, struct 
 /* What the history knows of a row but its raw values. */
 void eo_study_take(struct eo_row_data *row, const struct eo_stored_evaluation *stored);
 
-/* What the optimizer is told. objectives: the three, in the unmodified pair's. */
-struct eo_outcome eo_study_outcome(const struct study *s, const struct eo_row_data *row, double objectives[3]);
+/* What the optimizer is told. objectives: the three, in the unmodified pair's. The parts are valid until the next. */
+struct eo_outcome eo_study_outcome(struct study *s, const struct eo_row_data *row, double objectives[3]);
 
 /* Everything before the first ask: hashes, job, unmodified pair, rows of other jobs. */
 enum eo_code eo_study_begin(struct study *s, struct eo_error *error);

@@ -33,7 +33,7 @@ static void refuse(struct eo_row_data *row, int count, const struct eo_error *er
   row->outcome = EO_EVALUATION_REFUSED;
   snprintf(row->reason, sizeof row->reason, "%.*s", (int)sizeof row->reason - 1, error->text);
   for (int i = 0; i < count; i++)
-    row->point.raw[i] = (struct eo_objective_case){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, true};
+    row->point.raw[i] = eo_objective_nothing();
 }
 
 static void judge(struct eo_row_data *row, int scenarios, int cases)
@@ -122,13 +122,16 @@ enum eo_code eo_study_save_row(struct study *s, struct eo_row_data *row, struct 
   return code;
 }
 
-struct eo_outcome eo_study_outcome(const struct study *s, const struct eo_row_data *row, double objectives[3])
+struct eo_outcome eo_study_outcome(struct study *s, const struct eo_row_data *row, double objectives[3])
 {
   const struct eo_objective_sums *own = &row->point.value.sums, *before = &s->result->unmodified.value.sums;
   for (int i = 0; i < 3; i++)
     objectives[i] = before->f[i] > 0 ? own->f[i] / before->f[i] : own->f[i];
+  if (s->part)
+    eo_objective_parts(row->point.raw, s->row.values, s->part);
   return (struct eo_outcome){.failed = !row->point.there,
                              .value = row->point.rank,
                              .violation = row->point.value.violation,
-                             .objectives = objectives};
+                             .objectives = objectives,
+                             .parts = s->part};
 }

@@ -3,6 +3,7 @@
    laws, bands, threads. */
 #include "document/design_document.h"
 #include "document/examples.h"
+#include "evaluation/objective_anatomy.h"
 #include "evaluation/evaluator.h"
 #include "support/tap.h"
 
@@ -275,6 +276,34 @@ static void test_scenarios(void)
   ok(same(&direct, &nominal), "or leave them");
 }
 
+/* The parts put together are J without penalties, but for what lies between the samples of a curve. */
+static void check_anatomy(const struct eo_design *given, const struct eo_objective_case *raw,
+                          const struct eo_objective_case *before, double objective, enum eo_robust robust)
+{
+  struct eo_design design = *given;
+  struct eo_anatomy anatomy;
+  struct eo_error error;
+  design.objective.robust = robust;
+  const int scenarios = eo_evaluator_scenarios(&design), rows = scenarios * design.load_cases;
+  const enum eo_code code = eo_objective_anatomy(&design, scenarios, before, &anatomy, &error);
+  if (robust == EO_ROBUST_WORST) {
+    ok(code == EO_OK && anatomy.parts == 0 && anatomy.groups == 0, "the worst of several has no parts");
+    return;
+  }
+  ok(code == EO_OK && anatomy.groups == 3 * rows, "%d parts of %d load cases and scenarios", anatomy.parts, rows);
+  double *part = malloc((size_t)anatomy.parts * sizeof *part);
+  eo_objective_parts(raw, rows, part);
+  near(eo_anatomy_sum(&anatomy, part), objective, 0.01, "put together they are J");
+  for (int row = 0; row < rows; row++) /* with the whole range in place of the samples' */
+    part[row * anatomy.parts / rows] = raw[row].peak_to_peak;
+  for (int row = 0; row < rows; row++)
+    for (int i = 1; i < EO_OBJECTIVE_SAMPLES; i++)
+      part[row * anatomy.parts / rows + i] = 0;
+  near(eo_anatomy_sum(&anatomy, part), objective, 1e-12, "and with the range of the whole curve to the last digit");
+  free(part);
+  free(anatomy.group);
+}
+
 static void test_robust(void)
 {
   struct eo_design design = design_of("paper-case-a"), unmodified = design;
@@ -299,6 +328,8 @@ static void test_robust(void)
   for (int s = 0; s < 3; s++)
     eo_objective_value(&design.objective, cases, design.load_case, raw + s * cases, before + s * cases, false, &one[s]);
   near(mean.objective, (one[0].objective + one[1].objective + one[2].objective) / 3, 1e-14, "mean objective");
+  check_anatomy(&design, raw, before, mean.objective, EO_ROBUST_MEAN);
+  check_anatomy(&design, raw, before, NAN, EO_ROBUST_WORST);
   near(mean.fitness,
        1 / mean.objective - design.objective.penalty * (one[0].violation + one[1].violation + one[2].violation) / 3,
        1e-14, "fitness of the mean");

@@ -104,10 +104,24 @@ static const struct eo_stored_problem problem = {
 
 static struct eo_stored_evaluation make_row(const char *modification, struct eo_objective_case raw[CASES], double seed)
 {
-  for (int k = 0; k < CASES; k++)
-    raw[k] = (struct eo_objective_case){
-        1e-6 / (seed + k), 1e3 / 7 * seed, 20.1 + seed,    1e9 / 3, k == 1 ? NAN : 1.5e8, 0.1, 0, k ? NAN : 1.2 / 7,
-        k ? NAN : seed,    k ? NAN : 0.7,  k ? NAN : 99.9, k == 2};
+  for (int k = 0; k < CASES; k++) {
+    raw[k] = (struct eo_objective_case){.peak_to_peak = 1e-6 / (seed + k),
+                                        .impact = 1e3 / 7 * seed,
+                                        .rms = 20.1 + seed,
+                                        .contact_pressure = 1e9 / 3,
+                                        .root_stress = k == 1 ? NAN : 1.5e8,
+                                        .edge_load_share = 0.1,
+                                        .flank_safety = k ? NAN : 1.2 / 7,
+                                        .root_safety = k ? NAN : seed,
+                                        .film_ratio = k ? NAN : 0.7,
+                                        .contact_temperature = k ? NAN : 99.9,
+                                        .failed = k == 2,
+                                        .end_impact = {1e3 / 7 * seed, 1e3 / 11}};
+    for (int i = 0; i < EO_OBJECTIVE_SAMPLES; i++) /* rows of before have no curve */
+      raw[k].transmission[i] = k == 1 ? NAN : 1e-7 * sin(i + seed);
+    if (k == 1)
+      raw[k].end_impact[0] = raw[k].end_impact[1] = NAN;
+  }
   return (struct eo_stored_evaluation){.modification = modification,
                                        .outcome = EO_EVALUATION_NOT_CONVERGED,
                                        .reason = "It did not.",
@@ -266,6 +280,26 @@ static void test_rows(void)
   row = make_row("no json", raw, 4);
   ok(add(store, id, &row) == -1 && error.code == EO_ERROR_FILE, "what is no JSON is refused: %s", error.text);
   eo_store_rollback(store);
+  eo_store_close(store);
+}
+
+static void test_curves(void)
+{
+  struct eo_objective_case raw[CASES], found[CASES];
+  clean();
+  struct eo_store *store = open_store(EO_STORE_WRITE);
+  int64_t id = add_problem(store);
+  struct eo_stored_evaluation row = make_row("{\"a\":1}", raw, 3),
+                              back = {.scenarios = 1, .cases = CASES, .raw = found};
+  add(store, id, &row);
+  ok(eo_store_find_evaluation(store, id, "{\"a\":1}", &back, &error) == EO_OK &&
+         memcmp(found[0].transmission, raw[0].transmission, sizeof raw[0].transmission) == 0 &&
+         memcmp(found[2].end_impact, raw[2].end_impact, sizeof raw[2].end_impact) == 0,
+     "a transmission error comes back bit for bit");
+  ok(isnan(found[1].transmission[5]) && isnan(found[1].end_impact[0]), "what was not kept is no number");
+  execute("UPDATE raw SET curve = (SELECT curve FROM raw WHERE load_case = 2) WHERE load_case = 1");
+  ok(eo_store_find_evaluation(store, id, "{\"a\":1}", &back, &error) == EO_ERROR_DAMAGED,
+     "a curve that came from elsewhere: %s", error.text);
   eo_store_close(store);
 }
 
@@ -438,6 +472,7 @@ int main(void)
   test_strangers();
   test_failed_step();
   test_rows();
+  test_curves();
   test_damage();
   test_garbage();
   test_two();
