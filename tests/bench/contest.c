@@ -87,6 +87,8 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
     printf("%s\n", error.text);
     return;
   }
+  if (trace->anatomy && eo_optimizer_describe(optimizer, trace->anatomy, &error) != EO_OK)
+    printf("%s\n", error.text);
   while (batch.count > 0 && eo_optimizer_ask(optimizer, &batch, &error) == EO_OK)
     for (int i = 0; i < batch.count; i++) {
       struct eo_outcome outcome = {.objectives = f};
@@ -95,6 +97,7 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
         outcome.value = f[0] + f[1] + f[2];
       } else {
         outcome.value = trace_evaluate(trace, batch.candidates[i].x);
+        outcome.parts = trace->parts;
       }
       eo_optimizer_tell(optimizer, i, &outcome, &error);
     }
@@ -183,6 +186,12 @@ static double cpu_seconds(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Nine seeds of ten, rounded up. */
+static int nine_of_ten(int seeds)
+{
+  return (9 * seeds + 9) / 10;
+}
+
 static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
 {
   static double front[CONTEST_BUDGET_MAX][CONTEST_OBJECTIVES];
@@ -196,8 +205,9 @@ static void print_line(const struct contest *contest, const struct contest_probl
                           .best = INFINITY,
                           .target = contest->target,
                           .front = c->front ? front : NULL};
-    problem->prepare(&trace, problem, (uint64_t)s + 1);
-    c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
+    const uint64_t seed = (uint64_t)(contest->first + s);
+    problem->prepare(&trace, problem, seed);
+    c->run(contest, &trace, c->algorithm, seed);
     evaluations += trace.count;
     evaluated[s] = trace.count;
     if (c->front)
@@ -210,7 +220,8 @@ static void print_line(const struct contest *contest, const struct contest_probl
   printf("%-13s %2d  %-15s", problem->name, problem->n, c->name);
   for (int m = 0; m < CONTEST_MARKS; m++) {
     qsort(at[m], (size_t)seeds, sizeof(double), compare_doubles);
-    printf("  %9.3e (%7.1e %7.1e)", at[m][seeds / 2], at[m][seeds / 4], at[m][seeds - 1 - seeds / 4]);
+    printf("  %.4g (%.4g %.4g %.4g %.4g)", at[m][seeds / 2], at[m][seeds / 4], at[m][seeds - 1 - seeds / 4],
+           at[m][nine_of_ten(seeds) - 1], at[m][seeds - 1]);
   }
   qsort(reached, (size_t)seeds, sizeof(double), compare_doubles);
   if (isfinite(contest->target))
@@ -224,7 +235,7 @@ void contest_print_head(const struct contest *contest)
 {
   printf("%-13s %2s  %-15s", "problem", "n", "algorithm");
   for (int m = 0; m < CONTEST_MARKS; m++)
-    printf("  %9d (quartiles)      ", mark(contest->budget, m));
+    printf("  %d (quartiles, 90 %%, worst)", mark(contest->budget, m));
   if (isfinite(contest->target))
     printf("  to %-15.6g", contest->target);
   printf("   true  us/evaluation\n");
@@ -240,7 +251,7 @@ void contest_run(const struct contest *contest, const struct contest_problem *pr
 
 struct contest contest_default(void)
 {
-  return (struct contest){.seeds = 11, .budget = CONTEST_BUDGET, .target = -INFINITY};
+  return (struct contest){.seeds = 11, .first = 1, .budget = CONTEST_BUDGET, .target = -INFINITY};
 }
 
 int contest_option(struct contest *contest, int argc, char **argv, int i)
@@ -258,6 +269,8 @@ int contest_option(struct contest *contest, int argc, char **argv, int i)
   if (strcmp(argv[i], "--seeds") == 0) {
     const int seeds = atoi(argv[i + 1]);
     contest->seeds = seeds < 1 ? 1 : seeds > CONTEST_SEEDS_MAX ? CONTEST_SEEDS_MAX : seeds;
+  } else if (strcmp(argv[i], "--first") == 0) {
+    contest->first = atoi(argv[i + 1]);
   } else if (strcmp(argv[i], "--budget") == 0) {
     const int budget = atoi(argv[i + 1]);
     contest->budget = budget < 1 ? 1 : budget > CONTEST_BUDGET_MAX ? CONTEST_BUDGET_MAX : budget;

@@ -3,12 +3,14 @@
 #ifndef EASEOFF_BENCH_CONTEST_H
 #define EASEOFF_BENCH_CONTEST_H
 
+#include "optimizer/anatomy.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
 enum {
   CONTEST_BUDGET = 1000,
-  CONTEST_BUDGET_MAX = 10000,
+  CONTEST_BUDGET_MAX = 40000,
   CONTEST_MARKS = 4,
   CONTEST_SEEDS_MAX = 101,
   CONTEST_VARIABLES = 20,
@@ -21,6 +23,8 @@ struct trace {
   int n;
   double (*value)(void *context, const double *x);               /* infinite when the evaluation fails */
   void (*objectives)(void *context, const double *x, double *f); /* [CONTEST_OBJECTIVES], likewise */
+  const struct eo_anatomy *anatomy;                              /* of the value; NULL: not known */
+  const double *parts;                                           /* of the point evaluated last */
   void *context;
   int budget, count;
   double best, at[CONTEST_MARKS]; /* at[]: after 100, 200, 400 evaluations and all of the budget */
@@ -37,7 +41,7 @@ enum { PAGMO_CMAES, PAGMO_SADE, PAGMO_DE, PAGMO_SGA, PAGMO_NSGA2 };
 void pagmo_run(struct trace *trace, int algorithm, unsigned population, unsigned seed);
 
 struct contest {
-  int seeds;
+  int seeds, first;       /* how many, from which on */
   int budget;             /* true evaluations of each run */
   double target;          /* value whose first reaching is counted; -INFINITY: none */
   const char *algorithm;  /* how the names begin; NULL: all */
@@ -49,8 +53,8 @@ struct contest {
 /* 11 seeds, 1000 evaluations, every algorithm. */
 struct contest contest_default(void);
 
-/* Understands --seeds N, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and --quick at
-   argv[i]; returns how many words it took, 0: none. */
+/* Understands --seeds N, --first SEED, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and
+   --quick at argv[i]; returns how many words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
 void contest_print_head(const struct contest *contest);
