@@ -19,10 +19,11 @@ double eo_anatomy_reduce(const struct eo_part_group *group, const double *part, 
 static double add_soft(const struct eo_part_group *group, const double *part, double sign, double softness,
                        double *weight)
 {
-  double most = -INFINITY, sum = 0;
-  for (int i = 0; i < group->count; i++)
+  double most = sign * part[0];
+  for (int i = 1; i < group->count; i++)
     most = fmax(most, sign * part[i]);
-  for (int i = 0; i < group->count; i++)
+  double sum = exp((sign * part[0] - most) / softness);
+  for (int i = 1; i < group->count; i++)
     sum += exp((sign * part[i] - most) / softness);
   for (int i = 0; i < group->count; i++)
     weight[i] += sign * exp((sign * part[i] - most) / softness) / sum;

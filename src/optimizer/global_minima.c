@@ -70,8 +70,8 @@ static void draw(struct eo_global_minima *global, const double *best, uint64_t s
     const struct eo_random random = eo_random_at(seed, EO_STREAM_GLOBAL, (uint64_t)batch, (uint64_t)i);
     double *x = global->sample + (size_t)i * (size_t)n;
     for (int k = 0; k < n; k++) {
-      const bool kept = i % 2 == 1 && eo_random_unit(random, (uint64_t)(2 * k + 1)) < 0.5;
-      x[k] = kept ? best[k] : eo_random_unit(random, (uint64_t)(2 * k));
+      const bool kept = i % 2 == 1 && eo_random_unit(random, 2 * (uint64_t)k + 1) < 0.5;
+      x[k] = kept ? best[k] : eo_random_unit(random, 2 * (uint64_t)k);
     }
   }
 }
