@@ -86,7 +86,8 @@ enum eo_code eo_optimizer_describe(struct eo_optimizer *optimizer, const struct 
   if (bytes)
     memcpy(group, anatomy->group, bytes);
   free(optimizer->anatomy.group);
-  optimizer->anatomy = (struct eo_anatomy){anatomy->parts, anatomy->groups, group};
+  optimizer->anatomy = *anatomy;
+  optimizer->anatomy.group = group;
   eo_archive_set_parts(&optimizer->archive, anatomy->parts);
   return EO_OK;
 }
