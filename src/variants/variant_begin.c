@@ -174,7 +174,7 @@ static enum eo_code find_unmodified(struct variant_study *s, bool *there, struct
 
 /* A row of a search as a row of this study. */
 static enum eo_code convert(struct variant_study *s, const struct eo_design *design, const struct eo_geometry *geometry,
-                            struct eo_stored_variant *row, struct eo_error *error)
+                            struct eo_stored_variant *row, bool *there, struct eo_error *error)
 {
   struct eo_text modification = {0};
   struct eo_stored_evaluation found = evaluation_of(s, s->raw);
@@ -192,11 +192,12 @@ static enum eo_code convert(struct variant_study *s, const struct eo_design *des
       row->number[i] = NAN;
   else
     code = eo_scalars_of_raw(&s->scalars, design, geometry, s->raw, s->unmodified, row->number, error);
-  return code ? code : eo_store_add_variant(s->run->store, row, error);
+  *there = !code;
+  return code;
 }
 
 static enum eo_code find_in_history(struct variant_study *s, const json_t *values, struct eo_stored_variant *row,
-                                    struct eo_error *error)
+                                    bool *there, struct eo_error *error)
 {
   const struct eo_variant_plan *plan = s->run->plan;
   struct eo_design *design = malloc(sizeof *design);
@@ -207,7 +208,7 @@ static enum eo_code find_in_history(struct variant_study *s, const json_t *value
   if (code == EO_ERROR_INPUT) /* whoever evaluates it says why it cannot be */
     code = EO_OK;
   else if (!code)
-    code = convert(s, design, &geometry, row, error);
+    code = convert(s, design, &geometry, row, there, error);
   free(design);
   return code;
 }
@@ -216,44 +217,86 @@ struct known {
   bool rows, history; /* there is something to be found */
 };
 
-static enum eo_code look_up_one(struct variant_study *s, const struct known *known, int variant, bool *found,
+/* What was found and has no place yet: it is read and composed before the database is locked. */
+enum { MOST_FOUND = 256 };
+struct finds {
+  int count;
+  struct found {
+    int variant;
+    char hash[EO_HASH_LENGTH + 1];
+    struct eo_stored_variant row; /* id 0: a row of a search, which is to be added */
+  } found[MOST_FOUND];
+  double *number; /* [MOST_FOUND][columns]; owned */
+};
+
+static enum eo_code look_up_one(struct variant_study *s, const struct known *known, int variant, struct finds *finds,
+                                bool *there, struct eo_error *error)
+{
+  struct found *found = &finds->found[finds->count];
+  json_t *values = eo_variant_values(s->run->plan, variant);
+  found->variant = variant;
+  found->row = (struct eo_stored_variant){.design = found->hash,
+                                          .evaluator = EO_EVALUATOR_VERSION,
+                                          .columns = s->columns,
+                                          .numbers = s->scalars.count,
+                                          .number = finds->number + (size_t)finds->count * (size_t)s->scalars.count};
+  enum eo_code code = values ? eo_variant_hash(s->run->plan, values, found->hash, error) : eo_error_memory(error);
+  if (!code && known->rows)
+    code = eo_store_find_variant(s->run->store, &found->row, error);
+  *there = !code && found->row.id;
+  if (!code && !*there && known->history)
+    code = find_in_history(s, values, &found->row, there, error);
+  json_decref(values);
+  finds->count += !code && *there;
+  return code;
+}
+
+static enum eo_code keep_finds(struct variant_study *s, struct finds *finds, struct eo_error *error)
+{
+  if (!finds->count)
+    return EO_OK;
+  EO_TRY(eo_variant_open(s, error));
+  for (int i = 0; i < finds->count; i++) {
+    struct found *found = &finds->found[i];
+    if (!found->row.id)
+      EO_TRY(eo_store_add_variant(s->run->store, &found->row, error));
+    EO_TRY(eo_variant_keep(s, found->variant, &found->row, true, error));
+  }
+  finds->count = 0;
+  return eo_variant_commit(s, true, error);
+}
+
+static enum eo_code look_up_all(struct variant_study *s, const struct known *known, struct finds *finds,
                                 struct eo_error *error)
 {
-  char hash[EO_HASH_LENGTH + 1];
-  json_t *values = eo_variant_values(s->run->plan, variant);
-  struct eo_stored_variant row = {.design = hash,
-                                  .evaluator = EO_EVALUATOR_VERSION,
-                                  .columns = s->columns,
-                                  .numbers = s->scalars.count,
-                                  .number = s->number};
-  enum eo_code code = values ? eo_variant_hash(s->run->plan, values, hash, error) : eo_error_memory(error);
-  if (!code && known->rows)
-    code = eo_store_find_variant(s->run->store, &row, error);
-  if (!code && !row.id && known->history)
-    code = find_in_history(s, values, &row, error);
-  json_decref(values);
-  *found = !code && row.id;
-  return code || !row.id ? code : eo_variant_keep(s, variant, &row, true, error);
+  int left = 0;
+  for (int i = 0; i < s->missing_count; i++) {
+    bool there = false;
+    EO_TRY(look_up_one(s, known, s->missing[i], finds, &there, error));
+    if (!there)
+      s->missing[left++] = s->missing[i];
+    if (finds->count == MOST_FOUND)
+      EO_TRY(keep_finds(s, finds, error));
+    if (i % LOOKED_UP_BETWEEN_REPORTS == 0 && eo_variant_report(s, "history"))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.");
+  }
+  s->missing_count = left;
+  return keep_finds(s, finds, error);
 }
 
 enum eo_code eo_variant_look_up(struct variant_study *s, struct eo_error *error)
 {
   struct known known;
-  int left = 0;
   EO_TRY(eo_store_has_variants(s->run->store, EO_EVALUATOR_VERSION, s->columns, &known.rows, error));
   EO_TRY(find_unmodified(s, &known.history, error));
   if (!known.rows && !known.history)
     return EO_OK;
-  for (int i = 0; i < s->missing_count; i++) {
-    bool found = false;
-    EO_TRY(eo_variant_open(s, error));
-    EO_TRY(look_up_one(s, &known, s->missing[i], &found, error));
-    EO_TRY(eo_variant_commit(s, false, error));
-    if (!found)
-      s->missing[left++] = s->missing[i];
-    if (i % LOOKED_UP_BETWEEN_REPORTS == 0 && eo_variant_report(s, "history"))
-      return eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.");
-  }
-  s->missing_count = left;
-  return eo_variant_commit(s, true, error);
+  struct finds *finds = calloc(1, sizeof *finds);
+  if (finds)
+    finds->number = malloc(sizeof *finds->number * MOST_FOUND * (size_t)s->scalars.count);
+  enum eo_code code = finds && finds->number ? look_up_all(s, &known, finds, error) : eo_error_memory(error);
+  if (finds)
+    free(finds->number);
+  free(finds);
+  return code;
 }
