@@ -17,39 +17,39 @@ static void print_counts(const struct eo_backup_report *report, struct eo_text *
                 (long long)report->recordings, (long long)report->jobs);
 }
 
-static enum eo_code back_up(const struct request *q, const char *directory, struct eo_backup_report *report,
+static enum eo_code back_up(const struct request *request, const char *directory, struct eo_backup_report *report,
                             struct eo_error *error)
 {
   struct eo_store *store = NULL;
   int design = 0;
-  if (q->design && !eo_app_read_whole(q->design, "--design", 1, 2000000000, &design, error))
+  if (request->design && !eo_app_read_whole(request->design, "--design", 1, 2000000000, &design, error))
     return EO_ERROR_INPUT;
   enum eo_code code = eo_store_open(&store, directory, EO_STORE_READ, error);
   if (!code)
-    code = eo_backup_write(store, q->operand, design, report, error);
+    code = eo_backup_write(store, request->operand, design, report, error);
   eo_store_close(store);
   return code;
 }
 
 static int run_backup(const struct eo_command *command, int argc, char **argv)
 {
-  struct request q = {0};
+  struct request request = {0};
   struct eo_backup_report report;
   struct eo_error error;
   struct eo_text directory = {0}, text = {0};
   int operands, status;
   const struct eo_option options[] = {
-      {.name = "--data", .value = &q.data}, {.name = "--design", .value = &q.design}, {.name = NULL}};
-  if (!eo_app_arguments(command, argc, argv, options, 1, 1, &q.operand, &operands, &status))
+      {.name = "--data", .value = &request.data}, {.name = "--design", .value = &request.design}, {.name = NULL}};
+  if (!eo_app_arguments(command, argc, argv, options, 1, 1, &request.operand, &operands, &status))
     return status;
-  enum eo_code code = eo_app_data_directory(q.data, &directory, &error);
+  enum eo_code code = eo_app_data_directory(request.data, &directory, &error);
   if (!code)
-    code = back_up(&q, directory.data, &report, &error);
+    code = back_up(&request, directory.data, &report, &error);
   eo_text_done(&directory);
   if (code)
     return eo_app_fail(NULL, &error);
   print_counts(&report, &text);
-  eo_text_print(&text, " in %s\n", q.operand);
+  eo_text_print(&text, " in %s\n", request.operand);
   status = eo_app_print(&text);
   if (!report.missing)
     return status;
@@ -60,17 +60,17 @@ static int run_backup(const struct eo_command *command, int argc, char **argv)
 
 static int run_restore(const struct eo_command *command, int argc, char **argv)
 {
-  struct request q = {0};
+  struct request request = {0};
   struct eo_backup_report report;
   struct eo_error error;
   struct eo_text directory = {0}, text = {0};
   int operands, status;
-  const struct eo_option options[] = {{.name = "--data", .value = &q.data}, {.name = NULL}};
-  if (!eo_app_arguments(command, argc, argv, options, 1, 1, &q.operand, &operands, &status))
+  const struct eo_option options[] = {{.name = "--data", .value = &request.data}, {.name = NULL}};
+  if (!eo_app_arguments(command, argc, argv, options, 1, 1, &request.operand, &operands, &status))
     return status;
-  enum eo_code code = eo_app_data_directory(q.data, &directory, &error);
+  enum eo_code code = eo_app_data_directory(request.data, &directory, &error);
   if (!code)
-    code = eo_backup_restore(directory.data, q.operand, &report, &error);
+    code = eo_backup_restore(directory.data, request.operand, &report, &error);
   if (!code) {
     print_counts(&report, &text);
     eo_text_print(&text, report.whole ? " restored to %s\n" : " added to %s", directory.data);

@@ -51,18 +51,18 @@ static enum eo_code trust(const char *directory, struct eo_text *text, struct eo
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request q = {0};
+  struct request request = {0};
   struct eo_error error;
   struct eo_checkup sum = {0};
   struct eo_text directory = {0}, text = {0};
   const char *none;
   int operands, status;
   const struct eo_option options[] = {
-      {.name = "--data", .value = &q.data}, {.name = "--trust", .flag = &q.trust}, {.name = NULL}};
+      {.name = "--data", .value = &request.data}, {.name = "--trust", .flag = &request.trust}, {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 0, 0, &none, &operands, &status))
     return status;
-  enum eo_code code = eo_app_data_directory(q.data, &directory, &error);
-  if (!code && q.trust)
+  enum eo_code code = eo_app_data_directory(request.data, &directory, &error);
+  if (!code && request.trust)
     code = trust(directory.data, &text, &error);
   if (!code)
     code = look(directory.data, &text, &sum, &error);

@@ -80,14 +80,14 @@ static void print_jobs(const json_t *list, struct eo_text *text)
   eo_text_table_done(&sheet);
 }
 
-static int run_list(struct request *q)
+static int run_list(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   json_t *list = NULL;
-  if (eo_records_list(q->store, &list, &error))
+  if (eo_records_list(request->store, &list, &error))
     return eo_app_fail(NULL, &error);
-  if (q->json)
+  if (request->json)
     return eo_app_print_json(list, false);
   print_problems(list, &text);
   eo_text_add(&text, "\n");
@@ -96,43 +96,43 @@ static int run_list(struct request *q)
   return eo_app_print(&text);
 }
 
-static int run_show(struct request *q)
+static int run_show(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   json_t *document = NULL;
   int id;
-  if (read_id(q->operand[1], "show", &id, &error) || eo_records_result(q->store, id, &document, &error))
+  if (read_id(request->operand[1], "show", &id, &error) || eo_records_result(request->store, id, &document, &error))
     return eo_app_fail(NULL, &error);
-  if (q->json)
+  if (request->json)
     return eo_app_print_json(document, false);
   eo_study_result_summary(document, &text);
   json_decref(document);
   return eo_app_print(&text);
 }
 
-static int export_path(struct request *q)
+static int export_path(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   int id;
-  if (!read_id(q->job, "--job", &id, &error) && !eo_records_path_csv(q->store, id, &text, &error))
+  if (!read_id(request->job, "--job", &id, &error) && !eo_records_path_csv(request->store, id, &text, &error))
     return eo_app_print(&text);
   eo_text_done(&text);
   return eo_app_fail(NULL, &error);
 }
 
-static int run_export(struct request *q)
+static int run_export(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   json_t *rows = NULL;
   int id;
-  if (q->job)
-    return export_path(q);
-  if (read_id(q->operand[1], "export", &id, &error) || eo_records_rows(q->store, id, &rows, &error))
+  if (request->job)
+    return export_path(request);
+  if (read_id(request->operand[1], "export", &id, &error) || eo_records_rows(request->store, id, &rows, &error))
     return eo_app_fail(NULL, &error);
-  if (q->json)
+  if (request->json)
     return eo_app_print_json(rows, false);
   enum eo_code code = eo_records_rows_csv(rows, &text, &error);
   json_decref(rows);
@@ -175,51 +175,52 @@ static enum eo_code refuse_running(void *context, const struct eo_stored_job *jo
   return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is running; prune when it has ended.", (long long)job->id);
 }
 
-static enum eo_code prune(struct request *q, int64_t *rows, int64_t *predictions, struct eo_error *error)
+static enum eo_code prune(struct request *request, int64_t *rows, int64_t *predictions, struct eo_error *error)
 {
   int problem = 0;
   int64_t removed = 0;
-  enum eo_code code = eo_store_each_job(q->store, 0, refuse_running, q->store, error);
-  if (!code && q->problem)
-    code = read_id(q->problem, "--problem", &problem, error);
-  if (!code && (q->predictions || (!q->outdated && !q->damaged && !q->problem))) /* in steps: others write between */
-    code = eo_store_remove_predictions(q->store, predictions, error);
+  enum eo_code code = eo_store_each_job(request->store, 0, refuse_running, request->store, error);
+  if (!code && request->problem)
+    code = read_id(request->problem, "--problem", &problem, error);
+  if (!code && (request->predictions ||
+                (!request->outdated && !request->damaged && !request->problem))) /* in steps: others write between */
+    code = eo_store_remove_predictions(request->store, predictions, error);
   if (!code)
-    code = eo_store_begin(q->store, error);
-  if (!code && q->outdated)
-    code = remove_outdated(q->store, rows, error);
-  if (!code && q->problem) {
-    code = eo_store_remove_problem(q->store, problem, &removed, error);
+    code = eo_store_begin(request->store, error);
+  if (!code && request->outdated)
+    code = remove_outdated(request->store, rows, error);
+  if (!code && request->problem) {
+    code = eo_store_remove_problem(request->store, problem, &removed, error);
     *rows += removed;
   }
-  if (!code && q->damaged) {
-    code = eo_store_remove_damaged(q->store, &removed, error);
+  if (!code && request->damaged) {
+    code = eo_store_remove_damaged(request->store, &removed, error);
     *rows += removed;
   }
   if (!code)
-    code = eo_store_commit(q->store, error);
+    code = eo_store_commit(request->store, error);
   if (code)
-    eo_store_rollback(q->store);
-  return code ? code : eo_store_compact(q->store, error);
+    eo_store_rollback(request->store);
+  return code ? code : eo_store_compact(request->store, error);
 }
 
-static int run_prune(struct request *q)
+static int run_prune(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   int64_t rows = 0, predictions = 0;
-  if (prune(q, &rows, &predictions, &error))
+  if (prune(request, &rows, &predictions, &error))
     return eo_app_fail(NULL, &error);
   eo_text_print(&text, "%lld true rows and %lld predictions removed\n", (long long)rows, (long long)predictions);
   return eo_app_print(&text);
 }
 
-static int run_import(struct request *q)
+static int run_import(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
   struct eo_merge_counts counts;
-  if (eo_store_merge(q->store, q->operand[1], &counts, &error))
+  if (eo_store_merge(request->store, request->operand[1], &counts, &error))
     return eo_app_fail(NULL, &error);
   eo_text_print(&text, "%lld problems, %lld evaluations and %lld rows of studies added\n", (long long)counts.problems,
                 (long long)counts.evaluations, (long long)counts.variants);
@@ -236,11 +237,11 @@ static const struct action {
                {"prune", 1, run_prune},
                {"import", 2, run_import}};
 
-static const struct action *find_action(const struct request *q, int operands, struct eo_error *error)
+static const struct action *find_action(const struct request *request, int operands, struct eo_error *error)
 {
   for (size_t i = 0; i < sizeof actions / sizeof actions[0]; i++)
-    if (strcmp(actions[i].name, q->operand[0]) == 0) {
-      bool by_job = actions[i].run == run_export && q->job;
+    if (strcmp(actions[i].name, request->operand[0]) == 0) {
+      bool by_job = actions[i].run == run_export && request->job;
       if (operands == actions[i].operands - by_job)
         return &actions[i];
       eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s; see easeoff history --help.", actions[i].name,
@@ -250,38 +251,39 @@ static const struct action *find_action(const struct request *q, int operands, s
       return NULL;
     }
   eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export, import or prune.",
-               q->operand[0]);
+               request->operand[0]);
   return NULL;
 }
 
-static int run_action(struct request *q, int operands)
+static int run_action(struct request *request, int operands)
 {
   struct eo_error error;
   struct eo_text directory = {0};
-  const struct action *action = find_action(q, operands, &error);
-  enum eo_code code = action ? eo_app_data_directory(q->data, &directory, &error) : EO_ERROR_INPUT;
+  const struct action *action = find_action(request, operands, &error);
+  enum eo_code code = action ? eo_app_data_directory(request->data, &directory, &error) : EO_ERROR_INPUT;
   if (!code)
-    code = eo_store_open(&q->store, directory.data, action->run == run_import ? EO_STORE_WRITE : EO_STORE_READ, &error);
-  int status = code ? eo_app_fail(NULL, &error) : action->run(q);
-  eo_store_close(q->store);
+    code = eo_store_open(&request->store, directory.data, action->run == run_import ? EO_STORE_WRITE : EO_STORE_READ,
+                         &error);
+  int status = code ? eo_app_fail(NULL, &error) : action->run(request);
+  eo_store_close(request->store);
   eo_text_done(&directory);
   return status;
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request q = {0};
+  struct request request = {0};
   int operands, status;
-  const struct eo_option options[] = {{.name = "--data", .value = &q.data},
-                                      {.name = "--json", .flag = &q.json},
-                                      {.name = "--job", .value = &q.job},
-                                      {.name = "--problem", .value = &q.problem},
-                                      {.name = "--predictions", .flag = &q.predictions},
-                                      {.name = "--outdated", .flag = &q.outdated},
-                                      {.name = "--damaged", .flag = &q.damaged},
+  const struct eo_option options[] = {{.name = "--data", .value = &request.data},
+                                      {.name = "--json", .flag = &request.json},
+                                      {.name = "--job", .value = &request.job},
+                                      {.name = "--problem", .value = &request.problem},
+                                      {.name = "--predictions", .flag = &request.predictions},
+                                      {.name = "--outdated", .flag = &request.outdated},
+                                      {.name = "--damaged", .flag = &request.damaged},
                                       {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 2, q.operand, &operands, &status))
-    status = run_action(&q, operands);
+  if (eo_app_arguments(command, argc, argv, options, 1, 2, request.operand, &operands, &status))
+    status = run_action(&request, operands);
   return status;
 }
 

@@ -95,24 +95,24 @@ static enum eo_code read_part(const char *part, const char *from, const char *to
 }
 
 /* The options hold for every file; an entry of the list may say otherwise. */
-static enum eo_code set_usual(const struct request *request, struct entry *e, struct eo_error *error)
+static enum eo_code set_usual(const struct request *request, struct entry *entry, struct eo_error *error)
 {
   int unmodified;
-  enum eo_code code = read_positive("--torque", request->torque, &e->torque, error);
+  enum eo_code code = read_positive("--torque", request->torque, &entry->torque, error);
   if (!code)
-    code = read_positive("--speed", request->speed, &e->speed, error);
+    code = read_positive("--speed", request->speed, &entry->speed, error);
   if (!code)
     code = read_word("--label", request->label, label_words, 0, &unmodified, error);
   if (!code)
-    code = read_word("--end", request->end, end_words, EO_RIGHT, &e->end, error);
+    code = read_word("--end", request->end, end_words, EO_RIGHT, &entry->end, error);
   if (!code)
-    code = read_part(request->part, request->from, request->to, &e->part, error);
-  if (!code && request->layout && !(e->layout = load_json(request->layout, error)))
+    code = read_part(request->part, request->from, request->to, &entry->part, error);
+  if (!code && request->layout && !(entry->layout = load_json(request->layout, error)))
     code = error->code;
   if (code)
     return code;
-  e->unmodified = unmodified == 1;
-  e->speed *= M_PI / 30;
+  entry->unmodified = unmodified == 1;
+  entry->speed *= M_PI / 30;
   return EO_OK;
 }
 
@@ -123,7 +123,7 @@ static double stated(const json_t *item, const char *key, double fallback, doubl
 }
 
 /* A row of the list: file relative to it, label, torque_Nm, speed_rpm, end, part, from_s, to_s, layout. */
-static enum eo_code read_item(const struct request *request, const json_t *item, struct entry *e,
+static enum eo_code read_item(const struct request *request, const json_t *item, struct entry *entry,
                               struct eo_error *error)
 {
   const char *file = json_string_value(json_object_get(item, "file")), *slash = strrchr(request->list, '/');
@@ -134,18 +134,19 @@ static enum eo_code read_item(const struct request *request, const json_t *item,
   eo_text_print(&path, "%.*s%s", *file == '/' || !slash ? 0 : (int)(slash - request->list + 1), request->list, file);
   if (path.failed)
     return eo_error_memory(error);
-  e->path = e->joined = path.data;
-  e->torque = stated(item, "torque_Nm", e->torque, 1);
-  e->speed = stated(item, "speed_rpm", e->speed, M_PI / 30);
+  entry->path = entry->joined = path.data;
+  entry->torque = stated(item, "torque_Nm", entry->torque, 1);
+  entry->speed = stated(item, "speed_rpm", entry->speed, M_PI / 30);
   enum eo_code code = read_word("A label", json_string_value(json_object_get(item, "label")), label_words,
-                                e->unmodified, &unmodified, error);
+                                entry->unmodified, &unmodified, error);
   if (!code)
-    code = read_word("An end", json_string_value(json_object_get(item, "end")), end_words, e->end, &e->end, error);
-  e->unmodified = unmodified == 1;
-  e->part.part = (int)stated(item, "part", e->part.part, 1);
-  e->part.from = stated(item, "from_s", e->part.from, 1);
-  e->part.to = stated(item, "to_s", e->part.to, 1);
-  const struct eo_part_choice *part = &e->part;
+    code = read_word("An end", json_string_value(json_object_get(item, "end")), end_words, entry->end, &entry->end,
+                     error);
+  entry->unmodified = unmodified == 1;
+  entry->part.part = (int)stated(item, "part", entry->part.part, 1);
+  entry->part.from = stated(item, "from_s", entry->part.from, 1);
+  entry->part.to = stated(item, "to_s", entry->part.to, 1);
+  const struct eo_part_choice *part = &entry->part;
   double number = stated(item, "part", part->part, 1);
   if (!code && (number != floor(number) || part->part < 0 || part->part > EO_PARTS || part->from < 0 ||
                 (part->to != 0 && part->to <= part->from)))
@@ -153,8 +154,8 @@ static enum eo_code read_item(const struct request *request, const json_t *item,
                         "An entry of the list has \"part\" from 1 to %d and \"to_s\" after \"from_s\", in s.",
                         EO_PARTS);
   if (json_object_get(item, "layout")) {
-    json_decref(e->layout);
-    e->layout = json_incref(json_object_get(item, "layout"));
+    json_decref(entry->layout);
+    entry->layout = json_incref(json_object_get(item, "layout"));
   }
   return code;
 }
@@ -226,22 +227,22 @@ static enum eo_code measure_all(struct request *request, const struct eo_progres
 {
   const char *folder = getenv("TMPDIR");
   for (int i = 0; i < request->entries; i++) {
-    const struct entry *e = &request->entry[i];
-    struct eo_measure_request one = {.path = e->path,
-                                     .gear_path = e->gear_path,
-                                     .unmodified = e->unmodified,
-                                     .torque = e->torque,
-                                     .stated_speed = e->speed,
-                                     .end = e->end,
+    const struct entry *entry = &request->entry[i];
+    struct eo_measure_request one = {.path = entry->path,
+                                     .gear_path = entry->gear_path,
+                                     .unmodified = entry->unmodified,
+                                     .torque = entry->torque,
+                                     .stated_speed = entry->speed,
+                                     .end = entry->end,
                                      .harmonics = request->harmonic_count,
-                                     .part = e->part,
-                                     .layout = e->layout,
+                                     .part = entry->part,
+                                     .layout = entry->layout,
                                      .geometry = &request->geometry,
                                      .spool_directory = folder ? folder : "/tmp"};
     struct eo_measured *measured = &request->measured[request->measured_count];
     json_t *document;
     find_speeds(&request->design, one.speed);
-    *failed_at = e->path;
+    *failed_at = entry->path;
     enum eo_code code = eo_measure_file(&one, progress, &document, &request->text, measured, error);
     if (!code && json_array_append_new(request->documents, document))
       code = eo_error_memory(error);
@@ -295,11 +296,11 @@ static enum eo_code save_design(const struct request *request, struct eo_error *
   return code;
 }
 
-static enum eo_code save_csv(const struct request *r, struct eo_error *error)
+static enum eo_code save_csv(const struct request *request, struct eo_error *error)
 {
   struct eo_text text = {0};
-  eo_comparison_csv(&r->comparison, r->measured, &text);
-  enum eo_code code = eo_text_save(&text, r->csv, error);
+  eo_comparison_csv(&request->comparison, request->measured, &text);
+  enum eo_code code = eo_text_save(&text, request->csv, error);
   eo_text_done(&text);
   return code;
 }
@@ -319,15 +320,15 @@ static json_t *encode(const struct request *request)
   return failed ? (json_decref(document), NULL) : document;
 }
 
-static int show(struct request *r)
+static int show(struct request *request)
 {
-  if (r->json)
-    return eo_app_print_json(encode(r), false);
-  if (r->comparison.count)
-    eo_comparison_summary(&r->comparison, r->measured, &r->text);
-  if (r->comparison.count && r->update)
-    eo_update_summary(&r->fit, &r->text);
-  return eo_app_print(&r->text);
+  if (request->json)
+    return eo_app_print_json(encode(request), false);
+  if (request->comparison.count)
+    eo_comparison_summary(&request->comparison, request->measured, &request->text);
+  if (request->comparison.count && request->update)
+    eo_update_summary(&request->fit, &request->text);
+  return eo_app_print(&request->text);
 }
 
 static int run_request(struct request *request)

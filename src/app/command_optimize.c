@@ -38,164 +38,166 @@ static void format_time(char *text, size_t size, double seconds)
     snprintf(text, size, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
 }
 
-static int show_progress(void *context, const struct eo_study_report *r)
+static int show_progress(void *context, const struct eo_study_report *report)
 {
-  struct request *q = context;
-  struct eo_watch *watch = &q->watch;
+  struct request *request = context;
+  struct eo_watch *watch = &request->watch;
   char line[240], left[32], best[20] = "-", sums[80] = "";
   if (eo_watch_due(watch)) { /* what matters most first: narrow terminals cut the line */
-    format_time(left, sizeof left, r->seconds_left);
-    if (r->best->there) {
-      const double *f = r->best->value.sums.f;
-      snprintf(best, sizeof best, "%.4g", r->best->value.objective);
+    format_time(left, sizeof left, report->seconds_left);
+    if (report->best->there) {
+      const double *f = report->best->value.sums.f;
+      snprintf(best, sizeof best, "%.4g", report->best->value.objective);
       snprintf(sums, sizeof sums, ", %.3g um, %.4g N, %.3g m/s2", 1e6 * f[0], f[1], f[2]);
     }
     snprintf(line, sizeof line, "%3.0f %%, %s left, J %s, gen %d, true %d, predicted %d, known %d, PFC %.0f %%%s",
-             100 * r->fraction, left, best, r->generation, r->true_evaluations, r->predicted, r->reused,
-             r->individuals ? 100. * r->true_evaluations / r->individuals : 100, sums);
+             100 * report->fraction, left, best, report->generation, report->true_evaluations, report->predicted,
+             report->reused, report->individuals ? 100. * report->true_evaluations / report->individuals : 100, sums);
     eo_watch_show(watch, line);
   }
-  if (q->note.job)
-    eo_job_live_follow(&q->note.live, r);
-  return eo_work_note_shall_stop(&q->note, watch);
+  if (request->note.job)
+    eo_job_live_follow(&request->note.live, report);
+  return eo_work_note_shall_stop(&request->note, watch);
 }
 
 /* What the command line says in place of the design. */
-static bool apply_options(struct request *q, struct eo_error *error)
+static bool apply_options(struct request *request, struct eo_error *error)
 {
-  struct eo_optimizer_settings *search = &q->design.optimization.search;
+  struct eo_optimizer_settings *search = &request->design.optimization.search;
   int budget = search->true_evaluations;
-  q->thread_count = 0;
-  if (q->algorithm && eo_optimizer_algorithm_find(q->algorithm) < 0) {
+  request->thread_count = 0;
+  if (request->algorithm && eo_optimizer_algorithm_find(request->algorithm) < 0) {
     eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no algorithm: credibility-ga, fpga, ga or nsga2.",
-                 q->algorithm);
+                 request->algorithm);
     return false;
   }
-  if (q->algorithm)
-    search->algorithm = eo_optimizer_algorithm_find(q->algorithm);
-  if (q->budget && !eo_app_read_whole(q->budget, "--budget", 1, 10000000, &budget, error))
+  if (request->algorithm)
+    search->algorithm = eo_optimizer_algorithm_find(request->algorithm);
+  if (request->budget && !eo_app_read_whole(request->budget, "--budget", 1, 10000000, &budget, error))
     return false;
   search->true_evaluations = budget;
-  return !q->threads || eo_app_read_whole(q->threads, "--threads", 1, EO_MAX_THREADS, &q->thread_count, error);
+  return !request->threads ||
+         eo_app_read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, error);
 }
 
-static enum eo_code prepare(struct request *q, const struct eo_progress *progress, struct eo_pair **pair,
+static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
                             struct eo_error *error)
 {
-  struct eo_pair_options options = {.cache_directory = q->crew->cache.data};
-  return eo_pair_new(pair, &q->design, &options, progress, error);
+  struct eo_pair_options options = {.cache_directory = request->crew->cache.data};
+  return eo_pair_new(pair, &request->design, &options, progress, error);
 }
 
-static int show(const struct request *q, json_t *document)
+static int show(const struct request *request, json_t *document)
 {
   struct eo_text text = {0};
-  if (q->json)
+  if (request->json)
     return eo_app_print_json(document, false);
   eo_study_result_summary(document, &text);
   json_decref(document);
   return eo_app_print(&text);
 }
 
-static int run_study(struct request *q, const struct eo_pair *pair, struct eo_store *store)
+static int run_study(struct request *request, const struct eo_pair *pair, struct eo_store *store)
 {
-  const struct eo_study_plan plan = {.design = &q->design,
+  const struct eo_study_plan plan = {.design = &request->design,
                                      .pair = pair,
                                      .store = store,
-                                     .crew = q->crew->crew.size > 1 ? &q->crew->crew : NULL,
-                                     .threads = q->thread_count,
-                                     .job = q->note.job,
-                                     .fresh = q->fresh,
-                                     .restart = q->restart,
+                                     .crew = request->crew->crew.size > 1 ? &request->crew->crew : NULL,
+                                     .threads = request->thread_count,
+                                     .job = request->note.job,
+                                     .fresh = request->fresh,
+                                     .restart = request->restart,
                                      .watch = show_progress,
-                                     .context = q};
+                                     .context = request};
   struct eo_study_result result;
   struct eo_error error;
   json_t *document = NULL;
   enum eo_code code = eo_study_run(&plan, &result, &error);
   if (!code)
-    code = eo_study_document(&plan, &result, &q->warnings, &document, &error);
+    code = eo_study_document(&plan, &result, &request->warnings, &document, &error);
   if (!code)
-    eo_job_live_conclude(&q->note.live, &result);
+    eo_job_live_conclude(&request->note.live, &result);
   if (!code && result.stopped != EO_STOP_CANCELLED)
-    q->note.live.fraction = 1;
-  eo_work_note_end(&q->note, code, &error);
-  eo_watch_clear(&q->watch);
+    request->note.live.fraction = 1;
+  eo_work_note_end(&request->note, code, &error);
+  eo_watch_clear(&request->watch);
   eo_study_result_done(&result);
-  if (!code && !q->work)
-    return show(q, document);
+  if (!code && !request->work)
+    return show(request, document);
   json_decref(document);
-  return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : EO_EXIT_DONE;
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : EO_EXIT_DONE;
 }
 
-static int run_prepared(struct request *q, struct eo_store *store)
+static int run_prepared(struct request *request, struct eo_store *store)
 {
   struct eo_error error;
   struct eo_pair *pair = NULL;
   int status;
-  eo_watch_start(&q->watch);
-  enum eo_code code = prepare(q, &q->watch.progress, &pair, &error);
-  eo_watch_clear(&q->watch);
+  eo_watch_start(&request->watch);
+  enum eo_code code = prepare(request, &request->watch.progress, &pair, &error);
+  eo_watch_clear(&request->watch);
   if (code) {
-    eo_work_note_end(&q->note, code, &error);
-    status = eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error);
+    eo_work_note_end(&request->note, code, &error);
+    status = eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error);
   } else
-    status = run_study(q, pair, store);
-  eo_watch_end(&q->watch);
+    status = run_study(request, pair, store);
+  eo_watch_end(&request->watch);
   eo_pair_free(pair);
   return status;
 }
 
 static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
-  struct request *q = context;
+  struct request *request = context;
   if (job->kind != EO_JOB_OPTIMIZE)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is no optimization.", (long long)job->id);
-  q->fresh = job->fresh;
-  return eo_design_read(job->design, strlen(job->design), &q->design, &q->geometry, &q->warnings, error);
+  request->fresh = job->fresh;
+  return eo_design_read(job->design, strlen(job->design), &request->design, &request->geometry, &request->warnings,
+                        error);
 }
 
 /* For a server: the design of its job, of which the table says everything. */
-static enum eo_code find_job(struct request *q, struct eo_store *store, struct eo_error *error)
+static enum eo_code find_job(struct request *request, struct eo_store *store, struct eo_error *error)
 {
   int job;
   enum eo_job_outcome outcome;
-  if (!q->work)
+  if (!request->work)
     return EO_OK;
-  if (!eo_app_read_whole(q->work, "--work", 1, INT32_MAX, &job, error))
+  if (!eo_app_read_whole(request->work, "--work", 1, INT32_MAX, &job, error))
     return error->code;
-  q->note = (struct eo_work_note){.store = store, .job = job};
-  EO_TRY(eo_queue_find(store, job, take_job, q, &outcome, error));
+  request->note = (struct eo_work_note){.store = store, .job = job};
+  EO_TRY(eo_queue_find(store, job, take_job, request, &outcome, error));
   return outcome == EO_JOB_OUTCOME_DONE ? EO_OK : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
 }
 
-static int run_request(struct request *q)
+static int run_request(struct request *request)
 {
   struct eo_error error;
   struct eo_store *store = NULL;
   struct eo_text directory = {0};
   struct eo_study_space space;
-  bool checked = q->work ||
-                 (apply_options(q, &error) && !eo_study_space_init(&space, &q->design, &q->geometry, &error));
+  bool checked = request->work || (apply_options(request, &error) &&
+                                   !eo_study_space_init(&space, &request->design, &request->geometry, &error));
   if (!checked)
-    return eo_app_fail(*error.pointer ? q->file : NULL, &error);
-  enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
+    return eo_app_fail(*error.pointer ? request->file : NULL, &error);
+  enum eo_code code = eo_app_data_directory(request->data, &directory, &error);
   if (!code)
     code = eo_store_open(&store, directory.data, EO_STORE_WRITE, &error);
   if (!code)
-    code = find_job(q, store, &error);
-  int status = code ? eo_app_fail(NULL, &error) : run_prepared(q, store);
+    code = find_job(request, store, &error);
+  int status = code ? eo_app_fail(NULL, &error) : run_prepared(request, store);
   eo_store_close(store);
   eo_text_done(&directory);
   return status;
 }
 
 /* A design, or with --work none. */
-static bool load(const struct eo_command *command, struct request *q, int operands, int *status)
+static bool load(const struct eo_command *command, struct request *request, int operands, int *status)
 {
-  if (q->work && !operands)
+  if (request->work && !operands)
     return true;
-  if (!q->work && operands)
-    return eo_app_load_design(q->file, &q->design, &q->geometry, &q->warnings, status);
+  if (!request->work && operands)
+    return eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, status);
   fprintf(stderr, "easeoff optimize: %s; usage: easeoff optimize %s\n",
           operands ? "--work names a job, no design is needed" : "an argument is missing", command->usage);
   *status = EO_EXIT_INPUT;
@@ -204,28 +206,28 @@ static bool load(const struct eo_command *command, struct request *q, int operan
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *q = calloc(1, sizeof *q);
+  struct request *request = calloc(1, sizeof *request);
   struct eo_app_crew crew;
   int operands, status = EO_EXIT_FAILED;
-  if (!q || !eo_app_crew_begin(&crew, argc, argv, &status)) {
-    free(q);
+  if (!request || !eo_app_crew_begin(&crew, argc, argv, &status)) {
+    free(request);
     return status;
   }
-  const struct eo_option options[] = {{.name = "--algorithm", .value = &q->algorithm},
-                                      {.name = "--budget", .value = &q->budget},
-                                      {.name = "--threads", .value = &q->threads},
-                                      {.name = "--data", .value = &q->data},
-                                      {.name = "--cache", .value = &q->cache},
-                                      {.name = "--work", .value = &q->work},
-                                      {.name = "--json", .flag = &q->json},
-                                      {.name = "--fresh", .flag = &q->fresh},
-                                      {.name = "--restart", .flag = &q->restart},
+  const struct eo_option options[] = {{.name = "--algorithm", .value = &request->algorithm},
+                                      {.name = "--budget", .value = &request->budget},
+                                      {.name = "--threads", .value = &request->threads},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--cache", .value = &request->cache},
+                                      {.name = "--work", .value = &request->work},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--fresh", .flag = &request->fresh},
+                                      {.name = "--restart", .flag = &request->restart},
                                       {.name = NULL}};
-  q->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 0, 1, &q->file, &operands, &status) &&
-      load(command, q, operands, &status))
-    status = run_request(q);
-  free(q);
+  request->crew = &crew;
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status) &&
+      load(command, request, operands, &status))
+    status = run_request(request);
+  free(request);
   eo_app_crew_end(&crew);
   return status;
 }

@@ -14,59 +14,60 @@ struct request {
   int thread_count;
 };
 
-static enum eo_code save(const struct request *q, const json_t *document, struct eo_error *error)
+static enum eo_code save(const struct request *request, const json_t *document, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   struct eo_file_set bundle = {0};
   struct eo_text page = {0};
-  if (q->csv) {
+  if (request->csv) {
     eo_reproduction_files(document, &bundle);
-    code = eo_file_set_save(&bundle, q->csv, error);
+    code = eo_file_set_save(&bundle, request->csv, error);
   }
-  if (!code && q->html) {
+  if (!code && request->html) {
     eo_reproduction_page(document, &page);
-    code = eo_text_save(&page, q->html, error);
+    code = eo_text_save(&page, request->html, error);
   }
   eo_file_set_done(&bundle);
   eo_text_done(&page);
   return code;
 }
 
-static int show(const struct request *q, json_t *document)
+static int show(const struct request *request, json_t *document)
 {
   struct eo_text text = {0};
-  if (q->json)
+  if (request->json)
     return eo_app_print_json(document, false);
   eo_reproduction_summary(document, &text);
   json_decref(document);
   return eo_app_print(&text);
 }
 
-static int run_request(struct request *q)
+static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
   struct eo_text data = {0}, cache = {0};
   struct eo_store *store = NULL;
   json_t *document = NULL;
-  if (q->threads && !eo_app_read_whole(q->threads, "--threads", 1, EO_MAX_THREADS, &q->thread_count, &error))
+  if (request->threads &&
+      !eo_app_read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, &error))
     return eo_app_fail(NULL, &error);
-  enum eo_code code = eo_app_data_directory(q->data, &data, &error);
+  enum eo_code code = eo_app_data_directory(request->data, &data, &error);
   if (!code)
     code = eo_store_open(&store, data.data, EO_STORE_WRITE, &error);
-  bool keep = eo_app_cache_directory(q->data, &cache);
+  bool keep = eo_app_cache_directory(request->data, &cache);
   eo_watch_start(&watch);
   const struct eo_reproduction_plan plan = {.store = store,
                                             .cache_directory = keep ? cache.data : NULL,
-                                            .threads = q->thread_count,
-                                            .quick = q->quick,
+                                            .threads = request->thread_count,
+                                            .quick = request->quick,
                                             .progress = &watch.progress};
   if (!code)
     code = eo_reproduction_run(&plan, &document, &error);
   eo_watch_clear(&watch);
   if (!code)
-    code = save(q, document, &error);
-  int status = code ? eo_app_fail(NULL, &error) : show(q, document);
+    code = save(request, document, &error);
+  int status = code ? eo_app_fail(NULL, &error) : show(request, document);
   eo_watch_end(&watch);
   eo_store_close(store);
   eo_text_done(&data);
@@ -76,17 +77,17 @@ static int run_request(struct request *q)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request q = {0};
+  struct request request = {0};
   int operands, status;
-  const struct eo_option options[] = {{.name = "--json", .flag = &q.json},
-                                      {.name = "--csv", .value = &q.csv},
-                                      {.name = "--html", .value = &q.html},
-                                      {.name = "--data", .value = &q.data},
-                                      {.name = "--threads", .value = &q.threads},
-                                      {.name = "--quick", .flag = &q.quick},
+  const struct eo_option options[] = {{.name = "--json", .flag = &request.json},
+                                      {.name = "--csv", .value = &request.csv},
+                                      {.name = "--html", .value = &request.html},
+                                      {.name = "--data", .value = &request.data},
+                                      {.name = "--threads", .value = &request.threads},
+                                      {.name = "--quick", .flag = &request.quick},
                                       {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 0, 0, NULL, &operands, &status))
-    status = run_request(&q);
+    status = run_request(&request);
   return status;
 }
 

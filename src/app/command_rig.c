@@ -29,21 +29,21 @@ struct options {
   const char *value[MOST_OPTIONS];
 };
 
-static void make_options(struct request *request, struct options *o)
+static void make_options(struct request *request, struct options *options)
 {
   const struct eo_option own[OWN_OPTIONS] = {
       {.name = "--design", .value = &request->design_file}, {.name = "-o", .value = &request->output},
       {.name = "--truth", .value = &request->truth},        {.name = "--settings", .value = &request->settings},
       {.name = "--torque", .value = &request->torque},      {.name = "--speed", .value = &request->speed},
       {.name = "--data", .value = &request->data},          {.name = "--no-cache", .flag = &request->no_cache}};
-  memcpy(o->option, own, sizeof own);
+  memcpy(options->option, own, sizeof own);
   for (int i = 0; i < eo_rig_table.count; i++) {
-    snprintf(o->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
-    for (char *c = o->name[i]; *c; c++)
+    snprintf(options->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
+    for (char *c = options->name[i]; *c; c++)
       *c = *c == '_' ? '-' : *c;
-    o->option[OWN_OPTIONS + i] = (struct eo_option){.name = o->name[i], .value = &o->value[i]};
+    options->option[OWN_OPTIONS + i] = (struct eo_option){.name = options->name[i], .value = &options->value[i]};
   }
-  o->option[OWN_OPTIONS + eo_rig_table.count] = (struct eo_option){.name = NULL};
+  options->option[OWN_OPTIONS + eo_rig_table.count] = (struct eo_option){.name = NULL};
 }
 
 /* An option as the JSON value its key would have; what is no number stays text, for the table to refuse. */
@@ -61,13 +61,13 @@ static json_t *value_of(const struct eo_field *field, const char *text)
   return whole && number == floor(number) && fabs(number) < 9e15 ? json_integer((json_int_t)number) : json_real(number);
 }
 
-static json_t *settings_document(struct request *request, const struct options *o, struct eo_error *error)
+static json_t *settings_document(struct request *request, const struct options *options, struct eo_error *error)
 {
   json_t *document = request->settings ? eo_json_load(request->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
   bool failed = false;
   for (int i = 0; i < eo_rig_table.count && document; i++) {
     const struct eo_field *field = &eo_rig_table.field[i];
-    const char *text = o->value[i];
+    const char *text = options->value[i];
     if (!text && strcmp(field->key, "torque_Nm") == 0)
       text = request->torque;
     if (!text && strcmp(field->key, "speed_rpm") == 0)
@@ -80,11 +80,11 @@ static json_t *settings_document(struct request *request, const struct options *
   return failed ? (json_decref(document), NULL) : document;
 }
 
-static bool read_settings(struct request *request, const struct options *o, int *status)
+static bool read_settings(struct request *request, const struct options *options, int *status)
 {
   struct eo_error error = {0};
   struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = faults ? settings_document(request, o, &error) : NULL;
+  json_t *document = faults ? settings_document(request, options, &error) : NULL;
   *status = EO_EXIT_DONE;
   if (!document)
     *status = eo_app_fail(request->settings, error.code ? &error : (eo_error_memory(&error), &error));
@@ -185,27 +185,27 @@ static int run_request(struct request *request)
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request *request = calloc(1, sizeof *request);
-  struct options *o = calloc(1, sizeof *o);
+  struct options *options = calloc(1, sizeof *options);
   struct eo_error error;
   const char *operand;
   int operands, status;
-  if (!request || !o) {
+  if (!request || !options) {
     eo_error_memory(&error);
     status = eo_app_fail(NULL, &error);
     goto out;
   }
-  make_options(request, o);
-  if (!eo_app_arguments(command, argc, argv, o->option, 0, 0, &operand, &operands, &status))
+  make_options(request, options);
+  if (!eo_app_arguments(command, argc, argv, options->option, 0, 0, &operand, &operands, &status))
     goto out;
   if (!request->design_file || !request->output) {
     eo_error_set(&error, EO_ERROR_INPUT, "", "A rig needs --design FILE and -o FILE.");
     status = eo_app_fail(NULL, &error);
-  } else if (read_settings(request, o, &status) &&
+  } else if (read_settings(request, options, &status) &&
              eo_app_load_design(request->design_file, &request->design, &request->geometry, NULL, &status)) {
     status = run_request(request);
   }
 out:
-  free(o);
+  free(options);
   free(request);
   return status;
 }

@@ -109,79 +109,80 @@ static enum eo_code add_whole(json_t *document, const char *key, const char *opt
   return json_object_set_new(document, key, json_integer(value)) ? eo_error_memory(error) : EO_OK;
 }
 
-static enum eo_code add_table(struct request *q, struct eo_error *error)
+static enum eo_code add_table(struct request *request, struct eo_error *error)
 {
   struct eo_text text = {0};
-  if (!q->table)
+  if (!request->table)
     return EO_OK;
-  EO_TRY(eo_text_read(&text, q->table, EO_STUDY_BYTES, error));
+  EO_TRY(eo_text_read(&text, request->table, EO_STUDY_BYTES, error));
   json_t *value = json_stringn(text.data ? text.data : "", text.size);
   eo_text_done(&text);
-  return value && json_object_set_new(q->document, "table", value) == 0
+  return value && json_object_set_new(request->document, "table", value) == 0
              ? EO_OK
-             : eo_error_set(error, EO_ERROR_INPUT, "", "%.100s is no text in UTF-8.", q->table);
+             : eo_error_set(error, EO_ERROR_INPUT, "", "%.100s is no text in UTF-8.", request->table);
 }
 
 /* A study's document as it is, a design inside one; then what the options say. */
-static enum eo_code compose(struct request *q, struct eo_error *error)
+static enum eo_code compose(struct request *request, struct eo_error *error)
 {
-  json_t *document = eo_json_load(q->file, EO_STUDY_BYTES, error), *vary = NULL;
+  json_t *document = eo_json_load(request->file, EO_STUDY_BYTES, error), *vary = NULL;
   if (!document)
     return error->code;
   if (!json_object_get(document, "design")) {
     json_t *design = document;
     document = json_pack("{s:o}", "design", design);
   }
-  q->document = document;
-  if (q->vary.count > EO_OPTION_MOST)
+  request->document = document;
+  if (request->vary.count > EO_OPTION_MOST)
     return eo_error_set(error, EO_ERROR_INPUT, "", "There are more than %d options --vary.", EO_OPTION_MOST);
-  if (q->vary.count && (vary = json_array()))
+  if (request->vary.count && (vary = json_array()))
     json_object_set_new(document, "vary", vary);
-  for (int i = 0; i < q->vary.count; i++)
-    EO_TRY(add_axis(vary, q->vary.value[i], error));
-  if (q->sampling)
-    json_object_set_new(document, "sampling", json_string(q->sampling));
-  if (q->columns)
-    json_object_set_new(document, "columns", json_string(q->columns));
-  EO_TRY(add_whole(document, "samples", "--samples", q->samples, error));
-  EO_TRY(add_whole(document, "seed", "--seed", q->seed, error));
-  return add_table(q, error);
+  for (int i = 0; i < request->vary.count; i++)
+    EO_TRY(add_axis(vary, request->vary.value[i], error));
+  if (request->sampling)
+    json_object_set_new(document, "sampling", json_string(request->sampling));
+  if (request->columns)
+    json_object_set_new(document, "columns", json_string(request->columns));
+  EO_TRY(add_whole(document, "samples", "--samples", request->samples, error));
+  EO_TRY(add_whole(document, "seed", "--seed", request->seed, error));
+  return add_table(request, error);
 }
 
-static bool read_plan(struct request *q, int *status)
+static bool read_plan(struct request *request, int *status)
 {
   struct eo_error error;
   struct eo_faults *faults = calloc(1, sizeof *faults);
   *status = EO_EXIT_DONE;
-  if (!faults || compose(q, &error))
+  if (!faults || compose(request, &error))
     *status = faults ? eo_app_fail(NULL, &error) : EO_EXIT_FAILED;
-  else if (!eo_variant_plan_init(&q->plan, q->document, faults))
-    *status = eo_app_fail_all(q->file, faults);
+  else if (!eo_variant_plan_init(&request->plan, request->document, faults))
+    *status = eo_app_fail_all(request->file, faults);
   free(faults);
   return *status == EO_EXIT_DONE;
 }
 
 /* What is asked for beside a study: */
 
-static int list_columns(struct request *q)
+static int list_columns(struct request *request)
 {
   struct eo_scalars scalars;
   struct eo_error error;
   struct eo_text text = {0};
   struct eo_geometry geometry;
   struct eo_design *design = malloc(sizeof *design);
-  enum eo_code code = design ? compose(q, &error) : eo_error_memory(&error);
+  enum eo_code code = design ? compose(request, &error) : eo_error_memory(&error);
   if (!code) {
     struct eo_text written = {0};
-    eo_json_write(&written, json_object_get(q->document, "design"), EO_JSON_COMPACT);
+    eo_json_write(&written, json_object_get(request->document, "design"), EO_JSON_COMPACT);
     code = eo_design_read(written.data, written.size, design, &geometry, NULL, &error);
     eo_text_done(&written);
   }
   if (!code)
-    code = eo_scalars_init(&scalars, q->columns ? q->columns : "*", design->load_cases, design->gear_pair.ends, &error);
+    code = eo_scalars_init(&scalars, request->columns ? request->columns : "*", design->load_cases,
+                           design->gear_pair.ends, &error);
   free(design);
   if (code)
-    return eo_app_fail(q->file, &error);
+    return eo_app_fail(request->file, &error);
   for (int i = 0; i < scalars.count; i++)
     eo_text_print(&text, "%-60s %-8s %s\n", scalars.scalar[i].name, scalars.scalar[i].unit, scalars.scalar[i].help);
   eo_scalars_done(&scalars);
@@ -198,13 +199,13 @@ static void print_time(struct eo_text *text, double seconds)
     eo_text_print(text, "%.3g h", seconds / 3600);
 }
 
-static int tell_cost(struct request *q, struct eo_store *store)
+static int tell_cost(struct request *request, struct eo_store *store)
 {
   struct eo_variant_cost cost;
   struct eo_error error;
   struct eo_text text = {0};
-  int strength = eo_crew_strength(&q->crew->crew);
-  if (eo_variant_cost_find(&q->plan, store, &cost, &error))
+  int strength = eo_crew_strength(&request->crew->crew);
+  if (eo_variant_cost_find(&request->plan, store, &cost, &error))
     return eo_app_fail(NULL, &error);
   eo_text_print(&text, "%d variants of %d gear pair%s\n", cost.rows, cost.pairs, cost.pairs == 1 ? "" : "s");
   if (cost.refused_pairs)
@@ -227,83 +228,86 @@ static int tell_cost(struct request *q, struct eo_store *store)
 
 static int show_progress(void *context, const struct eo_variant_report *report)
 {
-  struct request *q = context;
+  struct request *request = context;
   char line[200], left[32] = "--:--";
-  if (eo_watch_due(&q->watch)) {
+  if (eo_watch_due(&request->watch)) {
     if (isfinite(report->seconds_left))
       snprintf(left, sizeof left, "%ld:%02ld:%02ld", lround(report->seconds_left) / 3600,
                lround(report->seconds_left) / 60 % 60, lround(report->seconds_left) % 60);
     snprintf(line, sizeof line, "%3.0f %%, %s left, %d of %d variants, known %d, refused %d, not converged %d",
              100 * report->fraction, left, report->done, report->rows, report->reused, report->refused,
              report->not_converged);
-    eo_watch_show(&q->watch, line);
+    eo_watch_show(&request->watch, line);
   }
-  if (q->note.job)
-    eo_variant_job_follow(&q->note.live, report);
-  return eo_work_note_shall_stop(&q->note, &q->watch);
+  if (request->note.job)
+    eo_variant_job_follow(&request->note.live, report);
+  return eo_work_note_shall_stop(&request->note, &request->watch);
 }
 
 /* For a server: its job, of which the table says everything. */
-static int work(struct request *q, int job)
+static int work(struct request *request, int job)
 {
   struct eo_variant_result result = {0};
   struct eo_error error;
-  q->note = (struct eo_work_note){.store = q->store, .job = job};
-  eo_watch_start(&q->watch);
-  enum eo_code code = eo_variant_job_run(q->store, job, &q->crew->crew, show_progress, q, &result, &error);
-  eo_watch_clear(&q->watch);
-  eo_watch_end(&q->watch);
+  request->note = (struct eo_work_note){.store = request->store, .job = job};
+  eo_watch_start(&request->watch);
+  enum eo_code code = eo_variant_job_run(request->store, job, &request->crew->crew, show_progress, request, &result,
+                                         &error);
+  eo_watch_clear(&request->watch);
+  eo_watch_end(&request->watch);
   if (!code)
-    eo_variant_job_conclude(&q->note.live, &result);
-  eo_work_note_end(&q->note, code, &error);
+    eo_variant_job_conclude(&request->note.live, &result);
+  eo_work_note_end(&request->note, code, &error);
   return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
 }
 
-static void summarise(const struct eo_variant_result *r, struct eo_text *text)
+static void summarise(const struct eo_variant_result *variant_result, struct eo_text *text)
 {
   eo_text_print(text,
                 "Study %lld%s: %d of %d variants, %d known before, %d computed now, %d refused, %d not converged%s\n",
-                (long long)r->job, r->resumed ? " (taken up)" : "", r->done, r->rows, r->reused, r->computed,
-                r->refused, r->not_converged, r->cancelled ? "; stopped" : "");
+                (long long)variant_result->job, variant_result->resumed ? " (taken up)" : "", variant_result->done,
+                variant_result->rows, variant_result->reused, variant_result->computed, variant_result->refused,
+                variant_result->not_converged, variant_result->cancelled ? "; stopped" : "");
 }
 
-static enum eo_code write_table(struct request *q, const struct eo_variant_table *table,
+static enum eo_code write_table(struct request *request, const struct eo_variant_table *table,
                                 const struct eo_variant_query *query, struct eo_text *text, struct eo_error *error)
 {
   json_t *document;
   struct eo_text csv = {0};
-  if (q->csv) {
-    enum eo_code code = eo_variant_table_csv(table, q->store, strcmp(q->csv, "-") == 0 ? text : &csv, error);
+  if (request->csv) {
+    enum eo_code code = eo_variant_table_csv(table, request->store, strcmp(request->csv, "-") == 0 ? text : &csv,
+                                             error);
     if (!code && csv.size)
-      code = eo_text_save(&csv, q->csv, error);
+      code = eo_text_save(&csv, request->csv, error);
     eo_text_done(&csv);
     return code;
   }
-  if (!q->json)
-    return eo_variant_table_print(table, q->store, text, error);
-  EO_TRY(eo_variant_table_encode(table, q->store, query, &document, error));
+  if (!request->json)
+    return eo_variant_table_print(table, request->store, text, error);
+  EO_TRY(eo_variant_table_encode(table, request->store, query, &document, error));
   eo_json_write(text, document, EO_JSON_PRETTY);
   json_decref(document);
   return EO_OK;
 }
 
-static int show(struct request *q, int64_t job, const struct eo_variant_result *result)
+static int show(struct request *request, int64_t job, const struct eo_variant_result *result)
 {
   struct eo_variant_table table;
   struct eo_error error;
   struct eo_text text = {0};
-  int limit = q->json || q->csv ? -1 : SHOWN;
-  struct eo_variant_query query = {.filter = q->filter, .sort = q->sort, .descending = q->descending};
-  if (q->limit && !eo_app_read_whole(q->limit, "--limit", 1, EO_STUDY_MOST_ROWS, &limit, &error))
+  int limit = request->json || request->csv ? -1 : SHOWN;
+  struct eo_variant_query query = {.filter = request->filter, .sort = request->sort, .descending = request->descending};
+  if (request->limit && !eo_app_read_whole(request->limit, "--limit", 1, EO_STUDY_MOST_ROWS, &limit, &error))
     return eo_app_fail(NULL, &error);
   query.most = limit;
-  bool people = !q->json && (!q->csv || strcmp(q->csv, "-") != 0);
-  enum eo_code code = eo_variant_table_init(&table, q->store, job, &query, &error);
+  bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
+  enum eo_code code = eo_variant_table_init(&table, request->store, job, &query, &error);
   if (!code && result && people)
     summarise(result, &text);
   if (!code)
-    code = write_table(q, &table, &query, &text, &error);
-  if (!code && people && !q->csv && table.count < table.fits)
+    code = write_table(request, &table, &query, &text, &error);
+  if (!code && people && !request->csv && table.count < table.fits)
     eo_text_print(&text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
   eo_variant_table_done(&table);
   if (!code)
@@ -312,54 +316,59 @@ static int show(struct request *q, int64_t job, const struct eo_variant_result *
   return eo_app_fail(NULL, &error);
 }
 
-static int run_study(struct request *q)
+static int run_study(struct request *request)
 {
   struct eo_variant_result result;
   struct eo_error error;
-  json_t *kept = eo_variant_plan_encode(q->document, &q->plan);
-  const struct eo_variant_run run = {.plan = &q->plan,
+  json_t *kept = eo_variant_plan_encode(request->document, &request->plan);
+  const struct eo_variant_run run = {.plan = &request->plan,
                                      .document = kept,
-                                     .store = q->store,
-                                     .crew = &q->crew->crew,
-                                     .restart = q->restart,
+                                     .store = request->store,
+                                     .crew = &request->crew->crew,
+                                     .restart = request->restart,
                                      .watch = show_progress,
-                                     .context = q};
-  eo_watch_start(&q->watch);
+                                     .context = request};
+  eo_watch_start(&request->watch);
   enum eo_code code = kept ? eo_variant_study_run(&run, &result, &error) : eo_error_memory(&error);
-  eo_watch_clear(&q->watch);
-  eo_watch_end(&q->watch);
+  eo_watch_clear(&request->watch);
+  eo_watch_end(&request->watch);
   json_decref(kept);
-  return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : show(q, result.job, &result);
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, result.job, &result);
 }
 
-static int run_request(struct request *q)
+static int run_request(struct request *request)
 {
   struct eo_error error;
   struct eo_text directory = {0};
   int status;
-  const char *number = q->job ? q->job : q->work;
-  if (!number && q->list_columns)
-    return list_columns(q);
-  if (!number && !read_plan(q, &status))
+  const char *number = request->job ? request->job : request->work;
+  if (!number && request->list_columns)
+    return list_columns(request);
+  if (!number && !read_plan(request, &status))
     return status;
-  enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
+  enum eo_code code = eo_app_data_directory(request->data, &directory, &error);
   if (!code)
-    code = eo_store_open(&q->store, directory.data, q->job || q->dry_run ? EO_STORE_READ : EO_STORE_WRITE, &error);
+    code = eo_store_open(&request->store, directory.data,
+                         request->job || request->dry_run ? EO_STORE_READ : EO_STORE_WRITE, &error);
   int job = 0;
-  if (code && q->dry_run)
-    status = tell_cost(q, NULL); /* there is no history yet */
-  else if (code || (number && !eo_app_read_whole(number, q->job ? "--job" : "--work", 1, INT32_MAX, &job, &error)))
+  if (code && request->dry_run)
+    status = tell_cost(request, NULL); /* there is no history yet */
+  else if (code ||
+           (number && !eo_app_read_whole(number, request->job ? "--job" : "--work", 1, INT32_MAX, &job, &error)))
     status = eo_app_fail(NULL, &error);
   else
-    status = q->dry_run ? tell_cost(q, q->store) : q->work ? work(q, job) : q->job ? show(q, job, NULL) : run_study(q);
-  eo_store_close(q->store);
+    status = request->dry_run ? tell_cost(request, request->store)
+             : request->work  ? work(request, job)
+             : request->job   ? show(request, job, NULL)
+                              : run_study(request);
+  eo_store_close(request->store);
   eo_text_done(&directory);
   return status;
 }
 
-static bool check_operands(const struct eo_command *command, const struct request *q, int operands)
+static bool check_operands(const struct eo_command *command, const struct request *request, int operands)
 {
-  if (operands == (!q->job && !q->work))
+  if (operands == (!request->job && !request->work))
     return true;
   fprintf(stderr, "easeoff study: %s; usage: easeoff study %s\n",
           operands ? "--job and --work name a study, no design is needed" : "an argument is missing", command->usage);
@@ -368,40 +377,40 @@ static bool check_operands(const struct eo_command *command, const struct reques
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *q = calloc(1, sizeof *q);
+  struct request *request = calloc(1, sizeof *request);
   struct eo_app_crew crew;
   int operands, status = EO_EXIT_FAILED;
-  if (!q || !eo_app_crew_begin(&crew, argc, argv, &status)) {
-    free(q);
+  if (!request || !eo_app_crew_begin(&crew, argc, argv, &status)) {
+    free(request);
     return status;
   }
-  const struct eo_option options[] = {{.name = "--vary", .list = &q->vary},
-                                      {.name = "--table", .value = &q->table},
-                                      {.name = "--sampling", .value = &q->sampling},
-                                      {.name = "--samples", .value = &q->samples},
-                                      {.name = "--seed", .value = &q->seed},
-                                      {.name = "--columns", .value = &q->columns},
-                                      {.name = "--list-columns", .flag = &q->list_columns},
-                                      {.name = "--sort", .value = &q->sort},
-                                      {.name = "--descending", .flag = &q->descending},
-                                      {.name = "--filter", .value = &q->filter},
-                                      {.name = "--limit", .value = &q->limit},
-                                      {.name = "--csv", .value = &q->csv},
-                                      {.name = "--json", .flag = &q->json},
-                                      {.name = "--job", .value = &q->job},
-                                      {.name = "--work", .value = &q->work},
-                                      {.name = "--dry-run", .flag = &q->dry_run},
-                                      {.name = "--restart", .flag = &q->restart},
-                                      {.name = "--threads", .value = &q->threads},
-                                      {.name = "--data", .value = &q->data},
-                                      {.name = "--cache", .value = &q->cache},
+  const struct eo_option options[] = {{.name = "--vary", .list = &request->vary},
+                                      {.name = "--table", .value = &request->table},
+                                      {.name = "--sampling", .value = &request->sampling},
+                                      {.name = "--samples", .value = &request->samples},
+                                      {.name = "--seed", .value = &request->seed},
+                                      {.name = "--columns", .value = &request->columns},
+                                      {.name = "--list-columns", .flag = &request->list_columns},
+                                      {.name = "--sort", .value = &request->sort},
+                                      {.name = "--descending", .flag = &request->descending},
+                                      {.name = "--filter", .value = &request->filter},
+                                      {.name = "--limit", .value = &request->limit},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--job", .value = &request->job},
+                                      {.name = "--work", .value = &request->work},
+                                      {.name = "--dry-run", .flag = &request->dry_run},
+                                      {.name = "--restart", .flag = &request->restart},
+                                      {.name = "--threads", .value = &request->threads},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--cache", .value = &request->cache},
                                       {.name = NULL}};
-  q->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 0, 1, &q->file, &operands, &status))
-    status = check_operands(command, q, operands) ? run_request(q) : EO_EXIT_INPUT;
-  eo_variant_plan_done(&q->plan);
-  json_decref(q->document);
-  free(q);
+  request->crew = &crew;
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
+    status = check_operands(command, request, operands) ? run_request(request) : EO_EXIT_INPUT;
+  eo_variant_plan_done(&request->plan);
+  json_decref(request->document);
+  free(request);
   eo_app_crew_end(&crew);
   return status;
 }

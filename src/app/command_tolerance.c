@@ -36,19 +36,19 @@ static bool read_whole(const char *text, const char *option, int low, int high, 
 /* Options stand in place of what the block says. */
 static bool read_options(struct request *request, int *status)
 {
-  struct eo_tolerance_settings *t = &request->design.tolerance;
+  struct eo_tolerance_settings *tolerance_settings = &request->design.tolerance;
   int seed = -1;
   if (!read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, status) ||
-      !read_whole(request->pairs, "--pairs", 1, EO_SCATTER_MOST_PAIRS, &t->pairs, status) ||
-      !read_whole(request->grade, "--class", 0, 12, &t->grade, status) ||
+      !read_whole(request->pairs, "--pairs", 1, EO_SCATTER_MOST_PAIRS, &tolerance_settings->pairs, status) ||
+      !read_whole(request->grade, "--class", 0, 12, &tolerance_settings->grade, status) ||
       !read_whole(request->seed, "--seed", 0, 2147483647, &seed, status))
     return false;
-  if (request->grade && t->preset == EO_SCATTER_AS_STATED)
-    t->preset = EO_SCATTER_ISO_CLASS;
+  if (request->grade && tolerance_settings->preset == EO_SCATTER_AS_STATED)
+    tolerance_settings->preset = EO_SCATTER_ISO_CLASS;
   if (seed >= 0)
-    t->seed = (uint64_t)seed;
+    tolerance_settings->seed = (uint64_t)seed;
   if (request->no_vibration)
-    t->vibration = false;
+    tolerance_settings->vibration = false;
   return true;
 }
 

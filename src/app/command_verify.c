@@ -51,15 +51,15 @@ static double severity(const struct eo_check *check)
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);
 }
 
-static void add_row(struct eo_text_table *sheet, const struct eo_verification *v, int first, int count)
+static void add_row(struct eo_text_table *sheet, const struct eo_verification *verification, int first, int count)
 {
   int worst = first, bad = 0;
   for (int i = first; i < first + count; i++) {
-    bad += !v->check[i].pass;
-    if (severity(&v->check[i]) > severity(&v->check[worst]))
+    bad += !verification->check[i].pass;
+    if (severity(&verification->check[i]) > severity(&verification->check[worst]))
       worst = i;
   }
-  const struct eo_check *check = &v->check[worst];
+  const struct eo_check *check = &verification->check[worst];
   eo_text_table_string(sheet, check->label);
   eo_text_table_number(sheet, count, NULL, 9);
   eo_text_table_string(sheet, check->quantity);
@@ -74,40 +74,43 @@ static void add_row(struct eo_text_table *sheet, const struct eo_verification *v
 }
 
 /* Checks of a block stand together: how many from the first on. */
-static int block_size(const struct eo_verification *v, int first)
+static int block_size(const struct eo_verification *verification, int first)
 {
   int count = 1;
-  while (first + count < v->count && strcmp(v->check[first].block, v->check[first + count].block) == 0)
+  while (first + count < verification->count &&
+         strcmp(verification->check[first].block, verification->check[first + count].block) == 0)
     count++;
   return count;
 }
 
-static void print_blocks(const struct eo_verification *v, struct eo_text *text)
+static void print_blocks(const struct eo_verification *verification, struct eo_text *text)
 {
   eo_text_print(text, "  checks:");
-  for (int first = 0; first < v->count; first += block_size(v, first))
-    eo_text_print(text, "%s %s %d", first ? "," : "", v->check[first].block, block_size(v, first));
+  for (int first = 0; first < verification->count; first += block_size(verification, first))
+    eo_text_print(text, "%s %s %d", first ? "," : "", verification->check[first].block,
+                  block_size(verification, first));
   eo_text_add(text, "\n");
 }
 
 /* One line per case: its largest deviation, measured in tolerances. */
-static void print_table(const struct eo_verification *v, struct eo_text *text)
+static void print_table(const struct eo_verification *verification, struct eo_text *text)
 {
   static const char *const headings[] = {
       "case", "checks", "largest deviation in", "value", "expected", "deviation", "tolerance", "verdict"};
   struct eo_text_table sheet;
   eo_text_table_init(&sheet, 8, headings);
-  for (int first = 0, count; first < v->count; first += count) {
-    for (count = 1; first + count < v->count && strcmp(v->check[first].label, v->check[first + count].label) == 0;)
+  for (int first = 0, count; first < verification->count; first += count) {
+    for (count = 1; first + count < verification->count &&
+                    strcmp(verification->check[first].label, verification->check[first + count].label) == 0;)
       count++;
-    add_row(&sheet, v, first, count);
+    add_row(&sheet, verification, first, count);
   }
-  if (v->count)
+  if (verification->count)
     eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
-  print_blocks(v, text);
-  for (size_t i = 0; i < json_array_size(v->notes); i++)
-    eo_text_print(text, "  note: %s\n", json_string_value(json_array_get(v->notes, i)));
+  print_blocks(verification, text);
+  for (size_t i = 0; i < json_array_size(verification->notes); i++)
+    eo_text_print(text, "  note: %s\n", json_string_value(json_array_get(verification->notes, i)));
 }
 
 static json_t *encode_check(const struct eo_check *check)
@@ -133,24 +136,24 @@ static json_t *encode_fault(const struct eo_error *fault)
   return failed ? (json_decref(row), NULL) : row;
 }
 
-static json_t *encode_blocks(const struct eo_verification *v)
+static json_t *encode_blocks(const struct eo_verification *verification)
 {
   json_t *blocks = json_object();
   bool failed = !blocks;
-  for (int first = 0; first < v->count; first += block_size(v, first))
-    eo_json_put(blocks, v->check[first].block, json_integer(block_size(v, first)), &failed);
+  for (int first = 0; first < verification->count; first += block_size(verification, first))
+    eo_json_put(blocks, verification->check[first].block, json_integer(block_size(verification, first)), &failed);
   return failed ? (json_decref(blocks), NULL) : blocks;
 }
 
 static json_t *encode_file(const char *path, const struct verified *verified)
 {
-  const struct eo_verification *v = &verified->v;
+  const struct eo_verification *verification = &verified->v;
   const struct eo_faults *faults = eo_case_faults(verified->file);
   json_t *file = json_object(), *rows = json_array(), *told = json_array();
   bool failed = !file || !rows || !told, pass = faults->count == 0;
-  for (int i = 0; i < v->count; i++) {
-    failed = failed || json_array_append_new(rows, encode_check(&v->check[i])) != 0;
-    pass = pass && v->check[i].pass;
+  for (int i = 0; i < verification->count; i++) {
+    failed = failed || json_array_append_new(rows, encode_check(&verification->check[i])) != 0;
+    pass = pass && verification->check[i].pass;
   }
   for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
     failed = failed || json_array_append_new(told, encode_fault(&faults->fault[i])) != 0;
@@ -158,9 +161,9 @@ static json_t *encode_file(const char *path, const struct verified *verified)
   eo_json_put(file, "file", name ? name : json_null(), &failed);
   eo_json_put(file, "pass", json_boolean(pass), &failed);
   eo_json_put(file, "faults", told, &failed);
-  eo_json_put(file, "blocks", encode_blocks(v), &failed);
+  eo_json_put(file, "blocks", encode_blocks(verification), &failed);
   eo_json_put(file, "checks", rows, &failed);
-  eo_json_put(file, "notes", json_incref(v->notes), &failed);
+  eo_json_put(file, "notes", json_incref(verification->notes), &failed);
   return failed ? (json_decref(file), NULL) : file;
 }
 
@@ -172,11 +175,11 @@ struct totals {
   bool failed;
 };
 
-static void count_checks(struct totals *totals, const struct eo_verification *v)
+static void count_checks(struct totals *totals, const struct eo_verification *verification)
 {
-  totals->checks += v->count;
-  for (int i = 0; i < v->count; i++)
-    totals->bad += !v->check[i].pass;
+  totals->checks += verification->count;
+  for (int i = 0; i < verification->count; i++)
+    totals->bad += !verification->check[i].pass;
 }
 
 /* A file with faults is refused as a whole: nothing of it counts. */

@@ -28,59 +28,60 @@ int eo_parallel_cores(void)
   return count < 1 ? 1 : count > EO_MAX_THREADS ? EO_MAX_THREADS : count;
 }
 
-static int take_item(struct shared *s)
+static int take_item(struct shared *shared)
 {
-  pthread_mutex_lock(&s->mutex);
-  int item = s->stop || s->next == s->items ? -1 : s->next++;
-  pthread_mutex_unlock(&s->mutex);
+  pthread_mutex_lock(&shared->mutex);
+  int item = shared->stop || shared->next == shared->items ? -1 : shared->next++;
+  pthread_mutex_unlock(&shared->mutex);
   return item;
 }
 
 /* Items below a failed one were all handed out before it, so the lowest failure is the same for any timing. */
-static int finish_item(struct shared *s, int item, enum eo_code code, const struct eo_error *error)
+static int finish_item(struct shared *shared, int item, enum eo_code code, const struct eo_error *error)
 {
-  pthread_mutex_lock(&s->mutex);
-  int finished = ++s->finished;
+  pthread_mutex_lock(&shared->mutex);
+  int finished = ++shared->finished;
   if (code) {
-    s->stop = true;
-    if (s->failed_item < 0 || item < s->failed_item) {
-      s->failed_item = item;
-      s->error = *error;
-      s->error.code = code;
+    shared->stop = true;
+    if (shared->failed_item < 0 || item < shared->failed_item) {
+      shared->failed_item = item;
+      shared->error = *error;
+      shared->error.code = code;
     }
   }
-  pthread_mutex_unlock(&s->mutex);
+  pthread_mutex_unlock(&shared->mutex);
   return finished;
 }
 
 /* True when a stop was asked for. */
-static bool report(struct shared *s, int finished)
+static bool report(struct shared *shared, int finished)
 {
-  const struct eo_parallel *p = s->parallel;
-  if (!eo_progress_report(p->progress, p->what, p->first + (p->last - p->first) * finished / s->items))
+  const struct eo_parallel *parallel = shared->parallel;
+  if (!eo_progress_report(parallel->progress, parallel->what,
+                          parallel->first + (parallel->last - parallel->first) * finished / shared->items))
     return false;
-  pthread_mutex_lock(&s->mutex);
-  s->stop = true;
-  pthread_mutex_unlock(&s->mutex);
+  pthread_mutex_lock(&shared->mutex);
+  shared->stop = true;
+  pthread_mutex_unlock(&shared->mutex);
   return true;
 }
 
-static bool work_off(struct shared *s, int thread)
+static bool work_off(struct shared *shared, int thread)
 {
   bool cancelled = false;
-  for (int item; !cancelled && (item = take_item(s)) >= 0;) {
+  for (int item; !cancelled && (item = take_item(shared)) >= 0;) {
     struct eo_error error = {0};
-    enum eo_code code = s->parallel->work(s->parallel->context, thread, item, &error);
-    int finished = finish_item(s, item, code, &error);
-    cancelled = thread == 0 && report(s, finished);
+    enum eo_code code = shared->parallel->work(shared->parallel->context, thread, item, &error);
+    int finished = finish_item(shared, item, code, &error);
+    cancelled = thread == 0 && report(shared, finished);
   }
   return cancelled;
 }
 
 static void *run_worker(void *argument)
 {
-  struct worker *w = argument;
-  work_off(w->shared, w->number);
+  struct worker *worker = argument;
+  work_off(worker->shared, worker->number);
   return NULL;
 }
 

@@ -36,16 +36,16 @@ static void turn(const double from[2], double angle, double to[2])
 }
 
 /* A member's profile point and normal about its own centre at pinion phase 0. */
-static void place_profile(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
-                          double point[2], double normal[2])
+static void place_profile(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                          double u, double point[2], double normal[2])
 {
-  struct eo_slice_point p;
-  eo_slice_point_at(g, member, shape, u, &p);
-  double angle = eo_geometry_involute_function(g->transverse_pressure_angle) -
-                 eo_geometry_involute_function(g->working_pressure_angle);
+  struct eo_slice_point slice_point;
+  eo_slice_point_at(geometry, member, shape, u, &slice_point);
+  double angle = eo_geometry_involute_function(geometry->transverse_pressure_angle) -
+                 eo_geometry_involute_function(geometry->working_pressure_angle);
   angle += member == EO_PINION ? 0 : M_PI;
-  turn(p.position, angle, point);
-  turn(p.normal, angle, normal);
+  turn(slice_point.position, angle, point);
+  turn(slice_point.normal, angle, normal);
 }
 
 /* How fast a member turns with c: the pinion clockwise, the gear counterclockwise. */
@@ -69,75 +69,79 @@ static void place_tip(const struct corner *corner, int which, double c, double p
 /* From a little above the radius that the corner has at the end of the reach down to the one it has at the start. */
 static void trace_flank(struct corner *corner, double reach)
 {
-  const struct eo_geometry *g = corner->geometry;
-  double far[2], near[2], lowest = INFINITY, span = g->rack_top - g->rack_bottom;
+  const struct eo_geometry *geometry = corner->geometry;
+  double far[2], near[2], lowest = INFINITY, span = geometry->rack_top - geometry->rack_bottom;
   place_tip(corner, 0, phase_at(corner, reach), far);
   place_tip(corner, 0, phase_at(corner, 0), near);
-  double path = eo_geometry_path_at(g, corner->flank, hypot(far[0], far[1])),
-         high = g->rack_factor * eo_geometry_own_path(corner->flank, path);
-  double bottom = corner->flank == EO_PINION ? g->rack_bottom : -g->rack_top,
+  double path = eo_geometry_path_at(geometry, corner->flank, hypot(far[0], far[1])),
+         high = geometry->rack_factor * eo_geometry_own_path(corner->flank, path);
+  double bottom = corner->flank == EO_PINION ? geometry->rack_bottom : -geometry->rack_top,
          step = (high - bottom + 0.25 * span) / (OUTLINE_NODES - 4);
-  struct outline *o = &corner->outline;
+  struct outline *outline = &corner->outline;
   int first = OUTLINE_NODES;
   for (int i = OUTLINE_NODES - 1; i >= 0 && lowest > hypot(near[0], near[1]) - 1e-6; i--) {
     double p[2], n[2];
-    place_profile(g, corner->flank, &corner->shape[corner->flank], high + (i - OUTLINE_NODES + 2) * step, p, n);
+    place_profile(geometry, corner->flank, &corner->shape[corner->flank], high + (i - OUTLINE_NODES + 2) * step, p, n);
     double radius = hypot(p[0], p[1]), across = p[0] * n[1] - p[1] * n[0];
     if (!(radius < lowest))
       break; /* below the base circle the profile would turn back */
-    lowest = o->radius[i] = radius;
-    o->angle[i] = atan2(p[1], p[0]);
-    o->slope[i] = -(p[0] * n[0] + p[1] * n[1]) / (radius * across);
+    lowest = outline->radius[i] = radius;
+    outline->angle[i] = atan2(p[1], p[0]);
+    outline->slope[i] = -(p[0] * n[0] + p[1] * n[1]) / (radius * across);
     first = i;
   }
-  o->nodes = OUTLINE_NODES - first;
-  for (int i = 0; i < o->nodes; i++) {
-    o->radius[i] = o->radius[first + i];
-    o->angle[i] = o->angle[first + i];
-    o->slope[i] = o->slope[first + i];
+  outline->nodes = OUTLINE_NODES - first;
+  for (int i = 0; i < outline->nodes; i++) {
+    outline->radius[i] = outline->radius[first + i];
+    outline->angle[i] = outline->angle[first + i];
+    outline->slope[i] = outline->slope[first + i];
   }
 }
 
-static double flank_angle(const struct outline *o, double radius, double *slope)
+static double flank_angle(const struct outline *outline, double radius, double *slope)
 {
-  int low = 0, high = o->nodes - 1;
+  int low = 0, high = outline->nodes - 1;
   while (high - low > 1) {
     int middle = (low + high) / 2;
-    if (o->radius[middle] <= radius)
+    if (outline->radius[middle] <= radius)
       low = middle;
     else
       high = middle;
   }
-  double h = o->radius[high] - o->radius[low], t = fmin(1, fmax(0, (radius - o->radius[low]) / h)), r = 1 - t;
-  double difference = remainder(o->angle[high] - o->angle[low], 2 * M_PI), a = o->slope[low] * h - difference,
-         b = difference - o->slope[high] * h;
+  double h = outline->radius[high] - outline->radius[low], t = fmin(1, fmax(0, (radius - outline->radius[low]) / h)),
+         r = 1 - t;
+  double difference = remainder(outline->angle[high] - outline->angle[low], 2 * M_PI),
+         a = outline->slope[low] * h - difference, b = difference - outline->slope[high] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
-  return o->angle[low] + difference * t + t * r * (a * r + b * t) + *slope * (radius - o->radius[low] - t * h);
+  return outline->angle[low] + difference * t + t * r * (a * r + b * t) +
+         *slope * (radius - outline->radius[low] - t * h);
 }
 
 /* The normal of a flank with the polar slope d angle/d radius at the point x from its centre, and the share of shaft
    angle errors that goes with it: tan of the normal's angle against the circle is radius times slope. */
 static struct eo_tilt tilt_at(const struct corner *corner, const double x[2], double bend)
 {
-  const struct eo_geometry *g = corner->geometry;
+  const struct eo_geometry *geometry = corner->geometry;
   double radius = hypot(x[0], x[1]), steep = radius * bend, arm = radius / sqrt(1 + steep * steep);
   double turned = atan2(x[1], x[0]) + atan(steep), place[2] = {x[0], x[1]}; /* theory (K8) */
   if (corner->flank == EO_PINION)
-    place[1] -= g->centre_distance;
+    place[1] -= geometry->centre_distance;
   /* theory (K9) */
-  return eo_tilt_at(g, corner->flank == EO_PINION ? turned - M_PI / 2 : turned + M_PI / 2,
-                    g->base_radius[corner->flank] / arm, place);
+  return eo_tilt_at(geometry, corner->flank == EO_PINION ? turned - M_PI / 2 : turned + M_PI / 2,
+                    geometry->base_radius[corner->flank] / arm, place);
 }
 
 /* The angle by which the flank has to turn (the pinion forwards, the gear back: clockwise both) until it meets the
    point, as an arc of its base circle, normal. */
 static struct touch touch_at(const struct corner *corner, int which, double c)
 {
-  const struct eo_geometry *g = corner->geometry;
+  const struct eo_geometry *geometry = corner->geometry;
   double x[2], rate = turning(corner, corner->tip), own = turning(corner, corner->flank), bend;
   place_tip(corner, which, c, x);
-  double centre = corner->tip == EO_PINION ? -g->centre_distance : g->centre_distance, radius = hypot(x[0], x[1]);
-  double v[2] = {-rate * (x[1] - centre), rate * x[0]}, arm = g->base_radius[corner->flank] * cos(g->base_helix_angle);
+  double centre = corner->tip == EO_PINION ? -geometry->centre_distance : geometry->centre_distance,
+         radius = hypot(x[0], x[1]);
+  double v[2] = {-rate * (x[1] - centre), rate * x[0]},
+         arm = geometry->base_radius[corner->flank] * cos(geometry->base_helix_angle);
   double angle = flank_angle(&corner->outline, radius, &bend) + own * c - atan2(x[1], x[0]);
   double turned = bend * (x[0] * v[0] + x[1] * v[1]) / radius + own - (x[0] * v[1] - x[1] * v[0]) / (radius * radius);
   return (struct touch){arm * remainder(angle, 2 * M_PI), arm * turned, tilt_at(corner, x, bend)};
@@ -160,19 +164,19 @@ static double find_start(const struct corner *corner, double reach)
   return high;
 }
 
-static void corner_init(struct corner *corner, const struct eo_geometry *g, const struct eo_modification_shape shape[2],
-                        int side, double reach)
+static void corner_init(struct corner *corner, const struct eo_geometry *geometry,
+                        const struct eo_modification_shape shape[2], int side, double reach)
 {
-  corner->geometry = g;
+  corner->geometry = geometry;
   corner->shape = shape;
   corner->tip = side == 0 ? EO_GEAR : EO_PINION;
   corner->flank = 1 - corner->tip;
-  double top = corner->tip == EO_PINION ? g->rack_top : -g->rack_bottom, inside = 1e-4 * (g->rack_top - g->rack_bottom),
-         unused[2];
+  double top = corner->tip == EO_PINION ? geometry->rack_top : -geometry->rack_bottom,
+         inside = 1e-4 * (geometry->rack_top - geometry->rack_bottom), unused[2];
   static const struct eo_modification_shape none = {0};
-  place_profile(g, corner->tip, &shape[corner->tip], top, corner->point[0], unused);
-  place_profile(g, corner->tip, &shape[corner->tip], top - inside, corner->point[1], unused);
-  place_profile(g, corner->tip, &none, top, corner->point[2], unused);
+  place_profile(geometry, corner->tip, &shape[corner->tip], top, corner->point[0], unused);
+  place_profile(geometry, corner->tip, &shape[corner->tip], top - inside, corner->point[1], unused);
+  place_profile(geometry, corner->tip, &none, top, corner->point[2], unused);
   trace_flank(corner, reach);
 }
 
@@ -248,36 +252,36 @@ static void make(struct eo_corner_gap *table, const struct corner *corner, const
   advance(table);
 }
 
-void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry *g)
+void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry *geometry)
 {
   static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
     table[side].rule = EO_TILT_ROTATED;
     table[side].start = 0;
-    table[side].reach = 0.25 * g->transverse_base_pitch;
-    corner_init(&corner, g, none, side, table[side].reach);
+    table[side].reach = 0.25 * geometry->transverse_base_pitch;
+    corner_init(&corner, geometry, none, side, table[side].reach);
     make(&table[side], &corner, NULL);
   }
 }
 
-void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geometry *g,
+void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geometry *geometry,
                             const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice)
 {
   static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
-    table[side].reach = 0.25 * g->transverse_base_pitch;
-    corner_init(&corner, g, shape, side, table[side].reach);
+    table[side].reach = 0.25 * geometry->transverse_base_pitch;
+    corner_init(&corner, geometry, shape, side, table[side].reach);
     if (corner.outline.nodes <
         8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
-      corner_init(&corner, g, none, side, table[side].reach);
+      corner_init(&corner, geometry, none, side, table[side].reach);
     table[side].start = find_start(&corner, 0.9 * table[side].reach);
     make(&table[side], &corner, slice);
   }
 }
 
-void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *g,
+void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *geometry,
                              const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice)
 {
   static const struct eo_modification_shape none;
@@ -285,11 +289,12 @@ void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geom
   for (int member = 0; member < 2; member++) {
     struct eo_modification_shape only[2] = {none, none};
     only[member] = shape[member];
-    eo_slice_gap_init(&alone[member], g, only);
+    eo_slice_gap_init(&alone[member], geometry, only);
   }
   for (int side = 0; side < 2; side++) {
     int tip = side == 0 ? EO_GEAR : EO_PINION, sign = side == 0 ? -1 : 1;
-    double end = side == 0 ? g->path_start : g->path_end, at_tip = eo_slice_gap_at(&alone[tip], end, NULL);
+    double end = side == 0 ? geometry->path_start : geometry->path_end,
+           at_tip = eo_slice_gap_at(&alone[tip], end, NULL);
     for (int i = 0; i < EO_CORNER_NODES; i++) {
       int before = i > 0 ? i - 1 : 0, after = i + 1 < EO_CORNER_NODES ? i + 1 : i;
       double slope, rate, c = end + sign * node_distance(&table[side], i),
@@ -298,7 +303,8 @@ void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geom
       table[side].excess[i] += eo_slice_gap_at(&alone[1 - tip], table[side].path[i], &slope) + at_tip -
                                eo_slice_gap_at(slice, c, &rate);
       table[side].slope[i] += slope * travel - sign * rate;
-      struct eo_tilt struck = eo_slice_tilt_at(NULL, g, table[side].path[i]), even = eo_slice_tilt_at(NULL, g, c);
+      struct eo_tilt struck = eo_slice_tilt_at(NULL, geometry, table[side].path[i]),
+                     even = eo_slice_tilt_at(NULL, geometry, c);
       for (int axis = 0; axis < 2; axis++)
         table[side].added[i].shift[axis] = struck.shift[axis] - even.shift[axis];
     }

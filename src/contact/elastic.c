@@ -36,13 +36,13 @@ struct eo_elastic {
 static void set_places(struct eo_elastic *el, int end, int j)
 {
   const struct eo_contact_grid *grid = el->grid[end];
-  const struct eo_contact_position *p = &grid->position[j];
+  const struct eo_contact_position *position = &grid->position[j];
   struct place *place = el->place[end];
-  for (int i = 0; i < p->points; i++) {
-    double u = (p->point[i].eta / grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
+  for (int i = 0; i < position->points; i++) {
+    double u = (position->point[i].eta / grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
     place[i].node = (int)fmax(0, fmin(EO_DEFLECTION_NODES - 2, floor(u)));
     place[i].weight = u - place[i].node;
-    place[i].path = p->path[i];
+    place[i].path = position->path[i];
   }
 }
 
@@ -69,15 +69,15 @@ static void spread(int points, const struct place *place, const struct eo_deflec
 
 static void gather_loads(struct eo_elastic *el, int end, int j, const struct eo_loaded_end *result)
 {
-  const struct eo_contact_position *p = &el->grid[end]->position[j];
-  for (int i = 0; i < p->points; i++)
-    el->answer[i] = result->line_load[p->first + i] * p->length[i];
-  gather(p->points, el->place[end], el->answer, &el->load[end]);
+  const struct eo_contact_position *position = &el->grid[end]->position[j];
+  for (int i = 0; i < position->points; i++)
+    el->answer[i] = result->line_load[position->first + i] * position->length[i];
+  gather(position->points, el->place[end], el->answer, &el->load[end]);
 }
 
-static double product(const struct eo_deflection *a, const double *b)
+static double product(const struct eo_deflection *deflection, const double *b)
 {
-  const double *x = &a->part[0][0];
+  const double *x = &deflection->part[0][0];
   double sum = 0;
   for (int i = 0; i < PART; i++)
     sum += x[i] * b[i];
@@ -87,8 +87,8 @@ static double product(const struct eo_deflection *a, const double *b)
 /* Largest gap that a deflection makes anywhere between the ends of the path of contact. */
 static double largest(const struct eo_elastic *el, const struct eo_deflection *a, const struct eo_deflection *b)
 {
-  const struct eo_geometry *g = &el->grid[EO_LEFT]->geometry;
-  double most = 0, reach = fmax(-g->path_start, g->path_end);
+  const struct eo_geometry *geometry = &el->grid[EO_LEFT]->geometry;
+  double most = 0, reach = fmax(-geometry->path_start, geometry->path_end);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     most = fmax(most, fabs(a->part[0][i] - b->part[0][i]) + reach * fabs(a->part[1][i] - b->part[1][i]));
   return most;
@@ -98,12 +98,12 @@ static double largest(const struct eo_elastic *el, const struct eo_deflection *a
 static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
                     double factor, int end, int j, double load, bool first, struct eo_loaded_end *result)
 {
-  const struct eo_contact_position *p = &el->grid[end]->position[j];
-  double rise = 0, total = 0, *gap = el->gap[end] + p->first;
-  const double *rigid = gaps->gap + p->first;
-  spread(p->points, el->place[end], &el->deflection[end], el->change);
-  for (int i = 0; i < p->points; i++) {
-    double before = first ? rigid[i] : gap[i], force = result->line_load[p->first + i] * p->length[i];
+  const struct eo_contact_position *position = &el->grid[end]->position[j];
+  double rise = 0, total = 0, *gap = el->gap[end] + position->first;
+  const double *rigid = gaps->gap + position->first;
+  spread(position->points, el->place[end], &el->deflection[end], el->change);
+  for (int i = 0; i < position->points; i++) {
+    double before = first ? rigid[i] : gap[i], force = result->line_load[position->first + i] * position->length[i];
     gap[i] = rigid[i] + el->change[i];
     rise += force * (gap[i] - before);
     total += force;
@@ -115,21 +115,21 @@ static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const
 /* Answer of the end solved last to every mode, and to the shift of load. */
 static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, double factor, int end, int j)
 {
-  const struct eo_contact_position *p = &el->grid[end]->position[j];
-  eo_loaded_prepare_response(ws, p);
+  const struct eo_contact_position *position = &el->grid[end]->position[j];
+  eo_loaded_prepare_response(ws, position);
   for (int k = 0; k < MODES; k++) {
     struct eo_deflection mode;
     memcpy(&mode, el->influence.mode + k * el->influence.size + end * PART, sizeof mode);
-    spread(p->points, el->place[end], &mode, el->change);
-    eo_loaded_response(ws, p, factor, el->change, el->answer);
-    for (int i = 0; i < p->points; i++)
+    spread(position->points, el->place[end], &mode, el->change);
+    eo_loaded_response(ws, position, factor, el->change, el->answer);
+    for (int i = 0; i < position->points; i++)
       el->answer[i] = -el->answer[i];
-    gather(p->points, el->place[end], el->answer, &el->response[k][end]);
+    gather(position->points, el->place[end], el->answer, &el->response[k][end]);
   }
-  el->rate[end] = eo_loaded_response(ws, p, factor, NULL, el->answer);
-  for (int i = 0; end == EO_RIGHT && i < p->points; i++)
+  el->rate[end] = eo_loaded_response(ws, position, factor, NULL, el->answer);
+  for (int i = 0; end == EO_RIGHT && i < position->points; i++)
     el->answer[i] = -el->answer[i];
-  gather(p->points, el->place[end], el->answer, &el->shifted[end]);
+  gather(position->points, el->place[end], el->answer, &el->shifted[end]);
 }
 
 /* Newton's correction of the deflection and, when the pinion is held, of the shift: [M, -V'g; g'V, rate] [c; d shift] =
@@ -183,21 +183,21 @@ static double departure(const struct eo_elastic *el)
 
 /* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let
    go. */
-static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *c, double soft, const int at[2],
-                         const struct eo_loaded_end *result, bool *held)
+static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *elastic_case, double soft,
+                         const int at[2], const struct eo_loaded_end *result, bool *held)
 {
-  *held = el->influence.ends == 2 && c->hold.stiffness > 0;
+  *held = el->influence.ends == 2 && elastic_case->hold.stiffness > 0;
   if (!*held)
     return 0;
   double apart = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]], stopped;
-  stopped = eo_axial_beyond_play(&c->hold, apart);
-  double miss = stopped + soft * (el->shift - c->hold.shift);
-  if (c->hold.play > 0 && stopped == 0) { /* free between the stops: the thrust alone decides */
+  stopped = eo_axial_beyond_play(&elastic_case->hold, apart);
+  double miss = stopped + soft * (el->shift - elastic_case->hold.shift);
+  if (elastic_case->hold.play > 0 && stopped == 0) { /* free between the stops: the thrust alone decides */
     *held = false;
-    el->shift = c->hold.shift;
+    el->shift = elastic_case->hold.shift;
     return fabs(miss) > 1e-12 ? miss : 0;
   }
-  *held = fabs(el->shift) < MOST_SHIFT * c->load || miss * el->shift > 0;
+  *held = fabs(el->shift) < MOST_SHIFT * elastic_case->load || miss * el->shift > 0;
   return *held ? miss : 0;
 }
 
@@ -205,7 +205,7 @@ static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *c,
    of iterations, 0 when they did not converge. The contact's answer is asked for once, and again when the iteration
    slows down. */
 static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2],
-                          const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c, double soft,
+                          const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *elastic_case, double soft,
                           const int at[2], struct eo_loaded_end *result)
 {
   enum { ITERATIONS = 40 };
@@ -216,16 +216,17 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *con
   for (int end = 0; end < ends; end++)
     set_places(el, end, at[end]);
   for (int iteration = 1; iteration <= ITERATIONS; iteration++) {
-    el->shift = fmax(-MOST_SHIFT * c->load, fmin(MOST_SHIFT * c->load, el->shift));
+    el->shift = fmax(-MOST_SHIFT * elastic_case->load, fmin(MOST_SHIFT * elastic_case->load, el->shift));
     for (int end = 0; end < ends; end++) {
-      double load = end == EO_LEFT ? c->load + el->shift : c->load - el->shift;
-      resolve(el, ws[end], &gaps[end], c->compliance_factor, end, at[end], load, iteration == 1, &result[end]);
+      double load = end == EO_LEFT ? elastic_case->load + el->shift : elastic_case->load - el->shift;
+      resolve(el, ws[end], &gaps[end], elastic_case->compliance_factor, end, at[end], load, iteration == 1,
+              &result[end]);
       if (ask)
-        respond(el, ws[end], c->compliance_factor, end, at[end]);
+        respond(el, ws[end], elastic_case->compliance_factor, end, at[end]);
       gather_loads(el, end, at[end], &result[end]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
-    double miss = axial_miss(el, c, soft, at, result, &held), error = fmax(departure(el), fabs(miss));
+    double miss = axial_miss(el, elastic_case, soft, at, result, &held), error = fmax(departure(el), fabs(miss));
     if (error < DONE)
       return iteration;
     ask = error > SLOW * before;
@@ -269,16 +270,18 @@ static void extrapolate(struct eo_elastic *el, int j, int stagger)
 }
 
 void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *const ws[2], const struct eo_loaded_gaps *gaps,
-                      const struct eo_elastic_case *c, struct eo_loaded_end *result, struct eo_elastic_report *report)
+                      const struct eo_elastic_case *elastic_case, struct eo_loaded_end *result,
+                      struct eo_elastic_report *report)
 {
   double lean = sin(el->grid[EO_LEFT]->geometry.base_helix_angle);
-  double stiffness = c->hold.stiffness, soft = stiffness > 0 && isfinite(stiffness) ? 4 * lean * lean / stiffness : 0;
+  double stiffness = elastic_case->hold.stiffness,
+         soft = stiffness > 0 && isfinite(stiffness) ? 4 * lean * lean / stiffness : 0;
   *report = (struct eo_elastic_report){0};
-  el->shift = c->hold.shift;
+  el->shift = elastic_case->hold.shift;
   for (int j = 0; j < el->grid[EO_LEFT]->positions; j++) {
-    int at[2] = {j, other_position(el, j, c->stagger)};
-    extrapolate(el, j, c->stagger);
-    int count = solve_position(el, ws, gaps, c, soft, at, result);
+    int at[2] = {j, other_position(el, j, elastic_case->stagger)};
+    extrapolate(el, j, elastic_case->stagger);
+    int count = solve_position(el, ws, gaps, elastic_case, soft, at, result);
     report->failures += count == 0;
     report->iterations += count;
     report->most_iterations = count > report->most_iterations ? count : report->most_iterations;
@@ -293,15 +296,15 @@ void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, i
 {
   for (int j = 0; j < el->grid[EO_LEFT]->positions; j++) {
     int at[2] = {j, other_position(el, j, stagger)};
-    const struct eo_contact_position *p = &el->grid[end]->position[at[end]];
+    const struct eo_contact_position *position = &el->grid[end]->position[at[end]];
     for (int e = 0; e < el->influence.ends; e++) {
       set_places(el, e, at[e]);
       gather_loads(el, e, at[e], &result[e]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
-    spread(p->points, el->place[end], &el->asked[end], el->change);
-    for (int i = 0; i < p->points; i++)
-      bent[p->first + i] = gaps[end].gap[p->first + i] + el->change[i];
+    spread(position->points, el->place[end], &el->asked[end], el->change);
+    for (int i = 0; i < position->points; i++)
+      bent[position->first + i] = gaps[end].gap[position->first + i] + el->change[i];
   }
 }
 

@@ -35,17 +35,17 @@ struct sums {
 };
 
 /* Load of the pair that line number `first` begins, over all its lines; 0 when an earlier line has counted it. */
-static double pair_load(const struct eo_contact_position *p, const double *line_load, int first)
+static double pair_load(const struct eo_contact_position *position, const double *line_load, int first)
 {
   double sum = 0;
-  for (int l = 0; l < p->lines; l++) {
-    const struct eo_contact_line *line = &p->line[l];
-    if (line->pair != p->line[first].pair)
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
+    if (line->pair != position->line[first].pair)
       continue;
     if (l < first)
       return 0;
     for (int i = line->first; i < line->first + line->cells; i++)
-      sum += line_load[i] * p->length[i];
+      sum += line_load[i] * position->length[i];
   }
   return sum;
 }
@@ -53,26 +53,28 @@ static double pair_load(const struct eo_contact_position *p, const double *line_
 static void add_position(struct eo_face_load *face, struct sums *sums, const struct eo_contact_grid *grid,
                          const struct eo_loaded_end *end, int position)
 {
-  const struct eo_contact_position *p = &grid->position[position];
-  const double *line_load = end->line_load + p->first;
+  const struct eo_contact_position *contact_position = &grid->position[position];
+  const double *line_load = end->line_load + contact_position->first;
   double slices = EO_FACE_SLICES / grid->geometry.face_width, lines = 0, longest = 0, heaviest = 0;
   double half = cos(grid->geometry.base_helix_angle) * slices / 2;
-  for (int i = 0; i < p->points; i++) {
+  for (int i = 0; i < contact_position->points; i++) {
     if (line_load[i] == 0)
       continue;
-    double force = line_load[i] * p->length[i], middle = p->point[i].eta * slices + EO_FACE_SLICES / 2.0,
-           reach = p->length[i] * half;
+    double force = line_load[i] * contact_position->length[i],
+           middle = contact_position->point[i].eta * slices + EO_FACE_SLICES / 2.0,
+           reach = contact_position->length[i] * half;
     spread(face, middle - reach, middle + reach, force);
     sums->force += force;
     sums->line_load = larger(sums->line_load, line_load[i]);
   }
-  for (int l = 0; l < p->lines; l++) {
+  for (int l = 0; l < contact_position->lines; l++) {
     double length = 0;
-    for (int i = p->line[l].first; i < p->line[l].first + p->line[l].cells; i++)
-      length += p->line[l].kind == EO_POINT_LINE ? p->length[i] : 0;
+    for (int i = contact_position->line[l].first; i < contact_position->line[l].first + contact_position->line[l].cells;
+         i++)
+      length += contact_position->line[l].kind == EO_POINT_LINE ? contact_position->length[i] : 0;
     lines += length;
     longest = fmax(longest, length);
-    heaviest = fmax(heaviest, pair_load(p, line_load, l));
+    heaviest = fmax(heaviest, pair_load(contact_position, line_load, l));
   }
   sums->length += lines;
   if (lines > 0)

@@ -29,20 +29,20 @@ static double even_slices_at(const struct eo_gap_field *field, double s, double 
    gap is the sum of what is taken off. */
 static double own_slice_at(const struct eo_gap_field *field, double s, double z, double *slope)
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   struct eo_modification_shape slice[2];
   struct eo_slice_touch touch;
   for (int member = 0; member < 2; member++)
     eo_modification_slice(&field->shape[member], z - field->pivot, &slice[member]);
-  if (!eo_slice_touch_at(g, slice, s, &touch)) {
-    double rate[2][2], place = g->rack_factor * s;
-    touch = (struct eo_slice_touch){.tilt = eo_slice_tilt_at(NULL, g, s)};
+  if (!eo_slice_touch_at(geometry, slice, s, &touch)) {
+    double rate[2][2], place = geometry->rack_factor * s;
+    touch = (struct eo_slice_touch){.tilt = eo_slice_tilt_at(NULL, geometry, s)};
     touch.gap = eo_modification_profile(&slice[EO_PINION], place, rate[EO_PINION]) +
                 eo_modification_profile(&slice[EO_GEAR], -place, rate[EO_GEAR]);
-    touch.slope = g->rack_factor * (rate[EO_PINION][0] - rate[EO_GEAR][0]);
+    touch.slope = geometry->rack_factor * (rate[EO_PINION][0] - rate[EO_GEAR][0]);
   }
   if (field->corner[0].rule != EO_TILT_ROTATED)
-    touch.tilt = eo_slice_tilt_at(NULL, g, s);
+    touch.tilt = eo_slice_tilt_at(NULL, geometry, s);
   *slope = touch.slope + field->misalignment * field->lean;
   return touch.gap + field->errors[0] * (touch.tilt.shift[0] + z * touch.tilt.lever[0]) +
          field->errors[1] * (touch.tilt.shift[1] + z * touch.tilt.lever[1]);
@@ -69,9 +69,9 @@ static double corner_between(const struct eo_gap_field *field, int side, double 
    errors have moved its start, inside the path too. */
 static double corner_at(const struct eo_gap_field *field, double s, double z, double *slope)
 {
-  const struct eo_geometry *g = field->geometry;
-  int side = g->path_start - s > s - g->path_end ? 0 : 1;
-  double d = side == 0 ? g->path_start - s : s - g->path_end;
+  const struct eo_geometry *geometry = field->geometry;
+  int side = geometry->path_start - s > s - geometry->path_end ? 0 : 1;
+  double d = side == 0 ? geometry->path_start - s : s - geometry->path_end;
   *slope = 0;
   if (d < field->takes_over[side])
     return 0;
@@ -91,14 +91,14 @@ static double profiles_at(const struct eo_gap_field *field, double s, double z, 
 
 static void set_path(const struct eo_gap_field *field, double s, double path[2])
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   path[EO_PINION] = path[EO_GEAR] = s;
-  if (s < g->path_start) {
-    path[EO_PINION] = eo_corner_gap_place(&field->corner[0], g->path_start, g->path_start - s);
-    path[EO_GEAR] = g->path_start;
-  } else if (s > g->path_end) {
-    path[EO_PINION] = g->path_end;
-    path[EO_GEAR] = eo_corner_gap_place(&field->corner[1], g->path_end, s - g->path_end);
+  if (s < geometry->path_start) {
+    path[EO_PINION] = eo_corner_gap_place(&field->corner[0], geometry->path_start, geometry->path_start - s);
+    path[EO_GEAR] = geometry->path_start;
+  } else if (s > geometry->path_end) {
+    path[EO_PINION] = geometry->path_end;
+    path[EO_GEAR] = eo_corner_gap_place(&field->corner[1], geometry->path_end, s - geometry->path_end);
   }
 }
 
@@ -142,46 +142,46 @@ static void set_errors(struct eo_gap_field *field)
 }
 
 /* The slice gap of both members' profiles and the corners that go with it. */
-static void set_slices(const struct eo_geometry *g, const struct eo_modification_shape shape[2],
+static void set_slices(const struct eo_geometry *geometry, const struct eo_modification_shape shape[2],
                        struct eo_slice_gap *slice, struct eo_corner_gap corner[2])
 {
   enum eo_tilt_rule rule = corner[0].rule;
-  eo_slice_gap_init(slice, g, shape);
+  eo_slice_gap_init(slice, geometry, shape);
   if (rule == EO_TILT_AT_RADIUS)
-    eo_corner_gap_at_radius(corner, g, shape, slice);
+    eo_corner_gap_at_radius(corner, geometry, shape, slice);
   else if (slice->nodes > 0)
-    eo_corner_gap_modified(corner, g, shape, slice);
+    eo_corner_gap_modified(corner, geometry, shape, slice);
   for (int i = 0; rule != EO_TILT_ROTATED && i < slice->nodes; i++)
-    slice->tilt[i] = eo_slice_tilt_at(NULL, g, slice->phase[i]);
+    slice->tilt[i] = eo_slice_tilt_at(NULL, geometry, slice->phase[i]);
 }
 
 /* Corners at stations over the face, each with its own slice. */
 static void set_stations(struct eo_gap_field *field, const struct eo_corner_gap even[2])
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   for (int i = 0; i < EO_CORNER_STATIONS; i++) {
     struct eo_corner_station *station = &field->station[i];
     struct eo_modification_shape profile[2];
     struct eo_slice_gap slice;
-    double eta = g->face_width * ((double)i / (EO_CORNER_STATIONS - 1) - 0.5);
+    double eta = geometry->face_width * ((double)i / (EO_CORNER_STATIONS - 1) - 0.5);
     for (int member = 0; member < 2; member++)
       eo_modification_slice(&field->shape[member], eta, &profile[member]);
     memcpy(station->corner, even, sizeof station->corner);
-    set_slices(g, profile, &slice, station->corner);
+    set_slices(geometry, profile, &slice, station->corner);
     for (int side = 0; side < 2; side++)
       field->takes_over[side] = fmin(field->takes_over[side],
                                      tilt_corner(field, &station->corner[side], &station->tilted[side]));
   }
 }
 
-void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geometry *g,
+void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geometry *geometry,
                               const struct eo_modification_shape shape[2], int end, double in_plane,
                               double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
 {
   double sign = end == EO_LEFT ? -1 : 1;
-  field->geometry = g;
-  field->lean = tan(g->base_helix_angle);
-  field->stretch = 1 / cos(g->helix_angle);
+  field->geometry = geometry;
+  field->lean = tan(geometry->base_helix_angle);
+  field->stretch = 1 / cos(geometry->helix_angle);
   memcpy(field->shape, shape, sizeof field->shape);
   memcpy(field->corner, corner, sizeof field->corner);
   field->pivot = pivot;
@@ -190,29 +190,29 @@ void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geomet
   field->errors[0] = sign * in_plane;
   field->errors[1] = sign * out_of_plane;
   field->varies = shape[EO_PINION].varies || shape[EO_GEAR].varies;
-  set_slices(g, field->shape, &field->slice, field->corner);
+  set_slices(geometry, field->shape, &field->slice, field->corner);
   set_errors(field);
   if (field->varies)
     set_stations(field, corner);
 }
 
-void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
+void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *geometry,
                        const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
                        double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
 {
   struct eo_modification_shape shape[2];
-  eo_modification_init(&shape[EO_PINION], g, EO_PINION, pinion);
-  eo_modification_init(&shape[EO_GEAR], g, EO_GEAR, gear);
-  eo_gap_field_init_shapes(field, g, shape, end, in_plane, out_of_plane, pivot, corner);
+  eo_modification_init(&shape[EO_PINION], geometry, EO_PINION, pinion);
+  eo_modification_init(&shape[EO_GEAR], geometry, EO_GEAR, gear);
+  eo_gap_field_init_shapes(field, geometry, shape, end, in_plane, out_of_plane, pivot, corner);
 }
 
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2])
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   double rate, unused, x = eta * field->stretch, gap = profiles_at(field, s, eta + field->pivot, &rate);
   if (field->deflection) {
     double body[2];
-    deflection_parts(field->deflection, g->face_width, eta, body);
+    deflection_parts(field->deflection, geometry->face_width, eta, body);
     gap += body[0] + s * body[1];
     rate += body[1];
   }
@@ -226,9 +226,9 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   return gap;
 }
 
-bool eo_gap_field_line_range(const struct eo_geometry *g, double c, double low, double high, double range[2])
+bool eo_gap_field_line_range(const struct eo_geometry *geometry, double c, double low, double high, double range[2])
 {
-  double half = g->face_width / 2, tangent = tan(g->base_helix_angle);
+  double half = geometry->face_width / 2, tangent = tan(geometry->base_helix_angle);
   range[0] = -half;
   range[1] = half;
   if (tangent < 1e-9)
@@ -261,9 +261,9 @@ double eo_gap_field_line_descend(const struct eo_gap_field *field, double c, con
 
 bool eo_gap_field_edge_range(const struct eo_gap_field *field, double c, bool edges, double range[2])
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   double reach = edges ? field->corner[0].reach / 2 : 0;
-  return eo_gap_field_line_range(g, c, g->path_start - reach, g->path_end + reach, range);
+  return eo_gap_field_line_range(geometry, c, geometry->path_start - reach, geometry->path_end + reach, range);
 }
 
 double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, bool edges, double *at)
@@ -297,11 +297,11 @@ struct profile {
 
 static void set_profile(struct profile *profile, const struct eo_gap_field *field)
 {
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   double unused;
   profile->samples = DATUM_SAMPLES;
   for (int i = 0; i < DATUM_SAMPLES; i++) {
-    double s = g->path_start + (g->path_end - g->path_start) * i / (DATUM_SAMPLES - 1);
+    double s = geometry->path_start + (geometry->path_end - geometry->path_start) * i / (DATUM_SAMPLES - 1);
     profile->path[i] = s;
     profile->level[i] = slices_at(field, s, 0, &unused);
     profile->lever[i] = slices_at(field, s, 1, &unused) - profile->level[i];
@@ -323,12 +323,13 @@ static double lowest_profile(const struct eo_gap_field *field, const struct prof
    over z, so both ends tell; a corner only adds to them. */
 static void prune(const struct eo_gap_field *field, struct profile *profile)
 {
-  const struct eo_geometry *g = field->geometry;
-  double low = field->pivot - g->face_width / 2, high = field->pivot + g->face_width / 2;
+  const struct eo_geometry *geometry = field->geometry;
+  double low = field->pivot - geometry->face_width / 2, high = field->pivot + geometry->face_width / 2;
   int best = -1, kept = 0;
   for (int i = 0; i < profile->samples; i++) {
     double s = profile->path[i], value = profile->level[i] + field->pivot * profile->lever[i];
-    bool free_of_corners = g->path_start - s < field->takes_over[0] && s - g->path_end < field->takes_over[1];
+    bool free_of_corners = geometry->path_start - s < field->takes_over[0] &&
+                           s - geometry->path_end < field->takes_over[1];
     if (free_of_corners && (best < 0 || value < profile->level[best] + field->pivot * profile->lever[best]))
       best = i;
   }
@@ -350,8 +351,9 @@ static void prune(const struct eo_gap_field *field, struct profile *profile)
 static double varying_datum(const struct eo_gap_field *field)
 {
   enum { SAMPLES = 61, ROUNDS = 24 };
-  const struct eo_geometry *g = field->geometry;
-  const double low[2] = {g->path_start, -g->face_width / 2}, high[2] = {g->path_end, g->face_width / 2};
+  const struct eo_geometry *geometry = field->geometry;
+  const double low[2] = {geometry->path_start, -geometry->face_width / 2},
+               high[2] = {geometry->path_end, geometry->face_width / 2};
   double best[2] = {0, 0}, lowest = INFINITY, step[2];
   for (int k = 0; k < 2; k++)
     step[k] = (high[k] - low[k]) / (SAMPLES - 1);
@@ -389,18 +391,18 @@ double eo_gap_field_datum(const struct eo_gap_field *field)
   enum { SAMPLES = DATUM_SAMPLES };
   if (field->varies)
     return varying_datum(field);
-  const struct eo_geometry *g = field->geometry;
+  const struct eo_geometry *geometry = field->geometry;
   struct profile profile;
   double unused, lowest = INFINITY;
   set_profile(&profile, field);
   if (!field->deflection)
     prune(field, &profile);
   for (int i = 0; i < SAMPLES; i++) {
-    double eta = g->face_width * ((double)i / (SAMPLES - 1) - 0.5), x = eta * field->stretch, body[2] = {0, 0};
+    double eta = geometry->face_width * ((double)i / (SAMPLES - 1) - 0.5), x = eta * field->stretch, body[2] = {0, 0};
     double lead = eo_modification_lead(&field->shape[0], x, &unused) +
                   eo_modification_lead(&field->shape[1], x, &unused);
     if (field->deflection)
-      deflection_parts(field->deflection, g->face_width, eta, body);
+      deflection_parts(field->deflection, geometry->face_width, eta, body);
     lowest = fmin(lowest, lead + body[0] + lowest_profile(field, &profile, eta + field->pivot, body[1]));
   }
   return lowest + field->offset;

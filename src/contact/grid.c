@@ -9,31 +9,32 @@
 #include <string.h>
 
 /* (1 - nu^2)/(pi E) of a member: its share of what a line load brings the members together. */
-static double local_compliance(const struct eo_material *m)
+static double local_compliance(const struct eo_material *material)
 {
-  return (1 - m->poissons_ratio * m->poissons_ratio) / (M_PI * m->youngs_modulus);
+  return (1 - material->poissons_ratio * material->poissons_ratio) / (M_PI * material->youngs_modulus);
 }
 
 /* Weber and Banaschek's members one by one: A_i q (2 ln(2 h_i/b) - nu_i/(1 - nu_i)), b^2 = 4 q rho (A_1 + A_2). */
-static double unlike_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
+static double unlike_constant(const struct eo_geometry *geometry, const struct eo_material *material, double s)
 {
   double compliance[2], sum = 0, constant = 0;
   for (int i = 0; i < 2; i++) {
     struct eo_material own = eo_material_of(material, i);
     sum += compliance[i] = local_compliance(&own);
     constant += compliance[i] *
-                (2 * log(2 * eo_geometry_depth(g, i, s)) - own.poissons_ratio / (1 - own.poissons_ratio));
+                (2 * log(2 * eo_geometry_depth(geometry, i, s)) - own.poissons_ratio / (1 - own.poissons_ratio));
   }
-  return constant / sum - log(4 * eo_geometry_relative_radius(g, s) * sum);
+  return constant / sum - log(4 * eo_geometry_relative_radius(geometry, s) * sum);
 }
 
-double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
+double eo_contact_local_constant(const struct eo_geometry *geometry, const struct eo_material *material, double s)
 {
   if (!eo_material_is_one(material))
-    return unlike_constant(g, material, s);
+    return unlike_constant(geometry, material, s);
   double nu = material->poissons_ratio, modulus = material->youngs_modulus / (1 - nu * nu);
-  double depth = eo_geometry_depth(g, EO_PINION, s) * eo_geometry_depth(g, EO_GEAR, s);
-  return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(g, s))) - nu / (1 - nu); /* theory (C2) */
+  double depth = eo_geometry_depth(geometry, EO_PINION, s) * eo_geometry_depth(geometry, EO_GEAR, s);
+  return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(geometry, s))) -
+         nu / (1 - nu); /* theory (C2) */
 }
 
 /* The stretches of s that carry points: the path of contact, then the two corners. */
@@ -43,25 +44,27 @@ struct stretch {
   enum eo_point_kind kind;
 };
 
-static int list_stretches(const struct eo_geometry *g, const struct eo_contact_grid_settings *settings,
+static int list_stretches(const struct eo_geometry *geometry, const struct eo_contact_grid_settings *settings,
                           struct stretch stretch[3])
 {
-  double reach = isnan(settings->edge_reach) ? g->normal_module * 4 / 15 : settings->edge_reach;
-  stretch[0] = (struct stretch){g->path_start, g->path_end, settings->cells, EO_POINT_LINE};
-  stretch[1] = (struct stretch){g->path_start - reach, g->path_start, settings->edge_cells, EO_POINT_GEAR_TIP};
-  stretch[2] = (struct stretch){g->path_end, g->path_end + reach, settings->edge_cells, EO_POINT_PINION_TIP};
+  double reach = isnan(settings->edge_reach) ? geometry->normal_module * 4 / 15 : settings->edge_reach;
+  stretch[0] = (struct stretch){geometry->path_start, geometry->path_end, settings->cells, EO_POINT_LINE};
+  stretch[1] = (struct stretch){geometry->path_start - reach, geometry->path_start, settings->edge_cells,
+                                EO_POINT_GEAR_TIP};
+  stretch[2] = (struct stretch){geometry->path_end, geometry->path_end + reach, settings->edge_cells,
+                                EO_POINT_PINION_TIP};
   return settings->tip_edges ? 3 : 1;
 }
 
 /* Pairs whose contact line can cross [low, high] anywhere on the face. */
-static void pair_range(const struct eo_geometry *g, double phase, const struct stretch *stretch, int range[2])
+static void pair_range(const struct eo_geometry *geometry, double phase, const struct stretch *stretch, int range[2])
 {
-  double lean = g->face_width / 2 * tan(g->base_helix_angle);
-  range[0] = (int)floor((stretch->low - lean - phase) / g->transverse_base_pitch);
-  range[1] = (int)ceil((stretch->high + lean - phase) / g->transverse_base_pitch);
+  double lean = geometry->face_width / 2 * tan(geometry->base_helix_angle);
+  range[0] = (int)floor((stretch->low - lean - phase) / geometry->transverse_base_pitch);
+  range[1] = (int)ceil((stretch->high + lean - phase) / geometry->transverse_base_pitch);
 }
 
-static int count_points(const struct eo_geometry *g, double phase, const struct stretch *stretch, int stretches,
+static int count_points(const struct eo_geometry *geometry, double phase, const struct stretch *stretch, int stretches,
                         int *lines)
 {
   int count = 0;
@@ -69,9 +72,10 @@ static int count_points(const struct eo_geometry *g, double phase, const struct 
   for (int i = 0; i < stretches; i++) {
     int range[2];
     double eta[2];
-    pair_range(g, phase, &stretch[i], range);
+    pair_range(geometry, phase, &stretch[i], range);
     for (int k = range[0]; k <= range[1]; k++)
-      if (eo_gap_field_line_range(g, phase + k * g->transverse_base_pitch, stretch[i].low, stretch[i].high, eta)) {
+      if (eo_gap_field_line_range(geometry, phase + k * geometry->transverse_base_pitch, stretch[i].low,
+                                  stretch[i].high, eta)) {
         count += stretch[i].cells;
         ++*lines;
       }
@@ -79,69 +83,71 @@ static int count_points(const struct eo_geometry *g, double phase, const struct 
   return count;
 }
 
-static enum eo_code allocate_position(struct eo_contact_position *p, struct eo_error *error)
+static enum eo_code allocate_position(struct eo_contact_position *position, struct eo_error *error)
 {
-  size_t n = (size_t)p->points;
-  p->line = calloc((size_t)p->lines, sizeof *p->line);
-  p->point = calloc(n, sizeof *p->point);
-  p->path = calloc(n, sizeof *p->path);
-  p->kind = calloc(n, sizeof *p->kind);
-  p->length = calloc(n, sizeof *p->length);
-  p->law = calloc(n, sizeof *p->law);
-  p->per_depth = calloc(n, sizeof *p->per_depth);
-  p->strength = calloc(n, sizeof *p->strength);
-  p->radius = calloc(n, sizeof *p->radius);
-  return p->line && p->point && p->path && p->kind && p->length && p->law && p->per_depth && p->strength && p->radius
+  size_t n = (size_t)position->points;
+  position->line = calloc((size_t)position->lines, sizeof *position->line);
+  position->point = calloc(n, sizeof *position->point);
+  position->path = calloc(n, sizeof *position->path);
+  position->kind = calloc(n, sizeof *position->kind);
+  position->length = calloc(n, sizeof *position->length);
+  position->law = calloc(n, sizeof *position->law);
+  position->per_depth = calloc(n, sizeof *position->per_depth);
+  position->strength = calloc(n, sizeof *position->strength);
+  position->radius = calloc(n, sizeof *position->radius);
+  return position->line && position->point && position->path && position->kind && position->length && position->law &&
+                 position->per_depth && position->strength && position->radius
              ? EO_OK
              : eo_error_memory(error);
 }
 
-static void fill_line(struct eo_contact_position *p, int first, const struct eo_gap_field *field,
+static void fill_line(struct eo_contact_position *position, int first, const struct eo_gap_field *field,
                       const struct eo_material *material, const struct stretch *stretch, int pair, const double eta[2])
 {
-  const struct eo_geometry *g = field->geometry;
-  double tangent = tan(g->base_helix_angle), width = (eta[1] - eta[0]) / stretch->cells;
+  const struct eo_geometry *geometry = field->geometry;
+  double tangent = tan(geometry->base_helix_angle), width = (eta[1] - eta[0]) / stretch->cells;
   for (int i = 0; i < stretch->cells; i++) {
-    struct eo_flank_point *point = &p->point[first + i];
+    struct eo_flank_point *point = &position->point[first + i];
     point->pair = pair;
     point->eta = eta[0] + (i + 0.5) * width;
     /* theory (Y1) */
-    double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent,
-           clamped = fmin(fmax(s, g->path_start), g->path_end);
+    double s = position->phase + pair * geometry->transverse_base_pitch + point->eta * tangent,
+           clamped = fmin(fmax(s, geometry->path_start), geometry->path_end);
     eo_gap_field_at(field, s, point->eta, NULL, point->s);
-    p->path[first + i] = s;
-    p->kind[first + i] = stretch->kind;
-    p->length[first + i] = width / cos(g->base_helix_angle);
-    p->law[first + i] = eo_contact_local_constant(g, material, clamped);
-    p->radius[first + i] = eo_geometry_relative_radius(g, clamped);
+    position->path[first + i] = s;
+    position->kind[first + i] = stretch->kind;
+    position->length[first + i] = width / cos(geometry->base_helix_angle);
+    position->law[first + i] = eo_contact_local_constant(geometry, material, clamped);
+    position->radius[first + i] = eo_geometry_relative_radius(geometry, clamped);
   }
 }
 
 /* The local law as the table of its inverse takes it. */
-static void scale_law(struct eo_contact_position *p, double compliance_scale)
+static void scale_law(struct eo_contact_position *position, double compliance_scale)
 {
-  for (int i = 0; i < p->points; i++) {
-    p->per_depth[i] = exp(-p->law[i]) / compliance_scale;
-    p->strength[i] = exp(p->law[i]) * p->length[i];
+  for (int i = 0; i < position->points; i++) {
+    position->per_depth[i] = exp(-position->law[i]) / compliance_scale;
+    position->strength[i] = exp(position->law[i]) * position->length[i];
   }
 }
 
-static enum eo_code fill_position(struct eo_contact_position *p, const struct eo_gap_field *field,
+static enum eo_code fill_position(struct eo_contact_position *position, const struct eo_gap_field *field,
                                   const struct eo_material *material, const struct stretch *stretch, int stretches,
                                   struct eo_error *error)
 {
-  const struct eo_geometry *g = field->geometry;
-  p->points = count_points(g, p->phase, stretch, stretches, &p->lines);
-  enum eo_code code = allocate_position(p, error);
+  const struct eo_geometry *geometry = field->geometry;
+  position->points = count_points(geometry, position->phase, stretch, stretches, &position->lines);
+  enum eo_code code = allocate_position(position, error);
   int filled = 0, lines = 0;
   for (int i = 0; i < stretches && !code; i++) {
     int range[2];
     double eta[2];
-    pair_range(g, p->phase, &stretch[i], range);
+    pair_range(geometry, position->phase, &stretch[i], range);
     for (int k = range[0]; k <= range[1]; k++)
-      if (eo_gap_field_line_range(g, p->phase + k * g->transverse_base_pitch, stretch[i].low, stretch[i].high, eta)) {
-        p->line[lines++] = (struct eo_contact_line){k, stretch[i].kind, filled, stretch[i].cells};
-        fill_line(p, filled, field, material, &stretch[i], k, eta);
+      if (eo_gap_field_line_range(geometry, position->phase + k * geometry->transverse_base_pitch, stretch[i].low,
+                                  stretch[i].high, eta)) {
+        position->line[lines++] = (struct eo_contact_line){k, stretch[i].kind, filled, stretch[i].cells};
+        fill_line(position, filled, field, material, &stretch[i], k, eta);
         filled += stretch[i].cells;
       }
   }
@@ -150,52 +156,54 @@ static enum eo_code fill_position(struct eo_contact_position *p, const struct eo
 
 /* The few strongest modes carry Newton's matrix; what they leave, the rounding of the modes included, is added back as
    a correction, so the compliance is exact. */
-static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance,
+static enum eo_code factor_position(struct eo_contact_position *position, struct eo_kernel kernel, double *compliance,
                                     struct eo_error *error)
 {
   static const double TOLERANCE = 5e-3;
-  size_t n = (size_t)p->points;
+  size_t n = (size_t)position->points;
   double *factor = NULL;
   int stride = 0;
-  kernel.evaluate(kernel.context, p->points, p->point, compliance);
-  enum eo_code code = eo_lowrank_factor(p->points, compliance, TOLERANCE, &p->rank, &stride, &factor, error);
+  kernel.evaluate(kernel.context, position->points, position->point, compliance);
+  enum eo_code code = eo_lowrank_factor(position->points, compliance, TOLERANCE, &position->rank, &stride, &factor,
+                                        error);
   if (code)
     return code;
-  p->stride = eo_gram_width(p->rank - (p->rank > 0));
-  p->factor = eo_gram_allocate((long)p->points * p->stride / 2);
-  p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
-  p->remainder = eo_gram_allocate((long)p->points * p->remainder_stride / 2);
-  for (int i = 0; p->factor && i < p->points; i++)
-    for (int k = 0; k < p->rank; k++)
-      p->factor[i * p->stride + k] = (float)factor[i * stride + k];
+  position->stride = eo_gram_width(position->rank - (position->rank > 0));
+  position->factor = eo_gram_allocate((long)position->points * position->stride / 2);
+  position->remainder_stride = (position->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
+  position->remainder = eo_gram_allocate((long)position->points * position->remainder_stride / 2);
+  for (int i = 0; position->factor && i < position->points; i++)
+    for (int k = 0; k < position->rank; k++)
+      position->factor[i * position->stride + k] = (float)factor[i * stride + k];
   free(factor);
-  if (!p->factor || !p->remainder)
+  if (!position->factor || !position->remainder)
     return eo_error_memory(error);
-  kernel.evaluate(kernel.context, p->points, p->point, compliance);
+  kernel.evaluate(kernel.context, position->points, position->point, compliance);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) {
-      const float *a = p->factor + i * (size_t)p->stride, *b = p->factor + j * (size_t)p->stride;
+      const float *a = position->factor + i * (size_t)position->stride,
+                  *b = position->factor + j * (size_t)position->stride;
       double sum = compliance[i * n + j];
-      for (int k = 0; k < p->rank; k++)
+      for (int k = 0; k < position->rank; k++)
         sum -= (double)a[k] * (double)b[k];
-      p->remainder[i * (size_t)p->remainder_stride + j] = (float)sum;
+      position->remainder[i * (size_t)position->remainder_stride + j] = (float)sum;
     }
   return EO_OK;
 }
 
-static void free_position(struct eo_contact_position *p)
+static void free_position(struct eo_contact_position *position)
 {
-  free(p->line);
-  free(p->point);
-  free(p->path);
-  free(p->kind);
-  free(p->length);
-  free(p->law);
-  free(p->per_depth);
-  free(p->strength);
-  free(p->radius);
-  free(p->factor);
-  free(p->remainder);
+  free(position->line);
+  free(position->point);
+  free(position->path);
+  free(position->kind);
+  free(position->length);
+  free(position->law);
+  free(position->per_depth);
+  free(position->strength);
+  free(position->radius);
+  free(position->factor);
+  free(position->remainder);
 }
 
 void eo_contact_grid_free(struct eo_contact_grid *grid)
@@ -234,14 +242,14 @@ static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_mate
     return eo_error_memory(error);
   eo_gap_field_init(field, &grid->geometry, &none, &none, EO_RIGHT, 0, 0, 0, grid->corner);
   for (int i = 0; i < grid->positions && !code; i++) {
-    struct eo_contact_position *p = &grid->position[i];
-    p->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
-    code = fill_position(p, field, material, stretch, stretches, error);
+    struct eo_contact_position *position = &grid->position[i];
+    position->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
+    code = fill_position(position, field, material, stretch, stretches, error);
     if (!code)
-      scale_law(p, grid->compliance_scale);
-    p->first = grid->points;
-    grid->points += p->points;
-    grid->most_points = p->points > grid->most_points ? p->points : grid->most_points;
+      scale_law(position, grid->compliance_scale);
+    position->first = grid->points;
+    grid->points += position->points;
+    grid->most_points = position->points > grid->most_points ? position->points : grid->most_points;
   }
   if (!code && !(compliance = malloc(sizeof *compliance * (size_t)grid->most_points * (size_t)grid->most_points)))
     code = eo_error_memory(error);

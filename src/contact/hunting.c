@@ -37,23 +37,24 @@ static int floored(int number, int by)
 }
 
 /* theory (P2): C_Halpha xi/2 + C_Hbeta zeta/2 of one member. */
-static double slopes_at(const struct eo_geometry *g, const struct eo_flank_point *point, bool inwards, int member,
-                        const struct eo_tooth_deviation *tooth)
+static double slopes_at(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
+                        int member, const struct eo_tooth_deviation *tooth)
 {
-  double middle = (g->path_start + g->path_end) / 2, half = (g->path_end - g->path_start) / 2,
+  double middle = (geometry->path_start + geometry->path_end) / 2,
+         half = (geometry->path_end - geometry->path_start) / 2,
          xi = eo_geometry_own_path(member, point->s[member] - middle) / half,
-         zeta = (inwards ? -2 : 2) * point->eta / g->face_width;
+         zeta = (inwards ? -2 : 2) * point->eta / geometry->face_width;
   return (tooth->profile_slope * xi + tooth->helix_slope * zeta) / 2;
 }
 
-double eo_hunting_gap(const struct eo_geometry *g, const struct eo_flank_point *point, bool inwards,
+double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
                       const struct eo_tooth_deviation *const tooth[2])
 {
-  double gap = 0, normal = cos(g->transverse_pressure_angle) * cos(g->base_helix_angle);
+  double gap = 0, normal = cos(geometry->transverse_pressure_angle) * cos(geometry->base_helix_angle);
   for (int member = 0; member < 2; member++)
     if (tooth[member])
       /* theory (P1) */
-      gap += slopes_at(g, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
+      gap += slopes_at(geometry, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
   return gap;
 }
 
@@ -70,25 +71,26 @@ static void teeth_of(const struct eo_hunt *hunt, int end, int pair, const struct
 static void set_gaps(const struct eo_hunt *hunt, struct eo_hunting_walker *walker, int end, int cycle, int j)
 {
   const struct eo_contact_grid *grid = hunt->input->grid[end];
-  const struct eo_contact_position *p = &grid->position[j];
-  const double *gap = hunt->input->gap[end] + p->first;
-  for (int l = 0; l < p->lines; l++) {
-    const struct eo_contact_line *line = &p->line[l];
+  const struct eo_contact_position *position = &grid->position[j];
+  const double *gap = hunt->input->gap[end] + position->first;
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
     const struct eo_tooth_deviation *tooth[2];
     teeth_of(hunt, end, cycle - line->pair, tooth);
     for (int i = line->first; i < line->first + line->cells; i++)
-      walker->gap[end][p->first + i] = gap[i] +
-                                       eo_hunting_gap(&grid->geometry, &p->point[i], hunt->input->inwards, tooth);
+      walker->gap[end][position->first + i] = gap[i] + eo_hunting_gap(&grid->geometry, &position->point[i],
+                                                                      hunt->input->inwards, tooth);
   }
 }
 
 /* What the line of the same teeth carried at a position `cycles` before this one's; NULL where it was not there. */
-static const double *carried_by(const struct eo_contact_position *p, const struct eo_contact_line *line, int cycles,
-                                const struct eo_loaded_end *solved)
+static const double *carried_by(const struct eo_contact_position *position, const struct eo_contact_line *line,
+                                int cycles, const struct eo_loaded_end *solved)
 {
-  for (int i = 0; i < p->lines; i++)
-    if (p->line[i].pair == line->pair - cycles && p->line[i].kind == line->kind && p->line[i].cells == line->cells)
-      return solved->line_load + p->first + p->line[i].first;
+  for (int i = 0; i < position->lines; i++)
+    if (position->line[i].pair == line->pair - cycles && position->line[i].kind == line->kind &&
+        position->line[i].cells == line->cells)
+      return solved->line_load + position->first + position->line[i].first;
   return NULL;
 }
 
@@ -98,7 +100,7 @@ static const double *carried_by(const struct eo_contact_position *p, const struc
 static void guess(const struct eo_hunt *hunt, struct eo_loaded_end *solved, int end, int j, int before)
 {
   const struct eo_contact_grid *grid = hunt->input->grid[end];
-  const struct eo_contact_position *p = &grid->position[j], *back[EO_HUNTING_BEFORE];
+  const struct eo_contact_position *position = &grid->position[j], *back[EO_HUNTING_BEFORE];
   int cycles[EO_HUNTING_BEFORE], known = before < EO_HUNTING_BEFORE ? before : EO_HUNTING_BEFORE;
   double z[EO_HUNTING_BEFORE] = {0};
   for (int i = 0; i < known; i++) {
@@ -107,13 +109,13 @@ static void guess(const struct eo_hunt *hunt, struct eo_loaded_end *solved, int 
     back[i] = &grid->position[wrap(at, grid->positions)];
     z[i] = solved->approach[wrap(at, grid->positions)];
   }
-  memset(solved->line_load + p->first, 0, sizeof *solved->line_load * (size_t)p->points);
-  for (int l = 0; l < p->lines; l++) {
+  memset(solved->line_load + position->first, 0, sizeof *solved->line_load * (size_t)position->points);
+  for (int l = 0; l < position->lines; l++) {
     const double *q[EO_HUNTING_BEFORE] = {NULL};
     for (int i = 0; i < known; i++)
-      q[i] = carried_by(back[i], &p->line[l], cycles[i], solved);
-    double *load = solved->line_load + p->first + p->line[l].first;
-    for (int i = 0; q[0] && i < p->line[l].cells; i++)
+      q[i] = carried_by(back[i], &position->line[l], cycles[i], solved);
+    double *load = solved->line_load + position->first + position->line[l].first;
+    for (int i = 0; q[0] && i < position->line[l].cells; i++)
       load[i] = fmax(0, q[1] && q[2] ? 3 * (q[0][i] - q[1][i]) + q[2][i] : q[1] ? 2 * q[0][i] - q[1][i] : q[0][i]);
   }
   solved->approach[j] = known > 2 ? 3 * (z[0] - z[1]) + z[2] : known == 2 ? 2 * z[0] - z[1] : z[0];
@@ -157,29 +159,31 @@ static void raise_to(struct eo_hunting_place *place, const struct eo_hunting_pla
 static void read_end(const struct eo_hunt *hunt, const struct eo_hunting_walker *walker, struct eo_hunting_find *find,
                      int end, int instant)
 {
-  struct eo_hunting *r = hunt->result;
+  struct eo_hunting *hunting = hunt->result;
   const struct eo_contact_grid *grid = hunt->input->grid[end];
   const struct eo_loaded_end *solved = &walker->solved[end];
-  int at = end == EO_RIGHT ? instant - hunt->input->stagger : instant, position = wrap(at, r->positions),
-      cycle = floored(at, r->positions), j = position * hunt->step, carrying = 0;
-  const struct eo_contact_position *p = &grid->position[j];
-  float *pair_load = r->pair_load[end] + (size_t)instant * (size_t)r->lines;
-  r->load[end][instant] = solved->load[j];
-  r->approach[end][instant] = solved->approach[j];
-  r->tangent[end][instant] = solved->tangent[j];
-  for (int k = r->first_line; k < r->first_line + r->lines; k++) {
-    struct eo_hunting_place load = {.end = end, .cycle = wrap(cycle, r->cycles), .position = position, .line = k},
+  int at = end == EO_RIGHT ? instant - hunt->input->stagger : instant, position = wrap(at, hunting->positions),
+      cycle = floored(at, hunting->positions), j = position * hunt->step, carrying = 0;
+  const struct eo_contact_position *contact_position = &grid->position[j];
+  float *pair_load = hunting->pair_load[end] + (size_t)instant * (size_t)hunting->lines;
+  hunting->load[end][instant] = solved->load[j];
+  hunting->approach[end][instant] = solved->approach[j];
+  hunting->tangent[end][instant] = solved->tangent[j];
+  for (int k = hunting->first_line; k < hunting->first_line + hunting->lines; k++) {
+    struct eo_hunting_place load = {.end = end, .cycle = wrap(cycle, hunting->cycles), .position = position, .line = k},
                             pressure = load;
     for (int member = 0; member < 2; member++)
-      load.tooth[member] = pressure.tooth[member] = wrap(cycle - k, r->teeth[member]);
-    for (int l = 0; l < p->lines; l++)
-      for (int i = p->line[l].first; p->line[l].pair == k && i < p->line[l].first + p->line[l].cells; i++) {
-        double q = solved->line_load[p->first + i];
-        load.value += q * p->length[i];
+      load.tooth[member] = pressure.tooth[member] = wrap(cycle - k, hunting->teeth[member]);
+    for (int l = 0; l < contact_position->lines; l++)
+      for (int i = contact_position->line[l].first;
+           contact_position->line[l].pair == k && i < contact_position->line[l].first + contact_position->line[l].cells;
+           i++) {
+        double q = solved->line_load[contact_position->first + i];
+        load.value += q * contact_position->length[i];
         if (q > 0)
-          pressure.value = fmax(pressure.value, eo_loaded_pressure(grid, q, p->radius[i]));
+          pressure.value = fmax(pressure.value, eo_loaded_pressure(grid, q, contact_position->radius[i]));
       }
-    pair_load[k - r->first_line] = (float)load.value;
+    pair_load[k - hunting->first_line] = (float)load.value;
     carrying += load.value > 0;
     raise_to(&find->most_load[end], &load);
     raise_to(&find->most_pressure[end], &pressure);
@@ -193,7 +197,7 @@ static void read_end(const struct eo_hunt *hunt, const struct eo_hunting_walker 
 static void read_roots(const struct eo_hunt *hunt, struct eo_hunting_walker *walker, struct eo_hunting_find *find,
                        int end, int cycle)
 {
-  struct eo_hunting *r = hunt->result;
+  struct eo_hunting *hunting = hunt->result;
   const struct eo_loaded_end *solved = &walker->solved[end];
   int half = walker->root[EO_RIGHT] && end == EO_RIGHT, range[2];
   struct eo_root_history *history = &walker->history[half];
@@ -202,11 +206,12 @@ static void read_roots(const struct eo_hunt *hunt, struct eo_hunting_walker *wal
     for (int k = range[0]; k <= range[1]; k++) {
       struct eo_root_peak peak;
       eo_root_tooth_compute(walker->root[half], member, k, 1, &solved, &history, &peak);
-      struct eo_hunting_place place = {.value = peak.stress, .end = end, .cycle = wrap(cycle, r->cycles), .line = k};
+      struct eo_hunting_place place = {
+          .value = peak.stress, .end = end, .cycle = wrap(cycle, hunting->cycles), .line = k};
       for (int i = 0; i < 2; i++)
-        place.tooth[i] = wrap(cycle - k, r->teeth[i]);
+        place.tooth[i] = wrap(cycle - k, hunting->teeth[i]);
       raise_to(&find->most_stress[member], &place);
-      raise_to(&find->tooth_stress[member][end * r->teeth[member] + place.tooth[member]], &place);
+      raise_to(&find->tooth_stress[member][end * hunting->teeth[member] + place.tooth[member]], &place);
     }
 }
 
@@ -254,22 +259,22 @@ static enum eo_code pass_block(void *context, int thread, int item, struct eo_er
 /* What each thread found. */
 static void gather(struct eo_hunt *hunt)
 {
-  struct eo_hunting *r = hunt->result;
+  struct eo_hunting *hunting = hunt->result;
   for (int thread = 0; thread < hunt->input->threads; thread++) {
     const struct eo_hunting_find *find = &hunt->walker[thread].find;
-    r->failures += find->failures;
-    r->alone += find->alone;
-    for (int end = 0; end < r->ends; end++) {
-      raise_to(&r->most_load[end], &find->most_load[end]);
-      raise_to(&r->most_pressure[end], &find->most_pressure[end]);
+    hunting->failures += find->failures;
+    hunting->alone += find->alone;
+    for (int end = 0; end < hunting->ends; end++) {
+      raise_to(&hunting->most_load[end], &find->most_load[end]);
+      raise_to(&hunting->most_pressure[end], &find->most_pressure[end]);
     }
     for (int member = 0; member < 2; member++) {
-      raise_to(&r->most_stress[member], &find->most_stress[member]);
-      for (int end = 0; end < r->ends; end++)
-        for (int i = 0; i < r->teeth[member]; i++)
-          raise_to(&r->tooth_load[end][member][i], &find->tooth_load[end][member][i]);
-      for (int i = 0; r->tooth_stress[member] && i < r->ends * r->teeth[member]; i++)
-        raise_to(&r->tooth_stress[member][i], &find->tooth_stress[member][i]);
+      raise_to(&hunting->most_stress[member], &find->most_stress[member]);
+      for (int end = 0; end < hunting->ends; end++)
+        for (int i = 0; i < hunting->teeth[member]; i++)
+          raise_to(&hunting->tooth_load[end][member][i], &find->tooth_load[end][member][i]);
+      for (int i = 0; hunting->tooth_stress[member] && i < hunting->ends * hunting->teeth[member]; i++)
+        raise_to(&hunting->tooth_stress[member][i], &find->tooth_stress[member][i]);
     }
   }
 }

@@ -22,57 +22,60 @@ static double *make_numbers(int count, bool *complete)
   return number;
 }
 
-static void count_result(struct eo_hunting *r, const struct eo_hunting_input *input)
+static void count_result(struct eo_hunting *hunting, const struct eo_hunting_input *input)
 {
-  const struct eo_geometry *g = &input->grid[0]->geometry;
+  const struct eo_geometry *geometry = &input->grid[0]->geometry;
   int range[2];
   eo_contact_grid_pairs(input->grid[0], range);
-  *r = (struct eo_hunting){.ends = input->ends,
-                           .positions = input->positions,
-                           .first_line = range[0],
-                           .teeth = {g->teeth[0], g->teeth[1]},
-                           .cycles = eo_hunting_cycles(g->teeth)};
+  *hunting = (struct eo_hunting){.ends = input->ends,
+                                 .positions = input->positions,
+                                 .first_line = range[0],
+                                 .teeth = {geometry->teeth[0], geometry->teeth[1]},
+                                 .cycles = eo_hunting_cycles(geometry->teeth)};
   for (int end = 1; end < input->ends; end++) {
     int own[2];
     eo_contact_grid_pairs(input->grid[end], own);
-    r->first_line = own[0] < r->first_line ? own[0] : r->first_line;
+    hunting->first_line = own[0] < hunting->first_line ? own[0] : hunting->first_line;
     range[1] = own[1] > range[1] ? own[1] : range[1];
   }
-  r->lines = range[1] - r->first_line + 1;
+  hunting->lines = range[1] - hunting->first_line + 1;
 }
 
-static enum eo_code make_result(struct eo_hunting *r, const struct eo_hunting_input *input, struct eo_error *error)
+static enum eo_code make_result(struct eo_hunting *hunting, const struct eo_hunting_input *input,
+                                struct eo_error *error)
 {
   bool complete = true;
-  count_result(r, input);
-  if ((double)r->cycles * r->positions > EO_HUNTING_MOST_INSTANTS)
+  count_result(hunting, input);
+  if ((double)hunting->cycles * hunting->positions > EO_HUNTING_MOST_INSTANTS)
     return eo_error_set(error, EO_ERROR_INPUT, "/pitch/positions_per_cycle",
                         "%d and %d teeth meet again after %d mesh cycles; with %d positions each that is more than the "
                         "%d instants that are computed.",
-                        r->teeth[0], r->teeth[1], r->cycles, r->positions, EO_HUNTING_MOST_INSTANTS);
-  r->instants = r->cycles * r->positions;
-  for (int end = 0; end < r->ends; end++) {
-    r->load[end] = make_numbers(r->instants, &complete);
-    r->approach[end] = make_numbers(r->instants, &complete);
-    r->tangent[end] = make_numbers(r->instants, &complete);
-    r->pair_load[end] = calloc((size_t)r->instants * (size_t)r->lines, sizeof *r->pair_load[end]);
-    complete = complete && r->pair_load[end];
+                        hunting->teeth[0], hunting->teeth[1], hunting->cycles, hunting->positions,
+                        EO_HUNTING_MOST_INSTANTS);
+  hunting->instants = hunting->cycles * hunting->positions;
+  for (int end = 0; end < hunting->ends; end++) {
+    hunting->load[end] = make_numbers(hunting->instants, &complete);
+    hunting->approach[end] = make_numbers(hunting->instants, &complete);
+    hunting->tangent[end] = make_numbers(hunting->instants, &complete);
+    hunting->pair_load[end] = calloc((size_t)hunting->instants * (size_t)hunting->lines,
+                                     sizeof *hunting->pair_load[end]);
+    complete = complete && hunting->pair_load[end];
     for (int member = 0; member < 2; member++)
-      r->tooth_load[end][member] = make_places(r->teeth[member], &complete);
+      hunting->tooth_load[end][member] = make_places(hunting->teeth[member], &complete);
   }
   for (int member = 0; member < 2 && input->root[EO_LEFT][0]; member++)
-    r->tooth_stress[member] = make_places(r->ends * r->teeth[member], &complete);
+    hunting->tooth_stress[member] = make_places(hunting->ends * hunting->teeth[member], &complete);
   return complete ? EO_OK : eo_error_memory(error);
 }
 
-static enum eo_code make_find(struct eo_hunting_find *find, const struct eo_hunting *r, struct eo_error *error)
+static enum eo_code make_find(struct eo_hunting_find *find, const struct eo_hunting *hunting, struct eo_error *error)
 {
   bool complete = true;
   for (int member = 0; member < 2; member++) {
-    for (int end = 0; end < r->ends; end++)
-      find->tooth_load[end][member] = make_places(r->teeth[member], &complete);
-    if (r->tooth_stress[member])
-      find->tooth_stress[member] = make_places(r->ends * r->teeth[member], &complete);
+    for (int end = 0; end < hunting->ends; end++)
+      find->tooth_load[end][member] = make_places(hunting->teeth[member], &complete);
+    if (hunting->tooth_stress[member])
+      find->tooth_stress[member] = make_places(hunting->ends * hunting->teeth[member], &complete);
   }
   return complete ? EO_OK : eo_error_memory(error);
 }
@@ -132,16 +135,16 @@ void eo_hunt_end(struct eo_hunt *hunt)
   free(hunt->walker);
 }
 
-void eo_hunting_done(struct eo_hunting *r)
+void eo_hunting_done(struct eo_hunting *hunting)
 {
   for (int end = 0; end < 2; end++) {
-    free(r->load[end]);
-    free(r->approach[end]);
-    free(r->tangent[end]);
-    free(r->pair_load[end]);
-    free(r->tooth_stress[end]);
+    free(hunting->load[end]);
+    free(hunting->approach[end]);
+    free(hunting->tangent[end]);
+    free(hunting->pair_load[end]);
+    free(hunting->tooth_stress[end]);
     for (int member = 0; member < 2; member++)
-      free(r->tooth_load[end][member]);
+      free(hunting->tooth_load[end][member]);
   }
-  *r = (struct eo_hunting){0};
+  *hunting = (struct eo_hunting){0};
 }

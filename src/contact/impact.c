@@ -6,15 +6,16 @@
 #include <math.h>
 #include <stddef.h>
 
-void eo_impact_inertia(const struct eo_geometry *g, const struct eo_material *material, double inertia[2])
+void eo_impact_inertia(const struct eo_geometry *geometry, const struct eo_material *material, double inertia[2])
 {
   for (int i = 0; i < 2; i++)
-    inertia[i] = M_PI / 2 * eo_material_of(material, i).density * g->member_width[i] * pow(g->working_radius[i], 4);
+    inertia[i] = M_PI / 2 * eo_material_of(material, i).density * geometry->member_width[i] *
+                 pow(geometry->working_radius[i], 4);
 }
 
-double eo_impact_mass(const struct eo_geometry *g, const double inertia[2])
+double eo_impact_mass(const struct eo_geometry *geometry, const double inertia[2])
 {
-  double p = g->base_radius[EO_PINION], q = g->base_radius[EO_GEAR], c = cos(g->base_helix_angle);
+  double p = geometry->base_radius[EO_PINION], q = geometry->base_radius[EO_GEAR], c = cos(geometry->base_helix_angle);
   return inertia[0] * inertia[1] / (inertia[0] * q * q + inertia[1] * p * p) / (c * c); /* theory (I3) */
 }
 
@@ -31,12 +32,13 @@ struct search {
 /* The smallest gap of the incoming line at fixed stations over the face. */
 static double sampled_minimum(const struct search *search, double c, double *eta)
 {
-  const struct eo_geometry *g = &search->grid->geometry;
+  const struct eo_geometry *geometry = &search->grid->geometry;
   double best = INFINITY, reach = search->field->corner[0].reach / 2;
   for (int i = 0; i < search->stations; i++) {
-    double at = g->face_width * ((double)i / (search->stations - 1) - 0.5), s = c + at * tan(g->base_helix_angle);
+    double at = geometry->face_width * ((double)i / (search->stations - 1) - 0.5),
+           s = c + at * tan(geometry->base_helix_angle);
     double before = search->sense > 0 ? reach : 0, behind = search->sense > 0 ? 0 : reach;
-    double gap = s < g->path_start - before || s > g->path_end + behind
+    double gap = s < geometry->path_start - before || s > geometry->path_end + behind
                      ? INFINITY
                      : eo_gap_field_at(search->field, s, at, NULL, NULL);
     if (gap < best) {
@@ -109,11 +111,12 @@ static double close_in(const struct search *search, double low, double open, dou
 static bool first_touch(const struct search *search, double *c, double *eta)
 {
   enum { STEPS_PER_PITCH = 48 };
-  const struct eo_geometry *g = &search->grid->geometry;
-  double lean = g->face_width / 2 * tan(g->base_helix_angle), reach = search->field->corner[0].reach / 2;
-  double from = search->sense > 0 ? g->path_start : -g->path_end, to = search->sense > 0 ? g->path_end : -g->path_start;
-  double low = from - lean - reach, end = to + lean, step = g->transverse_base_pitch / STEPS_PER_PITCH, high = low,
-         open = INFINITY, closed = INFINITY; /* along the way it runs */
+  const struct eo_geometry *geometry = &search->grid->geometry;
+  double lean = geometry->face_width / 2 * tan(geometry->base_helix_angle), reach = search->field->corner[0].reach / 2;
+  double from = search->sense > 0 ? geometry->path_start : -geometry->path_end,
+         to = search->sense > 0 ? geometry->path_end : -geometry->path_start;
+  double low = from - lean - reach, end = to + lean, step = geometry->transverse_base_pitch / STEPS_PER_PITCH,
+         high = low, open = INFINITY, closed = INFINITY; /* along the way it runs */
   for (int i = 0; closed > 0; i++) {
     low = high;
     open = closed;
@@ -129,11 +132,12 @@ static bool first_touch(const struct search *search, double *c, double *eta)
 
 /* Bulk compliance of the patch: the mean deflection of its points under an even load (10 points at the place of the
    touch). */
-static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, double patch, double s, double eta)
+static double patch_bulk(const struct eo_geometry *geometry, struct eo_kernel kernel, double patch, double s,
+                         double eta)
 {
   enum { POINTS = 10 };
   struct eo_flank_point point[POINTS];
-  double matrix[POINTS * POINTS], sum = 0, half = g->face_width / 2, length = fmin(patch, g->face_width);
+  double matrix[POINTS * POINTS], sum = 0, half = geometry->face_width / 2, length = fmin(patch, geometry->face_width);
   double low = fmax(-half, fmin(half - length, eta - length / 2));
   for (int i = 0; i < POINTS; i++)
     point[i] = (struct eo_flank_point){.pair = 0, .s = {s, s}, .eta = low + length * (i + 0.5) / POINTS};
@@ -169,13 +173,14 @@ static double closing_slope(const struct search *search, double s, double eta)
 void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid,
                       const struct eo_impact_settings *settings, double speed, double compliance_factor)
 {
-  const struct eo_geometry *g = &grid->geometry;
-  double s = settings->backwards ? fmin(impact->path, g->path_end) : fmax(impact->path, g->path_start),
-         length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
-  double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
+  const struct eo_geometry *geometry = &grid->geometry;
+  double s = settings->backwards ? fmin(impact->path, geometry->path_end) : fmax(impact->path, geometry->path_start),
+         length = fmin(settings->patch, geometry->face_width) / cos(geometry->base_helix_angle);
+  double law = eo_contact_local_constant(geometry, &grid->material, s),
+         mass = eo_impact_mass(geometry, settings->inertia);
   if (!impact->touched)
     return;
-  impact->speed = fmax(0, -impact->slope) * speed * g->base_radius[EO_PINION]; /* theory (I2) */
+  impact->speed = fmax(0, -impact->slope) * speed * geometry->base_radius[EO_PINION]; /* theory (I2) */
   /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
   double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
   for (int i = 0; i < 200; i++) {
@@ -196,7 +201,7 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
                     struct eo_kernel kernel, const struct eo_impact_settings *settings, const double *approach,
                     double speed, double compliance_factor)
 {
-  const struct eo_geometry *g = &grid->geometry;
+  const struct eo_geometry *geometry = &grid->geometry;
   struct eo_periodic spline;
   double place[2];
   *impact = (struct eo_impact){0};
@@ -207,15 +212,16 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
   impact->touched = first_touch(&search, &impact->phase, &impact->eta);
   if (!impact->touched)
     return;
-  impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
-  impact->off_line = settings->backwards ? impact->path > g->path_end + place_error
-                                         : impact->path < g->path_start - place_error;
+  impact->path = impact->phase + impact->eta * tan(geometry->base_helix_angle);
+  impact->off_line = settings->backwards ? impact->path > geometry->path_end + place_error
+                                         : impact->path < geometry->path_start - place_error;
   impact->slope = search.sense * closing_slope(&search, impact->path, impact->eta);
   eo_gap_field_at(field, impact->path, impact->eta, NULL, place);
-  impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
-  double phase = search.sense * impact->phase / g->transverse_base_pitch;
+  impact->pinion_radius = eo_geometry_radius_at(geometry, EO_PINION, place[EO_PINION]);
+  double phase = search.sense * impact->phase / geometry->transverse_base_pitch;
   impact->start = phase - floor(phase);
-  double place_of_patch = settings->backwards ? fmin(impact->path, g->path_end) : fmax(impact->path, g->path_start);
-  impact->bulk = patch_bulk(g, kernel, settings->patch, place_of_patch, impact->eta);
+  double place_of_patch = settings->backwards ? fmin(impact->path, geometry->path_end)
+                                              : fmax(impact->path, geometry->path_start);
+  impact->bulk = patch_bulk(geometry, kernel, settings->patch, place_of_patch, impact->eta);
   eo_impact_strike(impact, grid, settings, speed, compliance_factor);
 }

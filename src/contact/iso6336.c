@@ -20,21 +20,23 @@ static double pair_flexibility(double z1, double z2, double x1, double x2)
 void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_stiffness_input *input)
 {
   int small = input->teeth[0] <= input->teeth[1] ? 0 : 1;
-  struct eo_iso_stiffness c = {0};
+  struct eo_iso_stiffness iso_stiffness = {0};
   for (int i = 0; i < 2; i++)
-    c.virtual_teeth[i] = input->virtual_teeth == EO_ISO_VIRTUAL_CUBED
-                             ? input->teeth[i] / pow(cos(input->helix_angle), 3)
-                             : virtual_teeth(input->teeth[i], input->normal_pressure_angle, input->helix_angle);
-  c.flexibility = pair_flexibility(c.virtual_teeth[small], c.virtual_teeth[1 - small], input->profile_shift[small],
-                                   input->profile_shift[1 - small]);
-  c.theoretical = 1 / c.flexibility;
-  c.rack_factor = (1 + 0.5 * (1.2 - input->dedendum_coefficient)) *
-                  (1 - 0.02 * (20 - input->normal_pressure_angle * 180 / M_PI));
-  c.single = c.theoretical * input->theory_factor * input->blank_factor * c.rack_factor * cos(input->helix_angle) *
-             input->youngs_modulus / 206e9;
-  c.mesh_alpha = c.single * (0.75 * input->transverse_contact_ratio + 0.25);
-  c.mesh_beta = 0.85 * c.mesh_alpha;
-  *stiffness = c;
+    iso_stiffness.virtual_teeth[i] = input->virtual_teeth == EO_ISO_VIRTUAL_CUBED
+                                         ? input->teeth[i] / pow(cos(input->helix_angle), 3)
+                                         : virtual_teeth(input->teeth[i], input->normal_pressure_angle,
+                                                         input->helix_angle);
+  iso_stiffness.flexibility = pair_flexibility(iso_stiffness.virtual_teeth[small],
+                                               iso_stiffness.virtual_teeth[1 - small], input->profile_shift[small],
+                                               input->profile_shift[1 - small]);
+  iso_stiffness.theoretical = 1 / iso_stiffness.flexibility;
+  iso_stiffness.rack_factor = (1 + 0.5 * (1.2 - input->dedendum_coefficient)) *
+                              (1 - 0.02 * (20 - input->normal_pressure_angle * 180 / M_PI));
+  iso_stiffness.single = iso_stiffness.theoretical * input->theory_factor * input->blank_factor *
+                         iso_stiffness.rack_factor * cos(input->helix_angle) * input->youngs_modulus / 206e9;
+  iso_stiffness.mesh_alpha = iso_stiffness.single * (0.75 * input->transverse_contact_ratio + 0.25);
+  iso_stiffness.mesh_beta = 0.85 * iso_stiffness.mesh_alpha;
+  *stiffness = iso_stiffness;
 }
 
 double eo_iso_blank_factor(double web_ratio, double rim_ratio)
@@ -100,27 +102,27 @@ void eo_iso_section(struct eo_iso_section *section, const struct eo_iso_section_
 
 void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, int member, double bore, double torque)
 {
-  struct eo_iso_root r = {0};
+  struct eo_iso_root iso_root = {0};
   struct eo_iso_section section;
   double module = geometry->normal_module, alpha = geometry->normal_pressure_angle;
-  r.virtual_teeth = virtual_teeth(geometry->teeth[member], alpha, geometry->helix_angle);
+  iso_root.virtual_teeth = virtual_teeth(geometry->teeth[member], alpha, geometry->helix_angle);
   struct eo_iso_section_input input = {
-      .virtual_teeth = r.virtual_teeth,
+      .virtual_teeth = iso_root.virtual_teeth,
       .normal_pressure_angle = alpha,
       .profile_shift = geometry->generating_shift[member],
       .dedendum_coefficient = geometry->dedendum[member] / module,
       .fillet_radius_coefficient = geometry->fillet_radius[member] / module,
-      .load_radius = load_radius(geometry, member, r.virtual_teeth, r.virtual_teeth / 2 * cos(alpha))};
+      .load_radius = load_radius(geometry, member, iso_root.virtual_teeth, iso_root.virtual_teeth / 2 * cos(alpha))};
   eo_iso_section(&section, &input);
-  r.form_factor = section.form_factor;
-  r.stress_correction = section.stress_correction;
-  r.helix_factor = 1 - fmin(geometry->overlap_ratio, 1) * fmin(geometry->helix_angle * 180 / M_PI, 30) / 120;
-  r.rim_factor = rim_factor(geometry, member, bore);
-  r.tangential_force = torque / geometry->reference_radius[member];
-  r.stress = r.tangential_force / (geometry->face_width * module) * r.form_factor * r.stress_correction *
-             r.helix_factor * r.rim_factor;
-  r.chord = section.chord * module;
-  r.arm = section.arm * module;
-  r.fillet_radius = section.fillet_radius * module;
-  *root = r;
+  iso_root.form_factor = section.form_factor;
+  iso_root.stress_correction = section.stress_correction;
+  iso_root.helix_factor = 1 - fmin(geometry->overlap_ratio, 1) * fmin(geometry->helix_angle * 180 / M_PI, 30) / 120;
+  iso_root.rim_factor = rim_factor(geometry, member, bore);
+  iso_root.tangential_force = torque / geometry->reference_radius[member];
+  iso_root.stress = iso_root.tangential_force / (geometry->face_width * module) * iso_root.form_factor *
+                    iso_root.stress_correction * iso_root.helix_factor * iso_root.rim_factor;
+  iso_root.chord = section.chord * module;
+  iso_root.arm = section.arm * module;
+  iso_root.fillet_radius = section.fillet_radius * module;
+  *root = iso_root;
 }

@@ -8,18 +8,18 @@
 /* Position j of an end that carries nothing. */
 static void release_end(const struct eo_contact_grid *grid, int j, double approach, struct eo_loaded_end *end)
 {
-  const struct eo_contact_position *p = &grid->position[j];
+  const struct eo_contact_position *position = &grid->position[j];
   end->load[j] = end->tangent[j] = 0;
   end->approach[j] = approach;
-  memset(end->line_load + p->first, 0, sizeof *end->line_load * (size_t)p->points);
+  memset(end->line_load + position->first, 0, sizeof *end->line_load * (size_t)position->points);
 }
 
 static double least_gap(const struct eo_loaded_half *half, int j)
 {
-  const struct eo_contact_position *p = &half->grid->position[j];
+  const struct eo_contact_position *position = &half->grid->position[j];
   double least = INFINITY;
-  for (int i = 0; i < p->points; i++)
-    least = fmin(least, half->gaps->gap[p->first + i]);
+  for (int i = 0; i < position->points; i++)
+    least = fmin(least, half->gaps->gap[position->first + i]);
   return least;
 }
 

@@ -8,25 +8,25 @@
 
 /* First contact of the pair that line `first` of a position begins; with the gaps [points] at its points, which may be
    NULL: within the width of a cell of the lowest of them. INFINITY where an earlier line has the pair already. */
-static double pair_contact(const struct eo_contact_grid *grid, const struct eo_contact_position *p,
+static double pair_contact(const struct eo_contact_grid *grid, const struct eo_contact_position *position,
                            const struct eo_gap_field *field, int first, const double *gap)
 {
   double lowest = INFINITY, eta = 0, step = 0, range[2], axial = cos(grid->geometry.base_helix_angle),
-         c = p->phase + p->line[first].pair * grid->geometry.transverse_base_pitch;
+         c = position->phase + position->line[first].pair * grid->geometry.transverse_base_pitch;
   bool edges = false;
-  for (int l = 0; l < p->lines; l++) {
-    const struct eo_contact_line *line = &p->line[l];
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
     edges = edges || line->kind != EO_POINT_LINE;
-    if (line->pair != p->line[first].pair)
+    if (line->pair != position->line[first].pair)
       continue;
     if (l < first)
       return INFINITY;
     for (int i = line->first; gap && i < line->first + line->cells; i++)
       if (gap[i] < lowest) {
         lowest = gap[i];
-        eta = p->point[i].eta;
+        eta = position->point[i].eta;
       }
-    step = fmax(step, p->length[line->first] * axial);
+    step = fmax(step, position->length[line->first] * axial);
   }
   if (!gap || !eo_gap_field_edge_range(field, c, edges, range))
     return eo_gap_field_line_minimum(field, c, edges, NULL);
@@ -39,19 +39,19 @@ void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo
                              double *unloaded)
 {
   for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
+    const struct eo_contact_position *position = &grid->position[j];
     unloaded[j] = INFINITY;
-    for (int l = 0; l < p->lines; l++)
-      unloaded[j] = fmin(unloaded[j], pair_contact(grid, p, field, l, gap ? gap + p->first : NULL));
+    for (int l = 0; l < position->lines; l++)
+      unloaded[j] = fmin(unloaded[j], pair_contact(grid, position, field, l, gap ? gap + position->first : NULL));
   }
 }
 
 static void set_gaps(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *gap)
 {
   for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++)
+      gap[position->first + i] = eo_gap_field_at(field, position->path[i], position->point[i].eta, NULL, NULL);
   }
 }
 

@@ -5,10 +5,10 @@
 #include <stddef.h>
 
 /* The contact line of a pair at a position; -1: it does not reach the flank. */
-static int find_line(const struct eo_contact_position *p, int pair)
+static int find_line(const struct eo_contact_position *position, int pair)
 {
-  for (int i = 0; i < p->lines; i++)
-    if (p->line[i].pair == pair && p->line[i].kind == EO_POINT_LINE)
+  for (int i = 0; i < position->lines; i++)
+    if (position->line[i].pair == pair && position->line[i].kind == EO_POINT_LINE)
       return i;
   return -1;
 }
@@ -44,27 +44,28 @@ static struct eo_pattern_place place_at(const struct eo_contact_grid *grid, doub
 
 void eo_contact_pattern_init(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid)
 {
-  const struct eo_geometry *g = &grid->geometry;
-  double lean = tan(g->base_helix_angle);
+  const struct eo_geometry *geometry = &grid->geometry;
+  double lean = tan(geometry->base_helix_angle);
   *pattern = (struct eo_contact_pattern){0};
   for (int i = 0; i < EO_PATTERN_ROWS; i++)
-    pattern->path[i] = g->path_start + (g->path_end - g->path_start) * i / (EO_PATTERN_ROWS - 1);
+    pattern->path[i] = geometry->path_start + (geometry->path_end - geometry->path_start) * i / (EO_PATTERN_ROWS - 1);
   for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
-    pattern->eta[j] = g->face_width * ((double)j / (EO_PATTERN_COLUMNS - 1) - 0.5);
+    pattern->eta[j] = geometry->face_width * ((double)j / (EO_PATTERN_COLUMNS - 1) - 0.5);
   for (int i = 0; i < EO_PATTERN_ROWS; i++)
     for (int j = 0; j < EO_PATTERN_COLUMNS; j++) {
       struct eo_pattern_place *place = &pattern->place[i * EO_PATTERN_COLUMNS + j];
       *place = place_at(grid, pattern->path[i] - pattern->eta[j] * lean);
-      place->radius = eo_geometry_relative_radius(g, pattern->path[i]);
+      place->radius = eo_geometry_relative_radius(geometry, pattern->path[i]);
     }
 }
 
 /* Line load at eta of a contact line, between the middles of its cells. */
-static double line_load_at(const struct eo_contact_position *p, const struct eo_loaded_end *end, int number, double eta)
+static double line_load_at(const struct eo_contact_position *position, const struct eo_loaded_end *end, int number,
+                           double eta)
 {
-  const struct eo_contact_line *line = &p->line[number];
-  const double *load = end->line_load + p->first + line->first;
-  const struct eo_flank_point *point = p->point + line->first;
+  const struct eo_contact_line *line = &position->line[number];
+  const double *load = end->line_load + position->first + line->first;
+  const struct eo_flank_point *point = position->point + line->first;
   int last = line->cells - 1;
   double step = last ? (point[last].eta - point[0].eta) / last : 1;
   double t = fmin(fmax((eta - point[0].eta) / step, 0), last);
@@ -87,9 +88,9 @@ static double pressure_at(const struct eo_contact_grid *grid, const struct eo_lo
 }
 
 /* Which column of the pattern a place on the face belongs to. */
-static int column_of(const struct eo_geometry *g, double eta)
+static int column_of(const struct eo_geometry *geometry, double eta)
 {
-  int column = (int)lround((eta / g->face_width + 0.5) * (EO_PATTERN_COLUMNS - 1));
+  int column = (int)lround((eta / geometry->face_width + 0.5) * (EO_PATTERN_COLUMNS - 1));
   return column < 0 ? 0 : column >= EO_PATTERN_COLUMNS ? EO_PATTERN_COLUMNS - 1 : column;
 }
 
@@ -100,14 +101,14 @@ static void load_edges(struct eo_contact_pattern *pattern, const struct eo_conta
     for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
       pattern->edge[k][j] = 0;
   for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++) {
-      double q = end->line_load[p->first + i];
-      if (p->kind[i] == EO_POINT_LINE || !(q > 0))
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++) {
+      double q = end->line_load[position->first + i];
+      if (position->kind[i] == EO_POINT_LINE || !(q > 0))
         continue;
-      double *edge =
-          &pattern->edge[p->kind[i] == EO_POINT_GEAR_TIP ? 0 : 1][column_of(&grid->geometry, p->point[i].eta)];
-      *edge = fmax(*edge, eo_loaded_pressure(grid, q, p->radius[i]));
+      double *edge = &pattern->edge[position->kind[i] == EO_POINT_GEAR_TIP ? 0 : 1]
+                                   [column_of(&grid->geometry, position->point[i].eta)];
+      *edge = fmax(*edge, eo_loaded_pressure(grid, q, position->radius[i]));
     }
   }
 }
@@ -143,11 +144,12 @@ void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct 
 void eo_contact_pair_share(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int pair, double *share)
 {
   for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
+    const struct eo_contact_position *position = &grid->position[j];
     double sum = 0;
-    for (int l = 0; l < p->lines; l++)
-      for (int i = p->line[l].first; p->line[l].pair == pair && i < p->line[l].first + p->line[l].cells; i++)
-        sum += end->line_load[p->first + i] * p->length[i];
+    for (int l = 0; l < position->lines; l++)
+      for (int i = position->line[l].first;
+           position->line[l].pair == pair && i < position->line[l].first + position->line[l].cells; i++)
+        sum += end->line_load[position->first + i] * position->length[i];
     share[j] = sum / end->load[j];
   }
 }

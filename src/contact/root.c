@@ -62,9 +62,9 @@ static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, 
 {
   struct eo_root_weights *weights = malloc(sizeof *weights * (size_t)grid->points);
   for (int j = 0; weights && j < grid->positions; j += step) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      eo_root_modes_weigh(modes, &p->point[i], &weights[p->first + i]);
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++)
+      eo_root_modes_weigh(modes, &position->point[i], &weights[position->first + i]);
   }
   return weights;
 }
@@ -169,12 +169,13 @@ static void collect(struct eo_root_workspace *ws, int member, int tooth, int end
   int slots = eo_root_modes_slots(modes);
   memset(ws->load, 0, sizeof *ws->load * (size_t)ends * (size_t)ws->count * (size_t)slots);
   for (int j = 0; j < ws->count; j++) {
-    const struct eo_contact_position *p = &ws->grid->position[j * ws->step];
+    const struct eo_contact_position *position = &ws->grid->position[j * ws->step];
     for (int e = 0; e < ends; e++)
-      for (int i = 0; i < p->points; i++)
-        ws->force[e * p->points + i] = end[e]->line_load[p->first + i] * p->length[i];
-    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ws->weights[member] + p->first, ends,
-                                       ws->force, ws->load + (size_t)(j * ends) * (size_t)slots);
+      for (int i = 0; i < position->points; i++)
+        ws->force[e * position->points + i] = end[e]->line_load[position->first + i] * position->length[i];
+    ws->touched[j] = eo_root_modes_add(modes, tooth, position->points, position->point,
+                                       ws->weights[member] + position->first, ends, ws->force,
+                                       ws->load + (size_t)(j * ends) * (size_t)slots);
   }
 }
 
@@ -211,12 +212,12 @@ void eo_root_history_finish(struct eo_root_history *history, const struct eo_roo
   history->phases = (range[1] - range[0] + 1) * ((grid->positions + step - 1) / step);
   history->maximum = history->arc = history->eta = 0;
   for (int tooth = 0; tooth <= range[1] - range[0]; tooth++) {
-    const struct eo_root_peak *p = &peak[tooth * stride];
-    if (p->stress <= history->maximum)
+    const struct eo_root_peak *root_peak = &peak[tooth * stride];
+    if (root_peak->stress <= history->maximum)
       continue;
-    history->maximum = p->stress;
-    history->arc = root->arc[root->first + p->node / (root->layers + 1)];
-    history->eta = root->width * ((double)(p->node % (root->layers + 1)) / root->layers - 0.5);
+    history->maximum = root_peak->stress;
+    history->arc = root->arc[root->first + root_peak->node / (root->layers + 1)];
+    history->eta = root->width * ((double)(root_peak->node % (root->layers + 1)) / root->layers - 0.5);
   }
 }
 

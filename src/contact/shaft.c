@@ -76,14 +76,14 @@ static void add_end(struct body *body, int end, struct eo_shaft_section section)
       add_piece(body, node_place(body, end, i), node_place(body, end, i + 1), section);
 }
 
-static void init_body(struct body *body, const struct eo_geometry *g, const struct eo_gear_pair *pair,
+static void init_body(struct body *body, const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
                       const struct eo_material *both, const struct eo_shafts *shafts, int member)
 {
   const struct eo_material own = eo_material_of(both, member), *material = &own;
   double bore = pair->bore[member], beyond = eo_gear_pair_extra_width(pair, member) / 2, half[2];
   struct eo_shaft_section shaft = eo_shaft_section_of(material, shafts->shaft_diameter[member], bore);
-  struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(g, member), bore);
-  *body = (struct body){.geometry = g, .member = member, .ends = pair->ends};
+  struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(geometry, member), bore);
+  *body = (struct body){.geometry = geometry, .member = member, .ends = pair->ends};
   for (int end = 0; end < 2; end++) {
     body->width[end] = pair->ends == 2 ? eo_gear_pair_face_width(pair, end) : pair->face_width;
     body->mid[end] = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(pair, end);
@@ -91,7 +91,7 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
   }
   memcpy(body->bearing, shafts->bearing_position[member], sizeof body->bearing);
   body->clamp = shafts->drive_side[member] == EO_DRIVE_LEFT ? -half[EO_LEFT] : half[EO_RIGHT];
-  body->arm = member == EO_PINION ? g->tangent_length[EO_PINION] : -g->tangent_length[EO_GEAR];
+  body->arm = member == EO_PINION ? geometry->tangent_length[EO_PINION] : -geometry->tangent_length[EO_GEAR];
   add_piece(body, body->bearing[EO_LEFT], -half[EO_LEFT], shaft);
   add_piece(body, -half[EO_LEFT], beyond - half[EO_LEFT], toothed);
   add_end(body, EO_LEFT, toothed);
@@ -132,8 +132,9 @@ enum { BENDING, SHEAR, SIDE_BENDING, SIDE_SHEAR, TWIST, KINDS };
 
 static void internal_forces(const struct body *body, double x, double row[KINDS][MOST_SIZE])
 {
-  const struct eo_geometry *g = body->geometry;
-  double normal = cos(g->base_helix_angle), lean = sin(g->base_helix_angle), radius = g->base_radius[body->member];
+  const struct eo_geometry *geometry = body->geometry;
+  double normal = cos(geometry->base_helix_angle), lean = sin(geometry->base_helix_angle),
+         radius = geometry->base_radius[body->member];
   for (int end = 0; end < body->ends; end++)
     for (int node = 0; node < NODES; node++) {
       double z = node_place(body, end, node), hand = (end == EO_LEFT) != body->inwards ? lean : -lean;

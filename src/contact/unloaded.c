@@ -8,18 +8,18 @@
 
 void eo_unloaded_minimum(const struct eo_gap_field *field, int n, const double *phase, struct eo_unloaded *result)
 {
-  const struct eo_geometry *g = field->geometry;
-  double tangent = tan(g->base_helix_angle), near = 1e-6 * g->face_width;
+  const struct eo_geometry *geometry = field->geometry;
+  double tangent = tan(geometry->base_helix_angle), near = 1e-6 * geometry->face_width;
   for (int i = 0; i < n; i++) {
     double eta = 0, gap = eo_gap_field_line_minimum(field, phase[i], false, &eta), range[2];
     result[i] = (struct eo_unloaded){.touch = EO_TOUCH_NONE};
     if (isinf(gap))
       continue;
-    eo_gap_field_line_range(g, phase[i], g->path_start, g->path_end, range);
+    eo_gap_field_line_range(geometry, phase[i], geometry->path_start, geometry->path_end, range);
     bool edge = eta - range[0] < near || range[1] - eta < near;
     /* theory (S7) */
     result[i] = (struct eo_unloaded){.touch = edge ? EO_TOUCH_EDGE : EO_TOUCH_POINT,
-                                     .transmission_error = -gap / cos(g->base_helix_angle),
+                                     .transmission_error = -gap / cos(geometry->base_helix_angle),
                                      .path = phase[i] + eta * tangent,
                                      .eta = eta};
   }
@@ -45,18 +45,18 @@ static void turn(double v[3], double angle)
 /* A member's flank point at its own phase, in its own frame turned into mesh: common normal at alpha_wt at phase 0. */
 static struct placed in_mesh(const struct eo_gap_field *field, int member, double u, double v, double own_phase)
 {
-  const struct eo_geometry *g = field->geometry;
-  struct eo_surface_point p;
-  eo_surface_evaluate(g, member, &field->shape[member], u, v, &p);
-  double offset = eo_geometry_involute_function(g->working_pressure_angle) -
-                  eo_geometry_involute_function(g->transverse_pressure_angle);
+  const struct eo_geometry *geometry = field->geometry;
+  struct eo_surface_point surface_point;
+  eo_surface_evaluate(geometry, member, &field->shape[member], u, v, &surface_point);
+  double offset = eo_geometry_involute_function(geometry->working_pressure_angle) -
+                  eo_geometry_involute_function(geometry->transverse_pressure_angle);
   struct placed placed;
   for (int i = 0; i < 3; i++) {
-    placed.position[i] = p.position[i];
-    placed.normal[i] = p.normal[i];
+    placed.position[i] = surface_point.position[i];
+    placed.normal[i] = surface_point.normal[i];
   }
-  turn(placed.position, -own_phase / g->base_radius[member] - offset);
-  turn(placed.normal, -own_phase / g->base_radius[member] - offset);
+  turn(placed.position, -own_phase / geometry->base_radius[member] - offset);
+  turn(placed.normal, -own_phase / geometry->base_radius[member] - offset);
   return placed;
 }
 
@@ -77,40 +77,40 @@ static void tilt(double v[3], const struct eo_shaft_errors *errors)
    origin. */
 static struct placed gear_point(const struct contact *contact, double u, double v, double gear_phase)
 {
-  const struct eo_geometry *g = contact->field->geometry;
-  struct placed p = in_mesh(contact->field, EO_GEAR, u, v, -gear_phase);
+  const struct eo_geometry *geometry = contact->field->geometry;
+  struct placed placed = in_mesh(contact->field, EO_GEAR, u, v, -gear_phase);
   for (int i = 0; i < 3; i++) {
-    p.position[i] = -p.position[i];
-    p.normal[i] = -p.normal[i];
+    placed.position[i] = -placed.position[i];
+    placed.normal[i] = -placed.normal[i];
   }
-  p.position[2] -= contact->errors->pivot;
-  tilt(p.position, contact->errors);
-  tilt(p.normal, contact->errors);
-  p.position[2] += contact->errors->pivot;
-  p.position[1] += g->centre_distance;
-  return p;
+  placed.position[2] -= contact->errors->pivot;
+  tilt(placed.position, contact->errors);
+  tilt(placed.normal, contact->errors);
+  placed.position[2] += contact->errors->pivot;
+  placed.position[1] += geometry->centre_distance;
+  return placed;
 }
 
 /* x: u and v of the pinion, u and v of the gear, gear phase; all m. Positions coincide, normals are opposite. */
 static int residual(void *context, const double *x, double *r)
 {
   const struct contact *contact = context;
-  const struct eo_geometry *g = contact->field->geometry;
-  struct placed p = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase),
-                q = gear_point(contact, x[2], x[3], x[4]);
+  const struct eo_geometry *geometry = contact->field->geometry;
+  struct placed placed = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase),
+                this_placed = gear_point(contact, x[2], x[3], x[4]);
   for (int i = 0; i < 3; i++)
-    r[i] = p.position[i] - q.position[i]; /* theory (S8) */
+    r[i] = placed.position[i] - this_placed.position[i]; /* theory (S8) */
   /* Two directions across the common normal. */
-  double ca = cos(g->working_pressure_angle), sa = sin(g->working_pressure_angle);
-  r[3] = -sa * (p.normal[0] + q.normal[0]) + ca * (p.normal[1] + q.normal[1]);
-  r[4] = p.normal[2] + q.normal[2];
+  double ca = cos(geometry->working_pressure_angle), sa = sin(geometry->working_pressure_angle);
+  r[3] = -sa * (placed.normal[0] + this_placed.normal[0]) + ca * (placed.normal[1] + this_placed.normal[1]);
+  r[4] = placed.normal[2] + this_placed.normal[2];
   return 0;
 }
 
 static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *contact, const struct eo_unloaded *seed,
                                 struct eo_unloaded *result, struct eo_error *error)
 {
-  const struct eo_geometry *g = contact->field->geometry;
+  const struct eo_geometry *geometry = contact->field->geometry;
   const double scale[5] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3}, weight[5] = {1e-3, 1e-3, 1e-3, 1e-1, 1e-1};
   struct eo_nonlinear_problem problem = {.residual = residual, .context = contact};
   struct eo_nonlinear_options options = {.x_scale = scale,
@@ -120,19 +120,19 @@ static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *con
                                          .max_iterations = 100};
   struct eo_nonlinear_report report;
   double x[5];
-  eo_surface_coordinates(g, EO_PINION, seed->path, seed->eta, &x[0], &x[1]);
-  eo_surface_coordinates(g, EO_GEAR, seed->path, seed->eta, &x[2], &x[3]);
+  eo_surface_coordinates(geometry, EO_PINION, seed->path, seed->eta, &x[0], &x[1]);
+  eo_surface_coordinates(geometry, EO_GEAR, seed->path, seed->eta, &x[2], &x[3]);
   x[4] = contact->phase + seed->transmission_error;
   enum eo_code code = eo_nonlinear_solve(solver, &problem, &options, x, &report, error);
   if (code)
     return code;
-  struct placed p = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase);
-  double reach = g->face_width / 2 * (1 + 1e-9), s = x[0] / g->rack_factor;
-  bool inside = fabs(p.position[2]) <= reach && s >= g->path_start - 1e-9 && s <= g->path_end + 1e-9;
+  struct placed placed = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase);
+  double reach = geometry->face_width / 2 * (1 + 1e-9), s = x[0] / geometry->rack_factor;
+  bool inside = fabs(placed.position[2]) <= reach && s >= geometry->path_start - 1e-9 && s <= geometry->path_end + 1e-9;
   *result = (struct eo_unloaded){.touch = report.residual < 1e-8 && inside ? EO_TOUCH_POINT : EO_TOUCH_EDGE,
                                  .transmission_error = x[4] - contact->phase,
                                  .path = s,
-                                 .eta = p.position[2],
+                                 .eta = placed.position[2],
                                  .residual = report.residual};
   return EO_OK;
 }

@@ -184,73 +184,73 @@ struct course {
 };
 
 /* So that no thread waits for the way to rank 0 and back. */
-static int most_load(const struct course *c, int rank)
+static int most_load(const struct course *course, int rank)
 {
-  int threads = works_alone(c->crew) ? c->crew->place.threads : c->crew->member[rank].threads;
+  int threads = works_alone(course->crew) ? course->crew->place.threads : course->crew->member[rank].threads;
   return 2 * threads + 1;
 }
 
 /* A rank that has room, the one with nothing to do before one that works; -1: none has. */
-static int find_room(struct course *c)
+static int find_room(struct course *course)
 {
-  int first = works_alone(c->crew) ? 0 : 1, count = c->crew->size - first, best = -1;
+  int first = works_alone(course->crew) ? 0 : 1, count = course->crew->size - first, best = -1;
   for (int i = 0; i < count; i++) {
-    int rank = first + (c->turn + i) % count;
-    if (c->load[rank] < most_load(c, rank) && (best < 0 || c->load[rank] < c->load[best]))
+    int rank = first + (course->turn + i) % count;
+    if (course->load[rank] < most_load(course, rank) && (best < 0 || course->load[rank] < course->load[best]))
       best = rank;
   }
   return best;
 }
 
-static enum eo_code give(struct course *c, int rank, struct eo_error *error)
+static enum eo_code give(struct course *course, int rank, struct eo_error *error)
 {
-  struct eo_crew_parcel parcel = {.order = c->crew->order_number, .item = c->next};
-  enum eo_code code = c->task->write(c->task->context, c->next, &parcel.text, error);
+  struct eo_crew_parcel parcel = {.order = course->crew->order_number, .item = course->next};
+  enum eo_code code = course->task->write(course->task->context, course->next, &parcel.text, error);
   if (!code && parcel.text.failed)
     code = eo_error_memory(error);
-  if (!code && c->hands)
-    code = eo_hands_give(c->hands, &parcel) ? EO_OK : eo_error_memory(error);
+  if (!code && course->hands)
+    code = eo_hands_give(course->hands, &parcel) ? EO_OK : eo_error_memory(error);
   else if (!code)
-    code = eo_crew_send_parcel(c->crew, rank, EO_CREW_ITEM, &parcel, error);
+    code = eo_crew_send_parcel(course->crew, rank, EO_CREW_ITEM, &parcel, error);
   eo_text_done(&parcel.text);
   if (code)
     return code;
-  c->next++;
-  c->load[rank]++;
-  c->flying++;
-  c->turn++;
+  course->next++;
+  course->load[rank]++;
+  course->flying++;
+  course->turn++;
   return EO_OK;
 }
 
-static enum eo_code give_all(struct course *c, struct eo_error *error)
+static enum eo_code give_all(struct course *course, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  for (int rank;
-       !code && c->next < c->task->items && c->next - c->lowest < EO_CREW_AHEAD && (rank = find_room(c)) >= 0;)
-    code = give(c, rank, error);
+  for (int rank; !code && course->next < course->task->items && course->next - course->lowest < EO_CREW_AHEAD &&
+                 (rank = find_room(course)) >= 0;)
+    code = give(course, rank, error);
   return code;
 }
 
 /* *there: an answer came and lies in the ring. An error of an item waits there for its turn. */
-static enum eo_code collect_local(struct course *c, bool *there)
+static enum eo_code collect_local(struct course *course, bool *there)
 {
   struct eo_crew_parcel parcel;
-  *there = eo_hands_collect(c->hands, WATCH_MS, &parcel);
+  *there = eo_hands_collect(course->hands, WATCH_MS, &parcel);
   if (!*there)
     return EO_OK;
-  c->ring[parcel.item % EO_CREW_AHEAD] = parcel;
-  c->load[0]--;
-  c->flying--;
+  course->ring[parcel.item % EO_CREW_AHEAD] = parcel;
+  course->load[0]--;
+  course->flying--;
   return EO_OK;
 }
 
-static enum eo_code file_answer(struct course *c, const struct eo_crew_letter *letter, struct eo_error *error)
+static enum eo_code file_answer(struct course *course, const struct eo_crew_letter *letter, struct eo_error *error)
 {
   struct eo_crew_parcel parcel;
   if (letter->tag != EO_CREW_ANSWER)
     return EO_OK;
   bool sound = eo_crew_open_parcel(letter, &parcel);
-  if (sound && parcel.order != c->crew->order_number) { /* it came too late */
+  if (sound && parcel.order != course->crew->order_number) { /* it came too late */
     eo_text_done(&parcel.text);
     return EO_OK;
   }
@@ -258,26 +258,26 @@ static enum eo_code file_answer(struct course *c, const struct eo_crew_letter *l
     *error = parcel.error;
     return parcel.error.code ? parcel.error.code : EO_ERROR_NUMERIC;
   }
-  if (!sound || parcel.item < c->lowest || parcel.item >= c->next) {
+  if (!sound || parcel.item < course->lowest || parcel.item >= course->next) {
     eo_text_done(&parcel.text);
     return eo_error_set(error, EO_ERROR_FILE, "", "Rank %d sent an answer that nobody asked for.", letter->from);
   }
-  c->ring[parcel.item % EO_CREW_AHEAD] = parcel;
-  c->load[letter->from]--;
-  c->flying--;
+  course->ring[parcel.item % EO_CREW_AHEAD] = parcel;
+  course->load[letter->from]--;
+  course->flying--;
   return EO_OK;
 }
 
-static enum eo_code collect_remote(struct course *c, bool *there, struct eo_error *error)
+static enum eo_code collect_remote(struct course *course, bool *there, struct eo_error *error)
 {
   double until = eo_clock_milliseconds() + WATCH_MS;
   enum eo_code code = EO_OK;
   *there = false;
   for (int idle = 0; !code && !*there && eo_clock_milliseconds() < until; idle++) {
     struct eo_crew_letter letter;
-    code = eo_crew_receive(c->crew, there, &letter, error);
+    code = eo_crew_receive(course->crew, there, &letter, error);
     if (!code && *there)
-      code = file_answer(c, &letter, error);
+      code = file_answer(course, &letter, error);
     eo_text_done(&letter.text);
     if (!code && !*there)
       eo_crew_rest(idle);
@@ -285,97 +285,98 @@ static enum eo_code collect_remote(struct course *c, bool *there, struct eo_erro
   return code;
 }
 
-static enum eo_code collect(struct course *c, bool *there, struct eo_error *error)
+static enum eo_code collect(struct course *course, bool *there, struct eo_error *error)
 {
-  return c->hands ? collect_local(c, there) : collect_remote(c, there, error);
+  return course->hands ? collect_local(course, there) : collect_remote(course, there, error);
 }
 
 /* Hands on what lies in order. */
-static enum eo_code take_all(struct course *c, struct eo_error *error)
+static enum eo_code take_all(struct course *course, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  while (!code && c->lowest < c->next) {
-    struct eo_crew_parcel *parcel = &c->ring[c->lowest % EO_CREW_AHEAD];
-    if (parcel->item != c->lowest)
+  while (!code && course->lowest < course->next) {
+    struct eo_crew_parcel *parcel = &course->ring[course->lowest % EO_CREW_AHEAD];
+    if (parcel->item != course->lowest)
       return EO_OK;
     code = parcel->error.code;
     if (code)
       *error = parcel->error;
     else
-      code = c->task->take(c->task->context, parcel->item, parcel->text.data ? parcel->text.data : "",
-                           parcel->text.size, error);
+      code = course->task->take(course->task->context, parcel->item, parcel->text.data ? parcel->text.data : "",
+                                parcel->text.size, error);
     eo_text_done(&parcel->text);
     parcel->item = -1;
-    c->lowest++;
+    course->lowest++;
   }
   return code;
 }
 
-static enum eo_code watch(struct course *c, struct eo_error *error)
+static enum eo_code watch(struct course *course, struct eo_error *error)
 {
   double now = eo_clock_milliseconds();
-  if (!c->task->watch || now - c->watched < WATCH_MS)
+  if (!course->task->watch || now - course->watched < WATCH_MS)
     return EO_OK;
-  c->watched = now;
-  return c->task->watch(c->task->context) ? eo_error_set(error, EO_ERROR_CANCELLED, "", "The work was cancelled.")
-                                          : EO_OK;
+  course->watched = now;
+  return course->task->watch(course->task->context)
+             ? eo_error_set(error, EO_ERROR_CANCELLED, "", "The work was cancelled.")
+             : EO_OK;
 }
 
 /* Nobody begins anything new; what is under way comes back. */
-static void call_off(struct course *c)
+static void call_off(struct course *course)
 {
   struct eo_error ignored;
-  if (c->hands)
-    eo_hands_stop(c->hands);
-  for (int rank = 1; !c->hands && rank < c->crew->size; rank++)
-    eo_crew_send(c->crew, rank, EO_CREW_STOP, NULL, NULL);
-  for (bool there; c->flying > 0;)
-    if (collect(c, &there, &ignored))
+  if (course->hands)
+    eo_hands_stop(course->hands);
+  for (int rank = 1; !course->hands && rank < course->crew->size; rank++)
+    eo_crew_send(course->crew, rank, EO_CREW_STOP, NULL, NULL);
+  for (bool there; course->flying > 0;)
+    if (collect(course, &there, &ignored))
       return;
 }
 
-static enum eo_code run_course(struct course *c, struct eo_error *error)
+static enum eo_code run_course(struct course *course, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  while (!code && c->lowest < c->task->items) {
+  while (!code && course->lowest < course->task->items) {
     bool there = false;
-    code = give_all(c, error);
+    code = give_all(course, error);
     if (!code)
-      code = collect(c, &there, error);
+      code = collect(course, &there, error);
     if (!code)
-      code = take_all(c, error);
+      code = take_all(course, error);
     if (!code)
-      code = watch(c, error);
+      code = watch(course, error);
   }
   if (!code)
     return EO_OK;
-  call_off(c);
+  call_off(course);
   struct eo_error ignored;
   if (code == EO_ERROR_CANCELLED)
-    take_all(c, &ignored); /* until the first that was ended early */
+    take_all(course, &ignored); /* until the first that was ended early */
   return code;
 }
 
 enum eo_code eo_crew_run(struct eo_crew *crew, const struct eo_crew_task *task, struct eo_error *error)
 {
-  struct course c = {.crew = crew, .task = task};
-  c.load = calloc((size_t)crew->size, sizeof *c.load);
-  c.ring = calloc(EO_CREW_AHEAD, sizeof *c.ring);
-  enum eo_code code = c.load && c.ring ? EO_OK : eo_error_memory(error);
+  struct course course = {.crew = crew, .task = task};
+  course.load = calloc((size_t)crew->size, sizeof *course.load);
+  course.ring = calloc(EO_CREW_AHEAD, sizeof *course.ring);
+  enum eo_code code = course.load && course.ring ? EO_OK : eo_error_memory(error);
   for (int i = 0; !code && i < EO_CREW_AHEAD; i++)
-    c.ring[i].item = -1;
+    course.ring[i].item = -1;
   if (!code && task->items > 0) {
     code = open_order(crew, task, error);
-    c.hands = crew->hands;
+    course.hands = crew->hands;
     if (!code)
-      code = run_course(&c, error);
+      code = run_course(&course, error);
     if (code)
       close_order(crew); /* its benches were told to stop */
   }
-  for (int i = 0; c.ring && i < EO_CREW_AHEAD; i++)
-    eo_text_done(&c.ring[i].text);
-  free(c.ring);
-  free(c.load);
+  for (int i = 0; course.ring && i < EO_CREW_AHEAD; i++)
+    eo_text_done(&course.ring[i].text);
+  free(course.ring);
+  free(course.load);
   return code;
 }
 

@@ -13,80 +13,81 @@ struct serving {
 };
 
 /* What does not go well here is said to rank 0, which ends the run. */
-static enum eo_code complain(struct serving *s, const struct eo_error *why, struct eo_error *error)
+static enum eo_code complain(struct serving *serving, const struct eo_error *why, struct eo_error *error)
 {
-  const struct eo_crew_parcel parcel = {.order = s->order, .item = -1, .error = *why};
-  return eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
+  const struct eo_crew_parcel parcel = {.order = serving->order, .item = -1, .error = *why};
+  return eo_crew_send_parcel(serving->crew, 0, EO_CREW_ANSWER, &parcel, error);
 }
 
-static enum eo_code begin_order(struct serving *s, const struct eo_text *text, struct eo_error *why)
+static enum eo_code begin_order(struct serving *serving, const struct eo_text *text, struct eo_error *why)
 {
   const char *name = text->data ? text->data : "";
   size_t length = strlen(name) + 1;
-  for (int i = 0; s->trades[i]; i++)
-    if (strcmp(s->trades[i]->name, name) == 0)
-      return eo_hands_new(&s->hands, s->trades[i], text->data + length, text->size - length, &s->crew->place, why);
-  return eo_error_set(why, EO_ERROR_INPUT, "", "Rank %d does not know the work \"%.40s\".", s->crew->rank, name);
+  for (int i = 0; serving->trades[i]; i++)
+    if (strcmp(serving->trades[i]->name, name) == 0)
+      return eo_hands_new(&serving->hands, serving->trades[i], text->data + length, text->size - length,
+                          &serving->crew->place, why);
+  return eo_error_set(why, EO_ERROR_INPUT, "", "Rank %d does not know the work \"%.40s\".", serving->crew->rank, name);
 }
 
-static enum eo_code take_order(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+static enum eo_code take_order(struct serving *serving, const struct eo_crew_letter *letter, struct eo_error *error)
 {
   struct eo_error why;
   struct eo_crew_parcel parcel;
   if (!eo_crew_open_parcel(letter, &parcel))
     return eo_error_memory(error);
-  s->order = parcel.order;
-  enum eo_code code = begin_order(s, &parcel.text, &why);
+  serving->order = parcel.order;
+  enum eo_code code = begin_order(serving, &parcel.text, &why);
   eo_text_done(&parcel.text);
-  return code ? complain(s, &why, error) : EO_OK;
+  return code ? complain(serving, &why, error) : EO_OK;
 }
 
-static enum eo_code take_item(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+static enum eo_code take_item(struct serving *serving, const struct eo_crew_letter *letter, struct eo_error *error)
 {
   struct eo_crew_parcel parcel;
   enum eo_code code = eo_crew_open_parcel(letter, &parcel) ? EO_OK : eo_error_memory(error);
-  if (!code && !s->hands) { /* rank 0 has heard why, and waits for its items */
+  if (!code && !serving->hands) { /* rank 0 has heard why, and waits for its items */
     eo_error_set(&parcel.error, EO_ERROR_CANCELLED, "", "The work was cancelled.");
-    code = eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
-  } else if (!code && !eo_hands_give(s->hands, &parcel))
+    code = eo_crew_send_parcel(serving->crew, 0, EO_CREW_ANSWER, &parcel, error);
+  } else if (!code && !eo_hands_give(serving->hands, &parcel))
     code = eo_error_memory(error);
   eo_text_done(&parcel.text);
   return code;
 }
 
-static void close_order(struct serving *s)
+static void close_order(struct serving *serving)
 {
-  eo_hands_free(s->hands);
-  s->hands = NULL;
+  eo_hands_free(serving->hands);
+  serving->hands = NULL;
 }
 
-static enum eo_code take_letter(struct serving *s, const struct eo_crew_letter *letter, struct eo_error *error)
+static enum eo_code take_letter(struct serving *serving, const struct eo_crew_letter *letter, struct eo_error *error)
 {
   switch (letter->tag) {
   case EO_CREW_ORDER:
-    return take_order(s, letter, error);
+    return take_order(serving, letter, error);
   case EO_CREW_ITEM:
-    return take_item(s, letter, error);
+    return take_item(serving, letter, error);
   case EO_CREW_STOP:
-    if (s->hands)
-      eo_hands_stop(s->hands);
+    if (serving->hands)
+      eo_hands_stop(serving->hands);
     return EO_OK;
   case EO_CREW_CLOSE:
-    close_order(s);
+    close_order(serving);
     return EO_OK;
   default:
-    s->home = true;
+    serving->home = true;
     return EO_OK;
   }
 }
 
-static enum eo_code answer(struct serving *s, bool *busy, struct eo_error *error)
+static enum eo_code answer(struct serving *serving, bool *busy, struct eo_error *error)
 {
   struct eo_crew_parcel parcel;
   enum eo_code code = EO_OK;
-  while (!code && s->hands && eo_hands_collect(s->hands, 0, &parcel)) {
-    parcel.order = s->order;
-    code = eo_crew_send_parcel(s->crew, 0, EO_CREW_ANSWER, &parcel, error);
+  while (!code && serving->hands && eo_hands_collect(serving->hands, 0, &parcel)) {
+    parcel.order = serving->order;
+    code = eo_crew_send_parcel(serving->crew, 0, EO_CREW_ANSWER, &parcel, error);
     eo_text_done(&parcel.text);
     *busy = true;
   }
@@ -96,21 +97,21 @@ static enum eo_code answer(struct serving *s, bool *busy, struct eo_error *error
 enum eo_code eo_crew_serve(const struct eo_crew *crew, const struct eo_crew_trade *const *trades,
                            struct eo_error *error)
 {
-  struct serving s = {.crew = crew, .trades = trades};
+  struct serving serving = {.crew = crew, .trades = trades};
   enum eo_code code = EO_OK;
-  for (int idle = 0; !code && !s.home;) {
+  for (int idle = 0; !code && !serving.home;) {
     struct eo_crew_letter letter;
     bool busy = false;
     code = eo_crew_receive(crew, &busy, &letter, error);
     if (!code && busy)
-      code = take_letter(&s, &letter, error);
+      code = take_letter(&serving, &letter, error);
     eo_text_done(&letter.text);
     if (!code)
-      code = answer(&s, &busy, error);
+      code = answer(&serving, &busy, error);
     idle = busy ? 0 : idle + 1;
     if (!code && !busy)
       eo_crew_rest(idle);
   }
-  close_order(&s);
+  close_order(&serving);
   return code;
 }

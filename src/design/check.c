@@ -166,15 +166,15 @@ static enum eo_code check_triangles(const struct eo_flank_modification *flank, c
 {
   static const char *const face[2] = {"_trailing", "_leading"};
   for (int i = 0; i < 4; i++) {
-    const struct eo_triangular_relief *t = &flank->triangular[i / 2][i % 2];
+    const struct eo_triangular_relief *relief = &flank->triangular[i / 2][i % 2];
     char corner[32], key[128];
     snprintf(corner, sizeof corner, "%s%s", relief_side[i / 2], face[i % 2]);
     point_to(place, corner, "_triangular_relief_um", key);
-    if (t->amount != 0 && !(t->profile_length > 0 && t->face_length > 0))
+    if (relief->amount != 0 && !(relief->profile_length > 0 && relief->face_length > 0))
       return eo_error_set(error, EO_ERROR_INPUT, key,
                           "A triangular relief of %.6g um needs lengths above 0: %s_triangular_profile_length_mm and "
                           "%s_triangular_face_length_mm.",
-                          1e6 * t->amount, corner, corner);
+                          1e6 * relief->amount, corner, corner);
   }
   return EO_OK;
 }
@@ -237,14 +237,11 @@ enum eo_code eo_design_check_search(const struct eo_design *design, const struct
                         "Variables are listed, but variables is not \"listed\".");
   if (optimization->variables == EO_VARIABLES_LISTED && !optimization->listed)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "At least one variable must be listed.");
-  enum eo_code code = eo_optimizer_settings_check(&optimization->search, error);
-  if (!code)
-    code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top,
-                              "/optimization/bounds/tip_relief_start_mm", error);
-  if (!code)
-    code = check_start_bounds(&optimization->root_relief_start, -geometry->rack_bottom,
-                              "/optimization/bounds/root_relief_start_mm", error);
-  return code;
+  EO_TRY(eo_optimizer_settings_check(&optimization->search, error));
+  EO_TRY(check_start_bounds(&optimization->tip_relief_start, geometry->rack_top,
+                            "/optimization/bounds/tip_relief_start_mm", error));
+  return check_start_bounds(&optimization->root_relief_start, -geometry->rack_bottom,
+                            "/optimization/bounds/root_relief_start_mm", error);
 }
 
 /* Contact points at one mesh position, roughly: every contact line across the face, and the pieces of tip edges. */

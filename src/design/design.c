@@ -103,21 +103,21 @@ static enum eo_code helix_tolerance(const struct eo_design *design, double *larg
 static enum eo_code settle_errors(struct eo_design *design, struct eo_error *error)
 {
   static const double SAME = 1e-6;
-  struct eo_alignment *a = &design->alignment;
+  struct eo_alignment *alignment = &design->alignment;
   double tolerance, width = design->gear_pair.face_width;
-  if (!a->error_grade)
+  if (!alignment->error_grade)
     return EO_OK;
   EO_TRY(helix_tolerance(design, &tolerance, error));
   const double follows[2] = {-tolerance / width, 0.5 * tolerance / width},
-               deviation[2] = {a->deviation_in_plane, a->deviation_out_of_plane};
-  double *const angle[2] = {&a->shaft_angle_in_plane, &a->shaft_angle_out_of_plane};
+               deviation[2] = {alignment->deviation_in_plane, alignment->deviation_out_of_plane};
+  double *const angle[2] = {&alignment->shaft_angle_in_plane, &alignment->shaft_angle_out_of_plane};
   for (int i = 0; i < 2; i++) {
     double stated = isnan(deviation[i]) ? *angle[i] : atan(deviation[i] / width);
     if (stated != 0 && !(fabs(stated - follows[i]) <= SAME * fabs(follows[i])))
       return eo_error_set(error, EO_ERROR_INPUT, "/alignment/shaft_error_grade",
                           "Grade %d makes the shaft angle error %s %.6g deg, but %.6g deg is stated: leave one of the "
                           "two out.",
-                          a->error_grade, i ? "out of plane" : "in plane", follows[i] * 180 / M_PI,
+                          alignment->error_grade, i ? "out of plane" : "in plane", follows[i] * 180 / M_PI,
                           stated * 180 / M_PI);
     *angle[i] = follows[i];
   }
@@ -153,23 +153,24 @@ static int usual_driver(const struct eo_design *design)
 
 enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case)
 {
-  const struct eo_load_case *c = &design->load_case[load_case];
-  return (c->direction == EO_ASTERN) != (c->driver != usual_driver(design)) ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+  const struct eo_load_case *this_case = &design->load_case[load_case];
+  return (this_case->direction == EO_ASTERN) != (this_case->driver != usual_driver(design)) ? EO_COAST_FLANK
+                                                                                            : EO_DRIVE_FLANK;
 }
 
 struct eo_running eo_design_running(const struct eo_design *design, int load_case)
 {
-  const struct eo_load_case *c = &design->load_case[load_case];
-  const struct eo_alignment *a = &design->alignment;
-  struct eo_running running = {.flank = c->flank,
-                               .backwards = c->driver == EO_GEAR,
-                               .inwards = (c->flank == EO_COAST_FLANK) != (a->apex == EO_APEX_LEADING),
-                               .in_plane = a->shaft_angle_in_plane,
-                               .out_of_plane = a->shaft_angle_out_of_plane};
-  if (c->has_alignment && !isnan(c->alignment.in_plane))
-    running.in_plane = c->alignment.in_plane;
-  if (c->has_alignment && !isnan(c->alignment.out_of_plane))
-    running.out_of_plane = c->alignment.out_of_plane;
+  const struct eo_load_case *this_case = &design->load_case[load_case];
+  const struct eo_alignment *alignment = &design->alignment;
+  struct eo_running running = {.flank = this_case->flank,
+                               .backwards = this_case->driver == EO_GEAR,
+                               .inwards = (this_case->flank == EO_COAST_FLANK) != (alignment->apex == EO_APEX_LEADING),
+                               .in_plane = alignment->shaft_angle_in_plane,
+                               .out_of_plane = alignment->shaft_angle_out_of_plane};
+  if (this_case->has_alignment && !isnan(this_case->alignment.in_plane))
+    running.in_plane = this_case->alignment.in_plane;
+  if (this_case->has_alignment && !isnan(this_case->alignment.out_of_plane))
+    running.out_of_plane = this_case->alignment.out_of_plane;
   return running;
 }
 
@@ -343,9 +344,9 @@ static void resolve_angle(double *angle, double deviation, double face_width)
 
 static void resolve_alignment(struct eo_design *design, double face_width)
 {
-  struct eo_alignment *a = &design->alignment;
-  resolve_angle(&a->shaft_angle_in_plane, a->deviation_in_plane, face_width);
-  resolve_angle(&a->shaft_angle_out_of_plane, a->deviation_out_of_plane, face_width);
+  struct eo_alignment *alignment = &design->alignment;
+  resolve_angle(&alignment->shaft_angle_in_plane, alignment->deviation_in_plane, face_width);
+  resolve_angle(&alignment->shaft_angle_out_of_plane, alignment->deviation_out_of_plane, face_width);
   for (int k = 0; k < design->load_cases; k++) {
     struct eo_case_alignment *own = &design->load_case[k].alignment;
     design->load_case[k].flank = eo_design_flank_of(design, k);

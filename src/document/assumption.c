@@ -92,11 +92,11 @@ void eo_assumptions_note(const json_t *document, struct eo_design *design)
 
 static void add(json_t *list, const char *key, json_t *value, const char *rule, bool *failed)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_assumption);
-  eo_object_put(&o, "key", json_string(key));
-  eo_object_put(&o, "value", value);
-  eo_object_put(&o, "rule", json_string(rule));
-  *failed = json_array_append_new(list, eo_object_close(&o)) != 0 || *failed;
+  struct eo_object object = eo_object_open_as(&eo_outline_assumption);
+  eo_object_put(&object, "key", json_string(key));
+  eo_object_put(&object, "value", value);
+  eo_object_put(&object, "rule", json_string(rule));
+  *failed = json_array_append_new(list, eo_object_close(&object)) != 0 || *failed;
 }
 
 static const char *rule_of(const struct eo_field *field)

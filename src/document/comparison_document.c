@@ -17,37 +17,37 @@ static const struct eo_unit percent = {"percent", "%", 100, true};
 /* One number of every measurement. */
 typedef double column_function(const struct eo_measured *m, const struct eo_compared *p);
 
-static double torque(const struct eo_measured *m, const struct eo_compared *p)
+static double torque(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, m->torque;
+  return (void)compared, measured->torque;
 }
-static double speed(const struct eo_measured *m, const struct eo_compared *p)
+static double speed(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, m->speed;
+  return (void)compared, measured->speed;
 }
-static double measured_rms(const struct eo_measured *m, const struct eo_compared *p)
+static double measured_rms(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, m->rms;
+  return (void)compared, measured->rms;
 }
-static double measured_sigma(const struct eo_measured *m, const struct eo_compared *p)
+static double measured_sigma(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, m->rms_sigma;
+  return (void)compared, measured->rms_sigma;
 }
-static double predicted_rms(const struct eo_measured *m, const struct eo_compared *p)
+static double predicted_rms(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, p->prediction.rms;
+  return (void)measured, compared->prediction.rms;
 }
-static double ratio(const struct eo_measured *m, const struct eo_compared *p)
+static double ratio(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, p->ratio;
+  return (void)measured, compared->ratio;
 }
-static double likeness(const struct eo_measured *m, const struct eo_compared *p)
+static double likeness(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, p->likeness;
+  return (void)measured, compared->likeness;
 }
-static double predicted_peak(const struct eo_measured *m, const struct eo_compared *p)
+static double predicted_peak(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, p->prediction.peak_to_peak;
+  return (void)measured, compared->prediction.peak_to_peak;
 }
 
 enum { TORQUE, SPEED, MEASURED_RMS, MEASURED_SIGMA, PREDICTED_RMS, RATIO, LIKENESS, PREDICTED_PEAK, COLUMNS };
@@ -75,11 +75,11 @@ struct source {
 
 static json_t *write_column(const void *source, int column)
 {
-  const struct source *s = source;
+  const struct source *this_source = source;
   double value[EO_MOST_MEASURED];
-  for (int i = 0; i < s->comparison->count; i++)
-    value[i] = columns[column].value(&s->measured[i], &s->comparison->point[i]);
-  return eo_json_reals(s->comparison->count, value, 1, columns[column].unit, EO_DIGITS_NUMBER);
+  for (int i = 0; i < this_source->comparison->count; i++)
+    value[i] = columns[column].value(&this_source->measured[i], &this_source->comparison->point[i]);
+  return eo_json_reals(this_source->comparison->count, value, 1, columns[column].unit, EO_DIGITS_NUMBER);
 }
 
 static json_t *write_torques(const void *source)
@@ -127,36 +127,38 @@ typedef json_t *word_function(const struct eo_measured *m, const struct eo_compa
 
 static json_t *write_words(const void *source, word_function *word)
 {
-  const struct source *s = source;
+  const struct source *this_source = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < s->comparison->count; i++)
-    list.failed = json_array_append_new(list.json, word(&s->measured[i], &s->comparison->point[i])) || list.failed;
+  for (int i = 0; i < this_source->comparison->count; i++)
+    list.failed = json_array_append_new(list.json,
+                                        word(&this_source->measured[i], &this_source->comparison->point[i])) ||
+                  list.failed;
   return eo_object_close(&list);
 }
 
-static json_t *file_of(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *file_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, json_string(m->name);
+  return (void)compared, json_string(measured->name);
 }
 
-static json_t *label_of(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *label_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, json_string(labels[m->unmodified]);
+  return (void)compared, json_string(labels[measured->unmodified]);
 }
 
-static json_t *end_of(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *end_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)p, json_string(ends[m->end]);
+  return (void)compared, json_string(ends[measured->end]);
 }
 
-static json_t *outlier_of(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *outlier_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, json_boolean(p->outlier);
+  return (void)measured, json_boolean(compared->outlier);
 }
 
-static json_t *reason_of(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *reason_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)m, *p->reason ? json_string(p->reason) : json_null();
+  return (void)measured, *compared->reason ? json_string(compared->reason) : json_null();
 }
 
 static json_t *write_files(const void *source)
@@ -217,36 +219,36 @@ struct detail {
 
 static json_t *write_measured_orders(const void *source)
 {
-  const struct eo_measured *m = ((const struct detail *)source)->measured;
+  const struct eo_measured *measured = ((const struct detail *)source)->measured;
   double value[EO_MESH_ORDERS];
-  for (int h = 0; h < m->harmonics; h++)
-    value[h] = m->order[h].acceleration;
-  return eo_json_reals(m->harmonics, value, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE);
+  for (int h = 0; h < measured->harmonics; h++)
+    value[h] = measured->order[h].acceleration;
+  return eo_json_reals(measured->harmonics, value, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE);
 }
 
 static json_t *write_predicted_orders(const void *source)
 {
-  const struct detail *d = source;
-  return eo_json_reals(d->measured->harmonics, d->compared->prediction.acceleration, 1, &eo_unit_m_per_s2,
+  const struct detail *detail = source;
+  return eo_json_reals(detail->measured->harmonics, detail->compared->prediction.acceleration, 1, &eo_unit_m_per_s2,
                        EO_DIGITS_CURVE);
 }
 
 static json_t *write_measured_amplitudes(const void *source)
 {
-  const struct eo_measured *m = ((const struct detail *)source)->measured;
+  const struct eo_measured *measured = ((const struct detail *)source)->measured;
   double value[EO_MESH_ORDERS];
-  for (int h = 0; h < m->harmonics; h++)
-    value[h] = cabs(m->order[h].amplitude);
-  return eo_json_reals(m->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
+  for (int h = 0; h < measured->harmonics; h++)
+    value[h] = cabs(measured->order[h].amplitude);
+  return eo_json_reals(measured->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
 static json_t *write_predicted_amplitudes(const void *source)
 {
-  const struct detail *d = source;
+  const struct detail *detail = source;
   double value[EO_MESH_ORDERS];
-  for (int h = 0; h < d->measured->harmonics; h++)
-    value[h] = cabs(d->compared->prediction.order[h]);
-  return eo_json_reals(d->measured->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
+  for (int h = 0; h < detail->measured->harmonics; h++)
+    value[h] = cabs(detail->compared->prediction.order[h]);
+  return eo_json_reals(detail->measured->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row order_rows[] = {
@@ -318,10 +320,10 @@ static json_t *write_columns(const void *source)
 
 static json_t *write_details(const void *source)
 {
-  const struct source *s = source;
+  const struct source *this_source = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < s->comparison->count; i++) {
-    struct detail detail = {&s->measured[i], &s->comparison->point[i], {0}, {0}};
+  for (int i = 0; i < this_source->comparison->count; i++) {
+    struct detail detail = {&this_source->measured[i], &this_source->comparison->point[i], {0}, {0}};
     eo_comparison_curves(detail.measured, detail.compared, CURVE, detail.measured_te, detail.predicted_te);
     list.failed = json_array_append_new(list.json, eo_outline_encode(&detail_outline, &detail)) || list.failed;
   }
@@ -361,11 +363,11 @@ static const struct eo_outline reduction_outline = EO_OUTLINE("ComparedReduction
 
 static json_t *write_reductions(const void *source)
 {
-  const struct source *s = source;
+  const struct source *this_source = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < s->comparison->reductions; i++) {
-    const struct eo_reduction *r = &s->comparison->reduction[i];
-    const struct named_reduction named = {*r, s->measured[r->modified].name};
+  for (int i = 0; i < this_source->comparison->reductions; i++) {
+    const struct eo_reduction *reduction = &this_source->comparison->reduction[i];
+    const struct named_reduction named = {*reduction, this_source->measured[reduction->modified].name};
     list.failed = json_array_append_new(list.json, eo_outline_encode(&reduction_outline, &named)) || list.failed;
   }
   return eo_object_close(&list);
@@ -393,20 +395,20 @@ static const struct eo_outline_row comparison_rows[] = {
 };
 const struct eo_outline eo_comparison_outline = EO_OUTLINE("ComparisonOfFiles", comparison_rows);
 
-json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_measured *m)
+json_t *eo_comparison_encode(const struct eo_comparison *comparison, const struct eo_measured *measured)
 {
-  const struct source source = {c, m};
+  const struct source source = {comparison, measured};
   return eo_outline_encode(&eo_comparison_outline, &source);
 }
 
 /* The stretches of a recording whose speed changes. */
-static void print_order_tracks(const struct eo_transmission *t, struct eo_text *text)
+static void print_order_tracks(const struct eo_transmission *transmission, struct eo_text *text)
 {
-  if (t->speed_high - t->speed_low < CHANGING * t->speed || !t->tracks)
+  if (transmission->speed_high - transmission->speed_low < CHANGING * transmission->speed || !transmission->tracks)
     return;
   eo_text_add(text, "  rpm and m/s2 of stretches:");
-  for (int i = 0; i < t->tracks; i++)
-    eo_text_print(text, " %.5g|%.4g", t->track[i].speed * 30 / M_PI, t->track[i].rms);
+  for (int i = 0; i < transmission->tracks; i++)
+    eo_text_print(text, " %.5g|%.4g", transmission->track[i].speed * 30 / M_PI, transmission->track[i].rms);
   eo_text_add(text, "\n");
 }
 
@@ -441,29 +443,32 @@ void eo_measurement_summary(const struct eo_measurement *measurement, const stru
   print_order_tracks(transmission, text);
 }
 
-static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text_table *sheet,
-                       int digits)
+static void fill_sheet(const struct eo_comparison *comparison, const struct eo_measured *measured,
+                       struct eo_text_table *sheet, int digits)
 {
-  for (int i = 0; i < c->count; i++) {
-    eo_text_table_string(sheet, m[i].name);
-    eo_text_table_string(sheet, m[i].unmodified ? "unmodified" : "modified");
+  for (int i = 0; i < comparison->count; i++) {
+    eo_text_table_string(sheet, measured[i].name);
+    eo_text_table_string(sheet, measured[i].unmodified ? "unmodified" : "modified");
     for (int k = 0; k < COLUMNS; k++)
-      eo_text_table_number(sheet, columns[k].value(&m[i], &c->point[i]), columns[k].unit, digits);
-    eo_text_table_string(sheet, c->point[i].reason);
+      eo_text_table_number(sheet, columns[k].value(&measured[i], &comparison->point[i]), columns[k].unit, digits);
+    eo_text_table_string(sheet, comparison->point[i].reason);
   }
 }
 
-static void print_orders(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+static void print_orders(const struct eo_comparison *comparison, const struct eo_measured *measured,
+                         struct eo_text *text)
 {
-  for (int i = 0; i < c->count; i++) {
-    eo_text_print(text, "  %s, orders, measured | predicted m/s2:", m[i].name);
-    for (int h = 0; h < m[i].harmonics; h++)
-      eo_text_print(text, "  %.3g|%.3g", m[i].order[h].acceleration, c->point[i].prediction.acceleration[h]);
+  for (int i = 0; i < comparison->count; i++) {
+    eo_text_print(text, "  %s, orders, measured | predicted m/s2:", measured[i].name);
+    for (int h = 0; h < measured[i].harmonics; h++)
+      eo_text_print(text, "  %.3g|%.3g", measured[i].order[h].acceleration,
+                    comparison->point[i].prediction.acceleration[h]);
     eo_text_add(text, "\n");
   }
 }
 
-void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+void eo_comparison_summary(const struct eo_comparison *comparison, const struct eo_measured *measured,
+                           struct eo_text *text)
 {
   static const char *const headings[] = {"file",           "label", "torque N m", "speed rpm", "measured m/s2", "+-",
                                          "predicted m/s2", "ratio", "likeness",   "TE um",     "remark"};
@@ -471,20 +476,21 @@ void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measur
   eo_text_add(text,
               "\nMeasured and predicted (rotational acceleration at the encoders' end, at the measured speed):\n");
   eo_text_table_init(&sheet, COLUMNS + 3, headings);
-  fill_sheet(c, m, &sheet, 4);
+  fill_sheet(comparison, measured, &sheet, 4);
   eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
-  print_orders(c, m, text);
-  for (int i = 0; i < c->reductions; i++) {
-    const struct eo_reduction *r = &c->reduction[i];
+  print_orders(comparison, measured, text);
+  for (int i = 0; i < comparison->reductions; i++) {
+    const struct eo_reduction *reduction = &comparison->reduction[i];
     eo_text_print(text,
                   "  %.5g N m, %.5g rpm: the modification takes %.1f +- %.1f %% off the measured RMS, %.1f %% off the "
                   "predicted one.\n",
-                  r->torque, r->speed * 30 / M_PI, 100 * r->measured, 100 * r->measured_sigma, 100 * r->predicted);
+                  reduction->torque, reduction->speed * 30 / M_PI, 100 * reduction->measured,
+                  100 * reduction->measured_sigma, 100 * reduction->predicted);
   }
 }
 
-void eo_comparison_csv(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+void eo_comparison_csv(const struct eo_comparison *comparison, const struct eo_measured *measured, struct eo_text *text)
 {
   const char *headings[COLUMNS + 3] = {"file", "label"};
   struct eo_text_table sheet;
@@ -492,7 +498,7 @@ void eo_comparison_csv(const struct eo_comparison *c, const struct eo_measured *
     headings[2 + k] = column_rows[FIRST_NUMBER + k].key;
   headings[COLUMNS + 2] = "reason";
   eo_text_table_init(&sheet, COLUMNS + 3, headings);
-  fill_sheet(c, m, &sheet, EO_DIGITS_NUMBER);
+  fill_sheet(comparison, measured, &sheet, EO_DIGITS_NUMBER);
   eo_text_table_csv(&sheet, text);
   eo_text_table_done(&sheet);
 }

@@ -32,14 +32,14 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
 json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geometry *geometry,
                              const struct eo_warnings *warnings)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_completion);
-  eo_object_put(&o, "design", eo_design_encode(design));
-  eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, geometry));
-  eo_object_put(&o, "dimensions", eo_dimensions_encode(&design->gear_pair, geometry));
-  eo_object_put(&o, "assumed", eo_assumptions_encode(design, true));
-  eo_object_put(&o, "warnings", encode_warnings(warnings));
-  eo_object_put(&o, "findings", eo_design_findings(warnings));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&eo_outline_completion);
+  eo_object_put(&object, "design", eo_design_encode(design));
+  eo_object_put(&object, "geometry", eo_table_encode(&eo_geometry_table, geometry));
+  eo_object_put(&object, "dimensions", eo_dimensions_encode(&design->gear_pair, geometry));
+  eo_object_put(&object, "assumed", eo_assumptions_encode(design, true));
+  eo_object_put(&object, "warnings", encode_warnings(warnings));
+  eo_object_put(&object, "findings", eo_design_findings(warnings));
+  return eo_object_close(&object);
 }
 
 /* How the key's unit reads: length in inches where they are asked for. */

@@ -176,11 +176,11 @@ static void migrate_variables(struct eo_optimization *optimization)
   for (; eo_variable_parameters[last + 1]; last++)
     helix = strcmp(eo_variable_parameters[last], "helix_slope_um") == 0 ? last : helix;
   for (int i = 0; i < optimization->listed; i++) {
-    struct eo_listed_variable *v = &optimization->list[i];
-    if (v->parameter == last) {
-      v->parameter = helix;
-      v->bounds.low *= 2;
-      v->bounds.high *= 2;
+    struct eo_listed_variable *variable = &optimization->list[i];
+    if (variable->parameter == last) {
+      variable->parameter = helix;
+      variable->bounds.low *= 2;
+      variable->bounds.high *= 2;
     }
   }
 }

@@ -88,9 +88,9 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
 /* From the member's own root to its tip. */
 static double path_at(const struct flank *flank, double fraction)
 {
-  const struct eo_geometry *g = flank->geometry;
-  double length = g->path_end - g->path_start;
-  return flank->member == EO_PINION ? g->path_start + fraction * length : g->path_end - fraction * length;
+  const struct eo_geometry *geometry = flank->geometry;
+  double length = geometry->path_end - geometry->path_start;
+  return flank->member == EO_PINION ? geometry->path_start + fraction * length : geometry->path_end - fraction * length;
 }
 
 static double rack_at(const struct flank *flank, double s)
@@ -100,9 +100,9 @@ static double rack_at(const struct flank *flank, double s)
 
 static double roll_at(const struct flank *flank, double s)
 {
-  const struct eo_geometry *g = flank->geometry;
-  double tangent = g->tangent_length[flank->member] + eo_geometry_own_path(flank->member, s);
-  return tangent / g->base_radius[flank->member];
+  const struct eo_geometry *geometry = flank->geometry;
+  double tangent = geometry->tangent_length[flank->member] + eo_geometry_own_path(flank->member, s);
+  return tangent / geometry->base_radius[flank->member];
 }
 
 static double profile_part(const struct flank *flank, double s)

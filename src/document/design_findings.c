@@ -22,14 +22,14 @@ json_t *eo_design_findings(const struct eo_warnings *warnings)
   json_t *list = json_array();
   bool failed = !list;
   for (int i = 0; warnings && i < warnings->count && !failed; i++) {
-    struct eo_object o = eo_object_open_as(&eo_outline_finding);
+    struct eo_object object = eo_object_open_as(&eo_outline_finding);
     if (!*warnings->key[i]) {
-      json_decref(o.json);
+      json_decref(object.json);
       continue;
     }
-    eo_object_put(&o, "key", json_string(warnings->key[i]));
-    eo_object_put(&o, "text", json_string(warnings->text[i]));
-    failed = json_array_append_new(list, eo_object_close(&o)) != 0;
+    eo_object_put(&object, "key", json_string(warnings->key[i]));
+    eo_object_put(&object, "text", json_string(warnings->text[i]));
+    failed = json_array_append_new(list, eo_object_close(&object)) != 0;
   }
   if (!failed)
     return list;
@@ -38,13 +38,14 @@ json_t *eo_design_findings(const struct eo_warnings *warnings)
 }
 
 /* Below the active profile undercut takes nothing off where the teeth touch, but it weakens the root. */
-static void note_undercut(const struct eo_geometry *g, int i, struct eo_warnings *warnings)
+static void note_undercut(const struct eo_geometry *geometry, int i, struct eo_warnings *warnings)
 {
-  if (g->undercut[i])
+  if (geometry->undercut[i])
     eo_warnings_at(warnings, shift_key[i],
                    "The %s is undercut up to the radius %.6g mm; its active profile starts at %.6g mm. From a profile "
                    "shift of %.4g on there is none.",
-                   member_name[i], 1e3 * g->form_radius[i], 1e3 * g->start_radius[i], g->least_shift[i]);
+                   member_name[i], 1e3 * geometry->form_radius[i], 1e3 * geometry->start_radius[i],
+                   geometry->least_shift[i]);
 }
 
 /* Stock that grinding takes from below the protuberance's reach leaves a step in the fillet. */
@@ -61,19 +62,19 @@ static void note_notch(const struct eo_design *design, int i, struct eo_warnings
 }
 
 /* A distance far from what the shifts ask for: backlash that no thickness allowance makes. */
-static void note_distance(const struct eo_geometry *g, struct eo_warnings *warnings)
+static void note_distance(const struct eo_geometry *geometry, struct eo_warnings *warnings)
 {
   static const double MOST = 0.1; /* m_n; twice what ISO/TR 10064-2 recommends as the least */
-  double added = g->normal_backlash - g->stated_backlash;
-  if (added > MOST * g->normal_module)
+  double added = geometry->normal_backlash - geometry->stated_backlash;
+  if (added > MOST * geometry->normal_module)
     eo_warnings_at(
         warnings, "/gear_pair/centre_distance_mm",
         "The distance adds %.4g mm of normal backlash, %.3g m_n (usual: below %.3g m_n). It asks for profile "
         "shifts that sum to %.4g instead of %.4g: leave gear_profile_shift out and it follows.",
-        1e3 * added, added / g->normal_module, MOST,
-        eo_geometry_shift_sum(g->teeth, g->normal_pressure_angle, g->transverse_pressure_angle,
-                              g->working_pressure_angle),
-        g->profile_shift[0] + g->profile_shift[1]);
+        1e3 * added, added / geometry->normal_module, MOST,
+        eo_geometry_shift_sum(geometry->teeth, geometry->normal_pressure_angle, geometry->transverse_pressure_angle,
+                              geometry->working_pressure_angle),
+        geometry->profile_shift[0] + geometry->profile_shift[1]);
 }
 
 /* Stated allowances whose mean makes another backlash than the stated one, which is what the contact is computed with.
@@ -94,19 +95,19 @@ static void note_allowances(const struct eo_design *design, struct eo_warnings *
 }
 
 /* Clearance of the basic rack: c = h_fP of the mate - h_aP. */
-static void note_clearance(const struct eo_design *design, const struct eo_geometry *g, int i,
+static void note_clearance(const struct eo_design *design, const struct eo_geometry *geometry, int i,
                            struct eo_warnings *warnings)
 {
   static const char *const key[2] = {"/gear_pair/pinion_tip_diameter_mm", "/gear_pair/gear_tip_diameter_mm"};
   static const double LEAST = 0.1, NOTABLE = 0.02; /* m_n */
   double rack = eo_gear_pair_rack(&design->gear_pair, 1 - i).dedendum_coefficient -
                 eo_gear_pair_rack(&design->gear_pair, i).addendum_coefficient;
-  double clearance = g->tip_clearance[i] / g->normal_module;
+  double clearance = geometry->tip_clearance[i] / geometry->normal_module;
   if (clearance < fmin(LEAST, rack))
     eo_warnings_at(warnings, key[i],
                    "Only %.3g m_n (%.4g mm) of clearance is left between the tip of the %s and the root of its mate; "
                    "usual is 0.25 m_n, the least %.2g m_n. A tip alteration (null: derived) keeps that of the rack.",
-                   clearance, 1e3 * g->tip_clearance[i], member_name[i], LEAST);
+                   clearance, 1e3 * geometry->tip_clearance[i], member_name[i], LEAST);
   else if (clearance < rack - NOTABLE)
     eo_warnings_at(warnings, key[i],
                    "The tip clearance of the %s, %.3g m_n, is below the %.3g m_n of the basic rack: the tips are not "
@@ -115,24 +116,24 @@ static void note_clearance(const struct eo_design *design, const struct eo_geome
                    member_name[i], clearance, rack);
 }
 
-static void note_shortened(const struct eo_geometry *g, int i, struct eo_warnings *warnings)
+static void note_shortened(const struct eo_geometry *geometry, int i, struct eo_warnings *warnings)
 {
   static const char *const key[2] = {"/gear_pair/pinion_tip_diameter_mm", "/gear_pair/gear_tip_diameter_mm"};
-  if (g->shortened[i] > 1e-3 * g->normal_module)
+  if (geometry->shortened[i] > 1e-3 * geometry->normal_module)
     eo_warnings_at(
         warnings, key[i],
         "The tip diameter of the %s is taken as %.6g mm, %.4g mm less than its rack makes it, so that it clears "
         "the root of its mate and is not pointed. Profile shifts or another basic rack avoid that; a stated "
         "tip diameter is taken as it is.",
-        member_name[i], 2e3 * g->tip_radius[i], 2e3 * g->shortened[i]);
+        member_name[i], 2e3 * geometry->tip_radius[i], 2e3 * geometry->shortened[i]);
 }
 
 /* s_an in the normal section. */
-static void note_tip(const struct eo_geometry *g, int i, struct eo_warnings *warnings)
+static void note_tip(const struct eo_geometry *geometry, int i, struct eo_warnings *warnings)
 {
   static const double LEAST = 0.2; /* m_n; 0.4 of surface hardened teeth */
-  double helix = atan(tan(g->helix_angle) * g->tip_radius[i] / g->reference_radius[i]);
-  double thickness = g->tip_thickness[i] * cos(helix) / g->normal_module;
+  double helix = atan(tan(geometry->helix_angle) * geometry->tip_radius[i] / geometry->reference_radius[i]);
+  double thickness = geometry->tip_thickness[i] * cos(helix) / geometry->normal_module;
   if (thickness < LEAST)
     eo_warnings_at(warnings, shift_key[i],
                    "The teeth of the %s are %.3g m_n thick at their tips; usual is at least %.2g m_n, of surface "
@@ -140,24 +141,25 @@ static void note_tip(const struct eo_geometry *g, int i, struct eo_warnings *war
                    member_name[i], thickness, LEAST);
 }
 
-static void note_proportions(const struct eo_design *design, const struct eo_geometry *g, struct eo_warnings *warnings)
+static void note_proportions(const struct eo_design *design, const struct eo_geometry *geometry,
+                             struct eo_warnings *warnings)
 {
   static const double WIDEST = 2.2, STEEPEST = 45 * M_PI / 180; /* both ends of a herringbone pinion together */
-  double width = design->gear_pair.ends * g->face_width / (2 * g->reference_radius[EO_PINION]);
+  double width = design->gear_pair.ends * geometry->face_width / (2 * geometry->reference_radius[EO_PINION]);
   if (width > WIDEST)
     eo_warnings_at(warnings, "/gear_pair/face_width_mm",
                    "The face is %.3g times as wide as the pinion's reference diameter (usual: up to %.2g): bending and "
                    "wind-up of the pinion decide the load along it. See shafts.enabled.",
                    width, WIDEST);
-  if (g->helix_angle > STEEPEST)
+  if (geometry->helix_angle > STEEPEST)
     eo_warnings_at(warnings, "/gear_pair/helix_angle_deg",
                    "A helix angle of %.4g deg is beyond the 45 deg of usual tools and of what ISO 6336 covers.",
-                   g->helix_angle * 180 / M_PI);
-  if (g->transverse_contact_ratio < 1)
+                   geometry->helix_angle * 180 / M_PI);
+  if (geometry->transverse_contact_ratio < 1)
     eo_warnings_at(warnings, "/gear_pair/centre_distance_mm",
                    "The transverse contact ratio, %.4g, is below 1: only the overlap of the helix keeps the teeth in "
                    "mesh. A longer addendum or a smaller working pressure angle adds to it.",
-                   g->transverse_contact_ratio);
+                   geometry->transverse_contact_ratio);
 }
 
 /* A helix pushes along the axis, and only a second end takes that up within the body. */

@@ -71,24 +71,24 @@ struct filling {
 };
 
 /* The object under the key, made where it is absent; NULL where something else stands there, which decoding refuses. */
-static json_t *group_of(struct filling *f, json_t *parent, const char *key)
+static json_t *group_of(struct filling *filling, json_t *parent, const char *key)
 {
   json_t *group = json_object_get(parent, key);
   if (!group) {
     group = json_object();
-    f->failed = json_object_set_new(parent, key, group) != 0 || f->failed;
+    filling->failed = json_object_set_new(parent, key, group) != 0 || filling->failed;
   }
   return json_is_object(group) ? group : NULL;
 }
 
-static void fill(struct filling *f, json_t *group, const char *key, json_t *value, const char *said)
+static void fill(struct filling *filling, json_t *group, const char *key, json_t *value, const char *said)
 {
   if (!group || json_object_get(group, key)) {
     json_decref(value);
     return;
   }
-  f->failed = json_object_set_new(group, key, value) != 0 || f->failed;
-  eo_text_print(&f->said, "%s%s", f->said.size ? ", " : "", said);
+  filling->failed = json_object_set_new(group, key, value) != 0 || filling->failed;
+  eo_text_print(&filling->said, "%s%s", filling->said.size ? ", " : "", said);
 }
 
 static json_t *number(double value)
@@ -96,36 +96,36 @@ static json_t *number(double value)
   return value == (int)value ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static void fill_numbers(struct filling *f)
+static void fill_numbers(struct filling *filling)
 {
   for (size_t i = 0; i < sizeof first_defaults / sizeof *first_defaults; i++) {
     char said[80];
     snprintf(said, sizeof said, "%s %g", first_defaults[i].key, first_defaults[i].value);
-    fill(f, group_of(f, f->document, first_defaults[i].group), first_defaults[i].key, number(first_defaults[i].value),
-         said);
+    fill(filling, group_of(filling, filling->document, first_defaults[i].group), first_defaults[i].key,
+         number(first_defaults[i].value), said);
   }
 }
 
-static void fill_bounds(struct filling *f)
+static void fill_bounds(struct filling *filling)
 {
-  json_t *bounds = group_of(f, group_of(f, f->document, "optimization"), "bounds");
-  fill(f, bounds, "tip_relief_um", json_pack("[i,i]", 0, 40), "bounds of tip_relief_um 0 .. 40");
-  fill(f, bounds, "root_relief_um", json_pack("[i,i]", 0, 40), "of root_relief_um 0 .. 40");
-  fill(f, bounds, "lead_crowning_um", json_pack("[i,i]", 0, 36), "of lead_crowning_um 0 .. 36");
+  json_t *bounds = group_of(filling, group_of(filling, filling->document, "optimization"), "bounds");
+  fill(filling, bounds, "tip_relief_um", json_pack("[i,i]", 0, 40), "bounds of tip_relief_um 0 .. 40");
+  fill(filling, bounds, "root_relief_um", json_pack("[i,i]", 0, 40), "of root_relief_um 0 .. 40");
+  fill(filling, bounds, "lead_crowning_um", json_pack("[i,i]", 0, 36), "of lead_crowning_um 0 .. 36");
 }
 
-static void fill_load_cases(struct filling *f)
+static void fill_load_cases(struct filling *filling)
 {
   json_t *row;
   size_t i;
-  fill(f, f->document, "load_cases",
+  fill(filling, filling->document, "load_cases",
        json_pack("[{s:i,s:i,s:f}, {s:i,s:i,s:f}, {s:i,s:i,s:f}]", "torque_Nm", 621, "speed_rpm", 2000, "share", 0.2,
                  "torque_Nm", 828, "speed_rpm", 2000, "share", 0.5, "torque_Nm", 1035, "speed_rpm", 2000, "share", 0.3),
        "load_cases of the paper");
-  json_array_foreach(json_object_get(f->document, "load_cases"), i, row)
+  json_array_foreach(json_object_get(filling->document, "load_cases"), i, row)
   {
     if (json_is_object(row))
-      fill(f, row, "speed_rpm", json_integer(2000), "speed_rpm 2000");
+      fill(filling, row, "speed_rpm", json_integer(2000), "speed_rpm 2000");
   }
 }
 
@@ -133,21 +133,22 @@ json_t *eo_design_migrate(const json_t *document, struct eo_warnings *warnings)
 {
   if (version_of(document) != 1)
     return json_incref((json_t *)document);
-  struct filling f = {.document = json_deep_copy(document)};
-  if (!f.document)
+  struct filling filling = {.document = json_deep_copy(document)};
+  if (!filling.document)
     return NULL;
-  fill_load_cases(&f);
-  fill_numbers(&f);
-  fill_bounds(&f);
-  f.failed = json_object_set_new(f.document, "version", json_integer(EO_DESIGN_VERSION)) != 0 || f.failed;
-  if (f.said.size && !f.said.failed)
+  fill_load_cases(&filling);
+  fill_numbers(&filling);
+  fill_bounds(&filling);
+  filling.failed = json_object_set_new(filling.document, "version", json_integer(EO_DESIGN_VERSION)) != 0 ||
+                   filling.failed;
+  if (filling.said.size && !filling.said.failed)
     eo_warnings_add(warnings,
                     "The design document is of version 1, whose defaults stand for what it leaves out, so that its "
                     "numbers stay: %s.",
-                    f.said.data);
-  eo_text_done(&f.said);
-  if (!f.failed)
-    return f.document;
-  json_decref(f.document);
+                    filling.said.data);
+  eo_text_done(&filling.said);
+  if (!filling.failed)
+    return filling.document;
+  json_decref(filling.document);
   return NULL;
 }

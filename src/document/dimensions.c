@@ -56,9 +56,9 @@ static const struct eo_outline_row dimension_rows[] = {
 };
 const struct eo_outline eo_outline_dimensions = EO_OUTLINE("Dimensions", dimension_rows);
 
-static void put_triple(struct eo_object *o, const char *key, const double *value, const struct eo_unit *unit)
+static void put_triple(struct eo_object *object, const char *key, const double *value, const struct eo_unit *unit)
 {
-  eo_object_put(o, key, eo_json_column(EO_MEASURED, value, 1, unit, EO_DIGITS_NUMBER));
+  eo_object_put(object, key, eo_json_column(EO_MEASURED, value, 1, unit, EO_DIGITS_NUMBER));
 }
 
 static json_t *text_or_null(const char *text)
@@ -66,67 +66,68 @@ static json_t *text_or_null(const char *text)
   return *text ? json_string(text) : json_null();
 }
 
-static json_t *encode_member(const struct eo_member_dimensions *m)
+static json_t *encode_member(const struct eo_member_dimensions *dimensions)
 {
-  struct eo_object o = eo_object_open_as(&member_outline);
+  struct eo_object object = eo_object_open_as(&member_outline);
   double chord[EO_MEASURED], height[EO_MEASURED];
   for (int k = 0; k < EO_MEASURED; k++) {
-    chord[k] = m->chord[k].thickness;
-    height[k] = m->chord[k].height;
+    chord[k] = dimensions->chord[k].thickness;
+    height[k] = dimensions->chord[k].height;
   }
-  eo_object_put_number(&o, "reference_diameter_mm", m->reference_diameter);
-  eo_object_put_number(&o, "base_diameter_mm", m->base_diameter);
-  eo_object_put_number(&o, "tip_diameter_mm", m->tip_diameter);
-  put_triple(&o, "root_diameter_mm", m->root_diameter, &eo_unit_mm);
-  put_triple(&o, "form_diameter_mm", m->form_diameter, &eo_unit_mm);
-  eo_object_put_number(&o, "active_start_diameter_mm", m->active_start_diameter);
-  put_triple(&o, "thickness_allowance_um", m->allowance, &eo_unit_um);
-  put_triple(&o, "generating_shift", m->generating_shift, NULL);
-  put_triple(&o, "normal_thickness_mm", m->normal_thickness, &eo_unit_mm);
-  put_triple(&o, "chord_mm", chord, &eo_unit_mm);
-  put_triple(&o, "chord_height_mm", height, &eo_unit_mm);
-  eo_object_put_number(&o, "tip_thickness_mm", m->tip_thickness);
-  eo_object_put(&o, "teeth_spanned", m->teeth_spanned ? json_integer(m->teeth_spanned) : json_null());
-  put_triple(&o, "span_mm", m->span, &eo_unit_mm);
-  eo_object_put(&o, "span_reason", text_or_null(m->span_reason));
-  eo_object_put_number(&o, "ball_mm", m->ball);
-  put_triple(&o, "over_one_ball_mm", m->over_one_ball, &eo_unit_mm);
-  put_triple(&o, "over_two_balls_mm", m->over_two_balls, &eo_unit_mm);
-  put_triple(&o, "over_pins_mm", m->over_pins, &eo_unit_mm);
-  eo_object_put(&o, "ball_reason", text_or_null(m->ball_reason));
-  return eo_object_close(&o);
+  eo_object_put_number(&object, "reference_diameter_mm", dimensions->reference_diameter);
+  eo_object_put_number(&object, "base_diameter_mm", dimensions->base_diameter);
+  eo_object_put_number(&object, "tip_diameter_mm", dimensions->tip_diameter);
+  put_triple(&object, "root_diameter_mm", dimensions->root_diameter, &eo_unit_mm);
+  put_triple(&object, "form_diameter_mm", dimensions->form_diameter, &eo_unit_mm);
+  eo_object_put_number(&object, "active_start_diameter_mm", dimensions->active_start_diameter);
+  put_triple(&object, "thickness_allowance_um", dimensions->allowance, &eo_unit_um);
+  put_triple(&object, "generating_shift", dimensions->generating_shift, NULL);
+  put_triple(&object, "normal_thickness_mm", dimensions->normal_thickness, &eo_unit_mm);
+  put_triple(&object, "chord_mm", chord, &eo_unit_mm);
+  put_triple(&object, "chord_height_mm", height, &eo_unit_mm);
+  eo_object_put_number(&object, "tip_thickness_mm", dimensions->tip_thickness);
+  eo_object_put(&object, "teeth_spanned",
+                dimensions->teeth_spanned ? json_integer(dimensions->teeth_spanned) : json_null());
+  put_triple(&object, "span_mm", dimensions->span, &eo_unit_mm);
+  eo_object_put(&object, "span_reason", text_or_null(dimensions->span_reason));
+  eo_object_put_number(&object, "ball_mm", dimensions->ball);
+  put_triple(&object, "over_one_ball_mm", dimensions->over_one_ball, &eo_unit_mm);
+  put_triple(&object, "over_two_balls_mm", dimensions->over_two_balls, &eo_unit_mm);
+  put_triple(&object, "over_pins_mm", dimensions->over_pins, &eo_unit_mm);
+  eo_object_put(&object, "ball_reason", text_or_null(dimensions->ball_reason));
+  return eo_object_close(&object);
 }
 
-static json_t *encode_backlash(const struct eo_pair_dimensions *d)
+static json_t *encode_backlash(const struct eo_pair_dimensions *dimensions)
 {
-  const struct eo_backlash *range[EO_MEASURED] = {&d->smallest, &d->mean, &d->largest};
+  const struct eo_backlash *range[EO_MEASURED] = {&dimensions->smallest, &dimensions->mean, &dimensions->largest};
   double normal[EO_MEASURED], around[EO_MEASURED], radial[EO_MEASURED];
-  struct eo_object o = eo_object_open_as(&backlash_outline);
+  struct eo_object object = eo_object_open_as(&backlash_outline);
   for (int k = 0; k < EO_MEASURED; k++) {
     normal[k] = range[k]->normal;
     around[k] = range[k]->circumferential;
     radial[k] = range[k]->radial;
   }
-  put_triple(&o, "normal_um", normal, &eo_unit_um);
-  put_triple(&o, "circumferential_um", around, &eo_unit_um);
-  put_triple(&o, "radial_um", radial, &eo_unit_um);
-  return eo_object_close(&o);
+  put_triple(&object, "normal_um", normal, &eo_unit_um);
+  put_triple(&object, "circumferential_um", around, &eo_unit_um);
+  put_triple(&object, "radial_um", radial, &eo_unit_um);
+  return eo_object_close(&object);
 }
 
 json_t *eo_dimensions_encode(const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
-  struct eo_pair_dimensions *d = calloc(1, sizeof *d);
-  struct eo_object o = eo_object_open_as(&eo_outline_dimensions);
-  if (!d) {
-    json_decref(o.json);
+  struct eo_pair_dimensions *dimensions = calloc(1, sizeof *dimensions);
+  struct eo_object object = eo_object_open_as(&eo_outline_dimensions);
+  if (!dimensions) {
+    json_decref(object.json);
     return NULL;
   }
-  eo_pair_dimensions_init(d, pair, geometry);
-  eo_object_put(&o, "pinion", encode_member(&d->member[EO_PINION]));
-  eo_object_put(&o, "gear", encode_member(&d->member[EO_GEAR]));
-  eo_object_put_number(&o, "centre_distance_mm", geometry->centre_distance);
-  eo_object_put_number(&o, "centre_distance_allowance_um", d->centre_distance_allowance);
-  eo_object_put(&o, "backlash", encode_backlash(d));
-  free(d);
-  return eo_object_close(&o);
+  eo_pair_dimensions_init(dimensions, pair, geometry);
+  eo_object_put(&object, "pinion", encode_member(&dimensions->member[EO_PINION]));
+  eo_object_put(&object, "gear", encode_member(&dimensions->member[EO_GEAR]));
+  eo_object_put_number(&object, "centre_distance_mm", geometry->centre_distance);
+  eo_object_put_number(&object, "centre_distance_allowance_um", dimensions->centre_distance_allowance);
+  eo_object_put(&object, "backlash", encode_backlash(dimensions));
+  free(dimensions);
+  return eo_object_close(&object);
 }

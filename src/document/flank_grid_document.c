@@ -144,25 +144,25 @@ json_t *eo_flank_grid_from_text(const char *text, struct eo_error *error)
   struct cursor cursor = {text, 1, 1, "", false};
   choose_separators(&cursor);
   skip_remarks(&cursor);
-  json_t *y = read_heading(&cursor, error), *u = json_array(), *rows = json_array();
-  bool good = y && u && rows;
+  json_t *value = read_heading(&cursor, error), *value_of = json_array(), *rows = json_array();
+  bool good = value && value_of && rows;
   for (skip_remarks(&cursor); good && *cursor.at; skip_remarks(&cursor)) {
     int line = cursor.line;
-    json_t *row = read_row(&cursor, u, error);
+    json_t *row = read_row(&cursor, value_of, error);
     good = row != NULL;
-    if (good && json_array_size(row) != json_array_size(y)) {
+    if (good && json_array_size(row) != json_array_size(value)) {
       eo_error_set(error, EO_ERROR_INPUT, NULL,
                    "Line %d of the table has %zu numbers behind u, but the first row states %zu places y.", line,
-                   json_array_size(row), json_array_size(y));
+                   json_array_size(row), json_array_size(value));
       json_decref(row);
       good = false;
     } else if (good)
       good = json_array_append_new(rows, row) == 0;
   }
   if (good)
-    return json_pack("{s:o, s:o, s:o}", "u_mm", u, "y_mm", y, "delta_um", rows);
-  json_decref(u);
-  json_decref(y);
+    return json_pack("{s:o, s:o, s:o}", "u_mm", value_of, "y_mm", value, "delta_um", rows);
+  json_decref(value_of);
+  json_decref(value);
   json_decref(rows);
   return NULL;
 }
@@ -185,28 +185,28 @@ void eo_flank_grid_to_text(const struct eo_flank_grid *grid, struct eo_text *tex
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
 /* The three arrays belong together, and two knots at least make a surface. */
-static bool fits(const struct grid_document *g, const struct eo_path *path, struct eo_faults *faults)
+static bool fits(const struct grid_document *document, const struct eo_path *path, struct eo_faults *faults)
 {
-  if (g->u.count < 2 || g->y.count < 2)
+  if (document->u.count < 2 || document->y.count < 2)
     eo_faults_at(faults, path,
-                 "A grid needs at least 2 places u_mm and 2 places y_mm (4 of each to bend), not %d x %d.", g->u.count,
-                 g->y.count);
-  else if (g->delta.rows != g->u.count || g->delta.columns != g->y.count)
+                 "A grid needs at least 2 places u_mm and 2 places y_mm (4 of each to bend), not %d x %d.",
+                 document->u.count, document->y.count);
+  else if (document->delta.rows != document->u.count || document->delta.columns != document->y.count)
     eo_faults_at(faults, path, "delta_um is %d x %d, but there are %d places u_mm (rows) and %d places y_mm (columns).",
-                 g->delta.rows, g->delta.columns, g->u.count, g->y.count);
+                 document->delta.rows, document->delta.columns, document->u.count, document->y.count);
   else
     return true;
   return false;
 }
 
-static void decode_grid(const json_t *object, const struct eo_path *path, struct grid_document *g,
+static void decode_grid(const json_t *object, const struct eo_path *path, struct grid_document *document,
                         struct eo_faults *faults)
 {
   const json_t *text = json_object_get(object, "csv");
   struct eo_path place = {path, "csv", 0};
   struct eo_error error;
   if (!text) {
-    eo_table_decode(&eo_flank_grid_table, object, path, g, faults);
+    eo_table_decode(&eo_flank_grid_table, object, path, document, faults);
     return;
   }
   if (!json_is_string(text) || json_object_size(object) > 1) {
@@ -216,7 +216,7 @@ static void decode_grid(const json_t *object, const struct eo_path *path, struct
   eo_error_set(&error, EO_ERROR_MEMORY, NULL, "Not enough memory.");
   json_t *read = json_string_length(text) < MOST_TEXT ? eo_flank_grid_from_text(json_string_value(text), &error) : NULL;
   if (read)
-    eo_table_decode(&eo_flank_grid_table, read, path, g, faults);
+    eo_table_decode(&eo_flank_grid_table, read, path, document, faults);
   else if (json_string_length(text) >= MOST_TEXT)
     eo_faults_at(faults, &place, "A table of %zu bytes is longer than the %d allowed.", json_string_length(text),
                  MOST_TEXT - 1);
@@ -230,19 +230,20 @@ static void add_grid(const json_t *flank, const struct eo_path *path, enum eo_fl
 {
   const json_t *object = json_object_get(flank, "grid");
   struct eo_path place = {path, "grid", 0};
-  struct grid_document g = {0};
+  struct grid_document document = {0};
   struct eo_error error;
   int before = faults->count;
   if (!object || json_is_null(object))
     return;
-  decode_grid(object, &place, &g, faults);
-  if (faults->count == before && fits(&g, &place, faults)) {
-    eo_table_round_to_document(&eo_flank_grid_table, &g);
-    struct eo_flank_grid grid = {g.u.count, g.y.count, g.u.value, g.y.value, g.delta.value};
+  decode_grid(object, &place, &document, faults);
+  if (faults->count == before && fits(&document, &place, faults)) {
+    eo_table_round_to_document(&eo_flank_grid_table, &document);
+    struct eo_flank_grid grid = {document.u.count, document.y.count, document.u.value, document.y.value,
+                                 document.delta.value};
     if (eo_flank_grids_put(grids, side, member, end, &grid, &error))
       eo_faults_at(faults, &place, "%s", error.text);
   }
-  eo_table_done(&eo_flank_grid_table, &g);
+  eo_table_done(&eo_flank_grid_table, &document);
 }
 
 void eo_flank_grids_decode(const json_t *modification, int ends, struct eo_flank_grids *grids, struct eo_faults *faults)
@@ -274,10 +275,10 @@ static json_t *reach(json_t *object, const char *key, bool *failed)
 static json_t *encode_grid(const struct eo_flank_grid *grid)
 {
   /* encoding reads alone */
-  struct grid_document g = {{grid->u_knots, (double *)grid->u},
-                            {grid->y_knots, (double *)grid->y},
-                            {grid->u_knots, grid->y_knots, (double *)grid->delta}};
-  return eo_table_encode(&eo_flank_grid_table, &g);
+  struct grid_document document = {{grid->u_knots, (double *)grid->u},
+                                   {grid->y_knots, (double *)grid->y},
+                                   {grid->u_knots, grid->y_knots, (double *)grid->delta}};
+  return eo_table_encode(&eo_flank_grid_table, &document);
 }
 
 void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t *modification, bool *failed)
@@ -297,13 +298,13 @@ void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t 
 bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *geometry, enum eo_flank_side side,
                     int member, int end, struct eo_modification_shape *shape, struct eo_flank_spline **spline)
 {
-  const struct eo_modification *m = &design->modification;
+  const struct eo_modification *modification = &design->modification;
   struct eo_flank_grid grid = eo_flank_grid_at(&design->grids, side, member, end);
   struct eo_error error;
   *spline = NULL;
   bool failed = grid.u_knots && eo_flank_spline_new(spline, &grid, &error);
   eo_modification_init(shape, geometry, member,
-                       side == EO_DRIVE_FLANK ? &m->flank[member][end] : &m->coast[member][end]);
+                       side == EO_DRIVE_FLANK ? &modification->flank[member][end] : &modification->coast[member][end]);
   eo_modification_complete(shape, *spline, false);
   return failed;
 }

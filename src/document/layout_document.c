@@ -135,12 +135,12 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *request,
   read_columns(json_object_get(document, "columns"), request, faults);
 }
 
-static const char *unit_of(const struct eo_track_channel *c)
+static const char *unit_of(const struct eo_track_channel *channel)
 {
-  return fabs(c->scale - 1) < 1e-12                ? "rad"
-         : fabs(c->scale * 180 / M_PI - 1) < 1e-12 ? "deg"
-         : fabs(c->scale / (2 * M_PI) - 1) < 1e-12 ? "turn"
-                                                   : "count";
+  return fabs(channel->scale - 1) < 1e-12                ? "rad"
+         : fabs(channel->scale * 180 / M_PI - 1) < 1e-12 ? "deg"
+         : fabs(channel->scale / (2 * M_PI) - 1) < 1e-12 ? "turn"
+                                                         : "count";
 }
 
 static json_t *encode_column(const struct eo_track_source *source, enum eo_track track)
@@ -173,30 +173,30 @@ const struct eo_outline eo_layout_outline = EO_OUTLINE("Layout", layout_rows);
 json_t *eo_layout_encode(const struct eo_tracks *tracks)
 {
   const struct eo_track_channel *channel = tracks->channel;
-  struct eo_object o = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
+  struct eo_object object = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
   bool angles = channel[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&channel[0]), "count") == 0;
   double lines[2] = {angles ? 2 * M_PI / channel[0].scale : channel[0].lines,
                      angles ? 2 * M_PI / channel[1].scale : channel[1].lines};
   static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
   const struct eo_track_source *source = tracks->source;
   bool one = source[0].time == source[1].time || source[0].time < 0 || source[1].time < 0;
-  eo_object_put(&o, "kind", json_string(kinds[1 + (int)channel[0].track]));
+  eo_object_put(&object, "kind", json_string(kinds[1 + (int)channel[0].track]));
   if (angles)
-    eo_object_put(&o, "unit", json_string(unit_of(&channel[0])));
+    eo_object_put(&object, "unit", json_string(unit_of(&channel[0])));
   if (channel[0].track != EO_TRACK_PULSES)
-    eo_object_put(&o, "time",
+    eo_object_put(&object, "time",
                   source[0].time < 0 ? json_string(no_time[0])
                   : one              ? json_integer(source[0].time + 1)
                                      : json_pack("[i, i]", source[0].time + 1, source[1].time + 1));
   for (int i = 0; times[i]; i++)
     if (fabs(source[0].time_scale / time_scale[i] - 1) < 1e-9)
-      eo_object_put(&o, "time_unit", json_string(times[i]));
+      eo_object_put(&object, "time_unit", json_string(times[i]));
   if (source[0].time < 0 && tracks->interval > 0)
-    eo_object_put(&o, "sample_rate_Hz", eo_json_real(1 / tracks->interval, NULL));
+    eo_object_put(&object, "sample_rate_Hz", eo_json_real(1 / tracks->interval, NULL));
   for (int i = 0; i < 2; i++)
     eo_object_put(&columns, member_key[i], encode_column(&source[i], channel[i].track));
-  eo_object_put(&o, "columns", eo_object_close(&columns));
+  eo_object_put(&object, "columns", eo_object_close(&columns));
   if (!angles || counts)
-    eo_object_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
-  return eo_object_close(&o);
+    eo_object_put(&object, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
+  return eo_object_close(&object);
 }

@@ -59,8 +59,8 @@ static json_t *write_offsets(const void *ellipse)
 
 static json_t *write_ratio(const void *ellipse)
 {
-  const struct eo_ellipse *e = ellipse;
-  return eo_json_quantity(e->amplitude[0] / e->amplitude[1], NULL);
+  const struct eo_ellipse *this_ellipse = ellipse;
+  return eo_json_quantity(this_ellipse->amplitude[0] / this_ellipse->amplitude[1], NULL);
 }
 
 static json_t *write_phase(const void *ellipse)
@@ -77,10 +77,10 @@ static const struct eo_outline_row ellipse_rows[] = {
 static const struct eo_outline ellipse_outline = EO_OUTLINE("RawTracks", ellipse_rows);
 
 /* Of a channel that was recorded as an angle or a count there is none. */
-static json_t *write_ellipse(const struct eo_measurement *m, int channel)
+static json_t *write_ellipse(const struct eo_measurement *measurement, int channel)
 {
-  bool drawn = m->raw[channel] && m->ellipse[channel].amplitude[0] > 0;
-  return drawn ? eo_outline_encode(&ellipse_outline, &m->ellipse[channel]) : json_null();
+  bool drawn = measurement->raw[channel] && measurement->ellipse[channel].amplitude[0] > 0;
+  return drawn ? eo_outline_encode(&ellipse_outline, &measurement->ellipse[channel]) : json_null();
 }
 
 static json_t *write_pinion_ellipse(const void *measurement)
@@ -190,8 +190,9 @@ static json_t *write_load(const void *source)
 
 static json_t *write_result(const void *source)
 {
-  const struct eo_measurement *m = measurement_of(source);
-  return m->refused ? json_null() : eo_outline_encode(&eo_measured_result_outline, &m->transmission);
+  const struct eo_measurement *measurement = measurement_of(source);
+  return measurement->refused ? json_null()
+                              : eo_outline_encode(&eo_measured_result_outline, &measurement->transmission);
 }
 
 static const struct eo_outline_row measurement_rows[] = {
@@ -212,9 +213,9 @@ static const struct eo_outline_row measurement_rows[] = {
 };
 const struct eo_outline eo_measurement_outline = EO_OUTLINE("MeasurementOfFile", measurement_rows);
 
-json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_measurement_label *label)
+json_t *eo_measurement_encode(const struct eo_measurement *measurement, const struct eo_measurement_label *label)
 {
-  const struct source source = {m, label};
+  const struct source source = {measurement, label};
   return eo_outline_encode(&eo_measurement_outline, &source);
 }
 

@@ -27,12 +27,12 @@ json_t *eo_parts_encode(const struct eo_parts *parts)
 }
 
 /* One number of every stretch; offset: where it lies in one. */
-static json_t *track_column(const struct eo_transmission *t, size_t offset, const struct eo_unit *unit)
+static json_t *track_column(const struct eo_transmission *transmission, size_t offset, const struct eo_unit *unit)
 {
   double value[EO_TRACKS];
-  for (int i = 0; i < t->tracks; i++)
-    memcpy(&value[i], (const char *)&t->track[i] + offset, sizeof value[i]);
-  return eo_json_reals(t->tracks, value, 1, unit, EO_DIGITS_CURVE);
+  for (int i = 0; i < transmission->tracks; i++)
+    memcpy(&value[i], (const char *)&transmission->track[i] + offset, sizeof value[i]);
+  return eo_json_reals(transmission->tracks, value, 1, unit, EO_DIGITS_CURVE);
 }
 
 static json_t *write_track_from(const void *t)

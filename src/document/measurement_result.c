@@ -150,14 +150,14 @@ struct spectrum {
 
 static json_t *write_spectrum_orders(const void *source)
 {
-  const struct spectrum *s = source;
-  return column(s->count, s->order, NULL);
+  const struct spectrum *spectrum = source;
+  return column(spectrum->count, spectrum->order, NULL);
 }
 
 static json_t *write_spectrum_accelerations(const void *source)
 {
-  const struct spectrum *s = source;
-  return eo_json_reals(s->count, s->acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP);
+  const struct spectrum *spectrum = source;
+  return eo_json_reals(spectrum->count, spectrum->acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP);
 }
 
 static const struct eo_outline_row spectrum_rows[] = {
@@ -171,26 +171,27 @@ static const struct eo_outline spectrum_outline = EO_OUTLINE("OrderSpectrum", sp
 static json_t *write_spectrum(const void *source)
 {
   const struct eo_transmission *transmission = source;
-  struct spectrum s = {.turns = transmission->spectrum_turns};
+  struct spectrum spectrum = {.turns = transmission->spectrum_turns};
   int stretch = transmission->spectrum_lines / SPECTRUM_POINTS + 1;
-  for (int first = 1; first < transmission->spectrum_lines && s.count < SPECTRUM_POINTS; first += stretch, s.count++) {
-    s.acceleration[s.count] = -1;
+  for (int first = 1; first < transmission->spectrum_lines && spectrum.count < SPECTRUM_POINTS;
+       first += stretch, spectrum.count++) {
+    spectrum.acceleration[spectrum.count] = -1;
     for (int k = first; k < first + stretch && k < transmission->spectrum_lines; k++) {
       double at = (double)k / transmission->spectrum_turns,
              value = pow(at * transmission->speed, 2) * transmission->spectrum[k];
-      if (value > s.acceleration[s.count]) {
-        s.acceleration[s.count] = value;
-        s.order[s.count] = at;
+      if (value > spectrum.acceleration[spectrum.count]) {
+        spectrum.acceleration[spectrum.count] = value;
+        spectrum.order[spectrum.count] = at;
       }
     }
   }
-  return eo_outline_encode(&spectrum_outline, &s);
+  return eo_outline_encode(&spectrum_outline, &spectrum);
 }
 
 static json_t *write_rms_upto(const void *source)
 {
-  const struct eo_transmission *t = source;
-  return eo_json_reals(t->harmonics, t->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER);
+  const struct eo_transmission *transmission = source;
+  return eo_json_reals(transmission->harmonics, transmission->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER);
 }
 
 static const struct eo_outline_row rms_rows[] = {

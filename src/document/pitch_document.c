@@ -165,19 +165,19 @@ static void add_table(const struct eo_numbers *series, const struct eo_path *pat
     eo_faults_at(faults, &place, "%s", error.text);
 }
 
-static void take(const struct pitch_document *d, const struct eo_path *path, const struct eo_gear_pair *pair,
+static void take(const struct pitch_document *document, const struct eo_path *path, const struct eo_gear_pair *pair,
                  struct eo_pitch *pitch, struct eo_faults *faults)
 {
   pitch->stated = true;
-  pitch->positions = d->positions;
-  pitch->gear_tooth = d->gear_tooth;
+  pitch->positions = document->positions;
+  pitch->gear_tooth = document->gear_tooth;
   for (int member = 0; member < 2; member++) {
-    pitch->member[member] = d->member[member].own;
+    pitch->member[member] = document->member[member].own;
     for (int i = 0; i < 2 * pair->ends * EO_TOOTH_TERMS; i++) {
       int term = i % EO_TOOTH_TERMS, end = i / EO_TOOTH_TERMS / 2, side = i / EO_TOOTH_TERMS % 2;
       struct eo_path of_member = {path, member_name[member], 0}, of_end = {&of_member, end_name[end], 0};
-      add_table(&d->member[member].end[end].side[side].term[term], &of_end, (enum eo_flank_side)side, member, end, term,
-                pair->teeth[member], pitch, faults);
+      add_table(&document->member[member].end[end].side[side].term[term], &of_end, (enum eo_flank_side)side, member,
+                end, term, pair->teeth[member], pitch, faults);
     }
   }
 }
@@ -186,7 +186,7 @@ void eo_pitch_decode(const json_t *object, const struct eo_gear_pair *pair, stru
                      struct eo_faults *faults)
 {
   struct eo_path path = {NULL, "pitch", 0};
-  struct pitch_document d = {0};
+  struct pitch_document document = {0};
   int before = faults->count;
   memset(pitch, 0, sizeof *pitch);
   if (!object || json_is_null(object))
@@ -197,31 +197,31 @@ void eo_pitch_decode(const json_t *object, const struct eo_gear_pair *pair, stru
   }
   json_t *whole = expand(object, &path, faults);
   if (faults->count == before)
-    eo_table_decode(&eo_pitch_table, whole, &path, &d, faults);
+    eo_table_decode(&eo_pitch_table, whole, &path, &document, faults);
   if (faults->count == before) {
-    eo_table_round_to_document(&eo_pitch_table, &d);
-    take(&d, &path, pair, pitch, faults);
+    eo_table_round_to_document(&eo_pitch_table, &document);
+    take(&document, &path, pair, pitch, faults);
   }
-  eo_table_done(&eo_pitch_table, &d);
+  eo_table_done(&eo_pitch_table, &document);
   json_decref(whole);
 }
 
 json_t *eo_pitch_encode(const struct eo_pitch *pitch, int ends)
 {
-  struct pitch_document d = {.positions = pitch->positions, .gear_tooth = pitch->gear_tooth};
+  struct pitch_document document = {.positions = pitch->positions, .gear_tooth = pitch->gear_tooth};
   if (!pitch->stated)
     return json_null();
   for (int member = 0; member < 2; member++) {
-    d.member[member].own = pitch->member[member];
+    document.member[member].own = pitch->member[member];
     for (int i = 0; i < 2 * ends * EO_TOOTH_TERMS; i++) {
       int term = i % EO_TOOTH_TERMS, end = i / EO_TOOTH_TERMS / 2, side = i / EO_TOOTH_TERMS % 2;
       /* encoding reads alone */
-      d.member[member].end[end].side[side].term[term] = (struct eo_numbers){
+      document.member[member].end[end].side[side].term[term] = (struct eo_numbers){
           pitch->tables.place[side][member][end][term].teeth,
           (double *)eo_tooth_table_at(&pitch->tables, (enum eo_flank_side)side, member, end, (enum eo_tooth_term)term)};
     }
   }
-  json_t *object = eo_table_encode(&eo_pitch_table, &d);
+  json_t *object = eo_table_encode(&eo_pitch_table, &document);
   for (int member = 0; member < 2 && ends == 1; member++)
     json_object_del(json_object_get(object, member_name[member]), "right");
   return object;

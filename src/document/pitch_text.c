@@ -29,136 +29,136 @@ struct reading {
   int line_of[FLANKS];             /* of the last row of a flank; 0: none */
 };
 
-static double *value_of(const struct reading *r, int flank, int heading, int tooth)
+static double *value_of(const struct reading *reading, int flank, int heading, int tooth)
 {
-  return r->value + ((size_t)flank * HEADINGS + (size_t)heading) * (MOST_TEETH + 1) + tooth;
+  return reading->value + ((size_t)flank * HEADINGS + (size_t)heading) * (MOST_TEETH + 1) + tooth;
 }
 
-static enum eo_code refuse(const struct reading *r, struct eo_error *error, const char *what, const char *cell)
+static enum eo_code refuse(const struct reading *reading, struct eo_error *error, const char *what, const char *cell)
 {
-  return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d, column %d of the table: \"%s\" %s", r->line, r->column,
-                      cell, what);
+  return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d, column %d of the table: \"%s\" %s", reading->line,
+                      reading->column, cell, what);
 }
 
 /* The next cell of the line without the blanks around it; false behind the last. */
-static bool next_cell(struct reading *r, char cell[MOST_CELL])
+static bool next_cell(struct reading *reading, char cell[MOST_CELL])
 {
-  const char *end = r->at;
-  if (*r->at == 0 || *r->at == '\n' || *r->at == '\r')
+  const char *end = reading->at;
+  if (*reading->at == 0 || *reading->at == '\n' || *reading->at == '\r')
     return false;
-  while (*end && *end != r->separator && *end != '\n' && *end != '\r')
+  while (*end && *end != reading->separator && *end != '\n' && *end != '\r')
     end++;
-  const char *first = r->at, *last = end;
+  const char *first = reading->at, *last = end;
   while (first < last && (*first == ' ' || *first == '"'))
     first++;
   while (last > first && (last[-1] == ' ' || last[-1] == '"'))
     last--;
   snprintf(cell, MOST_CELL, "%.*s", (int)(last - first), first);
-  r->at = *end == r->separator ? end + 1 : end;
-  r->column++;
+  reading->at = *end == reading->separator ? end + 1 : end;
+  reading->column++;
   return true;
 }
 
-static void next_line(struct reading *r)
+static void next_line(struct reading *reading)
 {
-  r->at += strcspn(r->at, "\n");
-  r->at += *r->at == '\n';
-  r->line++;
-  r->column = 0;
+  reading->at += strcspn(reading->at, "\n");
+  reading->at += *reading->at == '\n';
+  reading->line++;
+  reading->column = 0;
 }
 
 /* Blank lines and those that begin with #. */
-static void skip_remarks(struct reading *r)
+static void skip_remarks(struct reading *reading)
 {
-  while (*r->at) {
-    const char *from = r->at + strspn(r->at, " \t\r");
+  while (*reading->at) {
+    const char *from = reading->at + strspn(reading->at, " \t\r");
     if (*from != '#' && *from != '\n')
       return;
-    next_line(r);
+    next_line(reading);
   }
 }
 
-static enum eo_code read_headings(struct reading *r, bool whole, struct eo_error *error)
+static enum eo_code read_headings(struct reading *reading, bool whole, struct eo_error *error)
 {
   char cell[MOST_CELL];
-  while (next_cell(r, cell)) {
+  while (next_cell(reading, cell)) {
     int found = 0;
     for (char *c = cell; *c; c++)
       *c = (char)tolower((unsigned char)*c);
     while (found < HEADINGS && strcmp(cell, heading_name[found]) != 0)
       found++;
     if (found == HEADINGS || (!whole && found >= MEMBER))
-      return refuse(r, error,
+      return refuse(reading, error,
                     whole ? "is no heading; those known are tooth, index_um, single_um, profile_slope_um, "
                             "helix_slope_um, member, end and flank."
                           : "is no heading; those of one flank are tooth, index_um, single_um, profile_slope_um and "
                             "helix_slope_um.",
                     cell);
-    if (r->has[found] || r->columns == MOST_COLUMNS)
-      return refuse(r, error, "stands there twice.", cell);
-    r->has[found] = true;
-    r->heading[r->columns++] = (enum heading)found;
+    if (reading->has[found] || reading->columns == MOST_COLUMNS)
+      return refuse(reading, error, "stands there twice.", cell);
+    reading->has[found] = true;
+    reading->heading[reading->columns++] = (enum heading)found;
   }
-  if (!r->has[TOOTH] || (r->has[INDEX] && r->has[SINGLE]) ||
-      !(r->has[INDEX] || r->has[SINGLE] || r->has[PROFILE_SLOPE] || r->has[HELIX_SLOPE]))
+  if (!reading->has[TOOTH] || (reading->has[INDEX] && reading->has[SINGLE]) ||
+      !(reading->has[INDEX] || reading->has[SINGLE] || reading->has[PROFILE_SLOPE] || reading->has[HELIX_SLOPE]))
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "Line %d of the table: headings name tooth and what is stated of it, with one of index_um and "
                         "single_um at most.",
-                        r->line);
-  if (whole && !r->has[MEMBER])
+                        reading->line);
+  if (whole && !reading->has[MEMBER])
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "Line %d of the table: in a table of the whole pair a column member says pinion or gear.",
-                        r->line);
-  next_line(r);
+                        reading->line);
+  next_line(reading);
   return EO_OK;
 }
 
-static enum eo_code read_number(const struct reading *r, char *cell, double *number, struct eo_error *error)
+static enum eo_code read_number(const struct reading *reading, char *cell, double *number, struct eo_error *error)
 {
   char *rest;
-  for (char *c = cell; r->decimal_comma && *c; c++)
+  for (char *c = cell; reading->decimal_comma && *c; c++)
     *c = *c == ',' ? '.' : *c;
   *number = strtod(cell, &rest);
-  return rest == cell || *rest || !isfinite(*number) ? refuse(r, error, "is not a number.", cell) : EO_OK;
+  return rest == cell || *rest || !isfinite(*number) ? refuse(reading, error, "is not a number.", cell) : EO_OK;
 }
 
-static enum eo_code read_word(const struct reading *r, const char *cell, const char *const word[2], int *index,
+static enum eo_code read_word(const struct reading *reading, const char *cell, const char *const word[2], int *index,
                               struct eo_error *error)
 {
   char what[MOST_CELL];
   snprintf(what, sizeof what, "is neither %s nor %s.", word[0], word[1]);
   *index = strcmp(cell, word[1]) == 0;
-  return *index || strcmp(cell, word[0]) == 0 ? EO_OK : refuse(r, error, what, cell);
+  return *index || strcmp(cell, word[0]) == 0 ? EO_OK : refuse(reading, error, what, cell);
 }
 
 /* One row: its numbers, the tooth and the flank they belong to. */
-static enum eo_code read_row(struct reading *r, struct eo_error *error)
+static enum eo_code read_row(struct reading *reading, struct eo_error *error)
 {
   static const char *const *const words[3] = {member_name, end_name, side_name};
   char cell[MOST_CELL];
   double number[HEADINGS] = {0};
   int place[3] = {0}, i = 0;
-  for (; i < r->columns && next_cell(r, cell); i++) {
-    enum heading heading = r->heading[i];
-    EO_TRY(heading >= MEMBER ? read_word(r, cell, words[heading - MEMBER], &place[heading - MEMBER], error)
-                             : read_number(r, cell, &number[heading], error));
+  for (; i < reading->columns && next_cell(reading, cell); i++) {
+    enum heading heading = reading->heading[i];
+    EO_TRY(heading >= MEMBER ? read_word(reading, cell, words[heading - MEMBER], &place[heading - MEMBER], error)
+                             : read_number(reading, cell, &number[heading], error));
   }
-  if (i < r->columns || next_cell(r, cell))
+  if (i < reading->columns || next_cell(reading, cell))
     return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d of the table does not have %d cells as the headings do.",
-                        r->line, r->columns);
+                        reading->line, reading->columns);
   int tooth = (int)number[TOOTH], flank = 4 * place[0] + 2 * place[1] + place[2];
   if (number[TOOTH] != tooth || tooth < 0 || tooth > MOST_TEETH)
-    return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d of the table: %g is not the number of a tooth.", r->line,
-                        number[TOOTH]);
-  if (*value_of(r, flank, TOOTH, tooth) == tooth)
+    return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d of the table: %g is not the number of a tooth.",
+                        reading->line, number[TOOTH]);
+  if (*value_of(reading, flank, TOOTH, tooth) == tooth)
     return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d of the table: tooth %d of this flank is there already.",
-                        r->line, tooth);
+                        reading->line, tooth);
   for (int heading = 0; heading < MEMBER; heading++)
-    *value_of(r, flank, heading, tooth) = number[heading];
-  r->least[flank] = r->line_of[flank] == 0 || tooth < r->least[flank] ? tooth : r->least[flank];
-  r->most[flank] = tooth > r->most[flank] ? tooth : r->most[flank];
-  r->line_of[flank] = r->line;
-  next_line(r);
+    *value_of(reading, flank, heading, tooth) = number[heading];
+  reading->least[flank] = reading->line_of[flank] == 0 || tooth < reading->least[flank] ? tooth : reading->least[flank];
+  reading->most[flank] = tooth > reading->most[flank] ? tooth : reading->most[flank];
+  reading->line_of[flank] = reading->line;
+  next_line(reading);
   return EO_OK;
 }
 
@@ -171,21 +171,21 @@ static json_t *reach(json_t *object, const char *key)
 }
 
 /* The arrays of one flank; single pitch deviations add up to index deviations, tooth 0 having 0. */
-static enum eo_code put_flank(const struct reading *r, int flank, json_t *object, struct eo_error *error)
+static enum eo_code put_flank(const struct reading *reading, int flank, json_t *object, struct eo_error *error)
 {
-  int first = r->least[flank];
-  for (int tooth = first; tooth <= r->most[flank]; tooth++)
-    if (*value_of(r, flank, TOOTH, tooth) != tooth)
+  int first = reading->least[flank];
+  for (int tooth = first; tooth <= reading->most[flank]; tooth++)
+    if (*value_of(reading, flank, TOOTH, tooth) != tooth)
       return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table leaves out tooth %d (its last row is line %d).",
-                          tooth, r->line_of[flank]);
+                          tooth, reading->line_of[flank]);
   if (first > 1)
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "The table begins with tooth %d: teeth are counted from 0 or from 1.", first);
   for (int heading = INDEX; heading <= HELIX_SLOPE; heading++) {
-    json_t *row = r->has[heading] ? json_array() : NULL;
+    json_t *row = reading->has[heading] ? json_array() : NULL;
     double sum = 0;
-    for (int tooth = first; row && tooth <= r->most[flank]; tooth++) {
-      double value = *value_of(r, flank, heading, tooth);
+    for (int tooth = first; row && tooth <= reading->most[flank]; tooth++) {
+      double value = *value_of(reading, flank, heading, tooth);
       sum += tooth > first ? value : 0;
       json_array_append_new(row, json_real(heading == SINGLE ? sum : value));
     }
@@ -195,41 +195,45 @@ static enum eo_code put_flank(const struct reading *r, int flank, json_t *object
   return EO_OK;
 }
 
-static enum eo_code put_all(const struct reading *r, bool whole, json_t *object, struct eo_error *error)
+static enum eo_code put_all(const struct reading *reading, bool whole, json_t *object, struct eo_error *error)
 {
   for (int flank = 0; flank < FLANKS; flank++) {
     json_t *place = object;
-    if (r->line_of[flank] == 0)
+    if (reading->line_of[flank] == 0)
       continue;
     if (whole) {
       place = reach(reach(object, member_name[flank / 4]), end_name[flank / 2 % 2]);
       place = flank % 2 ? reach(place, "coast") : place;
     }
-    EO_TRY(put_flank(r, flank, place, error));
+    EO_TRY(put_flank(reading, flank, place, error));
   }
   return EO_OK;
 }
 
-static enum eo_code read_all(struct reading *r, bool whole, json_t *object, struct eo_error *error)
+static enum eo_code read_all(struct reading *reading, bool whole, json_t *object, struct eo_error *error)
 {
-  skip_remarks(r);
-  EO_TRY(read_headings(r, whole, error));
-  for (skip_remarks(r); *r->at; skip_remarks(r))
-    EO_TRY(read_row(r, error));
-  return put_all(r, whole, object, error);
+  skip_remarks(reading);
+  EO_TRY(read_headings(reading, whole, error));
+  for (skip_remarks(reading); *reading->at; skip_remarks(reading))
+    EO_TRY(read_row(reading, error));
+  return put_all(reading, whole, object, error);
 }
 
 enum eo_code eo_pitch_from_text(const char *text, bool whole, json_t *object, struct eo_error *error)
 {
-  struct reading r = {.at = text, .line = 1, .separator = strchr(text, ';') ? ';' : strchr(text, '\t') ? '\t' : ','};
+  struct reading reading = {.at = text,
+                            .line = 1,
+                            .separator = strchr(text, ';')    ? ';'
+                                         : strchr(text, '\t') ? '\t'
+                                                              : ','};
   size_t count = (size_t)FLANKS * HEADINGS * (MOST_TEETH + 1);
-  r.decimal_comma = r.separator != ',' && !strchr(text, '.');
-  r.value = malloc(sizeof *r.value * count);
-  if (!r.value)
+  reading.decimal_comma = reading.separator != ',' && !strchr(text, '.');
+  reading.value = malloc(sizeof *reading.value * count);
+  if (!reading.value)
     return eo_error_memory(error);
   for (size_t i = 0; i < count; i++)
-    r.value[i] = NAN;
-  enum eo_code code = read_all(&r, whole, object, error);
-  free(r.value);
+    reading.value[i] = NAN;
+  enum eo_code code = read_all(&reading, whole, object, error);
+  free(reading.value);
   return code;
 }

@@ -14,9 +14,9 @@
 
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
-static const char *outcome_of(const struct eo_case_result *c)
+static const char *outcome_of(const struct eo_case_result *case_result)
 {
-  return outcomes[c->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : c->vibration.outcome];
+  return outcomes[case_result->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : case_result->vibration.outcome];
 }
 
 static const char *const directions[] = {"ahead", "astern", NULL};
@@ -60,36 +60,36 @@ static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_
 
 json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_object o = eo_object_open_as(&contact_half);
-  source->lag = eo_evaluator_stagger(source->pair, source->design, &c->running);
-  eo_object_put_number(&o, "torque_Nm", c->load_case.torque);
-  eo_object_put_number(&o, "speed_rpm", c->load_case.speed);
-  eo_object_put_number(&o, "share", c->load_case.share);
-  eo_object_put(&o, "name", json_string(c->load_case.name));
-  eo_object_put(&o, "direction", json_string(directions[c->load_case.direction]));
-  eo_object_put(&o, "driver", json_string(drivers[c->load_case.driver]));
-  eo_object_put(&o, "flank", json_string(flank_sides[c->running.flank]));
-  eo_object_put(&o, "sequence", json_string(sequences[c->running.backwards]));
-  eo_object_put_number(&o, "normal_force_N", c->force);
-  eo_object_put(&o, "outcome", json_string(outcome_of(c)));
-  eo_object_put(&o, "position", eo_result_position(source));
-  eo_object_put(&o, "lte", eo_result_lte(source, c));
-  eo_object_put(&o, "mesh_stiffness", eo_result_stiffness(source, c));
-  eo_object_put(&o, "contact", eo_result_contact(source, k));
-  return eo_object_close(&o);
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  struct eo_object object = eo_object_open_as(&contact_half);
+  source->lag = eo_evaluator_stagger(source->pair, source->design, &case_result->running);
+  eo_object_put_number(&object, "torque_Nm", case_result->load_case.torque);
+  eo_object_put_number(&object, "speed_rpm", case_result->load_case.speed);
+  eo_object_put_number(&object, "share", case_result->load_case.share);
+  eo_object_put(&object, "name", json_string(case_result->load_case.name));
+  eo_object_put(&object, "direction", json_string(directions[case_result->load_case.direction]));
+  eo_object_put(&object, "driver", json_string(drivers[case_result->load_case.driver]));
+  eo_object_put(&object, "flank", json_string(flank_sides[case_result->running.flank]));
+  eo_object_put(&object, "sequence", json_string(sequences[case_result->running.backwards]));
+  eo_object_put_number(&object, "normal_force_N", case_result->force);
+  eo_object_put(&object, "outcome", json_string(outcome_of(case_result)));
+  eo_object_put(&object, "position", eo_result_position(source));
+  eo_object_put(&object, "lte", eo_result_lte(source, case_result));
+  eo_object_put(&object, "mesh_stiffness", eo_result_stiffness(source, case_result));
+  eo_object_put(&object, "contact", eo_result_contact(source, k));
+  return eo_object_close(&object);
 }
 
 json_t *eo_result_case_consequences(struct eo_result_source *source, int k)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_object o = eo_object_open_as(&consequence_half);
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  struct eo_object object = eo_object_open_as(&consequence_half);
   if (source->design->shafts.enabled)
-    eo_object_put(&o, "body_deflection", eo_result_bodies(source, c));
-  eo_object_put(&o, "impact", eo_result_impact(source, c));
-  eo_object_put(&o, "root_stress", eo_result_root_stress(source, c));
-  eo_object_put(&o, "vibration", eo_result_vibration(source, c));
-  return eo_object_close(&o);
+    eo_object_put(&object, "body_deflection", eo_result_bodies(source, case_result));
+  eo_object_put(&object, "impact", eo_result_impact(source, case_result));
+  eo_object_put(&object, "root_stress", eo_result_root_stress(source, case_result));
+  eo_object_put(&object, "vibration", eo_result_vibration(source, case_result));
+  return eo_object_close(&object);
 }
 
 /* Takes both; NULL when one is. */
@@ -203,15 +203,15 @@ static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives
 
 json_t *eo_result_objectives(const struct eo_result_source *source)
 {
-  const struct eo_analysis *a = source->analysis;
-  struct eo_object o = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
-  eo_outline_put(&o, &eo_outline_value, &a->value);
-  eo_outline_put(&unmodified, &eo_outline_value, &a->unmodified_value);
-  eo_object_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
-  eo_object_put(&unmodified, "load_cases", encode_raw(source, a->unmodified));
-  eo_object_put(&o, "unmodified", eo_object_close(&unmodified));
-  eo_object_put(&o, "scenarios", json_integer(a->scenarios));
-  return eo_object_close(&o);
+  const struct eo_analysis *analysis = source->analysis;
+  struct eo_object object = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
+  eo_outline_put(&object, &eo_outline_value, &analysis->value);
+  eo_outline_put(&unmodified, &eo_outline_value, &analysis->unmodified_value);
+  eo_object_put(&object, "load_cases", encode_raw(source, source->evaluation->objective));
+  eo_object_put(&unmodified, "load_cases", encode_raw(source, analysis->unmodified));
+  eo_object_put(&object, "unmodified", eo_object_close(&unmodified));
+  eo_object_put(&object, "scenarios", json_integer(analysis->scenarios));
+  return eo_object_close(&object);
 }
 
 struct timing {
@@ -242,13 +242,13 @@ static double seconds_of(double milliseconds)
 
 static json_t *encode_timing(const struct eo_result_source *source)
 {
-  const struct eo_evaluation *r = source->evaluation;
+  const struct eo_evaluation *evaluation = source->evaluation;
   const struct timing seconds = {.preparation = seconds_of(1e3 * source->pair->seconds),
                                  .unmodified = seconds_of(source->analysis->unmodified_ms),
-                                 .contact = seconds_of(r->static_ms),
-                                 .impact = seconds_of(r->impact_ms),
-                                 .root = seconds_of(r->root_ms),
-                                 .dynamics = seconds_of(r->dynamics_ms),
+                                 .contact = seconds_of(evaluation->static_ms),
+                                 .impact = seconds_of(evaluation->impact_ms),
+                                 .root = seconds_of(evaluation->root_ms),
+                                 .dynamics = seconds_of(evaluation->dynamics_ms),
                                  .rating = seconds_of(source->analysis->rating_ms),
                                  .pitch = seconds_of(source->analysis->pitch.milliseconds),
                                  .evaluation = seconds_of(source->analysis->design_ms)};
@@ -291,59 +291,60 @@ static const struct eo_outline_row result_rows[] = {
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
 enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
 
-static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating, bool whole, bool assumed)
+static void put_identity(struct eo_object *object, const struct eo_design *design, bool rating, bool whole,
+                         bool assumed)
 {
   char hash[EO_HASH_LENGTH + 1];
-  eo_object_put(o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(o, "design", whole ? eo_design_encode(design) : json_null());
-  eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(o, "assumed", assumed ? eo_assumptions_encode(design, rating) : json_null());
-  eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
+  eo_object_put(object, "program", json_string(PACKAGE_STRING));
+  eo_object_put(object, "design", whole ? eo_design_encode(design) : json_null());
+  eo_object_put(object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(object, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(object, "assumed", assumed ? eo_assumptions_encode(design, rating) : json_null());
+  eo_object_put(object, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
 json_t *eo_result_head(struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&eo_result_outline);
+  struct eo_object object = eo_object_open_as(&eo_result_outline);
   bool whole = eo_result_has(source, EO_RESULT_NO_DESIGN, NULL);
   bool assumed = eo_result_has(source, EO_RESULT_NO_ASSUMED, NULL);
-  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING, whole, assumed);
-  eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
-  eo_object_put(&o, "dimensions",
+  put_identity(&object, source->design, source->analysis->want & EO_WANT_RATING, whole, assumed);
+  eo_object_put(&object, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
+  eo_object_put(&object, "dimensions",
                 assumed ? eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry) : json_null());
-  eo_object_put(&o, "flexibility", eo_result_flexibility(source));
-  eo_object_put(&o, "modification",
+  eo_object_put(&object, "flexibility", eo_result_flexibility(source));
+  eo_object_put(&object, "modification",
                 eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL) ? eo_result_modification(source) : json_null());
-  eo_object_put(&o, "unloaded_contact", eo_result_unloaded(source));
-  return eo_object_close_part(&o);
+  eo_object_put(&object, "unloaded_contact", eo_result_unloaded(source));
+  return eo_object_close_part(&object);
 }
 
 json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
 {
   const struct eo_dynamics_modes *modes = &source->evaluation->modes;
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
-  struct eo_object o = eo_object_open_as(&eo_result_outline);
-  o.next = CASES_ROW + 1;
-  eo_object_put(&o, "objectives", eo_result_objectives(source));
-  eo_object_put(&o, "eigenfrequencies_Hz",
+  struct eo_object object = eo_object_open_as(&eo_result_outline);
+  object.next = CASES_ROW + 1;
+  eo_object_put(&object, "objectives", eo_result_objectives(source));
+  eo_object_put(&object, "eigenfrequencies_Hz",
                 have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&o, "damping_ratios",
+  eo_object_put(&object, "damping_ratios",
                 have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&o, "rating", eo_result_rating(source));
-  eo_object_put(&o, "tribology", eo_result_tribology(source));
-  eo_object_put(&o, "pitch", eo_result_pitch(source));
-  eo_object_put(&o, "warnings", eo_result_warnings(source, warnings));
-  eo_object_put(&o, "findings", eo_design_findings(warnings));
-  eo_object_put(&o, "timing_ms", encode_timing(source));
-  return eo_object_close(&o);
+  eo_object_put(&object, "rating", eo_result_rating(source));
+  eo_object_put(&object, "tribology", eo_result_tribology(source));
+  eo_object_put(&object, "pitch", eo_result_pitch(source));
+  eo_object_put(&object, "warnings", eo_result_warnings(source, warnings));
+  eo_object_put(&object, "findings", eo_design_findings(warnings));
+  eo_object_put(&object, "timing_ms", encode_timing(source));
+  return eo_object_close(&object);
 }
 
 static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
 {
-  struct eo_object o = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
-  o.failed = !o.json;
-  eo_object_put(&o, "load_cases", encode_cases(source));
-  return unite(eo_object_close_part(&o), eo_result_tail(source, warnings));
+  struct eo_object object = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
+  object.failed = !object.json;
+  eo_object_put(&object, "load_cases", encode_cases(source));
+  return unite(eo_object_close_part(&object), eo_result_tail(source, warnings));
 }
 
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design,

@@ -43,13 +43,13 @@ static json_t *encode_orders(const struct eo_result_source *source, const double
   return column;
 }
 
-static void put_end_columns(struct eo_object *o, const struct eo_result_source *source, const char *format,
+static void put_end_columns(struct eo_object *object, const struct eo_result_source *source, const char *format,
                             const double *const value[2], double scale, const struct eo_unit *unit, bool wanted)
 {
   for (int end = 0; end < source->ends; end++) {
     char key[64];
     snprintf(key, sizeof key, format, eo_result_end[end]);
-    eo_object_put(o, key, wanted ? eo_result_end_column(source, end, value[end], scale, unit) : json_null());
+    eo_object_put(object, key, wanted ? eo_result_end_column(source, end, value[end], scale, unit) : json_null());
   }
 }
 
@@ -90,15 +90,15 @@ const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_row
 
 /* The second derivative by time of the transmission error, whose mesh harmonics are known: -(2 pi f_mesh h)^2 times
    each (finer ones are noise of the positions). Its RMS comes from the same amplitudes. */
-static void put_second_derivative(struct eo_object *o, const struct eo_result_source *source,
-                                  const struct eo_case_result *c)
+static void put_second_derivative(struct eo_object *object, const struct eo_result_source *source,
+                                  const struct eo_case_result *case_result)
 {
   enum { MOST = 128 };
   double amplitude[MOST][2], squares = 0;
   int n = source->positions, most = (n - 1) / 2, harmonics = source->design->resolution.te_harmonics;
   harmonics = harmonics < most ? harmonics : most;
-  double mesh = c->load_case.speed * source->pair->geometry.teeth[EO_PINION]; /* rad/s */
-  eo_periodic_harmonics(n, c->transmission, harmonics, amplitude);
+  double mesh = case_result->load_case.speed * source->pair->geometry.teeth[EO_PINION]; /* rad/s */
+  eo_periodic_harmonics(n, case_result->transmission, harmonics, amplitude);
   for (int j = 0; j < n; j++)
     source->scratch[j] = 0;
   for (int h = 1; h <= harmonics; h++) {
@@ -107,36 +107,39 @@ static void put_second_derivative(struct eo_object *o, const struct eo_result_so
     for (int j = 0; j < n; j++)
       source->scratch[j] += re * cos(2 * M_PI * h * j / n) - im * sin(2 * M_PI * h * j / n);
   }
-  eo_object_put(o, "second_derivative_m_per_s2",
-                eo_result_has(source, EO_RESULT_NO_LTE, c)
+  eo_object_put(object, "second_derivative_m_per_s2",
+                eo_result_has(source, EO_RESULT_NO_LTE, case_result)
                     ? eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, source->digits)
                     : json_null());
-  eo_object_put_number(o, "second_derivative_rms_m_per_s2", sqrt(squares));
+  eo_object_put_number(object, "second_derivative_rms_m_per_s2", sqrt(squares));
 }
 
-json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
-  struct eo_object o = eo_object_open_as(&eo_outline_lte);
-  bool curves = eo_result_has_overview(source, EO_RESULT_NO_LTE, c);
-  eo_object_put(&o, "pair_um",
-                curves ? eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, source->digits)
+  const double *const approach[2] = {case_result->end[0].loaded.approach, case_result->end[1].loaded.approach};
+  struct eo_object object = eo_object_open_as(&eo_outline_lte);
+  bool curves = eo_result_has_overview(source, EO_RESULT_NO_LTE, case_result);
+  eo_object_put(&object, "pair_um",
+                curves ? eo_json_column(source->positions, case_result->transmission, 1, &eo_unit_um, source->digits)
                        : json_null());
-  put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um, curves);
-  eo_object_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
+  put_end_columns(&object, source, "%s_um", approach, 1 / source->normal, &eo_unit_um, curves);
+  eo_object_put_number(&object, "peak_to_peak_um", case_result->peak_to_peak);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
-  eo_object_put_number(&o, "mean_um", c->mean);
-  eo_object_put_number(&o, "hub_windup_um",
-                       (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) * c->force /
-                           source->pair->geometry.face_width / source->normal);
-  eo_object_put(&o, "orders_um", curves ? encode_orders(source, c->transmission, &eo_unit_um) : json_null());
-  put_second_derivative(&o, source, c);
+    eo_object_put_number(&object, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um",
+                         case_result->end[end].transmission_peak);
+  eo_object_put_number(&object, "mean_um", case_result->mean);
+  eo_object_put_number(&object, "hub_windup_um",
+                       (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) *
+                           case_result->force / source->pair->geometry.face_width / source->normal);
+  eo_object_put(&object, "orders_um",
+                curves ? encode_orders(source, case_result->transmission, &eo_unit_um) : json_null());
+  put_second_derivative(&object, source, case_result);
   if (source->ends == 2 && source->design->alignment.pinion_axial != EO_AXIAL_FIXED)
-    eo_object_put(&o, "axial_float_um",
-                  eo_result_has(source, EO_RESULT_NO_LTE, c) ? encode_float(source, approach, c->running.inwards)
-                                                             : json_null());
-  return eo_object_close(&o);
+    eo_object_put(&object, "axial_float_um",
+                  eo_result_has(source, EO_RESULT_NO_LTE, case_result)
+                      ? encode_float(source, approach, case_result->running.inwards)
+                      : json_null());
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row stiffness_mean_rows[] = {
@@ -169,16 +172,16 @@ static const struct eo_outline_row stiffness_rows[] = {
 };
 const struct eo_outline eo_outline_stiffness = EO_OUTLINE("MeshStiffness", stiffness_rows);
 
-json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  const double *const secant[2] = {c->end[0].stiffness, c->end[1].stiffness};
-  const double *const tangent[2] = {c->end[0].loaded.tangent, c->end[1].loaded.tangent};
-  struct eo_object o = eo_object_open_as(&eo_outline_stiffness), means = eo_object_open_as(&stiffness_mean);
-  bool curves = eo_result_has(source, EO_RESULT_NO_STIFFNESS, c);
-  put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um, curves);
-  put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um, curves);
+  const double *const secant[2] = {case_result->end[0].stiffness, case_result->end[1].stiffness};
+  const double *const tangent[2] = {case_result->end[0].loaded.tangent, case_result->end[1].loaded.tangent};
+  struct eo_object object = eo_object_open_as(&eo_outline_stiffness), means = eo_object_open_as(&stiffness_mean);
+  bool curves = eo_result_has(source, EO_RESULT_NO_STIFFNESS, case_result);
+  put_end_columns(&object, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um, curves);
+  put_end_columns(&object, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um, curves);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, end ? "right_orders_N_per_um" : "left_orders_N_per_um",
+    eo_object_put(&object, end ? "right_orders_N_per_um" : "left_orders_N_per_um",
                   curves ? encode_orders(source, secant[end], &eo_unit_N_per_um) : json_null());
   for (int end = 0; end < source->ends; end++) {
     eo_object_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
@@ -188,8 +191,8 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
                          mean(source->positions, secant[end]) * source->normal * source->normal /
                              eo_pair_half(source->pair, end)->geometry.face_width);
   }
-  eo_object_put(&o, "mean", eo_object_close(&means));
-  return eo_object_close(&o);
+  eo_object_put(&object, "mean", eo_object_close(&means));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row unloaded_end_rows[] = {
@@ -205,23 +208,24 @@ static const struct eo_outline unloaded_end = EO_OUTLINE("UnloadedContactEnd", u
 
 static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
 {
-  const struct eo_end_result *r = &source->evaluation->load_case[0].end[end];
+  const struct eo_end_result *end_result = &source->evaluation->load_case[0].end[end];
   struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
-  struct eo_object o = eo_object_open_as(&unloaded_end);
+  struct eo_object object = eo_object_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
-  eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, 0, end), r->unloaded);
+  eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, 0, end), end_result->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
   bool curves = eo_result_has(source, EO_RESULT_NO_UNLOADED, NULL);
-  eo_object_put(&o, "te_um",
-                curves ? eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um) : json_null());
-  eo_object_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
-  eo_object_put_number(&o, "smallest_gap_um", r->datum);
-  eo_object_put(&o, "clearance_um",
+  eo_object_put(&object, "te_um",
+                curves ? eo_result_end_column(source, end, end_result->unloaded, 1 / source->normal, &eo_unit_um)
+                       : json_null());
+  eo_object_put_number(&object, "peak_to_peak_um", swing(source->positions, end_result->unloaded) / source->normal);
+  eo_object_put_number(&object, "smallest_gap_um", end_result->datum);
+  eo_object_put(&object, "clearance_um",
                 curves ? eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um)
                        : json_null());
-  eo_object_put_number(&o, "marked_share", (double)marked / points);
-  return eo_object_close(&o);
+  eo_object_put_number(&object, "marked_share", (double)marked / points);
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row place_rows[] = {
@@ -235,23 +239,24 @@ static const struct eo_outline_row place_rows[] = {
 };
 static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
-static void put_places(struct eo_object *o, const struct eo_result_source *source, bool wanted)
+static void put_places(struct eo_object *object, const struct eo_result_source *source, bool wanted)
 {
   const struct eo_contact_pattern *pattern = eo_result_pattern(source, EO_LEFT);
-  eo_object_put(o, "s_mm",
+  eo_object_put(object, "s_mm",
                 wanted ? eo_json_reals(EO_PATTERN_ROWS, pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(o, "eta_mm",
+  eo_object_put(object, "eta_mm",
                 wanted ? eo_json_reals(EO_PATTERN_COLUMNS, pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
                        : json_null());
-  eo_result_put_right_face(o, "right_eta_mm", source, EO_PATTERN_COLUMNS, pattern->eta, wanted);
+  eo_result_put_right_face(object, "right_eta_mm", source, EO_PATTERN_COLUMNS, pattern->eta, wanted);
 }
 
 static json_t *encode_unloaded_pair(struct eo_result_source *source, double *peak)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[0];
+  const struct eo_case_result *case_result = &source->evaluation->load_case[0];
   int n = source->positions, last = source->ends - 1;
   for (int j = 0; j < n; j++)
-    source->scratch[j] = (c->end[0].unloaded[j] + c->end[last].unloaded[(j + n - source->lag) % n]) / 2;
+    source->scratch[j] =
+        (case_result->end[0].unloaded[j] + case_result->end[last].unloaded[(j + n - source->lag) % n]) / 2;
   *peak = swing(n, source->scratch) / source->normal;
   return eo_json_column(n, source->scratch, 1 / source->normal, &eo_unit_um, source->digits);
 }
@@ -270,19 +275,19 @@ const struct eo_outline eo_outline_unloaded = EO_OUTLINE("UnloadedContact", unlo
 
 json_t *eo_result_unloaded(struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_unloaded);
+  struct eo_object object = eo_object_open_as(&eo_outline_unloaded);
   double peak;
   bool curves = eo_result_has(source, EO_RESULT_NO_UNLOADED, NULL);
   json_t *of_pair = encode_unloaded_pair(source, &peak);
-  eo_object_put(&o, "position", curves ? eo_result_position(source) : json_null());
-  eo_object_put(&o, "pair_te_um", curves ? json_incref(of_pair) : json_null());
+  eo_object_put(&object, "position", curves ? eo_result_position(source) : json_null());
+  eo_object_put(&object, "pair_te_um", curves ? json_incref(of_pair) : json_null());
   json_decref(of_pair);
-  eo_object_put_number(&o, "peak_to_peak_um", peak);
-  eo_object_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
-  put_places(&o, source, curves);
+  eo_object_put_number(&object, "peak_to_peak_um", peak);
+  eo_object_put_number(&object, "marking_thickness_um", source->design->resolution.marking_thickness);
+  put_places(&object, source, curves);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_unloaded_end(source, end));
+  return eo_object_close(&object);
 }
 
 static json_t *encode_share(struct eo_result_source *source, int end, const struct eo_loaded_end *loaded, int first,
@@ -309,9 +314,9 @@ static const struct eo_outline_row share_rows[] = {
 };
 static const struct eo_outline shares = EO_OUTLINE("LoadShare", share_rows);
 
-static json_t *encode_shares(struct eo_result_source *source, const struct eo_case_result *c)
+static json_t *encode_shares(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  struct eo_object o = eo_object_open_as(&shares);
+  struct eo_object object = eo_object_open_as(&shares);
   int range[2], right[2];
   json_t *pairs = json_array();
   eo_contact_grid_pairs(source->pair->grid, range);
@@ -319,12 +324,12 @@ static json_t *encode_shares(struct eo_result_source *source, const struct eo_ca
   range[0] = right[0] < range[0] ? right[0] : range[0];
   range[1] = right[1] > range[1] ? right[1] : range[1];
   for (int pair = range[0]; pair <= range[1]; pair++)
-    o.failed = o.failed || json_array_append_new(pairs, json_integer(pair)) != 0;
-  eo_object_put(&o, "tooth_pair", pairs);
+    object.failed = object.failed || json_array_append_new(pairs, json_integer(pair)) != 0;
+  eo_object_put(&object, "tooth_pair", pairs);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end],
-                  encode_share(source, end, &c->end[end].loaded, range[0], range[1] - range[0] + 1));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end],
+                  encode_share(source, end, &case_result->end[end].loaded, range[0], range[1] - range[0] + 1));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row pattern_end_rows[] = {
@@ -342,15 +347,15 @@ static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pat
 static json_t *encode_pattern_end(const struct eo_result_source *source, int end, bool wanted)
 {
   const struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
-  struct eo_object o = eo_object_open_as(&pattern_end);
-  eo_object_put(&o, "pressure_MPa",
+  struct eo_object object = eo_object_open_as(&pattern_end);
+  eo_object_put(&object, "pressure_MPa",
                 wanted ? eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa)
                        : json_null());
   for (int edge = 0; edge < 2; edge++)
-    eo_object_put(&o, edge ? "pinion_tip_edge_MPa" : "gear_tip_edge_MPa",
+    eo_object_put(&object, edge ? "pinion_tip_edge_MPa" : "gear_tip_edge_MPa",
                   wanted ? eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[edge], 1, &eo_unit_MPa, EO_DIGITS_MAP)
                          : json_null());
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row pattern_rows[] = {
@@ -362,25 +367,25 @@ static const struct eo_outline contact_pattern = EO_OUTLINE("ContactPattern", pa
 
 static json_t *encode_pattern(struct eo_result_source *source, int k)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  bool wanted = eo_result_has(source, EO_RESULT_NO_PATTERN, c);
-  struct eo_object o = eo_object_open_as(&contact_pattern);
-  put_places(&o, source, wanted);
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  bool wanted = eo_result_has(source, EO_RESULT_NO_PATTERN, case_result);
+  struct eo_object object = eo_object_open_as(&contact_pattern);
+  put_places(&object, source, wanted);
   for (int end = 0; end < source->ends; end++) {
     struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
-    eo_contact_pattern_load(pattern, eo_pair_half(source->pair, end)->grid, &c->end[end].loaded);
+    eo_contact_pattern_load(pattern, eo_pair_half(source->pair, end)->grid, &case_result->end[end].loaded);
     source->edge_pressure[k][end] = 0;
     for (int edge = 0; edge < 2; edge++)
       for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
         source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], pattern->edge[edge][j]);
-    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source, end, wanted));
+    eo_object_put(&object, eo_result_end[end], encode_pattern_end(source, end, wanted));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
-double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *c, int end)
+double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *case_result, int end)
 {
-  return mean(source->positions, c->end[end].loaded.load);
+  return mean(source->positions, case_result->end[end].loaded.load);
 }
 
 /* One number per end. */
@@ -453,17 +458,17 @@ const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact
 
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct contact contact = {.source = source, .load_case = c, .pattern = encode_pattern(source, k)};
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  struct contact contact = {.source = source, .load_case = case_result, .pattern = encode_pattern(source, k)};
   struct of_ends *const ends[] = {&contact.load, &contact.pressure, &contact.line_load, &contact.edge_share,
                                   &contact.edge_pressure};
   for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
     ends[i]->two = source->ends == 2;
   for (int end = 0; end < source->ends; end++) {
-    contact.load.end[end] = eo_result_mean_load(source, c, end);
-    contact.pressure.end[end] = c->end[end].max_pressure;
-    contact.line_load.end[end] = c->end[end].max_line_load;
-    contact.edge_share.end[end] = c->end[end].edge_share;
+    contact.load.end[end] = eo_result_mean_load(source, case_result, end);
+    contact.pressure.end[end] = case_result->end[end].max_pressure;
+    contact.line_load.end[end] = case_result->end[end].max_line_load;
+    contact.edge_share.end[end] = case_result->end[end].edge_share;
     contact.edge_pressure.end[end] = source->edge_pressure[k][end];
   }
   json_t *document = eo_outline_encode(&eo_outline_contact, &contact);
@@ -482,19 +487,20 @@ static const struct eo_outline_row body_rows[] = {
 };
 const struct eo_outline eo_outline_bodies = EO_OUTLINE("BodyDeflection", body_rows);
 
-json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
   double eta[EO_DEFLECTION_NODES];
-  struct eo_object o = eo_object_open_as(&eo_outline_bodies);
+  struct eo_object object = eo_object_open_as(&eo_outline_bodies);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
-  eo_object_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, source->digits));
-  eo_result_put_right_face(&o, "right_eta_mm", source, EO_DEFLECTION_NODES, eta, true);
+  eo_object_put(&object, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, source->digits));
+  eo_result_put_right_face(&object, "right_eta_mm", source, EO_DEFLECTION_NODES, eta, true);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, end ? "right_um" : "left_um",
-                  eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, source->digits));
-  eo_object_put(&o, "most_iterations", json_integer(c->body_iterations));
-  return eo_object_close(&o);
+    eo_object_put(
+        &object, end ? "right_um" : "left_um",
+        eo_json_reals(EO_DEFLECTION_NODES, case_result->end[end].deflection.part[0], 1, &eo_unit_um, source->digits));
+  eo_object_put(&object, "most_iterations", json_integer(case_result->body_iterations));
+  return eo_object_close(&object);
 }
 
 struct impact_end {
@@ -547,12 +553,12 @@ static const struct eo_outline_row impact_rows[] = {
 };
 const struct eo_outline eo_outline_impact = EO_OUTLINE("Impact", impact_rows);
 
-json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_impact);
+  struct eo_object object = eo_object_open_as(&eo_outline_impact);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_impact_end(source, &c->end[end].impact));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_impact_end(source, &case_result->end[end].impact));
+  return eo_object_close(&object);
 }
 
 static json_t *encode_root_history(const struct eo_root_history *history, bool wanted)
@@ -592,9 +598,11 @@ static json_t *encode_root_end(const struct eo_root_history *history, double fac
   return eo_outline_encode(&root_end, &end);
 }
 
-static double force_factor(const struct eo_case_result *c, int end)
+static double force_factor(const struct eo_case_result *case_result, int end)
 {
-  return c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : fmax(1, c->vibration.dynamic_factor[end]);
+  return case_result->vibration.outcome == EO_VIBRATION_NOT_CONVERGED
+             ? NAN
+             : fmax(1, case_result->vibration.dynamic_factor[end]);
 }
 
 static const struct eo_outline_row root_member_rows[] = {
@@ -609,23 +617,26 @@ static const struct eo_outline_row root_member_rows[] = {
 };
 static const struct eo_outline root_member = EO_OUTLINE("RootStressMember", root_member_rows);
 
-static json_t *encode_root_member(const struct eo_result_source *source, const struct eo_case_result *c, int member)
+static json_t *encode_root_member(const struct eo_result_source *source, const struct eo_case_result *case_result,
+                                  int member)
 {
-  const struct eo_root_history *history[2] = {&c->end[0].root[member], &c->end[1].root[member]};
+  const struct eo_root_history *history[2] = {&case_result->end[0].root[member], &case_result->end[1].root[member]};
   int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
   double dynamic = 0;
-  bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
-  struct eo_object o = eo_object_open_as(&root_member);
+  bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, case_result);
+  struct eo_object object = eo_object_open_as(&root_member);
   for (int end = 0; end < source->ends; end++)
-    dynamic = isnan(force_factor(c, end)) ? NAN : fmax(dynamic, history[end]->maximum * force_factor(c, end));
-  eo_object_put_number(&o, "max_MPa", history[worst]->maximum);
-  eo_object_put_number(&o, "max_dynamic_MPa", dynamic);
-  eo_object_put(&o, "position",
+    dynamic = isnan(force_factor(case_result, end))
+                  ? NAN
+                  : fmax(dynamic, history[end]->maximum * force_factor(case_result, end));
+  eo_object_put_number(&object, "max_MPa", history[worst]->maximum);
+  eo_object_put_number(&object, "max_dynamic_MPa", dynamic);
+  eo_object_put(&object, "position",
                 wanted ? eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&o, "history_MPa", encode_root_history(history[worst], wanted));
+  eo_object_put(&object, "history_MPa", encode_root_history(history[worst], wanted));
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_root_end(history[end], force_factor(c, end), wanted));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_root_end(history[end], force_factor(case_result, end), wanted));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row root_rows[] = {
@@ -634,12 +645,12 @@ static const struct eo_outline_row root_rows[] = {
 };
 const struct eo_outline eo_outline_root_stress = EO_OUTLINE("RootStress", root_rows);
 
-json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
   if (!source->analysis->root)
     return json_null();
-  struct eo_object o = eo_object_open_as(&eo_outline_root_stress);
+  struct eo_object object = eo_object_open_as(&eo_outline_root_stress);
   for (int member = 0; member < 2; member++)
-    eo_object_put(&o, eo_result_member[member], encode_root_member(source, c, member));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_member[member], encode_root_member(source, case_result, member));
+  return eo_object_close(&object);
 }

@@ -41,26 +41,26 @@ static const struct eo_outline_row face_rows[] = {
 };
 const struct eo_outline eo_outline_face_load = EO_OUTLINE("FaceLoad", face_rows);
 
-json_t *eo_result_face_load(const struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_face_load(const struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_face_load);
+  struct eo_object object = eo_object_open_as(&eo_outline_face_load);
   struct factor_of_ends face = {.two = source->ends == 2}, share = face, line = face;
-  bool curves = eo_result_has(source, EO_RESULT_NO_FACE_LOAD, c);
-  eo_object_put(&o, "eta_mm",
-                curves ? eo_json_reals(EO_FACE_SLICES, c->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
+  bool curves = eo_result_has(source, EO_RESULT_NO_FACE_LOAD, case_result);
+  eo_object_put(&object, "eta_mm",
+                curves ? eo_json_reals(EO_FACE_SLICES, case_result->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
                        : json_null());
-  eo_result_put_right_face(&o, "right_eta_mm", source, EO_FACE_SLICES, c->end[0].face.eta, curves);
+  eo_result_put_right_face(&object, "right_eta_mm", source, EO_FACE_SLICES, case_result->end[0].face.eta, curves);
   for (int end = 0; end < source->ends; end++) {
-    const struct eo_face_load *found = &c->end[end].face;
+    const struct eo_face_load *found = &case_result->end[end].face;
     face.end[end] = found->face_factor;
     share.end[end] = found->share_factor;
     line.end[end] = found->line_factor;
-    eo_object_put(&o, end ? "right_N_per_mm" : "left_N_per_mm",
+    eo_object_put(&object, end ? "right_N_per_mm" : "left_N_per_mm",
                   curves ? eo_json_reals(EO_FACE_SLICES, found->load, 1, &eo_unit_N_per_mm, EO_DIGITS_CURVE)
                          : json_null());
   }
-  eo_object_put(&o, "K_Hbeta", eo_outline_encode(&factor_of_ends, &face));
-  eo_object_put(&o, "K_Halpha", eo_outline_encode(&factor_of_ends, &share));
-  eo_object_put(&o, "line_load_factor", eo_outline_encode(&factor_of_ends, &line));
-  return eo_object_close(&o);
+  eo_object_put(&object, "K_Hbeta", eo_outline_encode(&factor_of_ends, &face));
+  eo_object_put(&object, "K_Halpha", eo_outline_encode(&factor_of_ends, &share));
+  eo_object_put(&object, "line_load_factor", eo_outline_encode(&factor_of_ends, &line));
+  return eo_object_close(&object);
 }

@@ -140,7 +140,7 @@ static void save_orders(const json_t *load_case, struct eo_text *text)
 static void save_pattern(const json_t *result, const json_t *load_case, const char *end, struct eo_text *text)
 {
   static const char *const heading[] = {"s_mm", "eta_mm", "pressure_MPa", "unloaded_clearance_um"};
-  const json_t *pattern = eo_json_find(load_case, "contact/pattern"), *s = json_object_get(pattern, "s_mm"),
+  const json_t *pattern = eo_json_find(load_case, "contact/pattern"), *value = json_object_get(pattern, "s_mm"),
                *eta = json_object_get(pattern, "eta_mm");
   const json_t *pressure = json_object_get(json_object_get(pattern, end), "pressure_MPa");
   const json_t *clearance = json_object_get(json_object_get(json_object_get(result, "unloaded_contact"), end),
@@ -149,9 +149,9 @@ static void save_pattern(const json_t *result, const json_t *load_case, const ch
   if (!text)
     return;
   eo_text_table_init(&sheet, 4, heading);
-  for (size_t i = 0; i < json_array_size(s); i++)
+  for (size_t i = 0; i < json_array_size(value); i++)
     for (size_t j = 0; j < json_array_size(eta); j++) {
-      add_cell(&sheet, json_array_get(s, i));
+      add_cell(&sheet, json_array_get(value, i));
       add_cell(&sheet, json_array_get(eta, j));
       add_cell(&sheet, json_array_get(json_array_get(pressure, i), j));
       add_cell(&sheet, json_array_get(json_array_get(clearance, i), j));

@@ -84,41 +84,41 @@ static json_t *encode_member(const struct eo_result_source *source, int member)
   const struct eo_flexibility *flexibility = source->pair->flexibility;
   const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
   bool ring = report->support[member] != EO_MEMBER_SECTOR;
-  struct eo_object o = eo_object_open_as(&member_outline);
+  struct eo_object object = eo_object_open_as(&member_outline);
   double part[2];
   eo_flexibility_parts(flexibility, member, 0, part);
-  eo_object_put(&o, "support", json_string(support_text[report->support[member]]));
-  eo_object_put_number(&o, "inner_radius_mm", report->radius[member]);
-  eo_object_put(&o, "coupled_pairs", json_integer(report->reach[member]));
-  eo_object_put_number(&o, "deflection_um_mm_per_N",
+  eo_object_put(&object, "support", json_string(support_text[report->support[member]]));
+  eo_object_put_number(&object, "inner_radius_mm", report->radius[member]);
+  eo_object_put(&object, "coupled_pairs", json_integer(report->reach[member]));
+  eo_object_put_number(&object, "deflection_um_mm_per_N",
                        pitch_deflection(flexibility, member, source->pair->geometry.face_width));
-  eo_object_put_number(&o, "harmonic_0_um_mm_per_N", ring ? part[0] : NAN);
-  eo_object_put_number(&o, "harmonic_1_um_mm_per_N", ring ? part[1] : NAN);
-  eo_object_put_number(&o, "hub_windup_um_mm_per_N", eo_result_hub_windup(source, member));
-  return eo_object_close(&o);
+  eo_object_put_number(&object, "harmonic_0_um_mm_per_N", ring ? part[0] : NAN);
+  eo_object_put_number(&object, "harmonic_1_um_mm_per_N", ring ? part[1] : NAN);
+  eo_object_put_number(&object, "hub_windup_um_mm_per_N", eo_result_hub_windup(source, member));
+  return eo_object_close(&object);
 }
 
 static json_t *encode_iso(const struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&iso_outline);
+  struct eo_object object = eo_object_open_as(&iso_outline);
   struct eo_iso_stiffness_input input = eo_pair_iso_stiffness_input(source->pair);
   struct eo_iso_stiffness iso;
   eo_iso_stiffness(&iso, &input);
-  eo_object_put_number(&o, "C_M_0.8", iso.mesh_alpha);
+  eo_object_put_number(&object, "C_M_0.8", iso.mesh_alpha);
   input.theory_factor = 1;
   eo_iso_stiffness(&iso, &input);
-  eo_object_put_number(&o, "C_M_1", iso.mesh_alpha);
-  return eo_object_close(&o);
+  eo_object_put_number(&object, "C_M_1", iso.mesh_alpha);
+  return eo_object_close(&object);
 }
 
 json_t *eo_result_flexibility(const struct eo_result_source *source)
 {
   const struct eo_flexibility *flexibility = source->pair->flexibility;
-  struct eo_object o = eo_object_open_as(&eo_outline_flexibility);
+  struct eo_object object = eo_object_open_as(&eo_outline_flexibility);
   bool sector = flexibility && eo_flexibility_report(flexibility)->support[EO_PINION] == EO_MEMBER_SECTOR;
-  eo_object_put(&o, "body", json_string(!flexibility ? "given" : sector ? "sector" : "ring"));
+  eo_object_put(&object, "body", json_string(!flexibility ? "given" : sector ? "sector" : "ring"));
   for (int member = 0; member < 2; member++)
-    eo_object_put(&o, eo_result_member[member], flexibility ? encode_member(source, member) : json_null());
-  eo_object_put(&o, "iso_c_gamma_N_per_mm_um", encode_iso(source));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_member[member], flexibility ? encode_member(source, member) : json_null());
+  eo_object_put(&object, "iso_c_gamma_N_per_mm_um", encode_iso(source));
+  return eo_object_close(&object);
 }

@@ -54,19 +54,20 @@ static void spread(int count, double from, double to, double *place)
     place[i] = from + (to - from) * i / (count - 1);
 }
 
-static json_t *encode_start(const struct eo_geometry *g, int member, const struct eo_flank_modification *flank,
+static json_t *encode_start(const struct eo_geometry *geometry, int member, const struct eo_flank_modification *flank,
                             int side)
 {
   if ((side == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief) == 0)
     return json_null();
-  struct eo_profile_place place = eo_profile_place_at(g, member, eo_relief_start_at(g, member, flank, side));
-  struct eo_object o = eo_object_open_as(&start_outline);
-  eo_object_put_number(&o, "u_mm", place.rack);
-  eo_object_put_number(&o, "diameter_mm", place.diameter);
-  eo_object_put_number(&o, "roll_length_mm", place.roll_length);
-  eo_object_put_number(&o, "roll_angle_deg", place.roll_angle);
-  eo_object_put_number(&o, "length_mm", place.length[side]);
-  return eo_object_close(&o);
+  struct eo_profile_place place = eo_profile_place_at(geometry, member,
+                                                      eo_relief_start_at(geometry, member, flank, side));
+  struct eo_object object = eo_object_open_as(&start_outline);
+  eo_object_put_number(&object, "u_mm", place.rack);
+  eo_object_put_number(&object, "diameter_mm", place.diameter);
+  eo_object_put_number(&object, "roll_length_mm", place.roll_length);
+  eo_object_put_number(&object, "roll_angle_deg", place.roll_angle);
+  eo_object_put_number(&object, "length_mm", place.length[side]);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_surface(const struct eo_modification_shape *shape, const struct places *places, int digits)
@@ -85,38 +86,39 @@ static json_t *encode_surface(const struct eo_modification_shape *shape, const s
   return NULL;
 }
 
-static void put_curves(struct eo_object *o, const struct eo_result_source *source, int member,
+static void put_curves(struct eo_object *object, const struct eo_result_source *source, int member,
                        const struct eo_flank_modification *flank, const struct eo_modification_shape *shape,
                        const struct places *places)
 {
-  const struct eo_geometry *g = &source->pair->geometry;
+  const struct eo_geometry *geometry = &source->pair->geometry;
   double profile[POINTS], lead[POINTS], slope[2];
   for (int i = 0; i < POINTS; i++) {
     profile[i] = eo_modification_profile(shape, places->u[i], slope);
     lead[i] = shape->varies ? eo_modification_at(shape, 0, places->eta[i])
-                            : eo_modification_lead(shape, places->eta[i] / cos(g->helix_angle), slope);
+                            : eo_modification_lead(shape, places->eta[i] / cos(geometry->helix_angle), slope);
   }
-  eo_object_put_number(o, "lead_crowning_um", flank->lead_crowning);
-  eo_object_put_number(o, "lead_crowning_per_um", eo_modification_lead_coefficient(g, flank->lead_crowning));
-  eo_object_put(o, "tip_relief_start", encode_start(g, member, flank, EO_TIP_SIDE));
-  eo_object_put(o, "root_relief_start", encode_start(g, member, flank, EO_ROOT_SIDE));
-  eo_object_put(o, "profile_um", encode_curve(profile, source->digits));
-  eo_object_put(o, "lead_um", encode_curve(lead, source->digits));
-  eo_object_put(o, "surface_um", encode_surface(shape, places, source->digits));
+  eo_object_put_number(object, "lead_crowning_um", flank->lead_crowning);
+  eo_object_put_number(object, "lead_crowning_per_um",
+                       eo_modification_lead_coefficient(geometry, flank->lead_crowning));
+  eo_object_put(object, "tip_relief_start", encode_start(geometry, member, flank, EO_TIP_SIDE));
+  eo_object_put(object, "root_relief_start", encode_start(geometry, member, flank, EO_ROOT_SIDE));
+  eo_object_put(object, "profile_um", encode_curve(profile, source->digits));
+  eo_object_put(object, "lead_um", encode_curve(lead, source->digits));
+  eo_object_put(object, "surface_um", encode_surface(shape, places, source->digits));
 }
 
 static json_t *encode_coast(const struct eo_result_source *source, int member, int end, const struct places *places)
 {
-  const struct eo_geometry *g = &eo_pair_half(source->pair, end)->geometry;
+  const struct eo_geometry *geometry = &eo_pair_half(source->pair, end)->geometry;
   const struct eo_flank_modification *flank = &source->design->modification.coast[member][end];
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline;
-  bool failed = eo_flank_shape(source->design, g, EO_COAST_FLANK, member, end, &shape, &spline);
+  bool failed = eo_flank_shape(source->design, geometry, EO_COAST_FLANK, member, end, &shape, &spline);
   json_t *encoded = json_null();
   if (!failed && (spline || !eo_modification_is_none(flank))) {
-    struct eo_object o = eo_object_open_as(&coast_curves);
-    put_curves(&o, source, member, flank, &shape, places);
-    encoded = eo_object_close(&o);
+    struct eo_object object = eo_object_open_as(&coast_curves);
+    put_curves(&object, source, member, flank, &shape, places);
+    encoded = eo_object_close(&object);
   }
   eo_flank_spline_free(spline);
   return failed ? NULL : encoded;
@@ -124,18 +126,18 @@ static json_t *encode_coast(const struct eo_result_source *source, int member, i
 
 static json_t *encode_flank(const struct eo_result_source *source, int member, int end, const struct places *all)
 {
-  const struct eo_geometry *g = &eo_pair_half(source->pair, end)->geometry;
+  const struct eo_geometry *geometry = &eo_pair_half(source->pair, end)->geometry;
   struct places own = *all, *places = &own;
-  spread(POINTS, -g->face_width / 2, g->face_width / 2, own.eta);
-  spread(MAP_COLUMNS, -g->face_width / 2, g->face_width / 2, own.map_eta);
-  struct eo_object o = eo_object_open_as(&flank_curves);
+  spread(POINTS, -geometry->face_width / 2, geometry->face_width / 2, own.eta);
+  spread(MAP_COLUMNS, -geometry->face_width / 2, geometry->face_width / 2, own.map_eta);
+  struct eo_object object = eo_object_open_as(&flank_curves);
   struct eo_modification_shape shape;
   struct eo_flank_spline *spline;
-  o.failed = eo_flank_shape(source->design, g, EO_DRIVE_FLANK, member, end, &shape, &spline);
-  put_curves(&o, source, member, &source->design->modification.flank[member][end], &shape, places);
-  eo_object_put(&o, "coast", encode_coast(source, member, end, places));
+  object.failed = eo_flank_shape(source->design, geometry, EO_DRIVE_FLANK, member, end, &shape, &spline);
+  put_curves(&object, source, member, &source->design->modification.flank[member][end], &shape, places);
+  eo_object_put(&object, "coast", encode_coast(source, member, end, places));
   eo_flank_spline_free(spline);
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row member_rows[] = {
@@ -152,15 +154,15 @@ static const struct eo_outline member_curves = EO_OUTLINE("MemberCurves", member
 static json_t *encode_member(const struct eo_result_source *source, int member, struct places *places)
 {
   double ends[2];
-  struct eo_object o = eo_object_open_as(&member_curves);
+  struct eo_object object = eo_object_open_as(&member_curves);
   eo_active_profile(&source->pair->geometry, member, ends);
   spread(POINTS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->u);
   spread(MAP_ROWS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->map_u);
-  eo_object_put(&o, "u_mm", eo_json_reals(POINTS, places->u, 1, &eo_unit_mm, source->digits));
-  eo_object_put(&o, "surface_u_mm", eo_json_reals(MAP_ROWS, places->map_u, 1, &eo_unit_mm, source->digits));
+  eo_object_put(&object, "u_mm", eo_json_reals(POINTS, places->u, 1, &eo_unit_mm, source->digits));
+  eo_object_put(&object, "surface_u_mm", eo_json_reals(MAP_ROWS, places->map_u, 1, &eo_unit_mm, source->digits));
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_flank(source, member, end, places));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_flank(source, member, end, places));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row modification_rows[] = {
@@ -177,16 +179,16 @@ const struct eo_outline eo_outline_modification = EO_OUTLINE("ModificationCurves
 
 json_t *eo_result_modification(struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_modification);
+  struct eo_object object = eo_object_open_as(&eo_outline_modification);
   struct places places;
   double half = source->pair->geometry.face_width / 2;
   spread(POINTS, -half, half, places.eta);
   spread(MAP_COLUMNS, -half, half, places.map_eta);
-  eo_object_put(&o, "eta_mm", eo_json_reals(POINTS, places.eta, 1, &eo_unit_mm, source->digits));
-  eo_object_put(&o, "surface_eta_mm", eo_json_reals(MAP_COLUMNS, places.map_eta, 1, &eo_unit_mm, source->digits));
-  eo_result_put_right_face(&o, "right_eta_mm", source, POINTS, places.eta, true);
-  eo_result_put_right_face(&o, "right_surface_eta_mm", source, MAP_COLUMNS, places.map_eta, true);
+  eo_object_put(&object, "eta_mm", eo_json_reals(POINTS, places.eta, 1, &eo_unit_mm, source->digits));
+  eo_object_put(&object, "surface_eta_mm", eo_json_reals(MAP_COLUMNS, places.map_eta, 1, &eo_unit_mm, source->digits));
+  eo_result_put_right_face(&object, "right_eta_mm", source, POINTS, places.eta, true);
+  eo_result_put_right_face(&object, "right_surface_eta_mm", source, MAP_COLUMNS, places.map_eta, true);
   for (int member = 0; member < 2; member++)
-    eo_object_put(&o, eo_result_member[member], encode_member(source, member, &places));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_member[member], encode_member(source, member, &places));
+  return eo_object_close(&object);
 }

@@ -13,14 +13,16 @@ struct written_case {
   int k;
 };
 
-static bool has_curves(const struct written_case *w)
+static bool has_curves(const struct written_case *written_case)
 {
-  return eo_result_has(w->source, EO_RESULT_NO_PITCH, &w->source->evaluation->load_case[w->k]);
+  return eo_result_has(written_case->source, EO_RESULT_NO_PITCH,
+                       &written_case->source->evaluation->load_case[written_case->k]);
 }
 
-static int body_tooth(const struct written_case *w, int member, int place)
+static int body_tooth(const struct written_case *written_case, int member, int place)
 {
-  return eo_pitch_tooth(&w->source->design->pitch, &w->own->meeting, member, w->own->hunting.teeth[member], place);
+  return eo_pitch_tooth(&written_case->source->design->pitch, &written_case->own->meeting, member,
+                        written_case->own->hunting.teeth[member], place);
 }
 
 static double revolutions(const struct eo_pitch_case *own, int member)
@@ -40,7 +42,7 @@ static const struct eo_outline cycles_outline = EO_OUTLINE("PitchCycleSwing", cy
 
 static json_t *encode_cycle_swing(const struct eo_pitch_case *own)
 {
-  struct eo_object o = eo_object_open_as(&cycles_outline);
+  struct eo_object object = eo_object_open_as(&cycles_outline);
   double low = INFINITY, sum = 0, high = -INFINITY;
   int cycles = own->hunting.cycles, at = 0;
   for (int i = 0; i < cycles; i++) {
@@ -49,11 +51,11 @@ static json_t *encode_cycle_swing(const struct eo_pitch_case *own)
     at = own->cycle_swing[i] > high ? i : at;
     high = fmax(high, own->cycle_swing[i]);
   }
-  eo_object_put_number(&o, "least_um", low);
-  eo_object_put_number(&o, "mean_um", sum / cycles);
-  eo_object_put_number(&o, "most_um", high);
-  eo_object_put(&o, "cycle_of_most", json_integer(at));
-  return eo_object_close(&o);
+  eo_object_put_number(&object, "least_um", low);
+  eo_object_put_number(&object, "mean_um", sum / cycles);
+  eo_object_put_number(&object, "most_um", high);
+  eo_object_put(&object, "cycle_of_most", json_integer(at));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row lte_rows[] = {
@@ -79,20 +81,22 @@ static json_t *column(bool wanted, int count, const double *value, const struct 
   return wanted ? eo_json_column(count, value, 1, unit, EO_DIGITS_MAP) : json_null();
 }
 
-static json_t *encode_lte(const struct written_case *w)
+static json_t *encode_lte(const struct written_case *written_case)
 {
-  const struct eo_pitch_case *own = w->own;
-  struct eo_object o = eo_object_open_as(&lte_outline);
-  eo_object_put_number(&o, "mean_um", own->mean);
-  eo_object_put_number(&o, "peak_to_peak_um", own->peak_to_peak);
-  eo_object_put(&o, "peak_to_peak_of_one_cycle_um", encode_cycle_swing(own));
-  eo_object_put(&o, "pair_um", column(has_curves(w), own->hunting.instants, own->transmission, &eo_unit_um));
-  eo_object_put(&o, "cycle_mean_um", column(has_curves(w), own->hunting.cycles, own->cycle_mean, &eo_unit_um));
+  const struct eo_pitch_case *own = written_case->own;
+  struct eo_object object = eo_object_open_as(&lte_outline);
+  eo_object_put_number(&object, "mean_um", own->mean);
+  eo_object_put_number(&object, "peak_to_peak_um", own->peak_to_peak);
+  eo_object_put(&object, "peak_to_peak_of_one_cycle_um", encode_cycle_swing(own));
+  eo_object_put(&object, "pair_um",
+                column(has_curves(written_case), own->hunting.instants, own->transmission, &eo_unit_um));
+  eo_object_put(&object, "cycle_mean_um",
+                column(has_curves(written_case), own->hunting.cycles, own->cycle_mean, &eo_unit_um));
   for (int member = 0; member < 2; member++)
-    eo_object_put(
-        &o, member == EO_PINION ? "pinion_turn_um" : "gear_turn_um",
-        column(has_curves(w), own->hunting.teeth[member] * own->hunting.positions, own->turn[member], &eo_unit_um));
-  return eo_object_close(&o);
+    eo_object_put(&object, member == EO_PINION ? "pinion_turn_um" : "gear_turn_um",
+                  column(has_curves(written_case), own->hunting.teeth[member] * own->hunting.positions,
+                         own->turn[member], &eo_unit_um));
+  return eo_object_close(&object);
 }
 
 /* ---- orders ---- */
@@ -143,20 +147,20 @@ static json_t *amplitudes(int count, const double complex *line, const struct eo
   return list;
 }
 
-static json_t *encode_spectrum(const struct written_case *w)
+static json_t *encode_spectrum(const struct written_case *written_case)
 {
-  const struct eo_pitch_case *own = w->own;
-  struct eo_object o = eo_object_open_as(&spectrum_outline);
+  const struct eo_pitch_case *own = written_case->own;
+  struct eo_object object = eo_object_open_as(&spectrum_outline);
   int count = SPECTRUM_MESH_ORDERS * own->hunting.cycles + own->hunting.cycles / 2;
   count = count < own->lines ? count : own->lines;
   int moving = count < own->response.lines ? count : own->response.lines;
-  eo_object_put_number(&o, "step", 1 / revolutions(own, EO_PINION));
-  eo_object_put(&o, "lte_um", amplitudes(count, own->line, &eo_unit_um));
-  eo_object_put(&o, "normal_m_per_s2",
+  eo_object_put_number(&object, "step", 1 / revolutions(own, EO_PINION));
+  eo_object_put(&object, "lte_um", amplitudes(count, own->line, &eo_unit_um));
+  eo_object_put(&object, "normal_m_per_s2",
                 amplitudes(moving, own->response.acceleration[EO_READING_NORMAL], &eo_unit_m_per_s2));
-  eo_object_put(&o, "rotational_m_per_s2",
+  eo_object_put(&object, "rotational_m_per_s2",
                 amplitudes(moving, own->response.acceleration[EO_READING_ROTATIONAL], &eo_unit_m_per_s2));
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 /* ---- the largest ---- */
@@ -199,14 +203,14 @@ static const struct eo_outline_row largest_rows[] = {
 };
 static const struct eo_outline largest_outline = EO_OUTLINE("PitchLargest", largest_rows);
 
-static void put_place(struct eo_object *o, const struct written_case *w, const struct eo_hunting_place *place,
-                      bool instant)
+static void put_place(struct eo_object *object, const struct written_case *written_case,
+                      const struct eo_hunting_place *place, bool instant)
 {
-  eo_object_put(o, "end", json_string(ends[place->end]));
-  eo_object_put(o, "cycle", json_integer(place->cycle));
-  eo_object_put(o, "position", instant ? json_integer(place->position) : json_null());
-  eo_object_put(o, "pinion_tooth", json_integer(body_tooth(w, EO_PINION, place->tooth[EO_PINION])));
-  eo_object_put(o, "gear_tooth", json_integer(body_tooth(w, EO_GEAR, place->tooth[EO_GEAR])));
+  eo_object_put(object, "end", json_string(ends[place->end]));
+  eo_object_put(object, "cycle", json_integer(place->cycle));
+  eo_object_put(object, "position", instant ? json_integer(place->position) : json_null());
+  eo_object_put(object, "pinion_tooth", json_integer(body_tooth(written_case, EO_PINION, place->tooth[EO_PINION])));
+  eo_object_put(object, "gear_tooth", json_integer(body_tooth(written_case, EO_GEAR, place->tooth[EO_GEAR])));
 }
 
 static const struct eo_hunting_place *larger(const struct eo_hunting_place place[2])
@@ -214,40 +218,40 @@ static const struct eo_hunting_place *larger(const struct eo_hunting_place place
   return place[EO_RIGHT].value > place[EO_LEFT].value ? &place[EO_RIGHT] : &place[EO_LEFT];
 }
 
-static json_t *encode_stress(const struct written_case *w, int member)
+static json_t *encode_stress(const struct written_case *written_case, int member)
 {
-  const struct eo_hunting_place *place = &w->own->hunting.most_stress[member];
-  struct eo_object o = eo_object_open_as(&stress_outline);
-  eo_object_put_number(&o, "stress_MPa", place->value);
-  put_place(&o, w, place, false);
-  return eo_object_close(&o);
+  const struct eo_hunting_place *place = &written_case->own->hunting.most_stress[member];
+  struct eo_object object = eo_object_open_as(&stress_outline);
+  eo_object_put_number(&object, "stress_MPa", place->value);
+  put_place(&object, written_case, place, false);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_root(const struct written_case *w)
+static json_t *encode_root(const struct written_case *written_case)
 {
-  struct eo_object o = eo_object_open_as(&root_outline);
-  if (!w->own->hunting.tooth_stress[0])
+  struct eo_object object = eo_object_open_as(&root_outline);
+  if (!written_case->own->hunting.tooth_stress[0])
     return json_null();
-  eo_object_put(&o, "pinion", encode_stress(w, EO_PINION));
-  eo_object_put(&o, "gear", encode_stress(w, EO_GEAR));
-  return eo_object_close(&o);
+  eo_object_put(&object, "pinion", encode_stress(written_case, EO_PINION));
+  eo_object_put(&object, "gear", encode_stress(written_case, EO_GEAR));
+  return eo_object_close(&object);
 }
 
-static json_t *encode_largest(const struct written_case *w)
+static json_t *encode_largest(const struct written_case *written_case)
 {
-  const struct eo_hunting_place *load = larger(w->own->hunting.most_load),
-                                *pressure = larger(w->own->hunting.most_pressure);
-  struct eo_object o = eo_object_open_as(&largest_outline), of_load = eo_object_open_as(&load_outline),
+  const struct eo_hunting_place *load = larger(written_case->own->hunting.most_load),
+                                *pressure = larger(written_case->own->hunting.most_pressure);
+  struct eo_object object = eo_object_open_as(&largest_outline), of_load = eo_object_open_as(&load_outline),
                    of_pressure = eo_object_open_as(&pressure_outline);
   eo_object_put_number(&of_load, "load_N", load->value);
-  eo_object_put_number(&of_load, "share_of_end", load->value / w->own->force);
-  put_place(&of_load, w, load, true);
+  eo_object_put_number(&of_load, "share_of_end", load->value / written_case->own->force);
+  put_place(&of_load, written_case, load, true);
   eo_object_put_number(&of_pressure, "pressure_MPa", pressure->value);
-  put_place(&of_pressure, w, pressure, true);
-  eo_object_put(&o, "load", eo_object_close(&of_load));
-  eo_object_put(&o, "pressure", eo_object_close(&of_pressure));
-  eo_object_put(&o, "root_stress", encode_root(w));
-  return eo_object_close(&o);
+  put_place(&of_pressure, written_case, pressure, true);
+  eo_object_put(&object, "load", eo_object_close(&of_load));
+  eo_object_put(&object, "pressure", eo_object_close(&of_pressure));
+  eo_object_put(&object, "root_stress", encode_root(written_case));
+  return eo_object_close(&object);
 }
 
 /* ---- teeth ---- */
@@ -270,42 +274,42 @@ static const struct eo_outline_row teeth_rows[] = {
 static const struct eo_outline teeth_outline = EO_OUTLINE("PitchTeeth", teeth_rows);
 
 /* By the body's count of teeth. */
-static json_t *encode_places(const struct written_case *w, int member, const struct eo_hunting_place *place,
+static json_t *encode_places(const struct written_case *written_case, int member, const struct eo_hunting_place *place,
                              const struct eo_unit *unit)
 {
-  int teeth = w->own->hunting.teeth[member];
+  int teeth = written_case->own->hunting.teeth[member];
   double *value = place ? malloc(sizeof *value * (size_t)teeth) : NULL;
   if (!place)
     return json_null();
   for (int i = 0; i < teeth && value; i++)
-    value[body_tooth(w, member, i)] = place[i].value;
+    value[body_tooth(written_case, member, i)] = place[i].value;
   json_t *list = value ? eo_json_column(teeth, value, 1, unit, EO_DIGITS_MAP) : NULL;
   free(value);
   return list;
 }
 
-static json_t *encode_tooth_loads(const struct written_case *w, int member)
+static json_t *encode_tooth_loads(const struct written_case *written_case, int member)
 {
-  const struct eo_hunting *h = &w->own->hunting;
-  struct eo_object o = eo_object_open_as(&of_ends_outline);
-  for (int end = 0; end < h->ends; end++) {
+  const struct eo_hunting *hunting = &written_case->own->hunting;
+  struct eo_object object = eo_object_open_as(&of_ends_outline);
+  for (int end = 0; end < hunting->ends; end++) {
     struct eo_object own = eo_object_open_as(&tooth_outline);
-    const struct eo_hunting_place *stress = h->tooth_stress[member];
-    eo_object_put(&own, "load_N", encode_places(w, member, h->tooth_load[end][member], &eo_unit_N));
-    eo_object_put(
-        &own, "root_stress_MPa",
-        encode_places(w, member, stress ? stress + (size_t)end * (size_t)h->teeth[member] : NULL, &eo_unit_MPa));
-    eo_object_put(&o, ends[end], eo_object_close(&own));
+    const struct eo_hunting_place *stress = hunting->tooth_stress[member];
+    eo_object_put(&own, "load_N", encode_places(written_case, member, hunting->tooth_load[end][member], &eo_unit_N));
+    eo_object_put(&own, "root_stress_MPa",
+                  encode_places(written_case, member,
+                                stress ? stress + (size_t)end * (size_t)hunting->teeth[member] : NULL, &eo_unit_MPa));
+    eo_object_put(&object, ends[end], eo_object_close(&own));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_teeth_loads(const struct written_case *w)
+static json_t *encode_teeth_loads(const struct written_case *written_case)
 {
-  struct eo_object o = eo_object_open_as(&teeth_outline);
-  eo_object_put(&o, "pinion", encode_tooth_loads(w, EO_PINION));
-  eo_object_put(&o, "gear", encode_tooth_loads(w, EO_GEAR));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&teeth_outline);
+  eo_object_put(&object, "pinion", encode_tooth_loads(written_case, EO_PINION));
+  eo_object_put(&object, "gear", encode_tooth_loads(written_case, EO_GEAR));
+  return eo_object_close(&object);
 }
 
 /* ---- vibration ---- */
@@ -335,28 +339,30 @@ static const struct eo_outline vibration_outline = EO_OUTLINE("PitchVibration", 
 
 static json_t *encode_rms(const struct eo_long_response *response)
 {
-  struct eo_object o = eo_object_open_as(&rms_outline);
-  eo_object_put_number(&o, "normal", response->rms[EO_READING_NORMAL]);
-  eo_object_put_number(&o, "transverse", response->rms[EO_READING_TRANSVERSE]);
-  eo_object_put_number(&o, "rotational", response->rms[EO_READING_ROTATIONAL]);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&rms_outline);
+  eo_object_put_number(&object, "normal", response->rms[EO_READING_NORMAL]);
+  eo_object_put_number(&object, "transverse", response->rms[EO_READING_TRANSVERSE]);
+  eo_object_put_number(&object, "rotational", response->rms[EO_READING_ROTATIONAL]);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_vibration(const struct eo_pitch_case *own)
 {
-  const struct eo_long_response *r = &own->response;
-  bool there = r->lines > 0;
-  int worse = r->force_most[EO_RIGHT] > r->force_most[EO_LEFT];
-  struct eo_object o = eo_object_open_as(&vibration_outline);
-  eo_object_put(&o, "method",
+  const struct eo_long_response *response = &own->response;
+  bool there = response->lines > 0;
+  int worse = response->force_most[EO_RIGHT] > response->force_most[EO_LEFT];
+  struct eo_object object = eo_object_open_as(&vibration_outline);
+  eo_object_put(&object, "method",
                 json_string("time steps over the hunting period: tangent law F = P + k_tan (X - Z) with Z and k_tan of "
                             "every tooth pair, teeth may part; without impact pulses"));
-  eo_object_put(&o, "outcome", json_string(outcomes[r->outcome]));
-  eo_object_put(&o, "rms_m_per_s2", there ? encode_rms(r) : json_null());
-  eo_object_put(&o, "contact_loss", there ? json_real(fmax(r->contact_loss[0], r->contact_loss[1])) : json_null());
-  eo_object_put(&o, "max_dynamic_force_N", there ? eo_json_quantity(r->force_most[worse], &eo_unit_N) : json_null());
-  eo_object_put(&o, "cycle_of_max", there ? json_integer(r->force_cycle[worse]) : json_null());
-  return eo_object_close(&o);
+  eo_object_put(&object, "outcome", json_string(outcomes[response->outcome]));
+  eo_object_put(&object, "rms_m_per_s2", there ? encode_rms(response) : json_null());
+  eo_object_put(&object, "contact_loss",
+                there ? json_real(fmax(response->contact_loss[0], response->contact_loss[1])) : json_null());
+  eo_object_put(&object, "max_dynamic_force_N",
+                there ? eo_json_quantity(response->force_most[worse], &eo_unit_N) : json_null());
+  eo_object_put(&object, "cycle_of_max", there ? json_integer(response->force_cycle[worse]) : json_null());
+  return eo_object_close(&object);
 }
 
 /* ---- load cases ---- */
@@ -385,30 +391,30 @@ static const struct eo_outline case_outline = EO_OUTLINE("PitchCase", case_rows)
 
 static json_t *encode_float(const struct eo_pitch_case *own)
 {
-  struct eo_object o = eo_object_open_as(&shift_outline);
-  eo_object_put_number(&o, "mean_um", own->float_mean);
-  eo_object_put_number(&o, "peak_to_peak_um", own->float_swing);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&shift_outline);
+  eo_object_put_number(&object, "mean_um", own->float_mean);
+  eo_object_put_number(&object, "peak_to_peak_um", own->float_swing);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_case(const struct eo_result_source *source, int k)
 {
   const struct eo_pitch_case *own = &source->analysis->pitch.load_case[k];
-  const struct written_case w = {source, own, k};
-  const struct eo_hunting *h = &own->hunting;
-  struct eo_object o = eo_object_open_as(&case_outline);
-  eo_object_put_number(&o, "torque_Nm", own->load_case.torque);
-  eo_object_put_number(&o, "speed_rpm", own->load_case.speed);
-  eo_object_put(&o, "converged", json_boolean(h->failures == 0));
-  eo_object_put(&o, "lte", encode_lte(&w));
-  eo_object_put(&o, "float", encode_float(own));
-  eo_object_put_number(&o, "alone_share", (double)h->alone / ((double)h->ends * h->instants));
-  eo_object_put(&o, "largest", encode_largest(&w));
-  eo_object_put(&o, "orders", encode_orders(own));
-  eo_object_put(&o, "vibration", encode_vibration(own));
-  eo_object_put(&o, "spectrum", has_curves(&w) ? encode_spectrum(&w) : json_null());
-  eo_object_put(&o, "teeth", has_curves(&w) ? encode_teeth_loads(&w) : json_null());
-  return eo_object_close(&o);
+  const struct written_case written_case = {source, own, k};
+  const struct eo_hunting *hunting = &own->hunting;
+  struct eo_object object = eo_object_open_as(&case_outline);
+  eo_object_put_number(&object, "torque_Nm", own->load_case.torque);
+  eo_object_put_number(&object, "speed_rpm", own->load_case.speed);
+  eo_object_put(&object, "converged", json_boolean(hunting->failures == 0));
+  eo_object_put(&object, "lte", encode_lte(&written_case));
+  eo_object_put(&object, "float", encode_float(own));
+  eo_object_put_number(&object, "alone_share", (double)hunting->alone / ((double)hunting->ends * hunting->instants));
+  eo_object_put(&object, "largest", encode_largest(&written_case));
+  eo_object_put(&object, "orders", encode_orders(own));
+  eo_object_put(&object, "vibration", encode_vibration(own));
+  eo_object_put(&object, "spectrum", has_curves(&written_case) ? encode_spectrum(&written_case) : json_null());
+  eo_object_put(&object, "teeth", has_curves(&written_case) ? encode_teeth_loads(&written_case) : json_null());
+  return eo_object_close(&object);
 }
 
 /* ---- deviations as they were taken ---- */
@@ -443,43 +449,43 @@ static const struct eo_outline deviations_outline = EO_OUTLINE("PitchDeviations"
 
 static json_t *encode_flank(const struct eo_result_source *source, int side, int member, int end)
 {
-  const struct eo_pitch_analysis *a = &source->analysis->pitch;
-  struct eo_object o = eo_object_open_as(&flank_outline);
+  const struct eo_pitch_analysis *analysis = &source->analysis->pitch;
+  struct eo_object object = eo_object_open_as(&flank_outline);
   int teeth = source->pair->geometry.teeth[member];
-  double *index = a->used[side] ? malloc(sizeof *index * (size_t)teeth) : NULL;
-  if (!a->used[side])
+  double *index = analysis->used[side] ? malloc(sizeof *index * (size_t)teeth) : NULL;
+  if (!analysis->used[side])
     return json_null();
   for (int i = 0; i < teeth && index; i++)
-    index[i] = a->tooth[side][member][end][i].index;
-  eo_object_put_number(&o, "total_um", a->size[side][member][end].total);
-  eo_object_put_number(&o, "single_um", a->size[side][member][end].single);
-  eo_object_put(&o, "index_um", index ? eo_json_column(teeth, index, 1, &eo_unit_um, EO_DIGITS_MAP) : NULL);
+    index[i] = analysis->tooth[side][member][end][i].index;
+  eo_object_put_number(&object, "total_um", analysis->size[side][member][end].total);
+  eo_object_put_number(&object, "single_um", analysis->size[side][member][end].single);
+  eo_object_put(&object, "index_um", index ? eo_json_column(teeth, index, 1, &eo_unit_um, EO_DIGITS_MAP) : NULL);
   free(index);
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_member(const struct eo_result_source *source, int member)
 {
   const struct eo_flank_tolerance *tolerance = &source->analysis->pitch.tolerance[member];
-  struct eo_object o = eo_object_open_as(&member_outline), allowed = eo_object_open_as(&tolerance_outline);
+  struct eo_object object = eo_object_open_as(&member_outline), allowed = eo_object_open_as(&tolerance_outline);
   eo_object_put_number(&allowed, "total_um", tolerance->total_pitch);
   eo_object_put_number(&allowed, "single_um", tolerance->single_pitch);
-  eo_object_put(&o, "tolerance", eo_object_close(&allowed));
+  eo_object_put(&object, "tolerance", eo_object_close(&allowed));
   for (int end = 0; end < source->ends; end++) {
     struct eo_object sides = eo_object_open_as(&sides_outline);
     eo_object_put(&sides, "drive", encode_flank(source, EO_DRIVE_FLANK, member, end));
     eo_object_put(&sides, "coast", encode_flank(source, EO_COAST_FLANK, member, end));
-    eo_object_put(&o, ends[end], eo_object_close(&sides));
+    eo_object_put(&object, ends[end], eo_object_close(&sides));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_deviations(const struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&deviations_outline);
-  eo_object_put(&o, "pinion", encode_member(source, EO_PINION));
-  eo_object_put(&o, "gear", encode_member(source, EO_GEAR));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&deviations_outline);
+  eo_object_put(&object, "pinion", encode_member(source, EO_PINION));
+  eo_object_put(&object, "gear", encode_member(source, EO_GEAR));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row pitch_rows[] = {
@@ -506,18 +512,18 @@ static json_t *encode_cases(const struct eo_result_source *source)
 
 json_t *eo_result_pitch(const struct eo_result_source *source)
 {
-  const struct eo_pitch_analysis *a = &source->analysis->pitch;
-  struct eo_object o = eo_object_open_as(&eo_outline_pitch);
-  if (a->cases == 0)
+  const struct eo_pitch_analysis *analysis = &source->analysis->pitch;
+  struct eo_object object = eo_object_open_as(&eo_outline_pitch);
+  if (analysis->cases == 0)
     return json_null();
-  const struct eo_hunting *h = &a->load_case[0].hunting;
-  eo_object_put(&o, "cycles", json_integer(h->cycles));
-  eo_object_put_number(&o, "pinion_revolutions", revolutions(&a->load_case[0], EO_PINION));
-  eo_object_put_number(&o, "gear_revolutions", revolutions(&a->load_case[0], EO_GEAR));
-  eo_object_put(&o, "positions_per_cycle", json_integer(h->positions));
-  eo_object_put(&o, "slopes",
+  const struct eo_hunting *hunting = &analysis->load_case[0].hunting;
+  eo_object_put(&object, "cycles", json_integer(hunting->cycles));
+  eo_object_put_number(&object, "pinion_revolutions", revolutions(&analysis->load_case[0], EO_PINION));
+  eo_object_put_number(&object, "gear_revolutions", revolutions(&analysis->load_case[0], EO_GEAR));
+  eo_object_put(&object, "positions_per_cycle", json_integer(hunting->positions));
+  eo_object_put(&object, "slopes",
                 json_string("added to the gap to first order; 10 um of slope and twist are up to 0.06 um off"));
-  eo_object_put(&o, "deviations", encode_deviations(source));
-  eo_object_put(&o, "load_cases", encode_cases(source));
-  return eo_object_close(&o);
+  eo_object_put(&object, "deviations", encode_deviations(source));
+  eo_object_put(&object, "load_cases", encode_cases(source));
+  return eo_object_close(&object);
 }

@@ -47,8 +47,8 @@ struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *sour
 
 /* Places on the right end's face, m, where it has a width of its own: as many as on the left one, in proportion.
    Nothing else writes the key. */
-void eo_result_put_right_face(struct eo_object *o, const char *key, const struct eo_result_source *source, int count,
-                              const double *place, bool wanted);
+void eo_result_put_right_face(struct eo_object *object, const char *key, const struct eo_result_source *source,
+                              int count, const double *place, bool wanted);
 #define EO_UNEVEN "with halves of unequal width"
 
 /* What is there when the pair has two ends. */

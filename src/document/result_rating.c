@@ -60,17 +60,17 @@ static const char *const unchecked_2019[] = {
 
 /* ---- verdict ---- */
 
-static bool passes(const struct eo_design_rating *r)
+static bool passes(const struct eo_design_rating *rating)
 {
-  const struct eo_rating_settings *s = r->basis[EO_LEFT].input.rating;
-  return r->rated && fmin(r->flank_safety, r->flank_static) >= s->flank_safety &&
-         fmin(r->root_safety, r->root_static) >= s->root_safety;
+  const struct eo_rating_settings *settings = rating->basis[EO_LEFT].input.rating;
+  return rating->rated && fmin(rating->flank_safety, rating->flank_static) >= settings->flank_safety &&
+         fmin(rating->root_safety, rating->root_static) >= settings->root_safety;
 }
 
 static json_t *write_passes(const void *source)
 {
-  const struct eo_design_rating *r = source;
-  return r->rated ? json_boolean(passes(r)) : json_null();
+  const struct eo_design_rating *rating = source;
+  return rating->rated ? json_boolean(passes(rating)) : json_null();
 }
 
 static json_t *write_least_flank(const void *source)
@@ -156,13 +156,14 @@ static const struct eo_outline basis_member = EO_OUTLINE("RatingMember", basis_m
 
 static json_t *encode_basis_member(const struct eo_rating_basis *basis, int i)
 {
-  const struct eo_geometry *g = basis->input.geometry;
+  const struct eo_geometry *geometry = basis->input.geometry;
   double thinning = basis->input.rating->root_shift == EO_ROOT_SHIFT_NOMINAL ? 0 : basis->input.thickness_allowance[i];
   const struct basis_member member = {.flank_limit = basis->strength[i].flank,
                                       .root_limit = basis->strength[i].root,
                                       .hardness = basis->hardness[i],
-                                      .shift = g->profile_shift[i] +
-                                               thinning / (2 * g->normal_module * tan(g->normal_pressure_angle)),
+                                      .shift = geometry->profile_shift[i] +
+                                               thinning /
+                                                   (2 * geometry->normal_module * tan(geometry->normal_pressure_angle)),
                                       .virtual_teeth = basis->geometry.virtual_teeth[i],
                                       .root = basis->root[i],
                                       .rim = basis->rim_factor[i],
@@ -189,8 +190,8 @@ static json_t *write_basis_width(const void *source)
 
 static json_t *write_total_ratio(const void *source)
 {
-  const struct eo_rating_geometry *g = &((const struct eo_rating_basis *)source)->geometry;
-  return eo_json_quantity(g->transverse_contact_ratio + g->overlap_ratio, NULL);
+  const struct eo_rating_geometry *geometry = &((const struct eo_rating_basis *)source)->geometry;
+  return eo_json_quantity(geometry->transverse_contact_ratio + geometry->overlap_ratio, NULL);
 }
 
 static json_t *write_resonance(const void *source)
@@ -286,26 +287,26 @@ static const struct eo_outline_row rated_member_rows[] = {
 };
 static const struct eo_outline rated_member = EO_OUTLINE("RatedMember", rated_member_rows);
 
-static json_t *encode_rated_member(const struct eo_rated_case *c, int i)
+static json_t *encode_rated_member(const struct eo_rated_case *this_case, int i)
 {
-  const struct rated_member member = {.single = c->contact.single_contact[i],
-                                      .cycles = c->cycles[i],
-                                      .z = c->influence[i],
-                                      .flank_life = c->flank_life_factor[i],
-                                      .stress = c->contact.stress[i],
-                                      .permissible = c->flank_permissible[i],
-                                      .safety = c->flank_safety[i],
-                                      .flank_static = c->flank_static[i],
-                                      .local_stress = c->local_flank,
-                                      .local_safety = c->local_flank_safety[i],
-                                      .local_root = c->local_root[i],
-                                      .local_root_safety = c->local_root_safety[i],
-                                      .root_life = c->root_life_factor[i],
-                                      .root_nominal = c->root_nominal[i],
-                                      .root_stress = c->root_stress[i],
-                                      .root_permissible = c->root_permissible[i],
-                                      .root_safety = c->root_safety[i],
-                                      .root_static = c->root_static[i]};
+  const struct rated_member member = {.single = this_case->contact.single_contact[i],
+                                      .cycles = this_case->cycles[i],
+                                      .z = this_case->influence[i],
+                                      .flank_life = this_case->flank_life_factor[i],
+                                      .stress = this_case->contact.stress[i],
+                                      .permissible = this_case->flank_permissible[i],
+                                      .safety = this_case->flank_safety[i],
+                                      .flank_static = this_case->flank_static[i],
+                                      .local_stress = this_case->local_flank,
+                                      .local_safety = this_case->local_flank_safety[i],
+                                      .local_root = this_case->local_root[i],
+                                      .local_root_safety = this_case->local_root_safety[i],
+                                      .root_life = this_case->root_life_factor[i],
+                                      .root_nominal = this_case->root_nominal[i],
+                                      .root_stress = this_case->root_stress[i],
+                                      .root_permissible = this_case->root_permissible[i],
+                                      .root_safety = this_case->root_safety[i],
+                                      .root_static = this_case->root_static[i]};
   return eo_outline_encode(&rated_member, &member);
 }
 
@@ -334,38 +335,38 @@ static const struct eo_outline_row rated_end_rows[] = {
 };
 static const struct eo_outline rated_end = EO_OUTLINE("RatedEnd", rated_end_rows);
 
-static json_t *encode_computed(const struct eo_rated_case *c, const struct eo_face_factors *face)
+static json_t *encode_computed(const struct eo_rated_case *this_case, const struct eo_face_factors *face)
 {
-  struct eo_object o = eo_object_open_as(&computed);
-  eo_object_put_number(&o, "K_V", c->load.dynamic);
-  eo_object_put_number(&o, "K_Hbeta", face->nominal);
-  eo_object_put(&o, "K_Hbeta_tolerances", eo_json_reals(2, face->leaning, 1, NULL, EO_DIGITS_NUMBER));
-  eo_object_put_number(&o, "K_Halpha", c->load.share);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&computed);
+  eo_object_put_number(&object, "K_V", this_case->load.dynamic);
+  eo_object_put_number(&object, "K_Hbeta", face->nominal);
+  eo_object_put(&object, "K_Hbeta_tolerances", eo_json_reals(2, face->leaning, 1, NULL, EO_DIGITS_NUMBER));
+  eo_object_put_number(&object, "K_Halpha", this_case->load.share);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_rated_end(const struct eo_rated_case *c, const struct eo_face_factors *face)
+static json_t *encode_rated_end(const struct eo_rated_case *this_case, const struct eo_face_factors *face)
 {
-  struct eo_object o = eo_object_open_as(&rated_end);
-  eo_object_put_number(&o, "F_t_N", c->tangential_force);
-  eo_object_put_number(&o, "v_m_per_s", c->velocity);
-  eo_object_put_number(&o, "K_gamma", c->load.sharing);
-  eo_object_put_number(&o, "N", c->resonance_ratio);
-  eo_object_put(&o, "speed_range", json_string(ranges[c->dynamic.range]));
-  eo_object_put_number(&o, "f_sh_um", c->shaft_deviation);
-  eo_object_put_number(&o, "F_beta_x_um", c->helix_deviation);
-  eo_object_put_number(&o, "y_beta_um", c->helix_running_in);
-  eo_object_put(&o, "method_c", eo_outline_encode(&factors, &c->method_c));
-  eo_object_put(&o, "computed", encode_computed(c, face));
-  eo_object_put(&o, "used", eo_outline_encode(&factors, &c->used));
-  eo_object_put_number(&o, "Z_H", c->contact.zone);
-  eo_object_put_number(&o, "Z_E_sqrt_MPa", c->contact.elasticity);
-  eo_object_put_number(&o, "Z_eps", c->contact.contact_ratio);
-  eo_object_put_number(&o, "Z_beta", c->contact.helix);
-  eo_object_put_number(&o, "sigma_H0_MPa", c->contact.nominal);
+  struct eo_object object = eo_object_open_as(&rated_end);
+  eo_object_put_number(&object, "F_t_N", this_case->tangential_force);
+  eo_object_put_number(&object, "v_m_per_s", this_case->velocity);
+  eo_object_put_number(&object, "K_gamma", this_case->load.sharing);
+  eo_object_put_number(&object, "N", this_case->resonance_ratio);
+  eo_object_put(&object, "speed_range", json_string(ranges[this_case->dynamic.range]));
+  eo_object_put_number(&object, "f_sh_um", this_case->shaft_deviation);
+  eo_object_put_number(&object, "F_beta_x_um", this_case->helix_deviation);
+  eo_object_put_number(&object, "y_beta_um", this_case->helix_running_in);
+  eo_object_put(&object, "method_c", eo_outline_encode(&factors, &this_case->method_c));
+  eo_object_put(&object, "computed", encode_computed(this_case, face));
+  eo_object_put(&object, "used", eo_outline_encode(&factors, &this_case->used));
+  eo_object_put_number(&object, "Z_H", this_case->contact.zone);
+  eo_object_put_number(&object, "Z_E_sqrt_MPa", this_case->contact.elasticity);
+  eo_object_put_number(&object, "Z_eps", this_case->contact.contact_ratio);
+  eo_object_put_number(&object, "Z_beta", this_case->contact.helix);
+  eo_object_put_number(&object, "sigma_H0_MPa", this_case->contact.nominal);
   for (int i = 0; i < 2; i++)
-    eo_object_put(&o, eo_result_member[i], encode_rated_member(c, i));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_member[i], encode_rated_member(this_case, i));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row rated_case_rows[] = {
@@ -379,15 +380,16 @@ static const struct eo_outline rated_case = EO_OUTLINE("RatedLoadCase", rated_ca
 
 static json_t *encode_rated_case(const struct eo_result_source *source, int k)
 {
-  const struct eo_design_rating *r = source->analysis->rating;
+  const struct eo_design_rating *rating = source->analysis->rating;
   const struct eo_load_case *load_case = &source->evaluation->load_case[k].load_case;
-  struct eo_object o = eo_object_open_as(&rated_case);
-  eo_object_put_number(&o, "torque_Nm", load_case->torque);
-  eo_object_put_number(&o, "speed_rpm", load_case->speed);
-  eo_object_put_number(&o, "time_h", r->load_case[k].end[0].load.time);
+  struct eo_object object = eo_object_open_as(&rated_case);
+  eo_object_put_number(&object, "torque_Nm", load_case->torque);
+  eo_object_put_number(&object, "speed_rpm", load_case->speed);
+  eo_object_put_number(&object, "time_h", rating->load_case[k].end[0].load.time);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_rated_end(&r->load_case[k].end[end], &r->load_case[k].face[end]));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end],
+                  encode_rated_end(&rating->load_case[k].end[end], &rating->load_case[k].face[end]));
+  return eo_object_close(&object);
 }
 
 /* ---- spectrum ---- */
@@ -428,17 +430,17 @@ static const struct eo_outline spectrum = EO_OUTLINE("RatedSpectrum", spectrum_r
 
 static json_t *encode_spectrum(const struct eo_result_source *source)
 {
-  struct eo_object o = eo_object_open_as(&spectrum);
+  struct eo_object object = eo_object_open_as(&spectrum);
   for (int end = 0; end < source->ends; end++) {
-    const struct eo_rated_spectrum *s = &source->analysis->rating->end[end];
+    const struct eo_rated_spectrum *rated_spectrum = &source->analysis->rating->end[end];
     struct eo_object members = eo_object_open_as(&spectrum_end);
     for (int i = 0; i < 2; i++) {
-      const struct spectrum_member member = {s->flank[i], s->root[i]};
+      const struct spectrum_member member = {rated_spectrum->flank[i], rated_spectrum->root[i]};
       eo_object_put(&members, eo_result_member[i], eo_outline_encode(&spectrum_member, &member));
     }
-    eo_object_put(&o, eo_result_end[end], eo_object_close(&members));
+    eo_object_put(&object, eo_result_end[end], eo_object_close(&members));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 /* ---- all ---- */
@@ -475,21 +477,22 @@ static json_t *encode_cases(const struct eo_result_source *source)
 
 json_t *eo_result_rating(const struct eo_result_source *source)
 {
-  const struct eo_design_rating *r = source->analysis->rating;
+  const struct eo_design_rating *rating = source->analysis->rating;
   if (!(source->analysis->want & EO_WANT_RATING))
     return json_null();
   bool new = source->design->rating.edition == EO_ISO6336_2019;
-  struct eo_object o = eo_object_open_as(&eo_outline_rating);
-  eo_object_put(&o, "outcome", json_string(outcomes[r->rated ? 0 : 1]));
-  eo_object_put(&o, "reason", r->rated ? json_null() : json_string(r->reason.text));
-  eo_object_put(&o, "settings", eo_table_encode(&eo_rating_table, &source->design->rating));
-  eo_object_put(&o, "standards", texts_of(new ? standards_2019 : standards_2006));
-  eo_object_put(&o, "unchecked", texts_of(new ? unchecked_2019 : unchecked_2006));
-  eo_object_put(&o, "verdict", eo_outline_encode(&verdict, r));
-  eo_object_put(&o, "pair", r->rated ? eo_outline_encode(&basis, &r->basis[EO_LEFT]) : json_null());
+  struct eo_object object = eo_object_open_as(&eo_outline_rating);
+  eo_object_put(&object, "outcome", json_string(outcomes[rating->rated ? 0 : 1]));
+  eo_object_put(&object, "reason", rating->rated ? json_null() : json_string(rating->reason.text));
+  eo_object_put(&object, "settings", eo_table_encode(&eo_rating_table, &source->design->rating));
+  eo_object_put(&object, "standards", texts_of(new ? standards_2019 : standards_2006));
+  eo_object_put(&object, "unchecked", texts_of(new ? unchecked_2019 : unchecked_2006));
+  eo_object_put(&object, "verdict", eo_outline_encode(&verdict, rating));
+  eo_object_put(&object, "pair", rating->rated ? eo_outline_encode(&basis, &rating->basis[EO_LEFT]) : json_null());
   if (source->pair->right)
-    eo_object_put(&o, "right_pair", r->rated ? eo_outline_encode(&basis, &r->basis[EO_RIGHT]) : json_null());
-  eo_object_put(&o, "load_cases", r->rated ? encode_cases(source) : json_null());
-  eo_object_put(&o, "spectrum", r->rated ? encode_spectrum(source) : json_null());
-  return eo_object_close(&o);
+    eo_object_put(&object, "right_pair",
+                  rating->rated ? eo_outline_encode(&basis, &rating->basis[EO_RIGHT]) : json_null());
+  eo_object_put(&object, "load_cases", rating->rated ? encode_cases(source) : json_null());
+  eo_object_put(&object, "spectrum", rating->rated ? encode_spectrum(source) : json_null());
+  return eo_object_close(&object);
 }

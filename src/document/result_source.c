@@ -40,8 +40,8 @@ struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *sour
   return &source->pattern[end == EO_RIGHT && source->pair->right];
 }
 
-void eo_result_put_right_face(struct eo_object *o, const char *key, const struct eo_result_source *source, int count,
-                              const double *place, bool wanted)
+void eo_result_put_right_face(struct eo_object *object, const char *key, const struct eo_result_source *source,
+                              int count, const double *place, bool wanted)
 {
   enum { MOST = 64 };
   double right[MOST];
@@ -49,7 +49,7 @@ void eo_result_put_right_face(struct eo_object *o, const char *key, const struct
     return;
   for (int i = 0; i < count && i < MOST; i++)
     right[i] = place[i] * source->pair->right->geometry.face_width / source->pair->geometry.face_width;
-  eo_object_put(o, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, source->digits) : json_null());
+  eo_object_put(object, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, source->digits) : json_null());
 }
 
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
@@ -77,20 +77,21 @@ json_t *eo_result_position(const struct eo_result_source *source)
 bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
                            const struct eo_design *design, unsigned left_out)
 {
-  const struct eo_evaluation *r = analysis->evaluation;
-  *source = (struct eo_result_source){.analysis = analysis,
-                                      .evaluation = r,
-                                      .pair = analysis->pair,
-                                      .design = design,
-                                      .ends = r->ends,
-                                      .positions = r->positions,
-                                      .lag = eo_evaluator_stagger(analysis->pair, design, &r->load_case[0].running),
-                                      .normal = cos(analysis->pair->geometry.base_helix_angle),
-                                      .left_out = left_out,
-                                      .digits = digits_of(EO_DIGITS_CURVE, left_out, 0),
-                                      .map_digits = digits_of(EO_DIGITS_MAP, left_out, 2)};
+  const struct eo_evaluation *evaluation = analysis->evaluation;
+  *source =
+      (struct eo_result_source){.analysis = analysis,
+                                .evaluation = evaluation,
+                                .pair = analysis->pair,
+                                .design = design,
+                                .ends = evaluation->ends,
+                                .positions = evaluation->positions,
+                                .lag = eo_evaluator_stagger(analysis->pair, design, &evaluation->load_case[0].running),
+                                .normal = cos(analysis->pair->geometry.base_helix_angle),
+                                .left_out = left_out,
+                                .digits = digits_of(EO_DIGITS_CURVE, left_out, 0),
+                                .map_digits = digits_of(EO_DIGITS_MAP, left_out, 2)};
   source->pattern = malloc(2 * sizeof *source->pattern);
-  source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
+  source->scratch = calloc((size_t)evaluation->positions, sizeof *source->scratch);
   for (int half = 0; source->pattern && half < eo_pair_halves(source->pair); half++)
     eo_contact_pattern_init(&source->pattern[half], eo_pair_half(source->pair, half)->grid);
   return source->pattern && source->scratch;

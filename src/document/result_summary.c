@@ -120,10 +120,10 @@ static void print_case(const json_t *result, size_t k, const struct shown_length
                 find(load_case, "speed_rpm"), find(load_case, "share"), find_text(load_case, "outcome"));
   start_table(&sheet);
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
-    const struct quantity *q = &quantities[i];
-    if (isfinite(find(after, q->key)))
-      add_row(&sheet, q->name, *q->unit == 'u' ? as->small : q->unit, find(before, q->key), find(after, q->key),
-              *q->unit == 'u' ? q->scale / as->divisor : q->scale);
+    const struct quantity *quantity = &quantities[i];
+    if (isfinite(find(after, quantity->key)))
+      add_row(&sheet, quantity->name, *quantity->unit == 'u' ? as->small : quantity->unit, find(before, quantity->key),
+              find(after, quantity->key), *quantity->unit == 'u' ? quantity->scale / as->divisor : quantity->scale);
   }
   eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);

@@ -25,11 +25,11 @@ static json_t *encode_part(struct eo_result_source *source, int part)
 
 static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
 {
-  struct writing *w = context;
-  json_t *part = encode_part(&w->source[thread], item);
+  struct writing *writing = context;
+  json_t *part = encode_part(&writing->source[thread], item);
   if (part)
-    eo_json_write(&w->part[item], part, EO_JSON_COMPACT);
-  bool good = part && !w->part[item].failed;
+    eo_json_write(&writing->part[item], part, EO_JSON_COMPACT);
+  bool good = part && !writing->part[item].failed;
   json_decref(part);
   return good ? EO_OK : eo_error_memory(error);
 }
@@ -41,16 +41,16 @@ static void add_members(struct eo_text *text, const struct eo_text *part)
 }
 
 /* The parts as one object. */
-static void join(const struct writing *w, int cases, const struct eo_text *tail, struct eo_text *text)
+static void join(const struct writing *writing, int cases, const struct eo_text *tail, struct eo_text *text)
 {
   eo_text_add(text, "{");
-  add_members(text, &w->part[0]);
+  add_members(text, &writing->part[0]);
   eo_text_add(text, ",\"load_cases\":[");
   for (int k = 0; k < cases; k++) {
     eo_text_add(text, k ? ",{" : "{");
-    add_members(text, &w->part[1 + HALVES * k]);
+    add_members(text, &writing->part[1 + HALVES * k]);
     eo_text_add(text, ",");
-    add_members(text, &w->part[2 + HALVES * k]);
+    add_members(text, &writing->part[2 + HALVES * k]);
     eo_text_add(text, "}");
   }
   eo_text_add(text, "],");
@@ -58,21 +58,21 @@ static void join(const struct writing *w, int cases, const struct eo_text *tail,
   eo_text_add(text, "}");
 }
 
-static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text,
+static enum eo_code write_all(struct writing *writing, const struct eo_warnings *warnings, struct eo_text *text,
                               struct eo_error *error)
 {
-  const struct eo_analysis *analysis = w->source[0].analysis;
+  const struct eo_analysis *analysis = writing->source[0].analysis;
   const struct eo_parallel parallel = {
-      .threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
+      .threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = writing};
   struct eo_text tail = {0};
   enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
   if (code)
     return code;
-  json_t *last = eo_result_tail(&w->source[0], warnings);
+  json_t *last = eo_result_tail(&writing->source[0], warnings);
   if (last)
     eo_json_write(&tail, last, EO_JSON_COMPACT);
   if (last && !tail.failed)
-    join(w, analysis->cases, &tail, text);
+    join(writing, analysis->cases, &tail, text);
   bool good = last && !tail.failed && !text->failed;
   json_decref(last);
   eo_text_done(&tail);
@@ -83,18 +83,18 @@ enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo
                              const struct eo_warnings *warnings, unsigned left_out, struct eo_text *text,
                              struct eo_error *error)
 {
-  struct writing *w = calloc(1, sizeof *w);
+  struct writing *writing = calloc(1, sizeof *writing);
   double edge_pressure[EO_MAX_LOAD_CASES][2];
-  bool good = w != NULL;
+  bool good = writing != NULL;
   for (int i = 0; i < WRITERS && good; i++) {
-    good = eo_result_source_init(&w->source[i], analysis, design, left_out);
-    w->source[i].edge_pressure = edge_pressure;
+    good = eo_result_source_init(&writing->source[i], analysis, design, left_out);
+    writing->source[i].edge_pressure = edge_pressure;
   }
-  enum eo_code code = good ? write_all(w, warnings, text, error) : eo_error_memory(error);
-  for (int i = 0; i < WRITERS && w; i++)
-    eo_result_source_done(&w->source[i]);
-  for (int i = 0; i < MOST_PARTS && w; i++)
-    eo_text_done(&w->part[i]);
-  free(w);
+  enum eo_code code = good ? write_all(writing, warnings, text, error) : eo_error_memory(error);
+  for (int i = 0; i < WRITERS && writing; i++)
+    eo_result_source_done(&writing->source[i]);
+  for (int i = 0; i < MOST_PARTS && writing; i++)
+    eo_text_done(&writing->part[i]);
+  free(writing);
   return code;
 }

@@ -88,40 +88,43 @@ static const struct eo_outline_row case_rows[] = {
 };
 static const struct eo_outline tribology_case = EO_OUTLINE("TribologyLoadCase", case_rows);
 
-static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *c, int k, int end,
-                          const struct eo_tribology_state *state)
+static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *case_result, int k,
+                          int end, const struct eo_tribology_state *state)
 {
   const struct tribology_end view = {.figures = source->analysis->rating->load_case[k].tribology[end],
                                      .source = source,
-                                     .load_case = c,
+                                     .load_case = case_result,
                                      .end = end,
                                      .state = *state};
-  eo_contact_pattern_load(eo_result_pattern(source, end), eo_pair_half(source->pair, end)->grid, &c->end[end].loaded);
+  eo_contact_pattern_load(eo_result_pattern(source, end), eo_pair_half(source->pair, end)->grid,
+                          &case_result->end[end].loaded);
   return eo_outline_encode(&tribology_end, &view);
 }
 
 static json_t *encode_case(const struct eo_result_source *source, int k)
 {
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  const struct eo_case_rating *r = &source->analysis->rating->load_case[k];
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  const struct eo_case_rating *rating = &source->analysis->rating->load_case[k];
   struct eo_tribology_state state;
   double sliding[EO_PATTERN_ROWS], loss = 0;
-  struct eo_object o = eo_object_open_as(&tribology_case);
+  struct eo_object object = eo_object_open_as(&tribology_case);
   eo_tribology_state_init(&state, &source->pair->geometry, &source->design->material, &source->design->rating,
-                          c->load_case.speed);
+                          case_result->load_case.speed);
   for (int i = 0; i < EO_PATTERN_ROWS; i++)
     sliding[i] = eo_tribology_at(&state, source->pattern->path[i], 1).sliding;
   for (int end = 0; end < source->ends; end++)
-    loss += r->tribology[end].power_loss;
-  eo_object_put_number(&o, "torque_Nm", c->load_case.torque);
-  eo_object_put_number(&o, "speed_rpm", c->load_case.speed);
-  eo_object_put_number(&o, "oil_viscosity_mPa_s", 1e3 * state.viscosity);
-  eo_object_put(&o, "sliding_m_per_s", eo_json_reals(EO_PATTERN_ROWS, sliding, 1, &eo_unit_m_per_s, EO_DIGITS_CURVE));
-  eo_object_put_number(&o, "power_loss_W", loss);
-  eo_object_put_number(&o, "efficiency", 1 - loss / (c->load_case.torque * c->load_case.speed));
+    loss += rating->tribology[end].power_loss;
+  eo_object_put_number(&object, "torque_Nm", case_result->load_case.torque);
+  eo_object_put_number(&object, "speed_rpm", case_result->load_case.speed);
+  eo_object_put_number(&object, "oil_viscosity_mPa_s", 1e3 * state.viscosity);
+  eo_object_put(&object, "sliding_m_per_s",
+                eo_json_reals(EO_PATTERN_ROWS, sliding, 1, &eo_unit_m_per_s, EO_DIGITS_CURVE));
+  eo_object_put_number(&object, "power_loss_W", loss);
+  eo_object_put_number(&object, "efficiency",
+                       1 - loss / (case_result->load_case.torque * case_result->load_case.speed));
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_end(source, c, k, end, &state));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_end(source, case_result, k, end, &state));
+  return eo_object_close(&object);
 }
 
 static const char *const methods[] = {
@@ -146,16 +149,18 @@ json_t *eo_result_tribology(const struct eo_result_source *source)
 {
   if (!(source->analysis->want & EO_WANT_RATING))
     return json_null();
-  struct eo_object o = eo_object_open_as(&eo_outline_tribology);
+  struct eo_object object = eo_object_open_as(&eo_outline_tribology);
   json_t *sources = json_array(), *cases = json_array();
   for (int i = 0; methods[i]; i++)
-    o.failed = o.failed || json_array_append_new(sources, json_string(methods[i])) != 0;
-  eo_object_put(&o, "methods", sources);
-  eo_object_put(&o, "s_mm", eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_object_put(&o, "eta_mm", eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_result_put_right_face(&o, "right_eta_mm", source, EO_PATTERN_COLUMNS, source->pattern->eta, true);
+    object.failed = object.failed || json_array_append_new(sources, json_string(methods[i])) != 0;
+  eo_object_put(&object, "methods", sources);
+  eo_object_put(&object, "s_mm",
+                eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&object, "eta_mm",
+                eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_result_put_right_face(&object, "right_eta_mm", source, EO_PATTERN_COLUMNS, source->pattern->eta, true);
   for (int k = 0; k < source->evaluation->cases; k++)
-    o.failed = o.failed || json_array_append_new(cases, encode_case(source, k)) != 0;
-  eo_object_put(&o, "load_cases", cases);
-  return eo_object_close(&o);
+    object.failed = object.failed || json_array_append_new(cases, encode_case(source, k)) != 0;
+  eo_object_put(&object, "load_cases", cases);
+  return eo_object_close(&object);
 }

@@ -23,9 +23,9 @@ static const struct channel {
 };
 
 /* A periodic state was found and its curves were asked for. */
-static bool has_curves(const struct eo_result_source *source, const struct eo_case_result *c)
+static bool has_curves(const struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  return source->analysis->want & EO_WANT_CURVES && c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
+  return source->analysis->want & EO_WANT_CURVES && case_result->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
 }
 
 static const struct eo_outline_row reading_rows[] = {
@@ -38,10 +38,10 @@ static const struct eo_outline readings = EO_OUTLINE("Readings", reading_rows);
 
 static json_t *encode_readings(const double *value, int stride, double known)
 {
-  struct eo_object o = eo_object_open_as(&readings);
+  struct eo_object object = eo_object_open_as(&readings);
   for (int i = 0; i < EO_READINGS; i++)
-    eo_object_put_number(&o, reading_name[i], known * value[i * stride]);
-  return eo_object_close(&o);
+    eo_object_put_number(&object, reading_name[i], known * value[i * stride]);
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row band_rows[] = {
@@ -52,18 +52,18 @@ static const struct eo_outline_row band_rows[] = {
 static const struct eo_outline bands = EO_OUTLINE("ReadingsBand", band_rows);
 
 /* Lowest and highest RMS at 0.9, 1 and 1.1 times the compliance. */
-static json_t *encode_band(const struct eo_case_result *c, double known)
+static json_t *encode_band(const struct eo_case_result *case_result, double known)
 {
-  struct eo_object o = eo_object_open_as(&bands);
+  struct eo_object object = eo_object_open_as(&bands);
   for (int i = 0; i < EO_READINGS; i++) {
-    double nominal = known * c->vibration.rms_pair[i], low = c->band[i][0], high = c->band[i][1],
-           missing = low + high + nominal;
+    double nominal = known * case_result->vibration.rms_pair[i], low = case_result->band[i][0],
+           high = case_result->band[i][1], missing = low + high + nominal;
     double band[2] = {fmin(nominal, fmin(low, high)), fmax(nominal, fmax(low, high))};
     if (isnan(missing))
       band[0] = band[1] = NAN;
-    eo_object_put(&o, reading_name[i], eo_json_reals(2, band, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+    eo_object_put(&object, reading_name[i], eo_json_reals(2, band, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_amplitudes(int harmonics, double complex *const order[2], int ends, const struct eo_unit *unit)
@@ -90,15 +90,15 @@ static const struct eo_outline_row channel_rows[] = {
 };
 static const struct eo_outline channel_curves = EO_OUTLINE("VibrationChannels", channel_rows);
 
-static json_t *encode_curves(const struct eo_result_source *source, const struct eo_end_result *r, bool orders)
+static json_t *encode_curves(const struct eo_result_source *source, const struct eo_end_result *end_result, bool orders)
 {
-  struct eo_object o = eo_object_open_as(&channel_curves);
+  struct eo_object object = eo_object_open_as(&channel_curves);
   for (int i = 0; i < EO_CHANNELS; i++)
-    eo_object_put(
-        &o, channels[i].key,
-        orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
-               : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit, source->map_digits));
-  return eo_object_close(&o);
+    eo_object_put(&object, channels[i].key,
+                  orders ? encode_amplitudes(source->evaluation->harmonics, &end_result->order[i], 1, channels[i].unit)
+                         : eo_json_reals(source->evaluation->samples, end_result->curve[i], 1, channels[i].unit,
+                                         source->map_digits));
+  return eo_object_close(&object);
 }
 
 static const struct eo_outline_row end_rows[] = {
@@ -122,40 +122,42 @@ static const struct eo_outline_row end_rows[] = {
 };
 static const struct eo_outline vibration_end = EO_OUTLINE("VibrationEnd", end_rows);
 
-static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *c, int end, double known)
+static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *case_result, int end,
+                          double known)
 {
-  const struct eo_vibration *v = &c->vibration;
-  struct eo_object o = eo_object_open_as(&vibration_end);
-  eo_object_put(&o, "rms_m_per_s2", encode_readings(&v->rms[0][end], 2, known));
-  eo_object_put_number(&o, "dynamic_factor", known * v->dynamic_factor[end]);
-  eo_object_put_number(&o, "contact_loss", known * v->contact_loss[end]);
-  eo_object_put_number(&o, "mean_deflection_um", known * v->deflection_mean[end]);
-  eo_object_put_number(&o, "peak_to_peak_deflection_um", known * v->deflection_swing[end]);
-  eo_object_put_number(&o, "mean_mesh_force_N", known * v->force_mean[end]);
-  eo_object_put_number(&o, "min_mesh_force_N", known * v->force_min[end]);
-  eo_object_put_number(&o, "max_mesh_force_N", known * v->force_max[end]);
+  const struct eo_vibration *vibration = &case_result->vibration;
+  struct eo_object object = eo_object_open_as(&vibration_end);
+  eo_object_put(&object, "rms_m_per_s2", encode_readings(&vibration->rms[0][end], 2, known));
+  eo_object_put_number(&object, "dynamic_factor", known * vibration->dynamic_factor[end]);
+  eo_object_put_number(&object, "contact_loss", known * vibration->contact_loss[end]);
+  eo_object_put_number(&object, "mean_deflection_um", known * vibration->deflection_mean[end]);
+  eo_object_put_number(&object, "peak_to_peak_deflection_um", known * vibration->deflection_swing[end]);
+  eo_object_put_number(&object, "mean_mesh_force_N", known * vibration->force_mean[end]);
+  eo_object_put_number(&object, "min_mesh_force_N", known * vibration->force_min[end]);
+  eo_object_put_number(&object, "max_mesh_force_N", known * vibration->force_max[end]);
   for (int member = 0; member < 2; member++) {
-    eo_object_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N",
-                         known * v->bearing_force_mean[member][end]);
-    eo_object_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
-                         known * v->bearing_force_max[member][end]);
+    eo_object_put_number(&object, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N",
+                         known * vibration->bearing_force_mean[member][end]);
+    eo_object_put_number(&object, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
+                         known * vibration->bearing_force_max[member][end]);
   }
-  bool histories = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
-  bool orders = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_END_ORDERS, c);
-  eo_object_put(&o, "history", histories ? encode_curves(source, &c->end[end], false) : json_null());
-  eo_object_put(&o, "orders", orders ? encode_curves(source, &c->end[end], true) : json_null());
-  return eo_object_close(&o);
+  bool histories = has_curves(source, case_result) && eo_result_has(source, EO_RESULT_NO_HISTORIES, case_result);
+  bool orders = has_curves(source, case_result) && eo_result_has(source, EO_RESULT_NO_END_ORDERS, case_result);
+  eo_object_put(&object, "history", histories ? encode_curves(source, &case_result->end[end], false) : json_null());
+  eo_object_put(&object, "orders", orders ? encode_curves(source, &case_result->end[end], true) : json_null());
+  return eo_object_close(&object);
 }
 
 /* Mean of the ends' amplitudes, as the RMS of the pair is the mean of theirs. */
-static void put_pair_orders(struct eo_object *o, const struct eo_result_source *source, const struct eo_case_result *c)
+static void put_pair_orders(struct eo_object *object, const struct eo_result_source *source,
+                            const struct eo_case_result *case_result)
 {
-  bool wanted = has_curves(source, c) && eo_result_has_overview(source, EO_RESULT_NO_ORDERS, c);
+  bool wanted = has_curves(source, case_result) && eo_result_has_overview(source, EO_RESULT_NO_ORDERS, case_result);
   for (int i = EO_CHANNEL_NORMAL; i <= EO_CHANNEL_ROTATIONAL; i++) {
     char key[64];
-    double complex *const order[2] = {c->end[0].order[i], c->end[1].order[i]};
+    double complex *const order[2] = {case_result->end[0].order[i], case_result->end[1].order[i]};
     snprintf(key, sizeof key, "orders_%s", channels[i].key);
-    eo_object_put(o, key,
+    eo_object_put(object, key,
                   wanted ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit)
                          : json_null());
   }
@@ -185,17 +187,17 @@ static const struct eo_outline_row state_rows[] = {
 };
 static const struct eo_outline vibration_state = EO_OUTLINE("VibrationState", state_rows);
 
-static json_t *encode_states(const struct eo_vibration *v)
+static json_t *encode_states(const struct eo_vibration *vibration)
 {
   json_t *array = json_array();
-  for (int i = 0; i < v->states; i++) {
-    const struct eo_vibration_state *s = &v->state[i];
-    struct eo_object o = eo_object_open_as(&vibration_state);
-    eo_object_put(&o, "mesh_periods", json_integer(s->repeat));
-    eo_object_put(&o, "rms_m_per_s2", encode_readings(s->rms, 1, 1));
-    eo_object_put_number(&o, "contact_loss", s->contact_loss);
-    eo_object_put_number(&o, "floquet_multiplier", s->multiplier);
-    json_array_append_new(array, eo_object_close(&o));
+  for (int i = 0; i < vibration->states; i++) {
+    const struct eo_vibration_state *this_state = &vibration->state[i];
+    struct eo_object object = eo_object_open_as(&vibration_state);
+    eo_object_put(&object, "mesh_periods", json_integer(this_state->repeat));
+    eo_object_put(&object, "rms_m_per_s2", encode_readings(this_state->rms, 1, 1));
+    eo_object_put_number(&object, "contact_loss", this_state->contact_loss);
+    eo_object_put_number(&object, "floquet_multiplier", this_state->multiplier);
+    json_array_append_new(array, eo_object_close(&object));
   }
   return array;
 }
@@ -241,38 +243,39 @@ static const struct eo_outline_row vibration_rows[] = {
 };
 const struct eo_outline eo_outline_vibration = EO_OUTLINE("Vibration", vibration_rows);
 
-json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *c)
+json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  const struct eo_vibration *v = &c->vibration;
-  struct eo_object o = eo_object_open_as(&eo_outline_vibration);
-  double known = v->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
-  eo_object_put(&o, "outcome", json_string(outcomes[v->outcome]));
-  eo_object_put(&o, "mesh_periods", isnan(known) ? json_null() : json_integer(v->repeat));
-  eo_object_put_number(&o, "floquet_multiplier", known * v->multiplier);
-  eo_object_put_number(&o, "unstable_multiplier", v->unstable > 0 ? v->unstable : NAN);
-  eo_object_put(&o, "stable_states", encode_states(v));
+  const struct eo_vibration *vibration = &case_result->vibration;
+  struct eo_object object = eo_object_open_as(&eo_outline_vibration);
+  double known = vibration->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
+  eo_object_put(&object, "outcome", json_string(outcomes[vibration->outcome]));
+  eo_object_put(&object, "mesh_periods", isnan(known) ? json_null() : json_integer(vibration->repeat));
+  eo_object_put_number(&object, "floquet_multiplier", known * vibration->multiplier);
+  eo_object_put_number(&object, "unstable_multiplier", vibration->unstable > 0 ? vibration->unstable : NAN);
+  eo_object_put(&object, "stable_states", encode_states(vibration));
   double range[2] = {NAN, NAN};
-  if (v->states > 0) {
-    range[0] = v->state[v->states - 1].rms[EO_READING_NORMAL];
-    range[1] = v->state[0].rms[EO_READING_NORMAL];
+  if (vibration->states > 0) {
+    range[0] = vibration->state[vibration->states - 1].rms[EO_READING_NORMAL];
+    range[1] = vibration->state[0].rms[EO_READING_NORMAL];
   }
-  eo_object_put(&o, "rms_range_m_per_s2", eo_json_reals(2, range, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
-  eo_object_put_number(&o, "mesh_frequency_Hz",
-                       c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
-  eo_object_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
-  eo_object_put(&o, "rms_band_m_per_s2", encode_band(c, known));
-  eo_object_put(&o, "rms_of_mean_m_per_s2", encode_readings(v->rms_of_mean, 1, known));
-  eo_object_put_number(&o, "contact_loss",
-                       known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0));
-  eo_object_put_number(&o, "dynamic_factor",
-                       known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
-  eo_object_put(&o, "back_contact", json_boolean(v->back_contact));
-  eo_object_put_number(&o, "mean_pinion_thrust_N", known * v->pinion_thrust_mean);
-  eo_object_put_number(&o, "max_pinion_thrust_N", known * v->pinion_thrust_max);
-  eo_object_put(&o, "position",
-                eo_result_has(source, EO_RESULT_NO_HISTORIES, c) ? encode_samples(source) : json_null());
-  put_pair_orders(&o, source, c);
+  eo_object_put(&object, "rms_range_m_per_s2", eo_json_reals(2, range, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+  eo_object_put_number(&object, "mesh_frequency_Hz",
+                       case_result->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
+  eo_object_put(&object, "rms_m_per_s2", encode_readings(vibration->rms_pair, 1, known));
+  eo_object_put(&object, "rms_band_m_per_s2", encode_band(case_result, known));
+  eo_object_put(&object, "rms_of_mean_m_per_s2", encode_readings(vibration->rms_of_mean, 1, known));
+  eo_object_put_number(&object, "contact_loss",
+                       known * fmax(vibration->contact_loss[0], source->ends == 2 ? vibration->contact_loss[1] : 0));
+  eo_object_put_number(&object, "dynamic_factor",
+                       known *
+                           fmax(vibration->dynamic_factor[0], source->ends == 2 ? vibration->dynamic_factor[1] : 0));
+  eo_object_put(&object, "back_contact", json_boolean(vibration->back_contact));
+  eo_object_put_number(&object, "mean_pinion_thrust_N", known * vibration->pinion_thrust_mean);
+  eo_object_put_number(&object, "max_pinion_thrust_N", known * vibration->pinion_thrust_max);
+  eo_object_put(&object, "position",
+                eo_result_has(source, EO_RESULT_NO_HISTORIES, case_result) ? encode_samples(source) : json_null());
+  put_pair_orders(&object, source, case_result);
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_end(source, c, end, known));
-  return eo_object_close(&o);
+    eo_object_put(&object, eo_result_end[end], encode_end(source, case_result, end, known));
+  return eo_object_close(&object);
 }

@@ -45,63 +45,68 @@ static const char *end_of(const struct eo_result_source *source, int end)
 static void say_contact(struct list *list, const struct eo_result_source *source, int k)
 {
   static const double NOTICEABLE = 1e-3;
-  const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct place place = place_of(&c->load_case);
-  if (c->contact_failures)
+  const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+  struct place place = place_of(&case_result->load_case);
+  if (case_result->contact_failures)
     say(list, "The loaded contact did not converge %s (%d mesh positions): the numbers of this load case mean nothing.",
-        place.text, c->contact_failures);
+        place.text, case_result->contact_failures);
   for (int end = 0; end < source->ends; end++) {
-    const struct eo_end_result *r = &c->end[end];
-    if (r->edge_share > NOTICEABLE) {
+    const struct eo_end_result *end_result = &case_result->end[end];
+    if (end_result->edge_share > NOTICEABLE) {
       char peak[80] = "";
-      if (source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
-        snprintf(peak, sizeof peak, "; the largest pressure, %.4g MPa (nominal), is there", r->max_pressure / 1e6);
+      if (source->edge_pressure[k][end] >= 0.999 * end_result->max_pressure)
+        snprintf(peak, sizeof peak, "; the largest pressure, %.4g MPa (nominal), is there",
+                 end_result->max_pressure / 1e6);
       say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load%s.", place.text, end_of(source, end),
-          100 * r->edge_share, peak);
+          100 * end_result->edge_share, peak);
     }
-    if (!r->impact.touched)
+    if (!end_result->impact.touched)
       say(list, "No incoming tooth touches %s%s: there is no entering impact to speak of.", place.text,
           end_of(source, end));
   }
 }
 
 /* The tangent law is straight, or bent about P only: beyond its reach the contact's stiffening counts. */
-static void say_swing(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c, int end)
+static void say_swing(struct list *list, const struct eo_result_source *source,
+                      const struct eo_case_result *case_result, int end)
 {
-  double swing = fmax(c->vibration.force_max[end] / c->force - 1, 1 - c->vibration.force_min[end] / c->force);
-  if (swing > c->law_reach)
+  double swing = fmax(case_result->vibration.force_max[end] / case_result->force - 1,
+                      1 - case_result->vibration.force_min[end] / case_result->force);
+  if (swing > case_result->law_reach)
     say(list,
         "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".",
-        100 * swing, place_of(&c->load_case).text, end_of(source, end));
+        100 * swing, place_of(&case_result->load_case).text, end_of(source, end));
 }
 
-static void say_vibration(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c)
+static void say_vibration(struct list *list, const struct eo_result_source *source,
+                          const struct eo_case_result *case_result)
 {
-  const struct eo_vibration *v = &c->vibration;
-  struct place place = place_of(&c->load_case);
-  if (v->outcome == EO_VIBRATION_NOT_CONVERGED)
+  const struct eo_vibration *vibration = &case_result->vibration;
+  struct place place = place_of(&case_result->load_case);
+  if (vibration->outcome == EO_VIBRATION_NOT_CONVERGED)
     say(list, "No stable periodic vibration was found %s: the teeth may hammer without a period.", place.text);
-  else if (v->unstable > 0)
+  else if (vibration->unstable > 0)
     say(list,
         "The periodic state that the harmonic balance finds %s is not stable (multiplier %.3g): the stable one that "
         "time "
         "integration leads to is given.",
-        place.text, v->unstable);
-  if (v->states > 1)
+        place.text, vibration->unstable);
+  if (vibration->states > 1)
     say(list,
         "%d stable vibrations exist %s, with an RMS of %.4g to %.4g m/s2; which one the teeth take depends on how the "
         "drive "
         "came there. The loudest counts.",
-        v->states, place.text, v->state[v->states - 1].rms[EO_READING_NORMAL], v->state[0].rms[EO_READING_NORMAL]);
-  if (v->outcome != EO_VIBRATION_NOT_CONVERGED && v->repeat > 1)
-    say(list, "The vibration %s repeats after %d mesh periods only.", place.text, v->repeat);
-  for (int end = 0; end < source->ends && v->outcome == EO_VIBRATION_CONTACT_LOST; end++)
-    if (v->contact_loss[end] > 0)
+        vibration->states, place.text, vibration->state[vibration->states - 1].rms[EO_READING_NORMAL],
+        vibration->state[0].rms[EO_READING_NORMAL]);
+  if (vibration->outcome != EO_VIBRATION_NOT_CONVERGED && vibration->repeat > 1)
+    say(list, "The vibration %s repeats after %d mesh periods only.", place.text, vibration->repeat);
+  for (int end = 0; end < source->ends && vibration->outcome == EO_VIBRATION_CONTACT_LOST; end++)
+    if (vibration->contact_loss[end] > 0)
       say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end),
-          100 * v->contact_loss[end]);
-  for (int end = 0; end < source->ends && v->outcome != EO_VIBRATION_NOT_CONVERGED; end++)
-    say_swing(list, source, c, end);
-  if (v->back_contact)
+          100 * vibration->contact_loss[end]);
+  for (int end = 0; end < source->ends && vibration->outcome != EO_VIBRATION_NOT_CONVERGED; end++)
+    say_swing(list, source, case_result, end);
+  if (vibration->back_contact)
     say(list, "The back flanks touch %s: the vibration is larger than the backlash.", place.text);
 }
 
@@ -126,37 +131,42 @@ static void say_least(struct list *list, double limit, double value, const char 
 static void say_strength(struct list *list, const struct eo_result_source *source, int k)
 {
   static const double MOST_PRESSURE = 2640e6, MOST_ROOT = 2625e6;
-  const struct eo_objective_case *v = &source->evaluation->objective[k];
+  const struct eo_objective_case *objective_case = &source->evaluation->objective[k];
   struct place place = place_of(&source->design->load_case[k]);
-  if (v->contact_pressure > MOST_PRESSURE)
+  if (objective_case->contact_pressure > MOST_PRESSURE)
     say(list,
         "The contact pressure %s is %.4g MPa; the best case hardened steel stands %.4g MPa once. Less torque, a wider "
         "face or larger gears bring it down.",
-        place.text, v->contact_pressure / 1e6, MOST_PRESSURE / 1e6);
-  if (v->root_stress > MOST_ROOT)
+        place.text, objective_case->contact_pressure / 1e6, MOST_PRESSURE / 1e6);
+  if (objective_case->root_stress > MOST_ROOT)
     say(list,
         "The root stress %s is %.4g MPa; the best case hardened steel stands %.4g MPa once. Less torque, a wider face "
         "or a larger module bring it down.",
-        place.text, v->root_stress / 1e6, MOST_ROOT / 1e6);
+        place.text, objective_case->root_stress / 1e6, MOST_ROOT / 1e6);
 }
 
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
 {
-  const struct eo_objective *o = &source->design->objective;
-  const struct eo_objective_case *v = &source->evaluation->objective[k], *before = &source->analysis->unmodified[k];
+  const struct eo_objective *objective = &source->design->objective;
+  const struct eo_objective_case *objective_case = &source->evaluation->objective[k],
+                                 *before = &source->analysis->unmodified[k];
   struct place place = place_of(&source->design->load_case[k]);
-  say_limit(list, o->contact_pressure, v->contact_pressure, "contact pressure", &eo_unit_MPa, place.text);
-  say_limit(list, o->root_stress, v->root_stress, "root stress", &eo_unit_MPa, place.text);
-  say_limit(list, o->peak_to_peak, v->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um, place.text);
-  say_limit(list, o->edge_load_share, v->edge_load_share, "load share of the tip edges", NULL, place.text);
-  say_limit(list, o->contact_loss, v->contact_loss, "loss of contact", NULL, place.text);
-  say_least(list, o->flank_safety, v->flank_safety, "flank safety S_H");
-  say_least(list, o->root_safety, v->root_safety, "root safety S_F");
-  say_least(list, o->film_ratio, v->film_ratio, "specific film thickness");
-  say_limit(list, o->contact_temperature, v->contact_temperature, "contact temperature", &eo_unit_C,
-            "over the duty cycle");
-  if (o->no_worse_than_unmodified &&
-      (v->peak_to_peak > before->peak_to_peak || v->impact > before->impact || v->rms > before->rms))
+  say_limit(list, objective->contact_pressure, objective_case->contact_pressure, "contact pressure", &eo_unit_MPa,
+            place.text);
+  say_limit(list, objective->root_stress, objective_case->root_stress, "root stress", &eo_unit_MPa, place.text);
+  say_limit(list, objective->peak_to_peak, objective_case->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um,
+            place.text);
+  say_limit(list, objective->edge_load_share, objective_case->edge_load_share, "load share of the tip edges", NULL,
+            place.text);
+  say_limit(list, objective->contact_loss, objective_case->contact_loss, "loss of contact", NULL, place.text);
+  say_least(list, objective->flank_safety, objective_case->flank_safety, "flank safety S_H");
+  say_least(list, objective->root_safety, objective_case->root_safety, "root safety S_F");
+  say_least(list, objective->film_ratio, objective_case->film_ratio, "specific film thickness");
+  say_limit(list, objective->contact_temperature, objective_case->contact_temperature, "contact temperature",
+            &eo_unit_C, "over the duty cycle");
+  if (objective->no_worse_than_unmodified &&
+      (objective_case->peak_to_peak > before->peak_to_peak || objective_case->impact > before->impact ||
+       objective_case->rms > before->rms))
     say(list, "The design is worse than the unmodified pair %s.", place.text);
 }
 
@@ -167,19 +177,21 @@ static void say_held(struct list *list, const struct eo_result_source *source)
   if (source->ends == 1 || source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
     return;
   for (int k = 0; k < source->evaluation->cases; k++) {
-    const struct eo_case_result *c = &source->evaluation->load_case[k];
-    double left = eo_result_mean_load(source, c, EO_LEFT), right = eo_result_mean_load(source, c, EO_RIGHT);
+    const struct eo_case_result *case_result = &source->evaluation->load_case[k];
+    double left = eo_result_mean_load(source, case_result, EO_LEFT),
+           right = eo_result_mean_load(source, case_result, EO_RIGHT);
     if (fmax(left, right) > UNEVEN * (left + right))
-      say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.", place_of(&c->load_case).text,
-          left > right ? "left" : "right", 100 * fmax(left, right) / (left + right));
+      say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.",
+          place_of(&case_result->load_case).text, left > right ? "left" : "right",
+          100 * fmax(left, right) / (left + right));
   }
 }
 
 /* Where a key cannot mean what it says. */
 static void say_supports(struct list *list, const struct eo_result_source *source)
 {
-  const struct eo_alignment *a = &source->design->alignment;
-  bool floating = a->pinion_axial == EO_AXIAL_FLOATING;
+  const struct eo_alignment *alignment = &source->design->alignment;
+  bool floating = alignment->pinion_axial == EO_AXIAL_FLOATING;
   if (source->ends == 1 && floating && source->design->gear_pair.helix_angle != 0)
     say(list, "A single helical pinion cannot float along its axis: it is held there like the gear. See "
               "alignment.pinion_axial.");
@@ -194,18 +206,19 @@ static void say_body(struct list *list, const struct eo_result_source *source)
 {
   static const double NARROW = 0.5, THIN = 0.5;
   const struct eo_flexibility *flexibility = source->pair->flexibility;
-  const struct eo_geometry *g = &source->pair->geometry;
+  const struct eo_geometry *geometry = &source->pair->geometry;
   for (int m = 0; flexibility && m < 2; m++) {
     if (eo_flexibility_report(flexibility)->support[m] != EO_MEMBER_FLOATING)
       continue;
     double bore = source->design->gear_pair.bore[m] / 2;
-    if (source->ends == 1 && g->helix_angle > 0 && bore > 0 && g->member_width[m] < NARROW * g->root_radius[m])
+    if (source->ends == 1 && geometry->helix_angle > 0 && bore > 0 &&
+        geometry->member_width[m] < NARROW * geometry->root_radius[m])
       say(list,
           "The %s is a narrow disc that carries thrust: it also dishes, which the floating body leaves to the shaft "
           "and "
           "which can be as much as the teeth's own deflection.",
           eo_result_member[m]);
-    if (bore > THIN * g->root_radius[m])
+    if (bore > THIN * geometry->root_radius[m])
       say(list,
           "The rim of the %s is thin, but the floating body takes its bore as filled: with a web or a soft hub choose "
           "body_support \"held_at_bore\".",
@@ -216,28 +229,29 @@ static void say_body(struct list *list, const struct eo_result_source *source)
 /* A rating that fails, or that could not be made. */
 static void say_rating(struct list *list, const struct eo_result_source *source)
 {
-  const struct eo_design_rating *r = source->analysis->rating;
-  const struct eo_rating_settings *s = &source->design->rating;
+  const struct eo_design_rating *rating = source->analysis->rating;
+  const struct eo_rating_settings *settings = &source->design->rating;
   if (!(source->analysis->want & EO_WANT_RATING))
     return;
-  if (!r->rated) {
-    say(list, "Not rated by ISO 6336: %s", r->reason.text);
+  if (!rating->rated) {
+    say(list, "Not rated by ISO 6336: %s", rating->reason.text);
     return;
   }
-  double flank = fmin(r->flank_safety, r->flank_static), root = fmin(r->root_safety, r->root_static);
-  if (flank < s->flank_safety)
-    say(list, "The flank safety S_H %.3g is below the required %.3g.", flank, s->flank_safety);
-  if (root < s->root_safety)
-    say(list, "The root safety S_F %.3g is below the required %.3g.", root, s->root_safety);
+  double flank = fmin(rating->flank_safety, rating->flank_static),
+         root = fmin(rating->root_safety, rating->root_static);
+  if (flank < settings->flank_safety)
+    say(list, "The flank safety S_H %.3g is below the required %.3g.", flank, settings->flank_safety);
+  if (root < settings->root_safety)
+    say(list, "The root safety S_F %.3g is below the required %.3g.", root, settings->root_safety);
 }
 
 /* Flanks that carry and that nobody has modified, beside others that somebody has. */
 static void say_coast(struct list *list, const struct eo_result_source *source)
 {
-  const struct eo_modification *m = &source->design->modification;
+  const struct eo_modification *modification = &source->design->modification;
   bool coast = false;
   for (int i = 0; i < 8; i++)
-    coast = coast || !eo_modification_is_none(&m->coast[i / 2 % 2][i % 2]) ||
+    coast = coast || !eo_modification_is_none(&modification->coast[i / 2 % 2][i % 2]) ||
             source->design->grids.place[EO_COAST_FLANK][i / 2 % 2][i % 2].u_knots > 0;
   for (int k = 0; k < source->evaluation->cases && !coast; k++)
     if (source->evaluation->load_case[k].running.flank == EO_COAST_FLANK) {
@@ -250,27 +264,27 @@ static void say_coast(struct list *list, const struct eo_result_source *source)
 /* What the hunting period came to where it did not come to a plain answer. */
 static void say_pitch(struct list *list, const struct eo_result_source *source)
 {
-  const struct eo_pitch_analysis *a = &source->analysis->pitch;
-  for (int k = 0; k < a->cases; k++) {
-    const struct eo_pitch_case *own = &a->load_case[k];
-    const struct eo_long_response *r = &own->response;
+  const struct eo_pitch_analysis *analysis = &source->analysis->pitch;
+  for (int k = 0; k < analysis->cases; k++) {
+    const struct eo_pitch_case *own = &analysis->load_case[k];
+    const struct eo_long_response *response = &own->response;
     if (own->hunting.failures)
       say(list, "At %.6g N m the loaded contact of single teeth did not converge at %d of %d instants.",
           own->load_case.torque, own->hunting.failures, own->hunting.ends * own->hunting.instants);
-    else if (r->outcome == EO_LONG_CONTACT_LOST)
+    else if (response->outcome == EO_LONG_CONTACT_LOST)
       say(list,
           "With the deviations of single teeth contact is lost for %.3g %% of the time at %.6g N m: the tangent law is "
           "then a rough one.",
-          100 * fmax(r->contact_loss[0], r->contact_loss[1]), own->load_case.torque);
-    else if (r->outcome == EO_LONG_NOT_SETTLED)
+          100 * fmax(response->contact_loss[0], response->contact_loss[1]), own->load_case.torque);
+    else if (response->outcome == EO_LONG_NOT_SETTLED)
       say(list, "At %.6g N m the vibration with single teeth does not repeat with the hunting period.",
           own->load_case.torque);
-    else if (r->outcome == EO_LONG_NO_LAW)
+    else if (response->outcome == EO_LONG_NO_LAW)
       say(list,
           "At %.6g N m the stiffness with single teeth is too uneven for a mesh law: no vibration over the "
           "hunting period.",
           own->load_case.torque);
-    else if (r->outcome == EO_LONG_TOO_LONG)
+    else if (response->outcome == EO_LONG_TOO_LONG)
       say(list, "The hunting period of %d mesh cycles is too long for its vibration: at most %d.", own->hunting.cycles,
           EO_LONG_MOST_CYCLES);
   }
@@ -278,7 +292,7 @@ static void say_pitch(struct list *list, const struct eo_result_source *source)
 
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
-  const struct eo_geometry *g = &source->pair->geometry;
+  const struct eo_geometry *geometry = &source->pair->geometry;
   const char *note = source->pair->flexibility ? eo_flexibility_report(source->pair->flexibility)->note : "";
   if (*note)
     say(list, "%s", note);
@@ -289,7 +303,7 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
   say_supports(list, source);
   say_body(list, source);
   if (source->design->objective.relief_inside_active_flank &&
-      eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
+      eo_objective_relief_outside(&source->design->modification, geometry->rack_bottom, geometry->rack_top))
     say(list, "A relief starts outside the active flank and takes nothing off where the teeth touch.");
   if (source->analysis->value.sums.failed)
     say(list, "J is not known because a load case has no result.");

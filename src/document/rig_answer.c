@@ -64,19 +64,19 @@ static json_t *encode_comparison(const struct eo_rig_selection *selection, const
                                  const struct eo_measured *measured, const struct eo_design *design)
 {
   char hash[EO_HASH_LENGTH + 1];
-  struct eo_object o = eo_object_open();
+  struct eo_object object = eo_object_open();
   json_t *inner = eo_comparison_encode(comparison, measured), *reduction;
   size_t i;
-  o.failed = o.failed || !inner;
+  object.failed = object.failed || !inner;
   json_array_foreach(json_object_get(inner, "reductions"), i, reduction)
-      eo_json_put(reduction, "id", json_integer(selection->id[comparison->reduction[i].modified]), &o.failed);
-  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&o, "id", encode_ids(selection));
-  eo_object_put(&o, "left_out", encode_left_out(selection));
-  o.failed = json_object_update(o.json, inner) != 0 || o.failed;
+      eo_json_put(reduction, "id", json_integer(selection->id[comparison->reduction[i].modified]), &object.failed);
+  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(&object, "id", encode_ids(selection));
+  eo_object_put(&object, "left_out", encode_left_out(selection));
+  object.failed = json_object_update(object.json, inner) != 0 || object.failed;
   json_decref(inner);
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 void eo_rig_comparison_write(const struct eo_rig_selection *selection, const struct eo_comparison *comparison,
@@ -130,10 +130,10 @@ const struct eo_outline eo_rig_fit_outline = EO_OUTLINE("Fit", fit_rows);
 void eo_rig_fit_write(const struct eo_rig_selection *selection, const struct eo_update *update, const char *given,
                       const struct eo_design *design, const struct eo_design *updated, struct eo_text *text)
 {
-  struct eo_object o = {.json = eo_update_encode(update)};
-  o.failed = !o.json;
-  eo_object_put(&o, "id", encode_ids(selection));
-  eo_object_put(&o, "left_out", encode_left_out(selection));
-  eo_object_put(&o, "design", changed_design(given, design, updated));
-  write(text, eo_object_close(&o));
+  struct eo_object object = {.json = eo_update_encode(update)};
+  object.failed = !object.json;
+  eo_object_put(&object, "id", encode_ids(selection));
+  eo_object_put(&object, "left_out", encode_left_out(selection));
+  eo_object_put(&object, "design", changed_design(given, design, updated));
+  write(text, eo_object_close(&object));
 }

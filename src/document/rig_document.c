@@ -173,11 +173,11 @@ static void write_heading(const struct eo_rig_request *request, FILE *stream)
     }
 }
 
-static void write_cell(const struct eo_rig_request *r, double value, int decimals, FILE *stream)
+static void write_cell(const struct eo_rig_request *request, double value, int decimals, FILE *stream)
 {
   char text[64];
   snprintf(text, sizeof text, "%.*f", decimals, value);
-  char *point = r->decimal_comma ? strchr(text, '.') : NULL;
+  char *point = request->decimal_comma ? strchr(text, '.') : NULL;
   if (point)
     *point = ',';
   fputs(text, stream);
@@ -227,7 +227,7 @@ static json_t *column(int count, const double *value)
 static json_t *encode_truth(const struct eo_synthetic *synthetic, int orders)
 {
   double amplitude[EO_SYNTHETIC_ORDERS], acceleration[EO_SYNTHETIC_ORDERS], rms[EO_SYNTHETIC_ORDERS];
-  struct eo_object o = eo_object_open();
+  struct eo_object object = eo_object_open();
   double speed = eo_synthetic_speed(synthetic);
   char key[40];
   for (int h = 1; h <= orders; h++) {
@@ -236,12 +236,12 @@ static json_t *encode_truth(const struct eo_synthetic *synthetic, int orders)
     rms[h - 1] = eo_synthetic_rms(synthetic, h);
   }
   snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
-  eo_object_put(&o, "mean_rpm", eo_json_quantity(speed, &eo_unit_rpm));
-  eo_object_put(&o, key, eo_json_quantity(rms[orders - 1], NULL));
-  eo_object_put(&o, "line_amp_um", column(orders, amplitude));
-  eo_object_put(&o, "line_acc", column(orders, acceleration));
-  eo_object_put(&o, "rms_by_H", column(orders, rms));
-  return eo_object_close(&o);
+  eo_object_put(&object, "mean_rpm", eo_json_quantity(speed, &eo_unit_rpm));
+  eo_object_put(&object, key, eo_json_quantity(rms[orders - 1], NULL));
+  eo_object_put(&object, "line_amp_um", column(orders, amplitude));
+  eo_object_put(&object, "line_acc", column(orders, acceleration));
+  eo_object_put(&object, "rms_by_H", column(orders, rms));
+  return eo_object_close(&object);
 }
 
 static const char *expected_finding(enum eo_synthetic_fault fault)

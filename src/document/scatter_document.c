@@ -47,9 +47,10 @@ static enum eo_code read_values(const struct search *search, struct eo_scatter_i
 /* Rows with the same name of a group share a number; 0: none. */
 static int group_number(const struct search *search)
 {
-  const struct eo_tolerance_settings *t = &search->design->tolerance;
-  for (int i = 0; i < t->rows && *search->row->group; i++)
-    if (t->row[i].kind == search->row->kind && strcmp(t->row[i].group, search->row->group) == 0)
+  const struct eo_tolerance_settings *tolerance_settings = &search->design->tolerance;
+  for (int i = 0; i < tolerance_settings->rows && *search->row->group; i++)
+    if (tolerance_settings->row[i].kind == search->row->kind &&
+        strcmp(tolerance_settings->row[i].group, search->row->group) == 0)
       return i + 1;
   return 0;
 }
@@ -194,11 +195,11 @@ static enum eo_code add_row(struct search *search)
 
 static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
 {
-  const struct eo_tolerance_settings *t = &design->tolerance;
-  for (int i = 0; i < t->rows; i++) {
-    struct search search = {.scatter = scatter, .design = design, .row = &t->row[i], .error = error};
+  const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
+  for (int i = 0; i < tolerance_settings->rows; i++) {
+    struct search search = {.scatter = scatter, .design = design, .row = &tolerance_settings->row[i], .error = error};
     snprintf(search.pointer, sizeof search.pointer, "/tolerance/inputs/%d/key", i);
-    if (t->preset == EO_SCATTER_AS_MEASURED && t->row[i].kind != EO_SCATTER_VALUES)
+    if (tolerance_settings->preset == EO_SCATTER_AS_MEASURED && tolerance_settings->row[i].kind != EO_SCATTER_VALUES)
       return refuse(&search, "with the preset as_measured every input has values.");
     EO_TRY(add_row(&search));
   }
@@ -225,7 +226,7 @@ static enum eo_code add_normal(struct eo_scatter *scatter, const struct eo_desig
 static enum eo_code tolerance_of(const struct eo_design *design, int member, int end,
                                  struct eo_flank_tolerance *tolerance, struct eo_error *error)
 {
-  const struct eo_tolerance_settings *t = &design->tolerance;
+  const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
   const struct eo_gear_pair *pair = &design->gear_pair;
   struct eo_error found;
   struct eo_tolerance_input in = {.reference_diameter = pair->normal_module / cos(pair->helix_angle) *
@@ -233,9 +234,9 @@ static enum eo_code tolerance_of(const struct eo_design *design, int member, int
                                   .normal_module = pair->normal_module,
                                   .face_width = eo_gear_pair_face_width(pair, end),
                                   .teeth = pair->teeth[member],
-                                  .grade = t->grade,
+                                  .grade = tolerance_settings->grade,
                                   .total_contact_ratio = NAN};
-  if (eo_flank_tolerance(tolerance, (enum eo_tolerance_edition)t->edition, &in, &found))
+  if (eo_flank_tolerance(tolerance, (enum eo_tolerance_edition)tolerance_settings->edition, &in, &found))
     return eo_error_set(error, EO_ERROR_INPUT, "/tolerance/class", "%.380s", found.text);
   return EO_OK;
 }
@@ -263,16 +264,16 @@ static enum eo_code add_ground(struct eo_scatter *scatter, const struct eo_desig
 /* Slopes by f_H, a barrel and a crowning by the form tolerances f_f: what of a form deviation a flank has as a whole.
  */
 static enum eo_code add_flank(struct eo_scatter *scatter, const struct eo_design *design,
-                              const struct eo_flank_tolerance *t, int member, int end, struct eo_error *error)
+                              const struct eo_flank_tolerance *tolerance, int member, int end, struct eo_error *error)
 {
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct {
     const char *key;
     double limit;
-  } all[] = {{"profile_slope_um", t->profile_slope},
-             {"profile_crowning_um", t->profile_form},
-             {"helix_slope_um", t->helix_slope},
-             {"lead_crowning_um", t->helix_form}};
+  } all[] = {{"profile_slope_um", tolerance->profile_slope},
+             {"profile_crowning_um", tolerance->profile_form},
+             {"helix_slope_um", tolerance->helix_slope},
+             {"lead_crowning_um", tolerance->helix_form}};
   char flank[64], key[EO_SCATTER_KEY];
   snprintf(flank, sizeof flank, "modification.%s.%s", member_name[member], end_name[end]);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
@@ -286,15 +287,15 @@ static enum eo_code add_flank(struct eo_scatter *scatter, const struct eo_design
    span, with the F_beta of the gear. */
 static enum eo_code add_preset(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
 {
-  struct eo_flank_tolerance t = {0};
+  struct eo_flank_tolerance tolerance = {0};
   for (int member = 0; member < 2; member++) {
     for (int end = 0; end < design->gear_pair.ends; end++) {
-      EO_TRY(tolerance_of(design, member, end, &t, error));
-      EO_TRY(add_flank(scatter, design, &t, member, end, error));
+      EO_TRY(tolerance_of(design, member, end, &tolerance, error));
+      EO_TRY(add_flank(scatter, design, &tolerance, member, end, error));
     }
   }
-  EO_TRY(tolerance_of(design, EO_GEAR, EO_LEFT, &t, error));
-  struct eo_axis_tolerance axis = eo_axis_tolerance(t.helix_total, 1);
+  EO_TRY(tolerance_of(design, EO_GEAR, EO_LEFT, &tolerance, error));
+  struct eo_axis_tolerance axis = eo_axis_tolerance(tolerance.helix_total, 1);
   double per_width = 180 / M_PI / design->gear_pair.face_width;
   EO_TRY(add_normal(scatter, design, "alignment.shaft_angle_error_in_plane_deg", axis.in_plane * per_width, error));
   return add_normal(scatter, design, "alignment.shaft_angle_error_out_of_plane_deg", axis.out_of_plane * per_width,
@@ -304,12 +305,13 @@ static enum eo_code add_preset(struct eo_scatter *scatter, const struct eo_desig
 enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_design *design, bool assume_class,
                                   bool *assumed, struct eo_error *error)
 {
-  const struct eo_tolerance_settings *t = &design->tolerance;
-  bool nothing = t->preset == EO_SCATTER_AS_STATED && t->rows == 0;
+  const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
+  bool nothing = tolerance_settings->preset == EO_SCATTER_AS_STATED && tolerance_settings->rows == 0;
   scatter->inputs = 0;
   if (assumed)
     *assumed = nothing && assume_class;
-  if ((nothing && assume_class) || t->preset == EO_SCATTER_ISO_CLASS || t->preset == EO_SCATTER_GROUND)
+  if ((nothing && assume_class) || tolerance_settings->preset == EO_SCATTER_ISO_CLASS ||
+      tolerance_settings->preset == EO_SCATTER_GROUND)
     EO_TRY(add_preset(scatter, design, error));
   EO_TRY(add_stated(scatter, design, error));
   return eo_scatter_settle(scatter, error);
@@ -366,18 +368,18 @@ enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *er
 
 void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size)
 {
-  const struct eo_distribution *d = &input->deviation;
+  const struct eo_distribution *distribution = &input->deviation;
   int length = 0;
-  if (d->kind == EO_DISTRIBUTION_UNIFORM)
-    snprintf(text, size, "uniform, %+.4g .. %+.4g", d->low, d->high);
-  else if (d->kind == EO_DISTRIBUTION_LIST)
+  if (distribution->kind == EO_DISTRIBUTION_UNIFORM)
+    snprintf(text, size, "uniform, %+.4g .. %+.4g", distribution->low, distribution->high);
+  else if (distribution->kind == EO_DISTRIBUTION_LIST)
     snprintf(text, size, "%d values", input->values);
   else
-    length = snprintf(text, size, "normal, sigma %.4g", d->sigma);
-  if (length > 0 && d->mean != 0)
-    length += snprintf(text + length, size - (size_t)length, ", bias %+.4g", d->mean);
-  if (length > 0 && !isinf(d->cut))
-    length += snprintf(text + length, size - (size_t)length, ", cut at %.3g sigma", d->cut);
+    length = snprintf(text, size, "normal, sigma %.4g", distribution->sigma);
+  if (length > 0 && distribution->mean != 0)
+    length += snprintf(text + length, size - (size_t)length, ", bias %+.4g", distribution->mean);
+  if (length > 0 && !isinf(distribution->cut))
+    length += snprintf(text + length, size - (size_t)length, ", cut at %.3g sigma", distribution->cut);
   if (length > 0 && input->fixed_sum > 0)
     snprintf(text + length, size - (size_t)length, ", fixed sum");
 }

@@ -21,16 +21,16 @@ static const struct eo_field *flank_field(const char *key)
 /* The paper's five come first among eo_variable_parameters. */
 enum { PRESET = 5 };
 
-static struct eo_range preset_bounds(const struct eo_optimization *o, const char *key)
+static struct eo_range preset_bounds(const struct eo_optimization *optimization, const char *key)
 {
   const struct {
     const char *key;
     struct eo_range range;
-  } preset[PRESET] = {{"tip_relief_um", o->tip_relief},
-                      {"root_relief_um", o->root_relief},
-                      {"tip_relief_start_mm", o->tip_relief_start},
-                      {"root_relief_start_mm", o->root_relief_start},
-                      {"lead_crowning_um", o->lead_crowning}};
+  } preset[PRESET] = {{"tip_relief_um", optimization->tip_relief},
+                      {"root_relief_um", optimization->root_relief},
+                      {"tip_relief_start_mm", optimization->tip_relief_start},
+                      {"root_relief_start_mm", optimization->root_relief_start},
+                      {"lead_crowning_um", optimization->lead_crowning}};
   for (int i = 0; i < PRESET; i++)
     if (strcmp(preset[i].key, key) == 0) {
       const struct eo_unit *unit = flank_field(key)->unit;
@@ -39,11 +39,11 @@ static struct eo_range preset_bounds(const struct eo_optimization *o, const char
   return (struct eo_range){NAN, NAN};
 }
 
-static void add_preset(struct eo_study_space *space, const struct eo_optimization *o, int end)
+static void add_preset(struct eo_study_space *space, const struct eo_optimization *optimization, int end)
 {
   for (int i = 0; i < PRESET; i++) {
     const char *key = eo_variable_parameters[i];
-    struct eo_range bounds = preset_bounds(o, key);
+    struct eo_range bounds = preset_bounds(optimization, key);
     space->variable[space->count++] = (struct eo_study_variable){
         .member = EO_PINION, .end = end, .field = flank_field(key), .low = bounds.low, .high = bounds.high};
   }
@@ -68,9 +68,10 @@ static struct eo_flank_modification *flank_of(struct eo_modification *modificati
   return side == EO_DRIVE_FLANK ? &modification->flank[member][end] : &modification->coast[member][end];
 }
 
-static bool covers(const struct eo_study_variable *v, int side, int end)
+static bool covers(const struct eo_study_variable *variable, int side, int end)
 {
-  return (v->end == end || v->end == EO_BOTH_ENDS) && (v->side == side || v->side == EO_BOTH_FLANKS);
+  return (variable->end == end || variable->end == EO_BOTH_ENDS) &&
+         (variable->side == side || variable->side == EO_BOTH_FLANKS);
 }
 
 static bool overlap(const struct eo_study_variable *a, const struct eo_study_variable *b)
@@ -90,12 +91,12 @@ static enum eo_code fault(const char *pointer_format, int i, struct eo_error *er
 }
 
 /* Every flank that it covers has a grid. */
-static bool has_grids(const struct eo_study_variable *v, const struct eo_design *design)
+static bool has_grids(const struct eo_study_variable *variable, const struct eo_design *design)
 {
   bool has = true;
   for (int side = 0; side < 2; side++)
     for (int end = 0; end < design->gear_pair.ends; end++)
-      has = has && (!covers(v, side, end) || design->grids.place[side][v->member][end].u_knots > 0);
+      has = has && (!covers(variable, side, end) || design->grids.place[side][variable->member][end].u_knots > 0);
   return has;
 }
 
@@ -146,34 +147,34 @@ static void clear_start(struct eo_flank_modification *flank, const struct eo_fie
   flank->place[side] = (struct eo_relief_place){NAN, NAN, NAN, NAN};
 }
 
-static void set_value(const struct eo_study_variable *v, struct eo_modification *modification, double value)
+static void set_value(const struct eo_study_variable *variable, struct eo_modification *modification, double value)
 {
   for (int side = 0; side < 2; side++)
     for (int end = 0; end < 2; end++)
-      if (covers(v, side, end)) {
-        struct eo_flank_modification *flank = flank_of(modification, side, v->member, end);
-        clear_start(flank, v->field);
-        set_number(flank, v->field, value);
+      if (covers(variable, side, end)) {
+        struct eo_flank_modification *flank = flank_of(modification, side, variable->member, end);
+        clear_start(flank, variable->field);
+        set_number(flank, variable->field, value);
       }
 }
 
 /* Of the first flank that it covers. */
-static double value_of(const struct eo_study_variable *v, const struct eo_modification *modification)
+static double value_of(const struct eo_study_variable *variable, const struct eo_modification *modification)
 {
-  const struct eo_flank_modification *flank = v->side == EO_COAST_FLANK ? modification->coast[v->member]
-                                                                        : modification->flank[v->member];
-  return number_at(&flank[v->end == EO_RIGHT], v->field);
+  const struct eo_flank_modification *flank = variable->side == EO_COAST_FLANK ? modification->coast[variable->member]
+                                                                               : modification->flank[variable->member];
+  return number_at(&flank[variable->end == EO_RIGHT], variable->field);
 }
 
 /* Whether a flank comes nearer to an impossible one as the number falls: lengths of reliefs, and starts of root reliefs
    from the axis. */
-static bool is_tight_when_low(const struct eo_study_variable *v)
+static bool is_tight_when_low(const struct eo_study_variable *variable)
 {
-  int way, side = start_of(v->field, &way);
+  int way, side = start_of(variable->field, &way);
   if (side >= 0 && way > 0)
     return side == EO_ROOT_SIDE ||
-           v->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
-  return strstr(v->field->key, "_length_mm") != NULL;
+           variable->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
+  return strstr(variable->field->key, "_length_mm") != NULL;
 }
 
 /* Both extremes must be flanks: everything at its upper bound, and the same with the shortest end reliefs. */
@@ -185,9 +186,10 @@ static enum eo_code check_extremes(const struct eo_study_space *space, const str
   for (int shortest = 0; shortest < 2 && !code; shortest++) {
     struct eo_error found;
     for (int i = 0; i < space->count; i++) {
-      const struct eo_study_variable *v = &space->variable[i];
-      set_value(v, &extreme.modification,
-                eo_unit_in(v->field->unit, shortest && is_tight_when_low(v) ? v->low : v->high));
+      const struct eo_study_variable *variable = &space->variable[i];
+      set_value(
+          variable, &extreme.modification,
+          eo_unit_in(variable->field->unit, shortest && is_tight_when_low(variable) ? variable->low : variable->high));
     }
     if (eo_modification_check(&extreme, geometry, &found))
       code = eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
@@ -199,16 +201,16 @@ static enum eo_code check_extremes(const struct eo_study_space *space, const str
 enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_design *design,
                                  const struct eo_geometry *geometry, struct eo_error *error)
 {
-  const struct eo_optimization *o = &design->optimization;
+  const struct eo_optimization *optimization = &design->optimization;
   struct eo_study_space space = {0};
   enum eo_code code = eo_design_check_search(design, geometry, error);
   if (code)
     return code;
-  if (o->variables == EO_VARIABLES_SHARED)
-    add_preset(&space, o, design->gear_pair.ends == 2 ? EO_BOTH_ENDS : EO_LEFT);
-  for (int end = 0; end < design->gear_pair.ends && o->variables == EO_VARIABLES_PER_END; end++)
-    add_preset(&space, o, end);
-  for (int i = 0; i < o->listed && !code; i++)
+  if (optimization->variables == EO_VARIABLES_SHARED)
+    add_preset(&space, optimization, design->gear_pair.ends == 2 ? EO_BOTH_ENDS : EO_LEFT);
+  for (int end = 0; end < design->gear_pair.ends && optimization->variables == EO_VARIABLES_PER_END; end++)
+    add_preset(&space, optimization, end);
+  for (int i = 0; i < optimization->listed && !code; i++)
     code = add_listed(&space, design, i, error);
   if (!code)
     code = check_extremes(&space, design, geometry, error);
@@ -222,38 +224,40 @@ void eo_study_space_apply(const struct eo_study_space *space, const struct eo_mo
 {
   *modification = *base;
   for (int i = 0; i < space->count; i++) {
-    const struct eo_study_variable *v = &space->variable[i];
-    double value = fmin(fmax(v->low + x[i] * (v->high - v->low), v->low), v->high);
-    set_value(v, modification, eo_unit_in(v->field->unit, value));
+    const struct eo_study_variable *variable = &space->variable[i];
+    double value = fmin(fmax(variable->low + x[i] * (variable->high - variable->low), variable->low), variable->high);
+    set_value(variable, modification, eo_unit_in(variable->field->unit, value));
   }
 }
 
 /* Whether all flanks that the variable covers have one value. */
-static bool is_tied(const struct eo_study_variable *v, const struct eo_modification *modification)
+static bool is_tied(const struct eo_study_variable *variable, const struct eo_modification *modification)
 {
-  double value = value_of(v, modification);
+  double value = value_of(variable, modification);
   bool same = true;
   for (int side = 0; side < 2; side++)
     for (int end = 0; end < 2; end++) {
       const struct eo_flank_modification(*flank)[2] = side == EO_DRIVE_FLANK ? modification->flank
                                                                              : modification->coast;
-      same = same && (!covers(v, side, end) || number_at(&flank[v->member][end], v->field) == value);
+      same = same &&
+             (!covers(variable, side, end) || number_at(&flank[variable->member][end], variable->field) == value);
     }
   return same;
 }
 
 /* Puts back what the base has in place of the variable. */
-static void restore(const struct eo_study_variable *v, const struct eo_modification *base, struct eo_modification *rest)
+static void restore(const struct eo_study_variable *variable, const struct eo_modification *base,
+                    struct eo_modification *rest)
 {
-  int way, start = start_of(v->field, &way);
+  int way, start = start_of(variable->field, &way);
   for (int side = 0; side < 2; side++)
     for (int end = 0; end < 2; end++) {
-      const struct eo_flank_modification *from = side == EO_DRIVE_FLANK ? &base->flank[v->member][end]
-                                                                        : &base->coast[v->member][end];
-      struct eo_flank_modification *to = flank_of(rest, side, v->member, end);
-      if (!covers(v, side, end))
+      const struct eo_flank_modification *from = side == EO_DRIVE_FLANK ? &base->flank[variable->member][end]
+                                                                        : &base->coast[variable->member][end];
+      struct eo_flank_modification *to = flank_of(rest, side, variable->member, end);
+      if (!covers(variable, side, end))
         continue;
-      set_number(to, v->field, number_at(from, v->field));
+      set_number(to, variable->field, number_at(from, variable->field));
       if (start == EO_TIP_SIDE)
         to->tip_relief_start = from->tip_relief_start;
       if (start == EO_ROOT_SIDE)
@@ -268,12 +272,12 @@ bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_m
 {
   struct eo_modification rest = *modification;
   for (int i = 0; i < space->count; i++) {
-    const struct eo_study_variable *v = &space->variable[i];
-    x[i] = (eo_study_variable_value(v, modification) - v->low) / (v->high - v->low);
-    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) || !is_tied(v, modification))
+    const struct eo_study_variable *variable = &space->variable[i];
+    x[i] = (eo_study_variable_value(variable, modification) - variable->low) / (variable->high - variable->low);
+    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) || !is_tied(variable, modification))
       return false;
     x[i] = fmin(fmax(x[i], 0), 1);
-    restore(v, base, &rest);
+    restore(variable, base, &rest);
   }
   for (int i = 0; i < 4; i++)
     if (!eo_modification_equal(&rest.flank[i / 2][i % 2], &base->flank[i / 2][i % 2]) ||
@@ -282,16 +286,17 @@ bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_m
   return true;
 }
 
-double eo_study_variable_value(const struct eo_study_variable *v, const struct eo_modification *modification)
+double eo_study_variable_value(const struct eo_study_variable *variable, const struct eo_modification *modification)
 {
-  return eo_unit_out(v->field->unit, value_of(v, modification));
+  return eo_unit_out(variable->field->unit, value_of(variable, modification));
 }
 
-void eo_study_variable_name(const struct eo_study_variable *v, char *name, size_t size)
+void eo_study_variable_name(const struct eo_study_variable *variable, char *name, size_t size)
 {
   static const char *const member[2] = {"pinion", "gear"}, *const end[3] = {"left", "right", "both"};
   static const char *const flank[3] = {"", "coast/", "drive+coast/"};
-  snprintf(name, size, "%s/%s/%s%s", member[v->member], end[v->end], flank[v->side], v->field->key);
+  snprintf(name, size, "%s/%s/%s%s", member[variable->member], end[variable->end], flank[variable->side],
+           variable->field->key);
 }
 
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1])

@@ -39,8 +39,8 @@ struct variable {
 
 static json_t *write_bounds(const void *source)
 {
-  const struct variable *v = source;
-  return json_pack("[o,o]", json_real(v->variable->low), json_real(v->variable->high));
+  const struct variable *variable = source;
+  return json_pack("[o,o]", json_real(variable->variable->low), json_real(variable->variable->high));
 }
 
 static json_t *write_best_value(const void *source)
@@ -59,14 +59,15 @@ static const struct eo_outline_row variable_rows[] = {
 };
 static const struct eo_outline variable_outline = EO_OUTLINE("StudyVariable", variable_rows);
 
-static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *v)
+static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *variable)
 {
-  struct variable row = {.variable = v,
-                         .member = v->member,
-                         .end = v->end,
-                         .parameter = v->field->key,
-                         .best = result->best.there ? eo_study_variable_value(v, &result->best.modification) : NAN};
-  eo_study_variable_name(v, row.name, sizeof row.name);
+  struct variable row = {.variable = variable,
+                         .member = variable->member,
+                         .end = variable->end,
+                         .parameter = variable->field->key,
+                         .best = result->best.there ? eo_study_variable_value(variable, &result->best.modification)
+                                                    : NAN};
+  eo_study_variable_name(variable, row.name, sizeof row.name);
   return eo_outline_encode(&variable_outline, &row);
 }
 
@@ -87,10 +88,10 @@ struct point {
 
 static json_t *write_cases(const void *source)
 {
-  const struct point *p = source;
+  const struct point *point = source;
   json_t *cases = json_array();
-  for (int k = 0; k < p->design->load_cases && cases; k++)
-    cases = append(cases, eo_result_raw_case(&p->design->load_case[k], &p->point->raw[k]));
+  for (int k = 0; k < point->design->load_cases && cases; k++)
+    cases = append(cases, eo_result_raw_case(&point->design->load_case[k], &point->point->raw[k]));
   return cases;
 }
 
@@ -177,14 +178,14 @@ static json_t *encode_modification(const struct eo_design *design, const struct 
 
 static json_t *write_best_modification(const void *source)
 {
-  const struct source *s = source;
-  return encode_modification(s->design, &s->result.best.modification);
+  const struct source *this_source = source;
+  return encode_modification(this_source->design, &this_source->result.best.modification);
 }
 
 static json_t *write_best_objectives(const void *source)
 {
-  const struct source *s = source;
-  return encode_point(&s->result.best, s->design);
+  const struct source *this_source = source;
+  return encode_point(&this_source->result.best, this_source->design);
 }
 
 static json_t *write_reductions(const void *source)
@@ -194,8 +195,8 @@ static json_t *write_reductions(const void *source)
 
 static json_t *write_analysis(const void *source)
 {
-  const struct source *s = source;
-  return s->analysis ? json_incref((json_t *)s->analysis) : json_null();
+  const struct source *this_source = source;
+  return this_source->analysis ? json_incref((json_t *)this_source->analysis) : json_null();
 }
 
 static const struct eo_outline_row best_rows[] = {
@@ -234,10 +235,11 @@ struct front_point {
 
 static json_t *write_values(const void *source)
 {
-  const struct front_point *p = source;
+  const struct front_point *front_point = source;
   json_t *values = json_array();
-  for (int j = 0; j < p->result->space.count && values; j++)
-    values = append(values, json_real(eo_study_variable_value(&p->result->space.variable[j], &p->point->modification)));
+  for (int j = 0; j < front_point->result->space.count && values; j++)
+    values = append(values, json_real(eo_study_variable_value(&front_point->result->space.variable[j],
+                                                              &front_point->point->modification)));
   return values;
 }
 
@@ -325,8 +327,8 @@ static json_t *write_best(const void *source)
 
 static json_t *write_unmodified(const void *source)
 {
-  const struct source *s = source;
-  return encode_point(&s->result.unmodified, s->design);
+  const struct source *this_source = source;
+  return encode_point(&this_source->result.unmodified, this_source->design);
 }
 
 static const struct eo_outline_row study_rows[] = {

@@ -175,102 +175,104 @@ static const struct eo_outline_row sweep_rows[] = {
 const struct eo_outline eo_sweep_outline = EO_OUTLINE("Sweep", sweep_rows);
 
 /* Puts a value below the objects that the path names, which are made when missing. */
-static void put_at(struct eo_object *o, const char *path, json_t *value)
+static void put_at(struct eo_object *object, const char *path, json_t *value)
 {
-  json_t *at = o->json;
+  json_t *at = object->json;
   const char *slash;
   for (; (slash = strchr(path, '/')); path = slash + 1) {
     char key[40];
     snprintf(key, sizeof key, "%.*s", (int)(slash - path), path);
     if (!json_object_get(at, key))
-      eo_json_put(at, key, json_object(), &o->failed);
+      eo_json_put(at, key, json_object(), &object->failed);
     at = json_object_get(at, key);
   }
-  eo_json_put(at, path, value, &o->failed);
+  eo_json_put(at, path, value, &object->failed);
 }
 
-static void put_columns(struct eo_object *o, const struct eo_sweep *s, int columns, const struct column *column,
-                        int rows, const void *row, size_t size)
+static void put_columns(struct eo_object *object, const struct eo_sweep *sweep, int columns,
+                        const struct column *column, int rows, const void *row, size_t size)
 {
   for (int i = 0; i < columns; i++)
-    if (column[i].end < s->ends)
-      put_at(o, column[i].path,
+    if (column[i].end < sweep->ends)
+      put_at(object, column[i].path,
              eo_json_reals(rows, (const double *)(const void *)((const char *)row + column[i].offset),
                            (int)(size / sizeof(double)), column[i].unit, EO_DIGITS_NUMBER));
 }
 
-static json_t *encode_torques(const struct eo_sweep *s, int variant)
+static json_t *encode_torques(const struct eo_sweep *sweep, int variant)
 {
-  struct eo_object o = eo_object_open();
+  struct eo_object object = eo_object_open();
   json_t *failures = json_array();
-  for (int i = 0; i < s->torques; i++)
-    o.failed = o.failed ||
-               json_array_append_new(failures, json_integer(s->at_torque[variant][i].contact_failures)) != 0;
-  put_columns(&o, s, TORQUE_COLUMNS, torque_columns, s->torques, s->at_torque[variant], sizeof *s->at_torque[variant]);
-  eo_object_put(&o, "contact_failures", failures);
-  return eo_object_close(&o);
+  for (int i = 0; i < sweep->torques; i++)
+    object.failed = object.failed ||
+                    json_array_append_new(failures, json_integer(sweep->at_torque[variant][i].contact_failures)) != 0;
+  put_columns(&object, sweep, TORQUE_COLUMNS, torque_columns, sweep->torques, sweep->at_torque[variant],
+              sizeof *sweep->at_torque[variant]);
+  eo_object_put(&object, "contact_failures", failures);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_points(const struct eo_sweep *s, int variant, int direction)
+static json_t *encode_points(const struct eo_sweep *sweep, int variant, int direction)
 {
-  int points = s->torques * s->speeds;
-  const struct eo_sweep_point *point = s->point[variant][direction];
-  struct eo_object o = eo_object_open();
+  int points = sweep->torques * sweep->speeds;
+  const struct eo_sweep_point *point = sweep->point[variant][direction];
+  struct eo_object object = eo_object_open();
   json_t *outcomes = json_array(), *back = json_array();
-  for (int i = 0; i < points && !o.failed; i++)
-    o.failed = json_array_append_new(outcomes, json_string(outcome_of(&point[i]))) != 0 ||
-               json_array_append_new(back, json_boolean(point[i].back_contact)) != 0;
-  eo_object_put(&o, "outcome", outcomes);
-  put_columns(&o, s, POINT_COLUMNS, point_columns, points, point, sizeof *point);
-  eo_object_put(&o, "back_contact", back);
-  return eo_object_close(&o);
+  for (int i = 0; i < points && !object.failed; i++)
+    object.failed = json_array_append_new(outcomes, json_string(outcome_of(&point[i]))) != 0 ||
+                    json_array_append_new(back, json_boolean(point[i].back_contact)) != 0;
+  eo_object_put(&object, "outcome", outcomes);
+  put_columns(&object, sweep, POINT_COLUMNS, point_columns, points, point, sizeof *point);
+  eo_object_put(&object, "back_contact", back);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_variant(const struct eo_sweep *s, int variant)
+static json_t *encode_variant(const struct eo_sweep *sweep, int variant)
 {
-  struct eo_object o = eo_object_open_as(&variant_outline);
-  eo_object_put(&o, "by_torque", encode_torques(s, variant));
-  eo_object_put(&o, "points", encode_points(s, variant, EO_SWEEP_UP));
-  eo_object_put(&o, "down", s->branches[variant] ? encode_points(s, variant, EO_SWEEP_DOWN) : json_null());
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&variant_outline);
+  eo_object_put(&object, "by_torque", encode_torques(sweep, variant));
+  eo_object_put(&object, "points", encode_points(sweep, variant, EO_SWEEP_UP));
+  eo_object_put(&object, "down", sweep->branches[variant] ? encode_points(sweep, variant, EO_SWEEP_DOWN) : json_null());
+  return eo_object_close(&object);
 }
 
-static json_t *encode_modes(const struct eo_sweep *s)
+static json_t *encode_modes(const struct eo_sweep *sweep)
 {
-  struct eo_object o = eo_object_open_as(&mode_outline);
+  struct eo_object object = eo_object_open_as(&mode_outline);
   json_t *frequencies = json_array(), *ratios = json_array();
-  for (int i = 0; i < s->torques && !o.failed; i++) {
-    const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][i].modes;
-    o.failed =
+  for (int i = 0; i < sweep->torques && !object.failed; i++) {
+    const struct eo_dynamics_modes *modes = &sweep->at_torque[EO_SWEEP_DESIGN][i].modes;
+    object.failed =
         json_array_append_new(frequencies,
                               eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
         json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
   }
-  eo_object_put(&o, "frequency_Hz", frequencies);
-  eo_object_put(&o, "damping_ratio", ratios);
-  return eo_object_close(&o);
+  eo_object_put(&object, "frequency_Hz", frequencies);
+  eo_object_put(&object, "damping_ratio", ratios);
+  return eo_object_close(&object);
 }
 
 /* Modes count from 1, like orders. */
-static json_t *encode_crossings(const struct eo_sweep *s)
+static json_t *encode_crossings(const struct eo_sweep *sweep)
 {
-  struct eo_object o = eo_object_open_as(&crossing_outline);
+  struct eo_object object = eo_object_open_as(&crossing_outline);
   json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(),
          *speed = json_array();
-  for (int i = 0; i < s->crossings && !o.failed; i++) {
-    const struct eo_sweep_crossing *c = &s->crossing[i];
-    o.failed = json_array_append_new(torque, eo_json_quantity(s->torque[c->torque], &eo_unit_Nm)) != 0 ||
-               json_array_append_new(mode, json_integer(c->mode + 1)) != 0 ||
-               json_array_append_new(order, json_integer(c->order)) != 0 ||
-               json_array_append_new(frequency, eo_json_quantity(c->frequency, &eo_unit_Hz)) != 0 ||
-               json_array_append_new(speed, eo_json_quantity(c->speed, &eo_unit_rpm)) != 0;
+  for (int i = 0; i < sweep->crossings && !object.failed; i++) {
+    const struct eo_sweep_crossing *crossing = &sweep->crossing[i];
+    object.failed = json_array_append_new(torque, eo_json_quantity(sweep->torque[crossing->torque], &eo_unit_Nm)) !=
+                        0 ||
+                    json_array_append_new(mode, json_integer(crossing->mode + 1)) != 0 ||
+                    json_array_append_new(order, json_integer(crossing->order)) != 0 ||
+                    json_array_append_new(frequency, eo_json_quantity(crossing->frequency, &eo_unit_Hz)) != 0 ||
+                    json_array_append_new(speed, eo_json_quantity(crossing->speed, &eo_unit_rpm)) != 0;
   }
-  eo_object_put(&o, "torque_Nm", torque);
-  eo_object_put(&o, "mode", mode);
-  eo_object_put(&o, "order", order);
-  eo_object_put(&o, "frequency_Hz", frequency);
-  eo_object_put(&o, "speed_rpm", speed);
-  return eo_object_close(&o);
+  eo_object_put(&object, "torque_Nm", torque);
+  eo_object_put(&object, "mode", mode);
+  eo_object_put(&object, "order", order);
+  eo_object_put(&object, "frequency_Hz", frequency);
+  eo_object_put(&object, "speed_rpm", speed);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_warnings(const struct eo_warnings *warnings)
@@ -284,21 +286,22 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
   return list;
 }
 
-json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings)
+json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design,
+                        const struct eo_warnings *warnings)
 {
   char hash[EO_HASH_LENGTH + 1];
-  struct eo_object o = eo_object_open_as(&eo_sweep_outline);
-  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&o, "design", eo_design_encode(design));
-  eo_object_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&o, "torque_Nm", eo_json_reals(s->torques, s->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
-  eo_object_put(&o, "speed_rpm", eo_json_reals(s->speeds, s->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
+  struct eo_object object = eo_object_open_as(&eo_sweep_outline);
+  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&object, "design", eo_design_encode(design));
+  eo_object_put(&object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(&object, "torque_Nm", eo_json_reals(sweep->torques, sweep->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
+  eo_object_put(&object, "speed_rpm", eo_json_reals(sweep->speeds, sweep->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    eo_object_put(&o, variant_name[v], encode_variant(s, v));
-  eo_object_put(&o, "eigenfrequencies", encode_modes(s));
-  eo_object_put(&o, "crossings", encode_crossings(s));
-  eo_object_put(&o, "warnings", encode_warnings(warnings));
-  return eo_object_close(&o);
+    eo_object_put(&object, variant_name[v], encode_variant(sweep, v));
+  eo_object_put(&object, "eigenfrequencies", encode_modes(sweep));
+  eo_object_put(&object, "crossings", encode_crossings(sweep));
+  eo_object_put(&object, "warnings", encode_warnings(warnings));
+  return eo_object_close(&object);
 }
 
 void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,
@@ -311,18 +314,18 @@ void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design
   json_decref(document);
 }
 
-static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix,
+static void add_headings(const struct eo_sweep *sweep, int columns, const struct column *column, const char *prefix,
                          struct eo_text_table *sheet)
 {
   char heading[80];
   for (int i = 0; i < columns; i++)
-    if (column[i].end < s->ends) {
+    if (column[i].end < sweep->ends) {
       snprintf(heading, sizeof heading, "%s%s", prefix, column[i].heading);
       eo_text_table_string(sheet, heading);
     }
 }
 
-static void add_all_headings(const struct eo_sweep *s, struct eo_text_table *sheet)
+static void add_all_headings(const struct eo_sweep *sweep, struct eo_text_table *sheet)
 {
   static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"},
                                                                              {"unmodified_", "unmodified_down_"}};
@@ -330,36 +333,36 @@ static void add_all_headings(const struct eo_sweep *s, struct eo_text_table *she
   eo_text_table_string(sheet, "torque_Nm");
   eo_text_table_string(sheet, "speed_rpm");
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
-    add_headings(s, TORQUE_COLUMNS, torque_columns, prefix[v][0], sheet);
-    for (int d = 0; d < (s->branches[v] ? 2 : 1); d++) {
-      add_headings(s, 1, &outcome, prefix[v][d], sheet);
-      add_headings(s, POINT_COLUMNS, point_columns, prefix[v][d], sheet);
+    add_headings(sweep, TORQUE_COLUMNS, torque_columns, prefix[v][0], sheet);
+    for (int d = 0; d < (sweep->branches[v] ? 2 : 1); d++) {
+      add_headings(sweep, 1, &outcome, prefix[v][d], sheet);
+      add_headings(sweep, POINT_COLUMNS, point_columns, prefix[v][d], sheet);
     }
   }
   sheet->columns = sheet->cells;
 }
 
-static void add_row(const struct eo_sweep *s, int columns, const struct column *column, const void *row,
+static void add_row(const struct eo_sweep *sweep, int columns, const struct column *column, const void *row,
                     struct eo_text_table *sheet)
 {
   for (int i = 0; i < columns; i++)
-    if (column[i].end < s->ends)
+    if (column[i].end < sweep->ends)
       eo_text_table_number(sheet, member_of(row, &column[i]), column[i].unit, EO_DIGITS_NUMBER);
 }
 
-void eo_sweep_csv(const struct eo_sweep *s, struct eo_text *text)
+void eo_sweep_csv(const struct eo_sweep *sweep, struct eo_text *text)
 {
   struct eo_text_table sheet;
   eo_text_table_init(&sheet, 0, NULL);
-  add_all_headings(s, &sheet);
-  for (int i = 0; i < s->torques * s->speeds; i++) {
-    eo_text_table_number(&sheet, s->torque[i / s->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
-    eo_text_table_number(&sheet, s->speed[i % s->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
+  add_all_headings(sweep, &sheet);
+  for (int i = 0; i < sweep->torques * sweep->speeds; i++) {
+    eo_text_table_number(&sheet, sweep->torque[i / sweep->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
+    eo_text_table_number(&sheet, sweep->speed[i % sweep->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
     for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
-      add_row(s, TORQUE_COLUMNS, torque_columns, &s->at_torque[v][i / s->speeds], &sheet);
-      for (int d = 0; d < (s->branches[v] ? 2 : 1); d++) {
-        eo_text_table_string(&sheet, outcome_of(&s->point[v][d][i]));
-        add_row(s, POINT_COLUMNS, point_columns, &s->point[v][d][i], &sheet);
+      add_row(sweep, TORQUE_COLUMNS, torque_columns, &sweep->at_torque[v][i / sweep->speeds], &sheet);
+      for (int d = 0; d < (sweep->branches[v] ? 2 : 1); d++) {
+        eo_text_table_string(&sheet, outcome_of(&sweep->point[v][d][i]));
+        add_row(sweep, POINT_COLUMNS, point_columns, &sweep->point[v][d][i], &sheet);
       }
     }
   }

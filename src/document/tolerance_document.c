@@ -135,87 +135,88 @@ static json_t *encode_inputs(const struct eo_tolerance_report *report)
   json_t *list = json_array();
   for (int i = 0; i < report->scatter->inputs; i++) {
     const struct eo_scatter_input *input = &report->scatter->input[i];
-    struct eo_moments m = eo_scatter_moments(report->scatter, i);
-    struct eo_object o = eo_object_open_as(&input_outline);
+    struct eo_moments moments = eo_scatter_moments(report->scatter, i);
+    struct eo_object object = eo_object_open_as(&input_outline);
     char words[120];
     eo_scatter_words(input, words, sizeof words);
-    eo_object_put(&o, "key", json_string(input->key));
-    eo_object_put(&o, "distribution", json_string(words));
-    eo_object_put(&o, "nominal", number(input->nominal));
-    eo_object_put(&o, "mean", number(m.mean));
-    eo_object_put(&o, "deviation", number(m.deviation));
-    if (!append(&list, eo_object_close(&o)))
+    eo_object_put(&object, "key", json_string(input->key));
+    eo_object_put(&object, "distribution", json_string(words));
+    eo_object_put(&object, "nominal", number(input->nominal));
+    eo_object_put(&object, "mean", number(moments.mean));
+    eo_object_put(&object, "deviation", number(moments.deviation));
+    if (!append(&list, eo_object_close(&object)))
       break;
   }
   return list;
 }
 
-static json_t *encode_percentiles(const struct eo_output_report *r)
+static json_t *encode_percentiles(const struct eo_output_report *report)
 {
   json_t *list = json_array();
   for (int i = 0; i < EO_REPORT_PERCENTS; i++) {
-    const struct eo_report_percentile *p = &r->percentile[i];
-    struct eo_object o = eo_object_open_as(&percentile_outline);
-    eo_object_put(&o, "percent", number(p->percent));
-    eo_object_put(&o, "value", number(p->value));
-    eo_object_put(&o, "low", number(p->low));
-    eo_object_put(&o, "high", number(p->high));
-    if (!append(&list, eo_object_close(&o)))
+    const struct eo_report_percentile *percentile = &report->percentile[i];
+    struct eo_object object = eo_object_open_as(&percentile_outline);
+    eo_object_put(&object, "percent", number(percentile->percent));
+    eo_object_put(&object, "value", number(percentile->value));
+    eo_object_put(&object, "low", number(percentile->low));
+    eo_object_put(&object, "high", number(percentile->high));
+    if (!append(&list, eo_object_close(&object)))
       break;
   }
   return list;
 }
 
-static json_t *encode_histogram(const struct eo_output_report *r)
+static json_t *encode_histogram(const struct eo_output_report *report)
 {
-  struct eo_object o = eo_object_open_as(&histogram_outline);
+  struct eo_object object = eo_object_open_as(&histogram_outline);
   json_t *counts = json_array();
   for (int i = 0; i < EO_REPORT_BINS; i++)
-    if (!append(&counts, json_integer(r->count[i])))
+    if (!append(&counts, json_integer(report->count[i])))
       break;
-  eo_object_put(&o, "least", number(r->summary.least));
-  eo_object_put(&o, "largest", number(r->summary.largest));
-  eo_object_put(&o, "count", counts);
-  return eo_object_close(&o);
+  eo_object_put(&object, "least", number(report->summary.least));
+  eo_object_put(&object, "largest", number(report->summary.largest));
+  eo_object_put(&object, "count", counts);
+  return eo_object_close(&object);
 }
 
-static json_t *encode_influences(const struct eo_tolerance_report *report, const struct eo_output_report *r)
+static json_t *encode_influences(const struct eo_tolerance_report *report, const struct eo_output_report *output_report)
 {
   json_t *list = json_array();
-  for (int i = 0; i < r->inputs; i++) {
-    const struct eo_report_influence *influence = &r->influence[i];
-    struct eo_object o = eo_object_open_as(&influence_outline);
-    eo_object_put(&o, "key", json_string(report->scatter->input[influence->input].key));
-    eo_object_put(&o, "coefficient", number(influence->coefficient));
-    eo_object_put(&o, "first", number(influence->first));
-    eo_object_put(&o, "total", number(influence->total));
-    if (!append(&list, eo_object_close(&o)))
+  for (int i = 0; i < output_report->inputs; i++) {
+    const struct eo_report_influence *influence = &output_report->influence[i];
+    struct eo_object object = eo_object_open_as(&influence_outline);
+    eo_object_put(&object, "key", json_string(report->scatter->input[influence->input].key));
+    eo_object_put(&object, "coefficient", number(influence->coefficient));
+    eo_object_put(&object, "first", number(influence->first));
+    eo_object_put(&object, "total", number(influence->total));
+    if (!append(&list, eo_object_close(&object)))
       break;
   }
   return list;
 }
 
-static json_t *encode_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *c)
+static json_t *encode_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *tolerance_case)
 {
-  const struct eo_output_report *r = &c->report;
-  struct eo_object o = eo_object_open_as(&output_outline);
-  eo_object_put(&o, "key", json_string(c->scalar->key));
-  eo_object_put(&o, "load_case", json_integer(c->load_case + 1));
-  eo_object_put(&o, "rows", json_integer(r->rows));
-  eo_object_put(&o, "nominal", number(c->nominal));
-  eo_object_put(&o, "mean", number(r->summary.mean));
-  eo_object_put(&o, "mean_interval", two(r->mean_interval[0], r->mean_interval[1]));
-  eo_object_put(&o, "std", number(r->summary.deviation));
-  eo_object_put(&o, "std_interval", two(r->deviation_interval[0], r->deviation_interval[1]));
-  eo_object_put(&o, "percentiles", encode_percentiles(r));
-  eo_object_put(&o, "histogram", encode_histogram(r));
-  eo_object_put(&o, "R2", number(r->r2));
-  eo_object_put(&o, "R2_adjusted", number(r->r2_adjusted));
-  eo_object_put(&o, "Q2", number(r->q2));
-  eo_object_put(&o, "surface_error", number(r->residual));
-  eo_object_put(&o, "influences", encode_influences(report, r));
-  eo_object_put(&o, "largest_pair", json_integer(r->largest + 1));
-  return eo_object_close(&o);
+  const struct eo_output_report *output_report = &tolerance_case->report;
+  struct eo_object object = eo_object_open_as(&output_outline);
+  eo_object_put(&object, "key", json_string(tolerance_case->scalar->key));
+  eo_object_put(&object, "load_case", json_integer(tolerance_case->load_case + 1));
+  eo_object_put(&object, "rows", json_integer(output_report->rows));
+  eo_object_put(&object, "nominal", number(tolerance_case->nominal));
+  eo_object_put(&object, "mean", number(output_report->summary.mean));
+  eo_object_put(&object, "mean_interval", two(output_report->mean_interval[0], output_report->mean_interval[1]));
+  eo_object_put(&object, "std", number(output_report->summary.deviation));
+  eo_object_put(&object, "std_interval",
+                two(output_report->deviation_interval[0], output_report->deviation_interval[1]));
+  eo_object_put(&object, "percentiles", encode_percentiles(output_report));
+  eo_object_put(&object, "histogram", encode_histogram(output_report));
+  eo_object_put(&object, "R2", number(output_report->r2));
+  eo_object_put(&object, "R2_adjusted", number(output_report->r2_adjusted));
+  eo_object_put(&object, "Q2", number(output_report->q2));
+  eo_object_put(&object, "surface_error", number(output_report->residual));
+  eo_object_put(&object, "influences", encode_influences(report, output_report));
+  eo_object_put(&object, "largest_pair", json_integer(output_report->largest + 1));
+  return eo_object_close(&object);
 }
 
 static json_t *encode_outputs(const struct eo_tolerance_report *report)
@@ -232,16 +233,16 @@ static json_t *encode_yields(const struct eo_tolerance_report *report)
   json_t *list = json_array();
   for (int i = 0; i < report->yields; i++) {
     const struct eo_yield_row *row = &report->yield[i];
-    struct eo_object o = eo_object_open_as(&yield_outline);
-    eo_object_put(&o, "output", *row->output ? json_string(row->output) : json_null());
-    eo_object_put(&o, "load_case", row->load_case ? json_integer(row->load_case) : json_null());
-    eo_object_put(&o, "at_most", number(row->most));
-    eo_object_put(&o, "inside", json_integer(row->inside));
-    eo_object_put(&o, "pairs", json_integer(row->pairs));
-    eo_object_put(&o, "fraction", number(row->fraction));
-    eo_object_put(&o, "clopper_pearson", two(row->exact.low, row->exact.high));
-    eo_object_put(&o, "wilson", two(row->wilson.low, row->wilson.high));
-    if (!append(&list, eo_object_close(&o)))
+    struct eo_object object = eo_object_open_as(&yield_outline);
+    eo_object_put(&object, "output", *row->output ? json_string(row->output) : json_null());
+    eo_object_put(&object, "load_case", row->load_case ? json_integer(row->load_case) : json_null());
+    eo_object_put(&object, "at_most", number(row->most));
+    eo_object_put(&object, "inside", json_integer(row->inside));
+    eo_object_put(&object, "pairs", json_integer(row->pairs));
+    eo_object_put(&object, "fraction", number(row->fraction));
+    eo_object_put(&object, "clopper_pearson", two(row->exact.low, row->exact.high));
+    eo_object_put(&object, "wilson", two(row->wilson.low, row->wilson.high));
+    if (!append(&list, eo_object_close(&object)))
       break;
   }
   return list;
@@ -262,10 +263,11 @@ static int collect_columns(const struct eo_tolerance_report *report, int load_ca
   size_t n = (size_t)run->pairs;
   int count = 0;
   for (int i = 0; i < report->outputs; i++) {
-    const struct eo_tolerance_case *c = &report->output[i];
-    if (c->load_case != load_case || !c->report.varies || c->report.rows < run->pairs)
+    const struct eo_tolerance_case *tolerance_case = &report->output[i];
+    if (tolerance_case->load_case != load_case || !tolerance_case->report.varies ||
+        tolerance_case->report.rows < run->pairs)
       continue;
-    int place = eo_scalar_find(c->scalar->key) * run->cases + load_case;
+    int place = eo_scalar_find(tolerance_case->scalar->key) * run->cases + load_case;
     for (size_t row = 0; row < n; row++)
       column[(size_t)count * n + row] = run->output[row * (size_t)run->outputs + (size_t)place];
     of[count++] = i;
@@ -291,36 +293,36 @@ static json_t *encode_correlation(const struct eo_tolerance_report *report)
   int load_case = heaviest(report->design), n = report->run->pairs, count, *of;
   size_t most = (size_t)report->outputs + 1;
   double *column = malloc(sizeof *column * most * (size_t)n * 2);
-  struct eo_object o = eo_object_open_as(&correlation_outline);
+  struct eo_object object = eo_object_open_as(&correlation_outline);
   json_t *keys = json_array();
   of = malloc(sizeof *of * most);
-  o.failed = o.failed || !column || !of;
-  count = o.failed ? 0 : collect_columns(report, load_case, of, column);
+  object.failed = object.failed || !column || !of;
+  count = object.failed ? 0 : collect_columns(report, load_case, of, column);
   double *rank = column ? column + (size_t)count * (size_t)n : NULL;
   for (int i = 0; i < count; i++) {
     append(&keys, json_string(report->output[of[i]].scalar->key));
-    o.failed |= eo_ranks(n, column + (size_t)i * (size_t)n, rank + (size_t)i * (size_t)n, NULL) != EO_OK;
+    object.failed |= eo_ranks(n, column + (size_t)i * (size_t)n, rank + (size_t)i * (size_t)n, NULL) != EO_OK;
   }
-  eo_object_put(&o, "load_case", json_integer(load_case + 1));
-  eo_object_put(&o, "keys", keys);
-  eo_object_put(&o, "pearson", encode_matrix(count, n, column));
-  eo_object_put(&o, "spearman", encode_matrix(count, n, rank));
+  eo_object_put(&object, "load_case", json_integer(load_case + 1));
+  eo_object_put(&object, "keys", keys);
+  eo_object_put(&object, "pearson", encode_matrix(count, n, column));
+  eo_object_put(&object, "spearman", encode_matrix(count, n, rank));
   free(column);
   free(of);
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }
 
 static json_t *encode_worst(const struct eo_tolerance_report *report)
 {
   const struct eo_scatter_run *run = report->run;
-  struct eo_object o = eo_object_open_as(&worst_outline);
-  eo_object_put(&o, "pair", json_integer(report->worst + 1));
-  eo_object_put(&o, "output", json_string(report->worst_of));
+  struct eo_object object = eo_object_open_as(&worst_outline);
+  eo_object_put(&object, "pair", json_integer(report->worst + 1));
+  eo_object_put(&object, "output", json_string(report->worst_of));
   eo_object_put(
-      &o, "inputs",
+      &object, "inputs",
       eo_json_reals(run->inputs, run->input + (size_t)report->worst * (size_t)run->inputs, 1, NULL, EO_DIGITS_NUMBER));
-  eo_object_put(&o, "design", eo_design_encode(&report->worst_design));
-  return eo_object_close(&o);
+  eo_object_put(&object, "design", eo_design_encode(&report->worst_design));
+  return eo_object_close(&object);
 }
 
 static const char assumed_text[] =
@@ -339,20 +341,20 @@ static json_t *encode_warnings(const struct eo_tolerance_report *report, const s
 json_t *eo_tolerance_encode(const struct eo_tolerance_report *report, const struct eo_warnings *warnings)
 {
   char hash[EO_HASH_LENGTH + 1];
-  struct eo_object o = eo_object_open_as(&eo_tolerance_outline);
-  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&o, "design", eo_design_encode(report->design));
-  eo_object_put(&o, "design_hash", eo_design_hash(report->design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&o, "pairs", json_integer(report->run->pairs));
-  eo_object_put(&o, "failed", json_integer(report->failed));
-  eo_object_put(&o, "bounded", json_integer(report->run->bounded));
-  eo_object_put(&o, "inputs", encode_inputs(report));
-  eo_object_put(&o, "outputs", encode_outputs(report));
-  eo_object_put(&o, "yields", encode_yields(report));
-  eo_object_put(&o, "correlation", encode_correlation(report));
-  eo_object_put(&o, "worst", encode_worst(report));
-  eo_object_put(&o, "warnings", encode_warnings(report, warnings));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&eo_tolerance_outline);
+  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&object, "design", eo_design_encode(report->design));
+  eo_object_put(&object, "design_hash", eo_design_hash(report->design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(&object, "pairs", json_integer(report->run->pairs));
+  eo_object_put(&object, "failed", json_integer(report->failed));
+  eo_object_put(&object, "bounded", json_integer(report->run->bounded));
+  eo_object_put(&object, "inputs", encode_inputs(report));
+  eo_object_put(&object, "outputs", encode_outputs(report));
+  eo_object_put(&object, "yields", encode_yields(report));
+  eo_object_put(&object, "correlation", encode_correlation(report));
+  eo_object_put(&object, "worst", encode_worst(report));
+  eo_object_put(&object, "warnings", encode_warnings(report, warnings));
+  return eo_object_close(&object);
 }
 
 void eo_tolerance_write(const struct eo_tolerance_report *report, const struct eo_warnings *warnings,
@@ -365,25 +367,26 @@ void eo_tolerance_write(const struct eo_tolerance_report *report, const struct e
   json_decref(document);
 }
 
-static void print_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *c,
+static void print_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *tolerance_case,
                          struct eo_text_table *sheet)
 {
   static const int shown[] = {1, 4, 6, 7, 8}; /* 5, 50, 90, 95, 99 % */
-  const struct eo_output_report *r = &c->report;
+  const struct eo_output_report *output_report = &tolerance_case->report;
   char words[200];
   (void)report;
-  eo_text_table_string(sheet, c->scalar->key);
-  eo_text_table_number(sheet, c->load_case + 1, NULL, 3);
-  eo_text_table_number(sheet, c->nominal, NULL, 4);
-  eo_text_table_number(sheet, r->summary.mean, NULL, 4);
-  eo_text_table_number(sheet, r->summary.deviation, NULL, 3);
+  eo_text_table_string(sheet, tolerance_case->scalar->key);
+  eo_text_table_number(sheet, tolerance_case->load_case + 1, NULL, 3);
+  eo_text_table_number(sheet, tolerance_case->nominal, NULL, 4);
+  eo_text_table_number(sheet, output_report->summary.mean, NULL, 4);
+  eo_text_table_number(sheet, output_report->summary.deviation, NULL, 3);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
-    eo_text_table_number(sheet, r->percentile[shown[i]].value, NULL, 4);
-  snprintf(words, sizeof words, "%.4g .. %.4g", r->percentile[7].low, r->percentile[7].high);
+    eo_text_table_number(sheet, output_report->percentile[shown[i]].value, NULL, 4);
+  snprintf(words, sizeof words, "%.4g .. %.4g", output_report->percentile[7].low, output_report->percentile[7].high);
   eo_text_table_string(sheet, words);
-  eo_text_table_number(sheet, r->r2, NULL, 2);
-  eo_text_table_number(sheet, r->q2, NULL, 2);
-  eo_text_table_string(sheet, r->varies ? report->scatter->input[r->influence[0].input].key : "");
+  eo_text_table_number(sheet, output_report->r2, NULL, 2);
+  eo_text_table_number(sheet, output_report->q2, NULL, 2);
+  eo_text_table_string(sheet,
+                       output_report->varies ? report->scatter->input[output_report->influence[0].input].key : "");
 }
 
 static void print_yields(const struct eo_tolerance_report *report, struct eo_text *text)

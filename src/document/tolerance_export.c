@@ -14,28 +14,28 @@ struct quantity {
 
 enum { QUANTITIES = 12 };
 
-static void list_quantities(const struct eo_flank_tolerance *t, struct quantity list[QUANTITIES])
+static void list_quantities(const struct eo_flank_tolerance *tolerance, struct quantity list[QUANTITIES])
 {
-  const struct quantity all[QUANTITIES] = {{"single pitch", "f_pt", "f_pT", t->single_pitch},
-                                           {"cumulative pitch over z/8", "F_pk", "F_pkT", t->cumulative_pitch},
-                                           {"total pitch", "F_p", "F_pT", t->total_pitch},
-                                           {"profile, total", "F_alpha", "F_alphaT", t->profile_total},
-                                           {"profile form", "f_falpha", "f_falphaT", t->profile_form},
-                                           {"profile slope", "f_Halpha", "f_HalphaT", t->profile_slope},
-                                           {"helix, total", "F_beta", "F_betaT", t->helix_total},
-                                           {"helix form", "f_fbeta", "f_fbetaT", t->helix_form},
-                                           {"helix slope", "f_Hbeta", "f_HbetaT", t->helix_slope},
-                                           {"runout", "F_r", "F_rT", t->runout},
-                                           {"tooth to tooth composite", "f_i'", "f_isT", t->tooth_composite},
-                                           {"total composite", "F_i'", "F_isT", t->total_composite}};
+  const struct quantity all[QUANTITIES] = {{"single pitch", "f_pt", "f_pT", tolerance->single_pitch},
+                                           {"cumulative pitch over z/8", "F_pk", "F_pkT", tolerance->cumulative_pitch},
+                                           {"total pitch", "F_p", "F_pT", tolerance->total_pitch},
+                                           {"profile, total", "F_alpha", "F_alphaT", tolerance->profile_total},
+                                           {"profile form", "f_falpha", "f_falphaT", tolerance->profile_form},
+                                           {"profile slope", "f_Halpha", "f_HalphaT", tolerance->profile_slope},
+                                           {"helix, total", "F_beta", "F_betaT", tolerance->helix_total},
+                                           {"helix form", "f_fbeta", "f_fbetaT", tolerance->helix_form},
+                                           {"helix slope", "f_Hbeta", "f_HbetaT", tolerance->helix_slope},
+                                           {"runout", "F_r", "F_rT", tolerance->runout},
+                                           {"tooth to tooth composite", "f_i'", "f_isT", tolerance->tooth_composite},
+                                           {"total composite", "F_i'", "F_isT", tolerance->total_composite}};
   memcpy(list, all, sizeof all);
 }
 
 void eo_tolerances_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
   static const char *const members[2] = {"pinion", "gear"};
-  const struct eo_rating_settings *r = &design->rating;
-  bool new = r->edition == EO_ISO6336_2019;
+  const struct eo_rating_settings *settings = &design->rating;
+  bool new = settings->edition == EO_ISO6336_2019;
   eo_text_add(text, "member,standard,grade,quantity,symbol,tolerance_um,note\r\n");
   for (int member = 0; member < 2; member++) {
     struct eo_flank_tolerance tolerance;
@@ -44,8 +44,8 @@ void eo_tolerances_csv(const struct eo_design *design, const struct eo_geometry 
     eo_flank_tolerance_of(design, geometry, member, &tolerance, note, sizeof note);
     list_quantities(&tolerance, list);
     for (int i = 0; i < QUANTITIES; i++) {
-      eo_text_print(text, "%s,ISO 1328-1:%s,%d,\"%s\",%s,", members[member], new ? "2013" : "1995", r->accuracy_grade,
-                    list[i].name, new ? list[i].symbol_2013 : list[i].symbol_1995);
+      eo_text_print(text, "%s,ISO 1328-1:%s,%d,\"%s\",%s,", members[member], new ? "2013" : "1995",
+                    settings->accuracy_grade, list[i].name, new ? list[i].symbol_2013 : list[i].symbol_1995);
       if (isfinite(list[i].value))
         eo_text_print(text, "%.10g,\r\n", 1e6 * list[i].value);
       else

@@ -6,13 +6,13 @@
 
 #include "document/tolerance_document.h"
 
-struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *t)
+struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tolerance_settings)
 {
-  return (struct eo_scatter_plan){.pairs = t->pairs,
-                                  .sampling = (enum eo_sampling)t->sampling,
-                                  .seed = t->seed,
-                                  .vibration = t->vibration,
-                                  .root_stress = t->root_stress};
+  return (struct eo_scatter_plan){.pairs = tolerance_settings->pairs,
+                                  .sampling = (enum eo_sampling)tolerance_settings->sampling,
+                                  .seed = tolerance_settings->seed,
+                                  .vibration = tolerance_settings->vibration,
+                                  .root_stress = tolerance_settings->root_stress};
 }
 
 static double value_at(const struct eo_scatter_run *run, int pair, int scalar, int load_case)
@@ -61,28 +61,28 @@ static void set_share(struct eo_yield_row *row, int inside, int pairs)
 
 static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_error *error)
 {
-  const struct eo_tolerance_settings *t = &report->design->tolerance;
+  const struct eo_tolerance_settings *tolerance_settings = &report->design->tolerance;
   const struct eo_scatter_run *run = report->run;
   int inside[EO_MAX_TOLERANCE_LIMITS + 1] = {0};
-  for (int i = 0; i < t->limits; i++)
-    EO_TRY(check_limit(run, &t->limit[i], i, error));
+  for (int i = 0; i < tolerance_settings->limits; i++)
+    EO_TRY(check_limit(run, &tolerance_settings->limit[i], i, error));
   for (int pair = 0; pair < run->pairs; pair++) {
     bool all = true;
-    for (int i = 0; i < t->limits; i++) {
-      bool met = beyond(run, &t->limit[i], pair) <= 0;
+    for (int i = 0; i < tolerance_settings->limits; i++) {
+      bool met = beyond(run, &tolerance_settings->limit[i], pair) <= 0;
       inside[i] += met;
       all = all && met;
     }
-    inside[t->limits] += all;
+    inside[tolerance_settings->limits] += all;
   }
-  report->yields = t->limits > 0 ? t->limits + 1 : 0;
+  report->yields = tolerance_settings->limits > 0 ? tolerance_settings->limits + 1 : 0;
   for (int i = 0; i < report->yields; i++) {
     struct eo_yield_row *row = &report->yield[i];
     *row = (struct eo_yield_row){.most = NAN};
-    if (i < t->limits) {
-      memcpy(row->output, t->limit[i].output, sizeof row->output);
-      row->load_case = t->limit[i].load_case;
-      row->most = t->limit[i].most;
+    if (i < tolerance_settings->limits) {
+      memcpy(row->output, tolerance_settings->limit[i].output, sizeof row->output);
+      row->load_case = tolerance_settings->limit[i].load_case;
+      row->most = tolerance_settings->limit[i].most;
     }
     set_share(row, inside[i], run->pairs);
   }
@@ -92,18 +92,18 @@ static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_e
 /* Largest excess over a limit; where none is stated the largest swing of the transmission error. */
 static double badness(const struct eo_tolerance_report *report, int pair, int *limit)
 {
-  const struct eo_tolerance_settings *t = &report->design->tolerance;
+  const struct eo_tolerance_settings *tolerance_settings = &report->design->tolerance;
   double worst = -INFINITY;
   int swing = eo_scalar_find("peak_to_peak_um");
   *limit = -1;
-  for (int i = 0; i < t->limits; i++) {
-    double own = beyond(report->run, &t->limit[i], pair);
+  for (int i = 0; i < tolerance_settings->limits; i++) {
+    double own = beyond(report->run, &tolerance_settings->limit[i], pair);
     if (isfinite(own) && own > worst) {
       worst = own;
       *limit = i;
     }
   }
-  for (int k = 0; k < report->run->cases && t->limits == 0; k++) {
+  for (int k = 0; k < report->run->cases && tolerance_settings->limits == 0; k++) {
     double own = value_at(report->run, pair, swing, k);
     worst = isfinite(own) ? fmax(worst, own) : worst;
   }

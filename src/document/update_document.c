@@ -84,11 +84,11 @@ void eo_update_decode(const json_t *document, struct eo_update_settings *setting
 
 typedef void warning_function(void *context, const char *text);
 
-static void each_warning(const struct eo_update *u, warning_function *take, void *context)
+static void each_warning(const struct eo_update *update, warning_function *take, void *context)
 {
   char text[320];
-  for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_updated *updated = &u->unknown[i];
+  for (int i = 0; i < update->unknowns; i++) {
+    const struct eo_updated *updated = &update->unknown[i];
     const char *name = eo_unknown_name(updated->unknown);
     if (updated->undetermined)
       snprintf(text, sizeof text, "The measurements do not determine %s: its 95 %% interval covers most of its range.",
@@ -98,39 +98,39 @@ static void each_warning(const struct eo_update *u, warning_function *take, void
     else if (updated->twin >= 0)
       snprintf(text, sizeof text,
                "%s and %s cannot be told apart (correlation %.3f): only their combination is determined.", name,
-               eo_unknown_name(u->unknown[updated->twin].unknown), updated->correlation);
+               eo_unknown_name(update->unknown[updated->twin].unknown), updated->correlation);
     else
       continue;
     take(context, text);
   }
-  if (u->within > 1) {
+  if (update->within > 1) {
     snprintf(
         text, sizeof text,
         "%d different sets of inputs fit the measurements about equally well; the intervals span all of them. More "
         "torques or speeds would tell them apart.",
-        u->within);
+        update->within);
     take(context, text);
   }
-  if (u->poor) {
+  if (update->poor) {
     snprintf(text, sizeof text,
              "Even the best values leave %.0f %% of the measured RMS unexplained: something else than these inputs is "
              "different, or they lie outside the ranges.",
-             100 * u->model_error * fmax(1, u->after));
+             100 * update->model_error * fmax(1, update->after));
     take(context, text);
   }
-  if (u->condition > LARGE_CONDITION) {
+  if (update->condition > LARGE_CONDITION) {
     snprintf(text, sizeof text, "The condition number of the fit is %.2g: not all inputs are determined together.",
-             u->condition);
+             update->condition);
     take(context, text);
   }
-  if (!u->converged)
+  if (!update->converged)
     take(context, "The fit stopped before it had converged.");
 }
 
 static void append_warning(void *context, const char *text)
 {
-  struct eo_object *o = context;
-  o->failed = json_array_append_new(o->json, json_string(text)) != 0 || o->failed;
+  struct eo_object *object = context;
+  object->failed = json_array_append_new(object->json, json_string(text)) != 0 || object->failed;
 }
 
 /* One input with the fit that it belongs to. */
@@ -170,8 +170,9 @@ static json_t *write_confidence(const void *source)
 
 static json_t *write_twin(const void *source)
 {
-  const struct fitted *f = source;
-  return f->input.twin < 0 ? json_null() : json_string(eo_unknown_name(f->update->unknown[f->input.twin].unknown));
+  const struct fitted *fitted = source;
+  return fitted->input.twin < 0 ? json_null()
+                                : json_string(eo_unknown_name(fitted->update->unknown[fitted->input.twin].unknown));
 }
 
 static const struct eo_outline_row unknown_rows[] = {
@@ -198,23 +199,23 @@ struct found {
 
 static json_t *write_values(const void *source)
 {
-  const struct found *f = source;
+  const struct found *found = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < f->update->unknowns; i++) {
-    const struct eo_unit *unit = unit_of(f->update->unknown[i].unknown);
-    list.failed = json_array_append_new(list.json, eo_json_quantity(f->minimum.value[i], unit)) || list.failed;
+  for (int i = 0; i < found->update->unknowns; i++) {
+    const struct eo_unit *unit = unit_of(found->update->unknown[i].unknown);
+    list.failed = json_array_append_new(list.json, eo_json_quantity(found->minimum.value[i], unit)) || list.failed;
   }
   return eo_object_close(&list);
 }
 
 static json_t *write_intervals(const void *source)
 {
-  const struct found *f = source;
+  const struct found *found = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < f->update->unknowns; i++) {
-    const struct eo_unit *unit = unit_of(f->update->unknown[i].unknown);
-    json_t *interval = f->minimum.within ? eo_json_reals(2, f->minimum.confidence[i], 1, unit, EO_DIGITS_CURVE)
-                                         : json_null();
+  for (int i = 0; i < found->update->unknowns; i++) {
+    const struct eo_unit *unit = unit_of(found->update->unknown[i].unknown);
+    json_t *interval = found->minimum.within ? eo_json_reals(2, found->minimum.confidence[i], 1, unit, EO_DIGITS_CURVE)
+                                             : json_null();
     list.failed = json_array_append_new(list.json, interval) || list.failed;
   }
   return eo_object_close(&list);
@@ -239,10 +240,10 @@ static const struct eo_outline misfit_outline = EO_OUTLINE("Misfit", misfit_rows
 
 static json_t *write_unknowns(const void *source)
 {
-  const struct eo_update *u = source;
+  const struct eo_update *update = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < u->unknowns; i++) {
-    const struct fitted fitted = {u, u->unknown[i]};
+  for (int i = 0; i < update->unknowns; i++) {
+    const struct fitted fitted = {update, update->unknown[i]};
     list.failed = json_array_append_new(list.json, eo_outline_encode(&unknown_outline, &fitted)) || list.failed;
   }
   return eo_object_close(&list);
@@ -250,11 +251,11 @@ static json_t *write_unknowns(const void *source)
 
 static json_t *write_correlation(const void *source)
 {
-  const struct eo_update *u = source;
+  const struct eo_update *update = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < u->unknowns; i++)
-    list.failed = json_array_append_new(list.json,
-                                        eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) ||
+  for (int i = 0; i < update->unknowns; i++)
+    list.failed = json_array_append_new(
+                      list.json, eo_json_reals(update->unknowns, update->correlation[i], 1, NULL, EO_DIGITS_MAP)) ||
                   list.failed;
   return eo_object_close(&list);
 }
@@ -266,10 +267,10 @@ static json_t *write_misfit(const void *update)
 
 static json_t *write_minima(const void *source)
 {
-  const struct eo_update *u = source;
+  const struct eo_update *update = source;
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < u->minima; i++) {
-    const struct found found = {u, u->minimum[i]};
+  for (int i = 0; i < update->minima; i++) {
+    const struct found found = {update, update->minimum[i]};
     list.failed = json_array_append_new(list.json, eo_outline_encode(&minimum_outline, &found)) || list.failed;
   }
   return eo_object_close(&list);
@@ -301,9 +302,9 @@ static const struct eo_outline_row update_rows[] = {
 };
 const struct eo_outline eo_update_outline = EO_OUTLINE("FitOfFiles", update_rows);
 
-json_t *eo_update_encode(const struct eo_update *u)
+json_t *eo_update_encode(const struct eo_update *update)
 {
-  return eo_outline_encode(&eo_update_outline, u);
+  return eo_outline_encode(&eo_update_outline, update);
 }
 
 static void print_warning(void *context, const char *text)
@@ -312,39 +313,39 @@ static void print_warning(void *context, const char *text)
 }
 
 /* The other sets of values that fit about as well. */
-static void print_minima(const struct eo_update *u, struct eo_text *text)
+static void print_minima(const struct eo_update *update, struct eo_text *text)
 {
-  for (int k = 1; k < u->minima; k++) {
-    if (!u->minimum[k].within)
+  for (int k = 1; k < update->minima; k++) {
+    if (!update->minimum[k].within)
       continue;
     eo_text_add(text, "  or:");
-    for (int i = 0; i < u->unknowns; i++) {
-      const struct eo_unit *unit = unit_of(u->unknown[i].unknown);
-      eo_text_print(text, " %s %.4g", eo_unknown_name(u->unknown[i].unknown),
-                    eo_unit_out(unit, u->minimum[k].value[i]));
+    for (int i = 0; i < update->unknowns; i++) {
+      const struct eo_unit *unit = unit_of(update->unknown[i].unknown);
+      eo_text_print(text, " %s %.4g", eo_unknown_name(update->unknown[i].unknown),
+                    eo_unit_out(unit, update->minimum[k].value[i]));
     }
-    eo_text_print(text, " (misfit %.3g)\n", u->minimum[k].misfit);
+    eo_text_print(text, " (misfit %.3g)\n", update->minimum[k].misfit);
   }
 }
 
-void eo_update_summary(const struct eo_update *u, struct eo_text *text)
+void eo_update_summary(const struct eo_update *update, struct eo_text *text)
 {
   static const char *const headings[] = {"input", "before", "found", "95 % from", "to"};
   struct eo_text_table sheet;
   eo_text_print(
       text,
       "\nInputs fitted to %d orders of %d measurements (misfit %.3g before, %.3g after, in standard deviations):\n",
-      u->residuals, u->used, u->before, u->after);
+      update->residuals, update->used, update->before, update->after);
   eo_text_table_init(&sheet, 5, headings);
-  for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_updated *updated = &u->unknown[i];
+  for (int i = 0; i < update->unknowns; i++) {
+    const struct eo_updated *updated = &update->unknown[i];
     eo_text_table_string(&sheet, eo_unknown_name(updated->unknown));
     const double value[] = {updated->before, updated->value, updated->confidence[0], updated->confidence[1]};
     for (int k = 0; k < 4; k++)
       eo_text_table_number(&sheet, value[k], unit_of(updated->unknown), 4);
   }
   eo_text_table_print(&sheet, 2, text);
-  print_minima(u, text);
+  print_minima(update, text);
   eo_text_table_done(&sheet);
-  each_warning(u, print_warning, text);
+  each_warning(update, print_warning, text);
 }

@@ -23,16 +23,16 @@ static int make_end(struct eo_time_end *end, int samples)
   return 0;
 }
 
-static void fill_basis(struct eo_alternating *g)
+static void fill_basis(struct eo_alternating *alternating)
 {
-  int n = g->samples;
+  int n = alternating->samples;
   for (int i = 0; i < n; i++)
-    g->basis[i] = 1;
-  for (int k = 1; k <= 2 * g->harmonics; k++)
+    alternating->basis[i] = 1;
+  for (int k = 1; k <= 2 * alternating->harmonics; k++)
     for (int i = 0; i < n; i++) {
       double angle = 2 * M_PI * (double)((long)k * i % n) / n;
-      g->basis[(size_t)(2 * k - 1) * n + i] = cos(angle);
-      g->basis[(size_t)(2 * k) * n + i] = sin(angle);
+      alternating->basis[(size_t)(2 * k - 1) * n + i] = cos(angle);
+      alternating->basis[(size_t)(2 * k) * n + i] = sin(angle);
     }
 }
 
@@ -42,33 +42,34 @@ enum eo_code eo_alternating_new(struct eo_alternating **grid, int harmonics, int
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics",
                         "%d harmonics on %d samples cannot be balanced; 1 to %d harmonics are.", harmonics, samples,
                         EO_MAX_HARMONICS);
-  struct eo_alternating *g = calloc(1, sizeof *g);
-  if (!g)
+  struct eo_alternating *alternating = calloc(1, sizeof *alternating);
+  if (!alternating)
     return eo_error_memory(error);
-  g->harmonics = harmonics;
-  g->samples = samples;
-  g->basis = malloc(sizeof *g->basis * samples * (1 + 4 * harmonics));
-  g->scratch = malloc(sizeof *g->scratch * 3 * (1 + 4 * harmonics));
-  if (!g->basis || !g->scratch || make_end(&g->end[0], samples) || make_end(&g->end[1], samples)) {
-    eo_alternating_free(g);
+  alternating->harmonics = harmonics;
+  alternating->samples = samples;
+  alternating->basis = malloc(sizeof *alternating->basis * samples * (1 + 4 * harmonics));
+  alternating->scratch = malloc(sizeof *alternating->scratch * 3 * (1 + 4 * harmonics));
+  if (!alternating->basis || !alternating->scratch || make_end(&alternating->end[0], samples) ||
+      make_end(&alternating->end[1], samples)) {
+    eo_alternating_free(alternating);
     return eo_error_memory(error);
   }
-  fill_basis(g);
-  *grid = g;
+  fill_basis(alternating);
+  *grid = alternating;
   return EO_OK;
 }
 
-void eo_alternating_free(struct eo_alternating *g)
+void eo_alternating_free(struct eo_alternating *alternating)
 {
-  if (!g)
+  if (!alternating)
     return;
   for (int end = 0; end < 2; end++) {
-    free(g->end[end].x);
-    free(g->end[end].row);
+    free(alternating->end[end].x);
+    free(alternating->end[end].row);
   }
-  free(g->basis);
-  free(g->scratch);
-  free(g);
+  free(alternating->basis);
+  free(alternating->scratch);
+  free(alternating);
 }
 
 /* The series of f(phase + shift). */
@@ -82,30 +83,31 @@ static void turn_series(int order, const double *series, double shift, double *t
   }
 }
 
-enum eo_code eo_alternating_prepare(struct eo_alternating *g, int end, const struct eo_law *law, double shift,
+enum eo_code eo_alternating_prepare(struct eo_alternating *alternating, int end, const struct eo_law *law, double shift,
                                     struct eo_error *error)
 {
-  struct eo_time_end *e = &g->end[end];
-  int needed = g->samples * law->rows, n = g->samples;
-  if (needed > e->capacity) {
+  struct eo_time_end *time_end = &alternating->end[end];
+  int needed = alternating->samples * law->rows, n = alternating->samples;
+  if (needed > time_end->capacity) {
     double *row = malloc(sizeof *row * needed);
     if (!row)
       return eo_error_memory(error);
-    free(e->row);
-    e->row = row;
-    e->capacity = needed;
+    free(time_end->row);
+    time_end->row = row;
+    time_end->capacity = needed;
   }
-  e->rows = law->rows;
-  if (law->order > 2 * g->harmonics) {
+  time_end->rows = law->rows;
+  if (law->order > 2 * alternating->harmonics) {
     for (int i = 0; i < n; i++)
-      eo_law_rows(law, (double)i / n + shift, e->row + (size_t)i * law->rows);
+      eo_law_rows(law, (double)i / n + shift, time_end->row + (size_t)i * law->rows);
     return EO_OK;
   }
   for (int r = 0; r < law->rows; r++) {
-    turn_series(law->order, law->series + (size_t)r * eo_fourier_terms(law->order), shift, g->scratch);
-    eo_dense_multiply_transposed(eo_fourier_terms(law->order), n, g->basis, g->scratch, e->work);
+    turn_series(law->order, law->series + (size_t)r * eo_fourier_terms(law->order), shift, alternating->scratch);
+    eo_dense_multiply_transposed(eo_fourier_terms(law->order), n, alternating->basis, alternating->scratch,
+                                 time_end->work);
     for (int i = 0; i < n; i++)
-      e->row[(size_t)i * law->rows + r] = e->work[i];
+      time_end->row[(size_t)i * law->rows + r] = time_end->work[i];
   }
   return EO_OK;
 }
@@ -120,29 +122,30 @@ static double contact_share(double a, double b)
   return fmax(a, b) / fabs(a - b);
 }
 
-void eo_alternating_gate(struct eo_alternating *g, int end, bool gated)
+void eo_alternating_gate(struct eo_alternating *alternating, int end, bool gated)
 {
-  struct eo_time_end *e = &g->end[end];
-  int n = g->samples;
+  struct eo_time_end *time_end = &alternating->end[end];
+  int n = alternating->samples;
   for (int i = 0; i < n; i++)
-    e->cell[i] = contact_share(e->margin[i], e->margin[(i + 1) % n]);
+    time_end->cell[i] = contact_share(time_end->margin[i], time_end->margin[(i + 1) % n]);
   for (int i = 0; i < n; i++) {
-    e->weight[i] = (e->cell[i] + e->cell[(i + n - 1) % n]) / 2;
-    e->gate[i] = gated ? e->weight[i] : 1;
+    time_end->weight[i] = (time_end->cell[i] + time_end->cell[(i + n - 1) % n]) / 2;
+    time_end->gate[i] = gated ? time_end->weight[i] : 1;
   }
 }
 
-void eo_alternating_transform(const struct eo_alternating *g, int terms, const double *sample, double *series)
+void eo_alternating_transform(const struct eo_alternating *alternating, int terms, const double *sample, double *series)
 {
-  eo_dense_multiply(terms, g->samples, g->basis, sample, series);
-  series[0] /= g->samples;
+  eo_dense_multiply(terms, alternating->samples, alternating->basis, sample, series);
+  series[0] /= alternating->samples;
   for (int i = 1; i < terms; i++)
-    series[i] *= 2.0 / g->samples;
+    series[i] *= 2.0 / alternating->samples;
 }
 
-void eo_alternating_synthesis(const struct eo_alternating *g, const double *series, double *sample)
+void eo_alternating_synthesis(const struct eo_alternating *alternating, const double *series, double *sample)
 {
-  eo_dense_multiply_transposed(eo_fourier_terms(g->harmonics), g->samples, g->basis, series, sample);
+  eo_dense_multiply_transposed(eo_fourier_terms(alternating->harmonics), alternating->samples, alternating->basis,
+                               series, sample);
 }
 
 static void rate_of(int harmonics, double frequency, const double *x, double *rate)
@@ -154,28 +157,30 @@ static void rate_of(int harmonics, double frequency, const double *x, double *ra
   }
 }
 
-void eo_alternating_force(struct eo_alternating *g, int end, const struct eo_cycle *cycle, const double *x,
+void eo_alternating_force(struct eo_alternating *alternating, int end, const struct eo_cycle *cycle, const double *x,
                           bool attached, double *force)
 {
-  struct eo_time_end *e = &g->end[end];
-  int n = g->samples;
-  rate_of(g->harmonics, cycle->frequency, x, g->scratch);
-  eo_alternating_synthesis(g, x, e->x);
-  eo_alternating_synthesis(g, g->scratch, e->v);
+  struct eo_time_end *time_end = &alternating->end[end];
+  int n = alternating->samples;
+  rate_of(alternating->harmonics, cycle->frequency, x, alternating->scratch);
+  eo_alternating_synthesis(alternating, x, time_end->x);
+  eo_alternating_synthesis(alternating, alternating->scratch, time_end->v);
   for (int i = 0; i < n; i++) {
-    struct eo_mesh_force f = eo_law_force(cycle->law[end], e->row + (size_t)i * e->rows, e->x[i], attached);
-    e->elastic[i] = f.force;
-    e->slope[i] = f.slope;
-    e->margin[i] = f.margin;
-    e->margin_slope[i] = f.margin_slope;
+    struct eo_mesh_force mesh_force = eo_law_force(cycle->law[end], time_end->row + (size_t)i * time_end->rows,
+                                                   time_end->x[i], attached);
+    time_end->elastic[i] = mesh_force.force;
+    time_end->slope[i] = mesh_force.slope;
+    time_end->margin[i] = mesh_force.margin;
+    time_end->margin_slope[i] = mesh_force.margin_slope;
   }
-  eo_alternating_gate(g, end, cycle->gated);
+  eo_alternating_gate(alternating, end, cycle->gated);
   for (int i = 0; i < n; i++) {
     if (attached)
-      e->weight[i] = e->gate[i] = 1;
-    e->force[i] = e->weight[i] * e->elastic[i] + cycle->mesh_damping * e->gate[i] * e->v[i];
+      time_end->weight[i] = time_end->gate[i] = 1;
+    time_end->force[i] = time_end->weight[i] * time_end->elastic[i] +
+                         cycle->mesh_damping * time_end->gate[i] * time_end->v[i];
   }
-  eo_alternating_transform(g, eo_fourier_terms(g->harmonics), e->force, force);
+  eo_alternating_transform(alternating, eo_fourier_terms(alternating->harmonics), time_end->force, force);
 }
 
 /* With a = mean of f cos n, b = mean of f sin n: adds the matrix of x -> series of f x. */
@@ -224,13 +229,13 @@ static void add_rate_multiplication(int harmonics, double frequency, const doubl
 }
 
 /* Means of f cos n and f sin n up to n = 2 harmonics, in scratch. */
-static void moments(struct eo_alternating *g, const double *f, double **a, double **b)
+static void moments(struct eo_alternating *alternating, const double *f, double **a, double **b)
 {
-  int order = 2 * g->harmonics, terms = eo_fourier_terms(order);
-  double *series = g->scratch;
-  *a = g->scratch + terms;
-  *b = g->scratch + 2 * terms;
-  eo_alternating_transform(g, terms, f, series);
+  int order = 2 * alternating->harmonics, terms = eo_fourier_terms(order);
+  double *series = alternating->scratch;
+  *a = alternating->scratch + terms;
+  *b = alternating->scratch + 2 * terms;
+  eo_alternating_transform(alternating, terms, f, series);
   (*a)[0] = series[0];
   (*b)[0] = 0;
   for (int k = 1; k <= order; k++) {
@@ -240,22 +245,24 @@ static void moments(struct eo_alternating *g, const double *f, double **a, doubl
 }
 
 /* The share of a cell in which contact begins or ends depends on both its margins: one rank-one term per such cell. */
-static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e, double damping, int stride,
-                          double *matrix)
+static void add_crossings(struct eo_alternating *alternating, const struct eo_time_end *time_end, double damping,
+                          int stride, double *matrix)
 {
   /* row: the forces whose weights change; column: how the share changes with the deflections */
-  int n = g->samples, terms = eo_fourier_terms(g->harmonics);
-  double *row = g->scratch, *column = g->scratch + terms;
+  int n = alternating->samples, terms = eo_fourier_terms(alternating->harmonics);
+  double *row = alternating->scratch, *column = alternating->scratch + terms;
   for (int i = 0; i < n; i++) {
     int next = (i + 1) % n;
-    double a = e->margin[i], b = e->margin[next];
+    double a = time_end->margin[i], b = time_end->margin[next];
     if ((a > 0) == (b > 0))
       continue;
-    double here = e->elastic[i] + damping * e->v[i], there = e->elastic[next] + damping * e->v[next];
+    double here = time_end->elastic[i] + damping * time_end->v[i],
+           there = time_end->elastic[next] + damping * time_end->v[next];
     double width = (a - b) * (a - b), sign = a > b ? 1 : -1;
-    double slope_a = -sign * b / width * e->margin_slope[i], slope_b = sign * a / width * e->margin_slope[next];
+    double slope_a = -sign * b / width * time_end->margin_slope[i],
+           slope_b = sign * a / width * time_end->margin_slope[next];
     for (int t = 0; t < terms; t++) {
-      const double *basis = g->basis + (size_t)t * n;
+      const double *basis = alternating->basis + (size_t)t * n;
       row[t] = (t ? 1.0 : 0.5) * (here * basis[i] + there * basis[next]) / n;
       column[t] = slope_a * basis[i] + slope_b * basis[next];
     }
@@ -265,39 +272,40 @@ static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e,
   }
 }
 
-void eo_alternating_jacobian(struct eo_alternating *g, int end, const struct eo_cycle *cycle, bool attached, int stride,
-                             double *jacobian)
+void eo_alternating_jacobian(struct eo_alternating *alternating, int end, const struct eo_cycle *cycle, bool attached,
+                             int stride, double *jacobian)
 {
-  struct eo_time_end *e = &g->end[end];
+  struct eo_time_end *time_end = &alternating->end[end];
   double *a, *b;
-  for (int i = 0; i < g->samples; i++)
-    e->work[i] = e->weight[i] * e->slope[i];
-  moments(g, e->work, &a, &b);
-  add_multiplication(g->harmonics, a, b, stride, jacobian);
+  for (int i = 0; i < alternating->samples; i++)
+    time_end->work[i] = time_end->weight[i] * time_end->slope[i];
+  moments(alternating, time_end->work, &a, &b);
+  add_multiplication(alternating->harmonics, a, b, stride, jacobian);
   if (!attached)
-    add_crossings(g, e, cycle->gated ? cycle->mesh_damping : 0, stride, jacobian);
+    add_crossings(alternating, time_end, cycle->gated ? cycle->mesh_damping : 0, stride, jacobian);
   if (cycle->mesh_damping == 0)
     return;
-  moments(g, e->gate, &a, &b);
-  for (int k = 0; k <= 2 * g->harmonics; k++) {
+  moments(alternating, time_end->gate, &a, &b);
+  for (int k = 0; k <= 2 * alternating->harmonics; k++) {
     a[k] *= cycle->mesh_damping;
     b[k] *= cycle->mesh_damping;
   }
-  add_rate_multiplication(g->harmonics, cycle->frequency, a, b, stride, jacobian);
+  add_rate_multiplication(alternating->harmonics, cycle->frequency, a, b, stride, jacobian);
 }
 
-void eo_alternating_frequency_slope(struct eo_alternating *g, int end, const struct eo_cycle *cycle, double *slope)
+void eo_alternating_frequency_slope(struct eo_alternating *alternating, int end, const struct eo_cycle *cycle,
+                                    double *slope)
 {
-  struct eo_time_end *e = &g->end[end];
-  for (int i = 0; i < g->samples; i++)
-    e->work[i] = cycle->mesh_damping * e->gate[i] * e->v[i] / cycle->frequency;
-  eo_alternating_transform(g, eo_fourier_terms(g->harmonics), e->work, slope);
+  struct eo_time_end *time_end = &alternating->end[end];
+  for (int i = 0; i < alternating->samples; i++)
+    time_end->work[i] = cycle->mesh_damping * time_end->gate[i] * time_end->v[i] / cycle->frequency;
+  eo_alternating_transform(alternating, eo_fourier_terms(alternating->harmonics), time_end->work, slope);
 }
 
-double eo_alternating_loss(const struct eo_alternating *g, int end)
+double eo_alternating_loss(const struct eo_alternating *alternating, int end)
 {
   double contact = 0;
-  for (int i = 0; i < g->samples; i++)
-    contact += g->end[end].cell[i];
-  return fmax(0, 1 - contact / g->samples);
+  for (int i = 0; i < alternating->samples; i++)
+    contact += alternating->end[end].cell[i];
+  return fmax(0, 1 - contact / alternating->samples);
 }

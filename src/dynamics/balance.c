@@ -40,49 +40,50 @@ enum eo_code eo_balance_new(struct eo_balance **workspace, int harmonics, int sa
     fine = MIN_SAMPLES;
   while (coarse < 4 * harmonics)
     coarse *= 2;
-  struct eo_balance *w = calloc(1, sizeof *w);
-  if (!w)
+  struct eo_balance *balance = calloc(1, sizeof *balance);
+  if (!balance)
     return eo_error_memory(error);
-  w->harmonics = harmonics;
-  int n = w->terms = eo_fourier_terms(harmonics);
-  w->stiffness = malloc(sizeof *w->stiffness * (1 + harmonics));
-  w->load = malloc(sizeof *w->load * 2 * n);
-  w->force = malloc(sizeof *w->force * 2 * n);
-  w->residual = malloc(sizeof *w->residual * 2 * n);
-  w->scale = malloc(sizeof *w->scale * 4 * n);
-  w->jacobian = malloc(sizeof *w->jacobian * 4 * n * n);
-  w->pivot = malloc(sizeof *w->pivot * 2 * n);
+  balance->harmonics = harmonics;
+  int n = balance->terms = eo_fourier_terms(harmonics);
+  balance->stiffness = malloc(sizeof *balance->stiffness * (1 + harmonics));
+  balance->load = malloc(sizeof *balance->load * 2 * n);
+  balance->force = malloc(sizeof *balance->force * 2 * n);
+  balance->residual = malloc(sizeof *balance->residual * 2 * n);
+  balance->scale = malloc(sizeof *balance->scale * 4 * n);
+  balance->jacobian = malloc(sizeof *balance->jacobian * 4 * n * n);
+  balance->pivot = malloc(sizeof *balance->pivot * 2 * n);
   enum eo_code code = EO_OK;
-  if (!w->stiffness || !w->load || !w->force || !w->residual || !w->scale || !w->jacobian || !w->pivot)
+  if (!balance->stiffness || !balance->load || !balance->force || !balance->residual || !balance->scale ||
+      !balance->jacobian || !balance->pivot)
     code = eo_error_memory(error);
   if (!code)
-    code = eo_alternating_new(&w->coarse, harmonics, coarse, error);
+    code = eo_alternating_new(&balance->coarse, harmonics, coarse, error);
   if (!code)
-    code = eo_alternating_new(&w->fine, harmonics, fine, error);
+    code = eo_alternating_new(&balance->fine, harmonics, fine, error);
   if (code) {
-    eo_balance_free(w);
+    eo_balance_free(balance);
     return code;
   }
-  *workspace = w;
+  *workspace = balance;
   return EO_OK;
 }
 
-void eo_balance_free(struct eo_balance *w)
+void eo_balance_free(struct eo_balance *balance)
 {
-  if (!w)
+  if (!balance)
     return;
-  eo_alternating_free(w->coarse);
-  eo_alternating_free(w->fine);
-  eo_nonlinear_free(w->newton[0]);
-  eo_nonlinear_free(w->newton[1]);
-  free(w->stiffness);
-  free(w->load);
-  free(w->force);
-  free(w->residual);
-  free(w->scale);
-  free(w->jacobian);
-  free(w->pivot);
-  free(w);
+  eo_alternating_free(balance->coarse);
+  eo_alternating_free(balance->fine);
+  eo_nonlinear_free(balance->newton[0]);
+  eo_nonlinear_free(balance->newton[1]);
+  free(balance->stiffness);
+  free(balance->load);
+  free(balance->force);
+  free(balance->residual);
+  free(balance->scale);
+  free(balance->jacobian);
+  free(balance->pivot);
+  free(balance);
 }
 
 int eo_balance_harmonics(const struct eo_balance *workspace)
@@ -125,13 +126,13 @@ static void put_harmonic(double *series, int k, double complex value)
 }
 
 /* Right-hand side at harmonic k of one end. */
-static double complex load_harmonic(const struct eo_oscillator *o, const struct eo_harmonic *h,
+static double complex load_harmonic(const struct eo_oscillator *oscillator, const struct eo_harmonic *harmonic,
                                     const struct eo_cycle *cycle, int end, int k)
 {
-  double complex load = h->load[end];
-  for (int j = 0; j < o->ends; j++)
-    load += h->stiffness[end][j] * eo_motion_harmonic(cycle, j, k) -
-            h->transfer[end][j] * eo_pulse_harmonic(&cycle->pulse[j], cycle->frequency, cycle->shift[j], k);
+  double complex load = harmonic->load[end];
+  for (int j = 0; j < oscillator->ends; j++)
+    load += harmonic->stiffness[end][j] * eo_motion_harmonic(cycle, j, k) -
+            harmonic->transfer[end][j] * eo_pulse_harmonic(&cycle->pulse[j], cycle->frequency, cycle->shift[j], k);
   return load;
 }
 
@@ -140,47 +141,48 @@ static bool equal_pulses(const struct eo_pulse *a, const struct eo_pulse *b)
   return a->shape == b->shape && a->amplitude == b->amplitude && a->start == b->start && a->duration == b->duration;
 }
 
-static bool mirror_ends(const struct eo_oscillator *o, const struct eo_cycle *cycle)
+static bool mirror_ends(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle)
 {
-  return o->ends == 2 && o->symmetric && cycle->shift[0] == cycle->shift[1] && !cycle->motion[0] && !cycle->motion[1] &&
-         equal_pulses(&cycle->pulse[0], &cycle->pulse[1]) && eo_law_equal(cycle->law[0], cycle->law[1]);
+  return oscillator->ends == 2 && oscillator->symmetric && cycle->shift[0] == cycle->shift[1] && !cycle->motion[0] &&
+         !cycle->motion[1] && equal_pulses(&cycle->pulse[0], &cycle->pulse[1]) &&
+         eo_law_equal(cycle->law[0], cycle->law[1]);
 }
 
-static void assemble(struct eo_balance *w, const struct eo_oscillator *o, const struct eo_harmonic *harmonic,
-                     const struct eo_cycle *cycle, bool mirror)
+static void assemble(struct eo_balance *balance, const struct eo_oscillator *oscillator,
+                     const struct eo_harmonic *harmonic, const struct eo_cycle *cycle, bool mirror)
 {
-  w->cycle = cycle;
-  w->ends = mirror ? 1 : o->ends;
-  for (int k = 0; k <= w->harmonics; k++) {
-    const struct eo_harmonic *h = harmonic + k;
-    memcpy(w->stiffness[k], h->stiffness, sizeof h->stiffness);
+  balance->cycle = cycle;
+  balance->ends = mirror ? 1 : oscillator->ends;
+  for (int k = 0; k <= balance->harmonics; k++) {
+    const struct eo_harmonic *this_harmonic = harmonic + k;
+    memcpy(balance->stiffness[k], this_harmonic->stiffness, sizeof this_harmonic->stiffness);
     if (mirror)
-      w->stiffness[k][0][0] += h->stiffness[0][1];
-    for (int end = 0; end < w->ends; end++)
-      put_harmonic(w->load + end * w->terms, k, load_harmonic(o, h, cycle, end, k));
+      balance->stiffness[k][0][0] += this_harmonic->stiffness[0][1];
+    for (int end = 0; end < balance->ends; end++)
+      put_harmonic(balance->load + end * balance->terms, k, load_harmonic(oscillator, this_harmonic, cycle, end, k));
   }
 }
 
-static double mean_load(const struct eo_balance *w)
+static double mean_load(const struct eo_balance *balance)
 {
   double largest = 0;
-  for (int end = 0; end < w->ends; end++)
-    largest = fmax(largest, fabs(w->load[end * w->terms]));
-  for (int i = 0; i < w->ends * w->terms && largest == 0; i++)
-    largest = fmax(largest, fabs(w->load[i]));
+  for (int end = 0; end < balance->ends; end++)
+    largest = fmax(largest, fabs(balance->load[end * balance->terms]));
+  for (int i = 0; i < balance->ends * balance->terms && largest == 0; i++)
+    largest = fmax(largest, fabs(balance->load[i]));
   return largest > 0 ? largest : 1;
 }
 
 /* result += S x - load */
-static void add_linear_part(const struct eo_balance *w, const double *x, double *result)
+static void add_linear_part(const struct eo_balance *balance, const double *x, double *result)
 {
-  int n = w->terms;
-  for (int i = 0; i < w->ends * n; i++)
-    result[i] -= w->load[i];
-  for (int k = 0; k <= w->harmonics; k++)
-    for (int i = 0; i < w->ends; i++)
-      for (int j = 0; j < w->ends; j++) {
-        double complex product = w->stiffness[k][i][j] * eo_series_harmonic(x + j * n, k);
+  int n = balance->terms;
+  for (int i = 0; i < balance->ends * n; i++)
+    result[i] -= balance->load[i];
+  for (int k = 0; k <= balance->harmonics; k++)
+    for (int i = 0; i < balance->ends; i++)
+      for (int j = 0; j < balance->ends; j++) {
+        double complex product = balance->stiffness[k][i][j] * eo_series_harmonic(x + j * n, k);
         if (k == 0)
           result[i * n] += creal(product);
         else {
@@ -192,21 +194,22 @@ static void add_linear_part(const struct eo_balance *w, const double *x, double 
 
 static int balance_residual(void *context, const double *x, double *residual)
 {
-  struct eo_balance *w = context;
-  for (int end = 0; end < w->ends; end++)
-    eo_alternating_force(w->grid, end, w->cycle, x + end * w->terms, w->attached, residual + end * w->terms);
-  add_linear_part(w, x, residual);
+  struct eo_balance *balance = context;
+  for (int end = 0; end < balance->ends; end++)
+    eo_alternating_force(balance->grid, end, balance->cycle, x + end * balance->terms, balance->attached,
+                         residual + end * balance->terms);
+  add_linear_part(balance, x, residual);
   return 0;
 }
 
 /* dS x / dx: every harmonic couples its cosine and sine. */
-static void add_linear_jacobian(const struct eo_balance *w, double *jacobian)
+static void add_linear_jacobian(const struct eo_balance *balance, double *jacobian)
 {
-  int n = w->terms, all = w->ends * n;
-  for (int k = 0; k <= w->harmonics; k++)
-    for (int i = 0; i < w->ends; i++)
-      for (int j = 0; j < w->ends; j++) {
-        double re = creal(w->stiffness[k][i][j]), im = cimag(w->stiffness[k][i][j]);
+  int n = balance->terms, all = balance->ends * n;
+  for (int k = 0; k <= balance->harmonics; k++)
+    for (int i = 0; i < balance->ends; i++)
+      for (int j = 0; j < balance->ends; j++) {
+        double re = creal(balance->stiffness[k][i][j]), im = cimag(balance->stiffness[k][i][j]);
         if (k == 0) {
           jacobian[(size_t)(i * n) * all + j * n] += re;
           continue;
@@ -220,72 +223,74 @@ static void add_linear_jacobian(const struct eo_balance *w, double *jacobian)
 }
 
 /* Of the forces last evaluated. jacobian is zero on entry. */
-static void fill_jacobian(struct eo_balance *w, double *jacobian)
+static void fill_jacobian(struct eo_balance *balance, double *jacobian)
 {
-  int n = w->terms, all = w->ends * n;
-  for (int end = 0; end < w->ends; end++)
-    eo_alternating_jacobian(w->grid, end, w->cycle, w->attached, all, jacobian + (size_t)(end * n) * all + end * n);
-  add_linear_jacobian(w, jacobian);
+  int n = balance->terms, all = balance->ends * n;
+  for (int end = 0; end < balance->ends; end++)
+    eo_alternating_jacobian(balance->grid, end, balance->cycle, balance->attached, all,
+                            jacobian + (size_t)(end * n) * all + end * n);
+  add_linear_jacobian(balance, jacobian);
 }
 
 static int balance_jacobian(void *context, const double *x, double *jacobian)
 {
-  struct eo_balance *w = context;
-  int code = balance_residual(w, x, w->residual);
-  fill_jacobian(w, jacobian);
+  struct eo_balance *balance = context;
+  int code = balance_residual(balance, x, balance->residual);
+  fill_jacobian(balance, jacobian);
   return code;
 }
 
-static enum eo_code use_grid(struct eo_balance *w, struct eo_alternating *grid, bool attached, struct eo_error *error)
+static enum eo_code use_grid(struct eo_balance *balance, struct eo_alternating *grid, bool attached,
+                             struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  w->grid = grid;
-  w->attached = attached;
-  for (int end = 0; end < w->ends && !code; end++)
-    code = eo_alternating_prepare(grid, end, w->cycle->law[end], w->cycle->shift[end], error);
+  balance->grid = grid;
+  balance->attached = attached;
+  for (int end = 0; end < balance->ends && !code; end++)
+    code = eo_alternating_prepare(grid, end, balance->cycle->law[end], balance->cycle->shift[end], error);
   return code;
 }
 
 /* The deflection that carries the mean load at every sample's law: the static curve, as a series. */
-static void static_guess(struct eo_balance *w, double *x)
+static void static_guess(struct eo_balance *balance, double *x)
 {
-  struct eo_alternating *g = w->grid;
-  for (int end = 0; end < w->ends; end++) {
-    struct eo_time_end *e = &g->end[end];
-    double load = fmax(w->load[end * w->terms], 0);
-    for (int i = 0; i < g->samples; i++)
-      e->x[i] = eo_law_deflection(w->cycle->law[end], e->row + (size_t)i * e->rows, load);
-    eo_fourier_series(g->samples, e->x, w->harmonics, x + end * w->terms);
+  struct eo_alternating *alternating = balance->grid;
+  for (int end = 0; end < balance->ends; end++) {
+    struct eo_time_end *time_end = &alternating->end[end];
+    double load = fmax(balance->load[end * balance->terms], 0);
+    for (int i = 0; i < alternating->samples; i++)
+      time_end->x[i] = eo_law_deflection(balance->cycle->law[end], time_end->row + (size_t)i * time_end->rows, load);
+    eo_fourier_series(alternating->samples, time_end->x, balance->harmonics, x + end * balance->terms);
   }
 }
 
-static bool in_contact(const struct eo_balance *w)
+static bool in_contact(const struct eo_balance *balance)
 {
-  for (int end = 0; end < w->ends; end++)
-    for (int i = 0; i < w->grid->samples; i++)
-      if (!(w->grid->end[end].margin[i] > 0))
+  for (int end = 0; end < balance->ends; end++)
+    for (int i = 0; i < balance->grid->samples; i++)
+      if (!(balance->grid->end[end].margin[i] > 0))
         return false;
   return true;
 }
 
-static double largest_residual(struct eo_balance *w, const double *x)
+static double largest_residual(struct eo_balance *balance, const double *x)
 {
   double largest = 0;
-  balance_residual(w, x, w->residual);
-  for (int i = 0; i < w->ends * w->terms; i++)
-    largest = fmax(largest, fabs(w->residual[i]));
-  return largest / mean_load(w);
+  balance_residual(balance, x, balance->residual);
+  for (int i = 0; i < balance->ends * balance->terms; i++)
+    largest = fmax(largest, fabs(balance->residual[i]));
+  return largest / mean_load(balance);
 }
 
 /* Takes one Newton step with the factored Jacobian; returns its size against that of x. */
-static double step(struct eo_balance *w, double *x)
+static double step(struct eo_balance *balance, double *x)
 {
-  int all = w->ends * w->terms;
+  int all = balance->ends * balance->terms;
   double change = 0, size = 0;
-  eo_dense_substitute(all, w->jacobian, w->pivot, 1, w->residual);
+  eo_dense_substitute(all, balance->jacobian, balance->pivot, 1, balance->residual);
   for (int i = 0; i < all; i++) {
-    x[i] -= w->residual[i];
-    change = fmax(change, fabs(w->residual[i]));
+    x[i] -= balance->residual[i];
+    change = fmax(change, fabs(balance->residual[i]));
     size = fmax(size, fabs(x[i]));
   }
   return size > 0 ? change / size : 0;
@@ -294,103 +299,104 @@ static double step(struct eo_balance *w, double *x)
 /* Two Newton steps from zero with the teeth held together: the first solves an affine law, the second refines it and
    tells whether the matrix is so nearly singular (an undamped resonance) that the solution means nothing. Returns
    whether it is sound. */
-static bool solve_linear(struct eo_balance *w, double *x)
+static bool solve_linear(struct eo_balance *balance, double *x)
 {
-  int all = w->ends * w->terms;
+  int all = balance->ends * balance->terms;
   memset(x, 0, sizeof *x * all);
-  memset(w->jacobian, 0, sizeof *w->jacobian * all * all);
-  balance_jacobian(w, x, w->jacobian);
-  if (eo_dense_factor(all, w->jacobian, w->pivot))
+  memset(balance->jacobian, 0, sizeof *balance->jacobian * all * all);
+  balance_jacobian(balance, x, balance->jacobian);
+  if (eo_dense_factor(all, balance->jacobian, balance->pivot))
     return false;
-  step(w, x);
-  balance_residual(w, x, w->residual);
-  return step(w, x) < sound;
+  step(balance, x);
+  balance_residual(balance, x, balance->residual);
+  return step(balance, x) < sound;
 }
 
-static enum eo_code solve_nonlinear(struct eo_balance *w, double *x, struct eo_balance_report *report,
+static enum eo_code solve_nonlinear(struct eo_balance *balance, double *x, struct eo_balance_report *report,
                                     struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  int all = w->ends * w->terms;
-  if (!w->newton[w->ends - 1])
-    code = eo_nonlinear_new(&w->newton[w->ends - 1], all, error);
+  int all = balance->ends * balance->terms;
+  if (!balance->newton[balance->ends - 1])
+    code = eo_nonlinear_new(&balance->newton[balance->ends - 1], all, error);
   if (code)
     return code;
-  double load = mean_load(w), size = 0;
-  for (int end = 0; end < w->ends; end++)
-    size = fmax(size, fabs(x[end * w->terms]));
+  double load = mean_load(balance), size = 0;
+  for (int end = 0; end < balance->ends; end++)
+    size = fmax(size, fabs(x[end * balance->terms]));
   for (int i = 0; i < all; i++) {
-    w->scale[i] = size > 0 ? size : 1;
-    w->scale[all + i] = load;
+    balance->scale[i] = size > 0 ? size : 1;
+    balance->scale[all + i] = load;
   }
-  const struct eo_nonlinear_problem problem = {balance_residual, balance_jacobian, w};
-  const struct eo_nonlinear_options options = {.x_scale = w->scale,
-                                               .residual_scale = w->scale + all,
+  const struct eo_nonlinear_problem problem = {balance_residual, balance_jacobian, balance};
+  const struct eo_nonlinear_options options = {.x_scale = balance->scale,
+                                               .residual_scale = balance->scale + all,
                                                .residual_tolerance = tolerance,
                                                .step_tolerance = step_tolerance,
                                                .max_iterations = MAX_ITERATIONS};
   struct eo_nonlinear_report found;
-  code = eo_nonlinear_solve(w->newton[w->ends - 1], &problem, &options, x, &found, error);
+  code = eo_nonlinear_solve(balance->newton[balance->ends - 1], &problem, &options, x, &found, error);
   report->iterations = found.iterations;
   report->residual = found.residual;
   report->converged = found.residual <= acceptable;
   return code;
 }
 
-static void copy_mirror(struct eo_balance *w, const struct eo_oscillator *o, double *x)
+static void copy_mirror(struct eo_balance *balance, const struct eo_oscillator *oscillator, double *x)
 {
-  if (w->ends < o->ends)
-    memcpy(x + w->terms, x, sizeof *x * w->terms);
+  if (balance->ends < oscillator->ends)
+    memcpy(x + balance->terms, x, sizeof *x * balance->terms);
 }
 
-enum eo_code eo_balance_solve(struct eo_balance *w, const struct eo_oscillator *oscillator,
+enum eo_code eo_balance_solve(struct eo_balance *balance, const struct eo_oscillator *oscillator,
                               const struct eo_harmonic *harmonic, const struct eo_cycle *cycle, bool warm, double *x,
                               struct eo_balance_report *report, struct eo_error *error)
 {
-  assemble(w, oscillator, harmonic, cycle, mirror_ends(oscillator, cycle));
+  assemble(balance, oscillator, harmonic, cycle, mirror_ends(oscillator, cycle));
   bool guessed = warm,
        affine = eo_law_is_affine(cycle->law[0]) && (oscillator->ends == 1 || eo_law_is_affine(cycle->law[1]));
-  *report = (struct eo_balance_report){.ends = w->ends};
+  *report = (struct eo_balance_report){.ends = balance->ends};
   enum eo_code code = EO_OK;
   if (!warm && affine) {
-    if ((code = use_grid(w, w->coarse, true, error)))
+    if ((code = use_grid(balance, balance->coarse, true, error)))
       return code;
-    guessed = solve_linear(w, x);
+    guessed = solve_linear(balance, x);
     if (guessed) {
-      report->residual = largest_residual(w, x);
-      report->converged = report->linear = in_contact(w) && report->residual <= acceptable;
-      report->grid = w->grid;
+      report->residual = largest_residual(balance, x);
+      report->converged = report->linear = in_contact(balance) && report->residual <= acceptable;
+      report->grid = balance->grid;
     }
   }
   if (!report->converged) {
-    if ((code = use_grid(w, w->fine, false, error)))
+    if ((code = use_grid(balance, balance->fine, false, error)))
       return code;
     if (!guessed)
-      static_guess(w, x);
-    code = solve_nonlinear(w, x, report, error);
-    report->grid = w->grid;
+      static_guess(balance, x);
+    code = solve_nonlinear(balance, x, report, error);
+    report->grid = balance->grid;
   }
-  copy_mirror(w, oscillator, x);
+  copy_mirror(balance, oscillator, x);
   return code;
 }
 
 /* Slope of the linear part with frequency: S' x - load', motion and impacts included. */
-static void add_frequency_slope(struct eo_balance *w, const struct eo_oscillator *o, const struct eo_harmonic *harmonic,
-                                const double *x, double *slope)
+static void add_frequency_slope(struct eo_balance *balance, const struct eo_oscillator *oscillator,
+                                const struct eo_harmonic *harmonic, const double *x, double *slope)
 {
-  const struct eo_cycle *cycle = w->cycle;
-  int n = w->terms;
-  for (int k = 0; k <= w->harmonics; k++)
-    for (int i = 0; i < o->ends; i++) {
-      const struct eo_harmonic *h = harmonic + k;
+  const struct eo_cycle *cycle = balance->cycle;
+  int n = balance->terms;
+  for (int k = 0; k <= balance->harmonics; k++)
+    for (int i = 0; i < oscillator->ends; i++) {
+      const struct eo_harmonic *this_harmonic = harmonic + k;
       double complex change = 0;
-      for (int j = 0; j < o->ends; j++) {
+      for (int j = 0; j < oscillator->ends; j++) {
         const struct eo_pulse *pulse = &cycle->pulse[j];
         double complex impact = eo_pulse_harmonic(pulse, cycle->frequency, cycle->shift[j], k);
-        change += h->stiffness_slope[i][j] * (eo_series_harmonic(x + j * n, k) - eo_motion_harmonic(cycle, j, k));
-        change += h->transfer_slope[i][j] * impact;
+        change += this_harmonic->stiffness_slope[i][j] *
+                  (eo_series_harmonic(x + j * n, k) - eo_motion_harmonic(cycle, j, k));
+        change += this_harmonic->transfer_slope[i][j] * impact;
         if (pulse->shape == EO_PULSE_COSINE)
-          change += h->transfer[i][j] * impact * 2 / cycle->frequency;
+          change += this_harmonic->transfer[i][j] * impact * 2 / cycle->frequency;
       }
       if (k == 0)
         slope[i * n] += creal(change);
@@ -401,22 +407,22 @@ static void add_frequency_slope(struct eo_balance *w, const struct eo_oscillator
     }
 }
 
-enum eo_code eo_balance_linearise(struct eo_balance *w, const struct eo_oscillator *oscillator,
+enum eo_code eo_balance_linearise(struct eo_balance *balance, const struct eo_oscillator *oscillator,
                                   const struct eo_harmonic *harmonic, const struct eo_cycle *cycle, const double *x,
                                   double *residual, double *jacobian, double *slope, struct eo_error *error)
 {
-  assemble(w, oscillator, harmonic, cycle, false);
-  enum eo_code code = use_grid(w, w->fine, false, error);
+  assemble(balance, oscillator, harmonic, cycle, false);
+  enum eo_code code = use_grid(balance, balance->fine, false, error);
   if (code)
     return code;
-  int n = w->terms, all = w->ends * n;
-  double load = mean_load(w);
-  balance_residual(w, x, residual);
+  int n = balance->terms, all = balance->ends * n;
+  double load = mean_load(balance);
+  balance_residual(balance, x, residual);
   memset(jacobian, 0, sizeof *jacobian * all * all);
-  fill_jacobian(w, jacobian);
-  for (int end = 0; end < w->ends; end++)
-    eo_alternating_frequency_slope(w->grid, end, cycle, slope + end * n);
-  add_frequency_slope(w, oscillator, harmonic, x, slope);
+  fill_jacobian(balance, jacobian);
+  for (int end = 0; end < balance->ends; end++)
+    eo_alternating_frequency_slope(balance->grid, end, cycle, slope + end * n);
+  add_frequency_slope(balance, oscillator, harmonic, x, slope);
   for (int i = 0; i < all; i++) {
     residual[i] /= load;
     slope[i] /= load;

@@ -33,45 +33,46 @@ static void prescribed(const struct eo_cycle *cycle, int end, double phase, doub
 }
 
 /* *slope and *damping: of the mesh force with deflection and rate. */
-static struct eo_mesh_state mesh_at(const struct eo_oscillator *o, const struct eo_cycle *cycle, int end, double phase,
-                                    const double *position, const double *velocity, double *slope, double *damping)
+static struct eo_mesh_state mesh_at(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, int end,
+                                    double phase, const double *position, const double *velocity, double *slope,
+                                    double *damping)
 {
   double row[MAX_LAW_ROWS];
-  struct eo_mesh_state m;
-  prescribed(cycle, end, phase, &m.deflection, &m.rate);
-  for (int i = 0; i < o->n; i++) {
-    m.deflection += o->mesh[end][i] * position[i];
-    m.rate += o->mesh[end][i] * velocity[i];
+  struct eo_mesh_state mesh_state;
+  prescribed(cycle, end, phase, &mesh_state.deflection, &mesh_state.rate);
+  for (int i = 0; i < oscillator->n; i++) {
+    mesh_state.deflection += oscillator->mesh[end][i] * position[i];
+    mesh_state.rate += oscillator->mesh[end][i] * velocity[i];
   }
   eo_law_rows(cycle->law[end], phase + cycle->shift[end], row);
-  struct eo_mesh_force f = eo_law_force(cycle->law[end], row, m.deflection, 0);
-  *slope = f.slope;
-  *damping = cycle->gated && f.margin <= 0 ? 0 : cycle->mesh_damping;
-  m.elastic = f.force;
-  m.force = f.force + *damping * m.rate;
-  m.margin = f.margin;
-  m.margin_slope = f.margin_slope;
-  return m;
+  struct eo_mesh_force force = eo_law_force(cycle->law[end], row, mesh_state.deflection, 0);
+  *slope = force.slope;
+  *damping = cycle->gated && force.margin <= 0 ? 0 : cycle->mesh_damping;
+  mesh_state.elastic = force.force;
+  mesh_state.force = force.force + *damping * mesh_state.rate;
+  mesh_state.margin = force.margin;
+  mesh_state.margin_slope = force.margin_slope;
+  return mesh_state;
 }
 
-void eo_oscillator_acceleration(const struct eo_oscillator *o, const struct eo_cycle *cycle, double phase,
+void eo_oscillator_acceleration(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, double phase,
                                 const double *position, const double *velocity, double *acceleration,
                                 struct eo_mesh_state *mesh)
 {
-  int n = o->n;
+  int n = oscillator->n;
   for (int i = 0; i < n; i++) {
-    acceleration[i] = o->load[i];
+    acceleration[i] = oscillator->load[i];
     for (int j = 0; j < n; j++)
-      acceleration[i] -= o->stiffness[i * n + j] * position[j] + o->damping[i * n + j] * velocity[j];
+      acceleration[i] -= oscillator->stiffness[i * n + j] * position[j] + oscillator->damping[i * n + j] * velocity[j];
   }
-  for (int end = 0; end < o->ends; end++) {
+  for (int end = 0; end < oscillator->ends; end++) {
     double slope, damping;
-    struct eo_mesh_state m = mesh_at(o, cycle, end, phase, position, velocity, &slope, &damping);
+    struct eo_mesh_state mesh_state = mesh_at(oscillator, cycle, end, phase, position, velocity, &slope, &damping);
     double impact = eo_pulse_value(&cycle->pulse[end], cycle->frequency, phase + cycle->shift[end]);
     for (int i = 0; i < n; i++)
-      acceleration[i] -= o->mesh[end][i] * m.force + o->pulse[end][i] * impact;
+      acceleration[i] -= oscillator->mesh[end][i] * mesh_state.force + oscillator->pulse[end][i] * impact;
     if (mesh)
-      mesh[end] = m;
+      mesh[end] = mesh_state;
   }
 }
 
@@ -101,19 +102,19 @@ static int slope_of(void *context, double t, const double *y, double *slope)
 static int jacobian_of(void *context, double t, const double *y, double *jacobian)
 {
   const struct run *run = context;
-  const struct eo_oscillator *o = run->oscillator;
-  int n = o->n, size = 2 * n;
+  const struct eo_oscillator *oscillator = run->oscillator;
+  int n = oscillator->n, size = 2 * n;
   double position[EO_MAX_COORDINATES], velocity[EO_MAX_COORDINATES], slope[2], damping[2];
   unpack(run, y, position, velocity);
-  for (int end = 0; end < o->ends; end++)
-    mesh_at(o, run->cycle, end, t, position, velocity, &slope[end], &damping[end]);
+  for (int end = 0; end < oscillator->ends; end++)
+    mesh_at(oscillator, run->cycle, end, t, position, velocity, &slope[end], &damping[end]);
   for (int i = 0; i < n; i++) {
     jacobian[i * size + n + i] = 1;
     for (int j = 0; j < n; j++) {
-      double k = o->stiffness[i * n + j], c = o->damping[i * n + j];
-      for (int end = 0; end < o->ends; end++) {
-        k += slope[end] * o->mesh[end][i] * o->mesh[end][j];
-        c += damping[end] * o->mesh[end][i] * o->mesh[end][j];
+      double k = oscillator->stiffness[i * n + j], c = oscillator->damping[i * n + j];
+      for (int end = 0; end < oscillator->ends; end++) {
+        k += slope[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+        c += damping[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
       }
       jacobian[(n + i) * size + j] = -k * run->period * run->period;
       jacobian[(n + i) * size + n + j] = -c * run->period;
@@ -145,23 +146,24 @@ static double longest_step(const struct eo_cycle *cycle, int ends)
   return step;
 }
 
-static void record(const struct run *run, int sample, double phase, const double *y, struct eo_integration *r)
+static void record(const struct run *run, int sample, double phase, const double *y, struct eo_integration *integration)
 {
   double position[EO_MAX_COORDINATES], velocity[EO_MAX_COORDINATES];
   unpack(run, y, position, velocity);
   eo_oscillator_acceleration(run->oscillator, run->cycle, phase, position, velocity,
-                             r->acceleration + (size_t)sample * run->oscillator->n, r->mesh + 2 * sample);
+                             integration->acceleration + (size_t)sample * run->oscillator->n,
+                             integration->mesh + 2 * sample);
 }
 
 /* One period from integer phase `period`; y is the state, *swing the largest departure met. With `r` it is recorded
    from sample `first` on. */
 static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int period, int samples, double *y,
-                               double *swing, struct eo_integration *r, int first, struct eo_error *error)
+                               double *swing, struct eo_integration *integration, int first, struct eo_error *error)
 {
   int n = run->oscillator->n;
   for (int i = 0; i < samples; i++) {
-    if (r)
-      record(run, first + i, (double)i / samples, y, r);
+    if (integration)
+      record(run, first + i, (double)i / samples, y, integration);
     enum eo_code code = eo_ode_advance(ode, period + (i + 1.0) / samples, y, error);
     if (code)
       return code;
@@ -175,17 +177,17 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
                                 double *y, struct eo_integration *result, const struct eo_progress *progress,
                                 struct eo_error *error)
 {
-  struct eo_settling s;
+  struct eo_settling settling;
   int period = 0, repeat = 0;
-  eo_settling_init(&s, run->oscillator->n, options->settled, options->max_repeat);
+  eo_settling_init(&settling, run->oscillator->n, options->settled, options->max_repeat);
   result->change = 0;
   while (period < options->max_periods - 1 && !repeat) {
-    enum eo_code code = one_period(ode, run, period, 8, y, eo_settling_begin(&s, y), NULL, 0, error);
+    enum eo_code code = one_period(ode, run, period, 8, y, eo_settling_begin(&settling, y), NULL, 0, error);
     if (code)
       return code;
     period++;
-    repeat = eo_settling_end(&s, y);
-    result->change = eo_settling_change(&s);
+    repeat = eo_settling_end(&settling, y);
+    result->change = eo_settling_change(&settling);
     if (eo_progress_report(progress, "time integration", (double)period / options->max_periods))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "The time integration was cancelled.");
   }
@@ -197,7 +199,7 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
     code = one_period(ode, run, period++, options->samples, y, &swing, result, i * options->samples, error);
   }
   result->periods = period;
-  unpack(run, y, result->state, result->state + s.n);
+  unpack(run, y, result->state, result->state + settling.n);
   return code;
 }
 

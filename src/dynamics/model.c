@@ -9,13 +9,13 @@
 enum { MAX_ELEMENTS = 24 };
 
 /* Adds k e e' and c e e' to the matrices. */
-static void add_element(struct eo_dynamics_model *m, const double *e, double k, double c)
+static void add_element(struct eo_dynamics_model *model, const double *e, double k, double c)
 {
-  int n = m->freedoms;
+  int n = model->freedoms;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      m->stiffness[i * n + j] += k * e[i] * e[j]; /* theory (D2) */
-      m->damping[i * n + j] += c * e[i] * e[j];
+      model->stiffness[i * n + j] += k * e[i] * e[j]; /* theory (D2) */
+      model->damping[i * n + j] += c * e[i] * e[j];
     }
 }
 
@@ -27,7 +27,7 @@ struct elements {
 };
 
 /* A spring and damper along e. */
-static void put_element(struct eo_dynamics_model *m, struct elements *all, const double *e, double k, double c)
+static void put_element(struct eo_dynamics_model *model, struct elements *all, const double *e, double k, double c)
 {
   if (k == 0)
     return;
@@ -36,88 +36,88 @@ static void put_element(struct eo_dynamics_model *m, struct elements *all, const
     return;
   }
   memcpy(all->e[all->n++], e, sizeof *all->e);
-  add_element(m, e, k, c);
+  add_element(model, e, k, c);
 }
 
-static void join(struct eo_dynamics_model *m, struct elements *all, int plus, int minus, double k, double c)
+static void join(struct eo_dynamics_model *model, struct elements *all, int plus, int minus, double k, double c)
 {
   double e[EO_MAX_FREEDOMS] = {0};
   e[plus] = 1;
   if (minus >= 0)
     e[minus] = -1;
-  put_element(m, all, e, k, c);
+  put_element(model, all, e, k, c);
 }
 
 /* k_a from the mean axial motion of the pinion to ground. */
-static void hold_pinion(struct eo_dynamics_model *m, struct elements *all)
+static void hold_pinion(struct eo_dynamics_model *model, struct elements *all)
 {
-  const struct eo_dynamics_parameters *p = &m->parameters;
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
   double e[EO_MAX_FREEDOMS] = {0};
-  for (int end = 0; end < p->ends; end++)
-    e[eo_dynamics_freedom(p->ends, EO_PINION, end, EO_MOTION_Z)] = 1.0 / p->ends;
-  put_element(m, all, e, p->pinion_axial_stiffness, p->pinion_axial_damping);
+  for (int end = 0; end < parameters->ends; end++)
+    e[eo_dynamics_freedom(parameters->ends, EO_PINION, end, EO_MOTION_Z)] = 1.0 / parameters->ends;
+  put_element(model, all, e, parameters->pinion_axial_stiffness, parameters->pinion_axial_damping);
 }
 
-static void join_machines(struct eo_dynamics_model *m, struct elements *all)
+static void join_machines(struct eo_dynamics_model *model, struct elements *all)
 {
-  const struct eo_dynamics_parameters *p = &m->parameters;
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
   for (int member = 0; member < 2; member++) {
     double e[EO_MAX_FREEDOMS] = {0};
-    if (m->machine[member] < 0)
+    if (model->machine[member] < 0)
       continue;
-    e[m->machine[member]] = 1;
-    for (int end = 0; end < p->ends; end++)
-      e[eo_dynamics_freedom(p->ends, member, end, EO_MOTION_ROTATION)] = -1.0 / p->ends;
-    put_element(m, all, e, p->machine_stiffness[member], p->machine_damping[member]);
+    e[model->machine[member]] = 1;
+    for (int end = 0; end < parameters->ends; end++)
+      e[eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_ROTATION)] = -1.0 / parameters->ends;
+    put_element(model, all, e, parameters->machine_stiffness[member], parameters->machine_damping[member]);
   }
 }
 
-static void add_supports(struct eo_dynamics_model *m, struct elements *all)
+static void add_supports(struct eo_dynamics_model *model, struct elements *all)
 {
-  const struct eo_dynamics_parameters *p = &m->parameters;
-  int ends = p->ends;
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  int ends = parameters->ends;
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < ends; end++)
-      join(m, all, eo_dynamics_freedom(ends, member, end, EO_MOTION_Y), -1, p->bearing_stiffness[member],
-           p->bearing_damping[member]);
+      join(model, all, eo_dynamics_freedom(ends, member, end, EO_MOTION_Y), -1, parameters->bearing_stiffness[member],
+           parameters->bearing_damping[member]);
   for (int end = 0; end < ends; end++)
-    join(m, all, eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_Z), -1, p->gear_axial_stiffness[end],
-         p->gear_axial_damping[end]);
-  hold_pinion(m, all);
-  join_machines(m, all);
+    join(model, all, eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_Z), -1, parameters->gear_axial_stiffness[end],
+         parameters->gear_axial_damping[end]);
+  hold_pinion(model, all);
+  join_machines(model, all);
   if (ends == 1) {
-    join(m, all, eo_dynamics_freedom(1, EO_PINION, 0, EO_MOTION_Z), -1, p->groove_axial_stiffness[0],
-         p->groove_axial_damping[0]);
+    join(model, all, eo_dynamics_freedom(1, EO_PINION, 0, EO_MOTION_Z), -1, parameters->groove_axial_stiffness[0],
+         parameters->groove_axial_damping[0]);
     return;
   }
   for (int member = 0; member < 2; member++) {
-    join(m, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_Z), eo_dynamics_freedom(2, member, 1, EO_MOTION_Z),
-         p->groove_axial_stiffness[member], p->groove_axial_damping[member]);
-    join(m, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_ROTATION),
-         eo_dynamics_freedom(2, member, 1, EO_MOTION_ROTATION), p->groove_torsional_stiffness[member],
-         p->groove_torsional_damping[member]);
+    join(model, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_Z), eo_dynamics_freedom(2, member, 1, EO_MOTION_Z),
+         parameters->groove_axial_stiffness[member], parameters->groove_axial_damping[member]);
+    join(model, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_ROTATION),
+         eo_dynamics_freedom(2, member, 1, EO_MOTION_ROTATION), parameters->groove_torsional_stiffness[member],
+         parameters->groove_torsional_damping[member]);
   }
 }
 
-static void set_readings(struct eo_dynamics_model *m)
+static void set_readings(struct eo_dynamics_model *model)
 {
-  const struct eo_dynamics_parameters *p = &m->parameters;
-  double c = cos(p->base_helix_angle), s = sin(p->base_helix_angle);
-  for (int end = 0; end < p->ends; end++) {
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  double c = cos(parameters->base_helix_angle), s = sin(parameters->base_helix_angle);
+  for (int end = 0; end < parameters->ends; end++) {
     double hand = end == 0 ? s : -s;
     for (int member = 0; member < 2; member++) {
       double sign = member == EO_PINION ? 1 : -1;
-      int y = eo_dynamics_freedom(p->ends, member, end, EO_MOTION_Y);
-      int z = eo_dynamics_freedom(p->ends, member, end, EO_MOTION_Z);
-      int rotation = eo_dynamics_freedom(p->ends, member, end, EO_MOTION_ROTATION);
-      double radius = p->base_radius[member];
-      m->reading[EO_READING_NORMAL][end][y] = sign * c; /* theory (D1) */
-      m->reading[EO_READING_NORMAL][end][z] = sign * hand;
-      m->reading[EO_READING_NORMAL][end][rotation] = sign * c * radius;
-      m->reading[EO_READING_TRANSVERSE][end][y] = sign;
-      m->reading[EO_READING_TRANSVERSE][end][rotation] = sign * radius;
-      m->reading[EO_READING_ROTATIONAL][end][rotation] = sign * radius;
-      m->theta_impact[end][rotation] = sign * radius;
+      int y = eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_Y);
+      int z = eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_Z);
+      int rotation = eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_ROTATION);
+      double radius = parameters->base_radius[member];
+      model->reading[EO_READING_NORMAL][end][y] = sign * c; /* theory (D1) */
+      model->reading[EO_READING_NORMAL][end][z] = sign * hand;
+      model->reading[EO_READING_NORMAL][end][rotation] = sign * c * radius;
+      model->reading[EO_READING_TRANSVERSE][end][y] = sign;
+      model->reading[EO_READING_TRANSVERSE][end][rotation] = sign * radius;
+      model->reading[EO_READING_ROTATIONAL][end][rotation] = sign * radius;
+      model->theta_impact[end][rotation] = sign * radius;
     }
   }
 }
@@ -169,12 +169,12 @@ static int extend(int n, int count, double (*vector)[EO_MAX_FREEDOMS], int candi
 }
 
 /* Directions in coordinates scaled by sqrt(m), as unit vectors. */
-static void scale_directions(const struct eo_dynamics_model *m, int count, double (*direction)[EO_MAX_FREEDOMS])
+static void scale_directions(const struct eo_dynamics_model *model, int count, double (*direction)[EO_MAX_FREEDOMS])
 {
-  int n = m->freedoms;
+  int n = model->freedoms;
   for (int c = 0; c < count; c++) {
     for (int i = 0; i < n; i++)
-      direction[c][i] /= sqrt(m->mass[i]);
+      direction[c][i] /= sqrt(model->mass[i]);
     double length = sqrt(dot(n, direction[c], direction[c]));
     for (int i = 0; i < n; i++)
       direction[c][i] /= length;
@@ -183,56 +183,56 @@ static void scale_directions(const struct eo_dynamics_model *m, int count, doubl
 
 /* In coordinates scaled by sqrt(m) the motions there are stand at right angles to the directions of rigid springs, and
    the zero modes to all element directions besides. */
-static void split_motions(struct eo_dynamics_model *m, struct elements *all)
+static void split_motions(struct eo_dynamics_model *model, struct elements *all)
 {
-  int n = m->freedoms;
+  int n = model->freedoms;
   double vector[EO_MAX_FREEDOMS][EO_MAX_FREEDOMS] = {0};
-  scale_directions(m, all->rigid, all->constraint);
-  scale_directions(m, all->n, all->e);
+  scale_directions(model, all->rigid, all->constraint);
+  scale_directions(model, all->n, all->e);
   int held = extend(n, 0, vector, all->rigid, all->constraint);
   int known = extend(n, held, vector, all->n, all->e), rank = known - held;
   double unit[EO_MAX_FREEDOMS][EO_MAX_FREEDOMS] = {0};
   for (int i = 0; i < n; i++)
     unit[i][i] = 1;
   extend(n, known, vector, n, unit);
-  m->constraints = held;
-  m->zero_modes = n - known;
-  m->oscillator.n = rank;
+  model->constraints = held;
+  model->zero_modes = n - known;
+  model->oscillator.n = rank;
   for (int i = 0; i < n; i++)
     for (int k = held; k < n; k++) {
-      double value = vector[k][i] / sqrt(m->mass[i]);
+      double value = vector[k][i] / sqrt(model->mass[i]);
       if (k < known)
-        m->basis[i * rank + k - held] = value;
+        model->basis[i * rank + k - held] = value;
       else
-        m->zero[i * m->zero_modes + k - known] = value;
+        model->zero[i * model->zero_modes + k - known] = value;
     }
 }
 
 /* reduced[n] = basis' full[freedoms] */
-static void project(const struct eo_dynamics_model *m, const double *full, double *reduced)
+static void project(const struct eo_dynamics_model *model, const double *full, double *reduced)
 {
-  int n = m->oscillator.n;
+  int n = model->oscillator.n;
   for (int k = 0; k < n; k++) {
     reduced[k] = 0;
-    for (int i = 0; i < m->freedoms; i++)
-      reduced[k] += m->basis[i * n + k] * full[i];
+    for (int i = 0; i < model->freedoms; i++)
+      reduced[k] += model->basis[i * n + k] * full[i];
   }
 }
 
 /* reduced[n][n] = basis' full basis, symmetric to the last bit */
-static void project_matrix(const struct eo_dynamics_model *m, const double *full, double *reduced)
+static void project_matrix(const struct eo_dynamics_model *model, const double *full, double *reduced)
 {
-  int n = m->oscillator.n, f = m->freedoms;
+  int n = model->oscillator.n, f = model->freedoms;
   for (int k = 0; k < n; k++) {
     double column[EO_MAX_FREEDOMS], image[EO_MAX_FREEDOMS];
     for (int i = 0; i < f; i++)
-      column[i] = m->basis[i * n + k];
+      column[i] = model->basis[i * n + k];
     for (int i = 0; i < f; i++)
       image[i] = dot(f, full + i * f, column);
     for (int l = 0; l <= k; l++) {
       double sum = 0;
       for (int i = 0; i < f; i++)
-        sum += m->basis[i * n + l] * image[i];
+        sum += model->basis[i * n + l] * image[i];
       reduced[k * n + l] = reduced[l * n + k] = sum;
     }
   }
@@ -241,28 +241,30 @@ static void project_matrix(const struct eo_dynamics_model *m, const double *full
 /* Stiffness added while condensing where no bearing gives it a size, N/m: that of a mesh; its value cancels. */
 static const double rigid_shift = 1e9;
 
-static void reduce(struct eo_dynamics_model *m)
+static void reduce(struct eo_dynamics_model *model)
 {
-  const struct eo_dynamics_parameters *p = &m->parameters;
-  struct eo_oscillator *o = &m->oscillator;
-  o->ends = p->ends;
-  o->shift = isfinite(p->bearing_stiffness[EO_PINION]) ? p->bearing_stiffness[EO_PINION] : rigid_shift;
-  o->symmetric = p->ends == 2 && p->gear_axial_stiffness[0] == p->gear_axial_stiffness[1] &&
-                 p->gear_axial_damping[0] == p->gear_axial_damping[1];
-  project_matrix(m, m->stiffness, o->stiffness);
-  project_matrix(m, m->damping, o->damping);
-  for (int end = 0; end < p->ends; end++)
-    project(m, m->reading[EO_READING_NORMAL][end], o->mesh[end]);
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  struct eo_oscillator *oscillator = &model->oscillator;
+  oscillator->ends = parameters->ends;
+  oscillator->shift = isfinite(parameters->bearing_stiffness[EO_PINION]) ? parameters->bearing_stiffness[EO_PINION]
+                                                                         : rigid_shift;
+  oscillator->symmetric = parameters->ends == 2 &&
+                          parameters->gear_axial_stiffness[0] == parameters->gear_axial_stiffness[1] &&
+                          parameters->gear_axial_damping[0] == parameters->gear_axial_damping[1];
+  project_matrix(model, model->stiffness, oscillator->stiffness);
+  project_matrix(model, model->damping, oscillator->damping);
+  for (int end = 0; end < parameters->ends; end++)
+    project(model, model->reading[EO_READING_NORMAL][end], oscillator->mesh[end]);
 }
 
 /* Mass or, of the rotation, inertia of an end. */
-static double mass_of(const struct eo_dynamics_parameters *p, int member, int end, int motion)
+static double mass_of(const struct eo_dynamics_parameters *parameters, int member, int end, int motion)
 {
   bool rotation = motion == EO_MOTION_ROTATION;
-  double right = rotation ? p->right_inertia[member] : p->right_mass[member];
+  double right = rotation ? parameters->right_inertia[member] : parameters->right_mass[member];
   if (end == EO_RIGHT && right > 0)
     return right;
-  return rotation ? p->inertia[member] : p->mass[member];
+  return rotation ? parameters->inertia[member] : parameters->mass[member];
 }
 
 enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struct eo_dynamics_parameters *parameters,
@@ -293,11 +295,11 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
 }
 
 /* Where the torque comes in and goes out: at the machine, or by equal parts at the ends. */
-static void set_torque(const struct eo_dynamics_model *m, int member, double torque, double *load)
+static void set_torque(const struct eo_dynamics_model *model, int member, double torque, double *load)
 {
-  int ends = m->parameters.ends;
-  if (m->machine[member] >= 0)
-    load[m->machine[member]] = torque;
+  int ends = model->parameters.ends;
+  if (model->machine[member] >= 0)
+    load[model->machine[member]] = torque;
   else
     for (int end = 0; end < ends; end++)
       load[eo_dynamics_freedom(ends, member, end, EO_MOTION_ROTATION)] = torque / ends;
@@ -305,18 +307,20 @@ static void set_torque(const struct eo_dynamics_model *m, int member, double tor
 
 void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum eo_impact_in_dynamics impact)
 {
-  const struct eo_dynamics_parameters *p = &model->parameters;
-  int ends = p->ends;
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  int ends = parameters->ends;
   double load[EO_MAX_FREEDOMS] = {0};
   set_torque(model, EO_PINION, torque, load);
-  set_torque(model, EO_GEAR, -torque * p->base_radius[EO_GEAR] / p->base_radius[EO_PINION], load);
+  set_torque(model, EO_GEAR, -torque * parameters->base_radius[EO_GEAR] / parameters->base_radius[EO_PINION], load);
   for (int end = 0; end < ends; end++) {
-    struct eo_oscillator *o = &model->oscillator;
+    struct eo_oscillator *oscillator = &model->oscillator;
     if (impact == EO_IMPACT_PAPER)
-      project(model, model->theta_impact[end], o->pulse[end]);
+      project(model, model->theta_impact[end], oscillator->pulse[end]);
     else
-      for (int k = 0; k < o->n; k++)
-        o->pulse[end][k] = impact == EO_IMPACT_NONE ? 0 : o->mesh[end][k] / cos(p->base_helix_angle);
+      for (int k = 0; k < oscillator->n; k++)
+        oscillator->pulse[end][k] = impact == EO_IMPACT_NONE
+                                        ? 0
+                                        : oscillator->mesh[end][k] / cos(parameters->base_helix_angle);
   }
   project(model, load, model->oscillator.load);
   model->zero_mode_load = 0;
@@ -348,22 +352,22 @@ double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, con
    freely: (1, -1) H (1, -1)' = 2 / (2 s + shift). */
 double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model)
 {
-  const struct eo_oscillator *o = &model->oscillator;
+  const struct eo_oscillator *oscillator = &model->oscillator;
   double lean = sin(model->parameters.base_helix_angle);
-  if (o->ends == 1 || lean == 0 || model->parameters.pinion_axial_stiffness == 0 || model->zero_modes > 1)
+  if (oscillator->ends == 1 || lean == 0 || model->parameters.pinion_axial_stiffness == 0 || model->zero_modes > 1)
     return 0;
-  int n = o->n, pivot[EO_MAX_COORDINATES];
+  int n = oscillator->n, pivot[EO_MAX_COORDINATES];
   double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], apart[EO_MAX_COORDINATES], response[EO_MAX_COORDINATES];
-  memcpy(k, o->stiffness, sizeof k);
+  memcpy(k, oscillator->stiffness, sizeof k);
   for (int i = 0; i < n; i++) {
-    response[i] = apart[i] = o->mesh[0][i] - o->mesh[1][i];
+    response[i] = apart[i] = oscillator->mesh[0][i] - oscillator->mesh[1][i];
     for (int j = 0; j < n; j++)
       for (int end = 0; end < 2; end++)
-        k[i * n + j] += o->shift * o->mesh[end][i] * o->mesh[end][j];
+        k[i * n + j] += oscillator->shift * oscillator->mesh[end][i] * oscillator->mesh[end][j];
   }
   if (eo_dense_solve(n, k, pivot, 1, response))
     return 0;
-  double soft = o->shift * dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
+  double soft = oscillator->shift * dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
   const double none = 1e-12;
-  return soft < none ? INFINITY : 2 * lean * lean * o->shift * (1 / soft - 1);
+  return soft < none ? INFINITY : 2 * lean * lean * oscillator->shift * (1 / soft - 1);
 }

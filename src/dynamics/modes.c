@@ -44,20 +44,20 @@ static void set_shapes(const struct eo_dynamics_model *model, const double *vect
 enum eo_code eo_dynamics_model_modes(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
                                      struct eo_dynamics_modes *modes, struct eo_error *error)
 {
-  const struct eo_oscillator *o = &model->oscillator;
-  int n = o->n;
+  const struct eo_oscillator *oscillator = &model->oscillator;
+  int n = oscillator->n;
   double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], c[EO_MAX_COORDINATES * EO_MAX_COORDINATES],
       square[EO_MAX_COORDINATES];
-  memcpy(k, o->stiffness, sizeof k);
-  memcpy(c, o->damping, sizeof c);
-  for (int end = 0; end < o->ends; end++) {
+  memcpy(k, oscillator->stiffness, sizeof k);
+  memcpy(c, oscillator->damping, sizeof c);
+  for (int end = 0; end < oscillator->ends; end++) {
     if (!(mesh_stiffness[end] > 0 && isfinite(mesh_stiffness[end])))
       return eo_error_set(error, EO_ERROR_INPUT, "", "Eigenfrequencies need a positive mesh stiffness, not %g N/m.",
                           mesh_stiffness[end]);
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n; j++) {
-        k[i * n + j] += mesh_stiffness[end] * o->mesh[end][i] * o->mesh[end][j];
-        c[i * n + j] += model->parameters.mesh_damping * o->mesh[end][i] * o->mesh[end][j];
+        k[i * n + j] += mesh_stiffness[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+        c[i * n + j] += model->parameters.mesh_damping * oscillator->mesh[end][i] * oscillator->mesh[end][j];
       }
   }
   struct eo_dynamics_modes found = {.n = n, .zero_modes = model->zero_modes};
@@ -75,36 +75,37 @@ enum eo_code eo_dynamics_model_modes(const struct eo_dynamics_model *model, cons
 }
 
 /* M^-1 (matrix + sum k g g') */
-static void full_matrix(const struct eo_dynamics_model *m, const double *matrix, const double mesh[2], double *full)
+static void full_matrix(const struct eo_dynamics_model *model, const double *matrix, const double mesh[2], double *full)
 {
-  int n = m->freedoms;
+  int n = model->freedoms;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       full[i * n + j] = matrix[i * n + j];
-      for (int end = 0; end < m->parameters.ends; end++)
-        full[i * n + j] += mesh[end] * m->reading[EO_READING_NORMAL][end][i] * m->reading[EO_READING_NORMAL][end][j];
-      full[i * n + j] /= m->mass[i];
+      for (int end = 0; end < model->parameters.ends; end++)
+        full[i * n + j] += mesh[end] * model->reading[EO_READING_NORMAL][end][i] *
+                           model->reading[EO_READING_NORMAL][end][j];
+      full[i * n + j] /= model->mass[i];
     }
 }
 
 enum eo_code eo_dynamics_model_printed_pole(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
                                             double complex *pole, struct eo_error *error)
 {
-  const struct eo_dynamics_parameters *p = &model->parameters;
-  if (p->ends != 2)
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  if (parameters->ends != 2)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The printed signs concern the groove between two ends.");
   double k[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS], c[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS];
   double complex all[2 * EO_MAX_FREEDOMS];
-  const double damping[2] = {p->mesh_damping, p->mesh_damping};
+  const double damping[2] = {parameters->mesh_damping, parameters->mesh_damping};
   int n = model->freedoms, zp1 = eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z),
       zp2 = eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z), zg1 = eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Z),
       zg2 = eo_dynamics_freedom(2, EO_GEAR, 1, EO_MOTION_Z);
   full_matrix(model, model->stiffness, mesh_stiffness, k);
   full_matrix(model, model->damping, damping, c);
-  k[zp2 * n + zp1] += 2 * p->groove_axial_stiffness[EO_PINION] / p->mass[EO_PINION];
-  c[zp2 * n + zp1] += 2 * p->groove_axial_damping[EO_PINION] / p->mass[EO_PINION];
-  c[zg2 * n + zg2] -= 2 * p->groove_axial_damping[EO_GEAR] / p->mass[EO_GEAR];
-  c[zg2 * n + zg1] += 2 * p->groove_axial_damping[EO_GEAR] / p->mass[EO_GEAR];
+  k[zp2 * n + zp1] += 2 * parameters->groove_axial_stiffness[EO_PINION] / parameters->mass[EO_PINION];
+  c[zp2 * n + zp1] += 2 * parameters->groove_axial_damping[EO_PINION] / parameters->mass[EO_PINION];
+  c[zg2 * n + zg2] -= 2 * parameters->groove_axial_damping[EO_GEAR] / parameters->mass[EO_GEAR];
+  c[zg2 * n + zg1] += 2 * parameters->groove_axial_damping[EO_GEAR] / parameters->mass[EO_GEAR];
   if (find_poles(n, k, c, all))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The poles of the printed equations could not be found.");
   *pole = all[0];

@@ -37,18 +37,18 @@ static void exponential(int size, double *a)
   }
 }
 
-void eo_propagator_fill(const struct eo_oscillator *o, double mesh_damping, const double mean[2], double rate,
+void eo_propagator_fill(const struct eo_oscillator *oscillator, double mesh_damping, const double mean[2], double rate,
                         double step, double *a)
 {
-  int n = o->n, size = 2 * n;
+  int n = oscillator->n, size = 2 * n;
   memset(a, 0, sizeof *a * (size_t)(size * size));
   for (int i = 0; i < n; i++) {
     a[i * size + n + i] = rate * step;
     for (int j = 0; j < n; j++) {
-      double k = o->stiffness[i * n + j], c = o->damping[i * n + j];
-      for (int end = 0; end < o->ends; end++) {
-        k += mean[end] * o->mesh[end][i] * o->mesh[end][j];
-        c += mesh_damping * o->mesh[end][i] * o->mesh[end][j];
+      double k = oscillator->stiffness[i * n + j], c = oscillator->damping[i * n + j];
+      for (int end = 0; end < oscillator->ends; end++) {
+        k += mean[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+        c += mesh_damping * oscillator->mesh[end][i] * oscillator->mesh[end][j];
       }
       a[(n + i) * size + j] = -k * step / rate;
       a[(n + i) * size + n + j] = -c * step;
@@ -57,11 +57,11 @@ void eo_propagator_fill(const struct eo_oscillator *o, double mesh_damping, cons
   exponential(size, a);
 }
 
-double eo_propagator_mesh_rate(const struct eo_oscillator *o, const double mean[2])
+double eo_propagator_mesh_rate(const struct eo_oscillator *oscillator, const double mean[2])
 {
   double square = 0;
-  for (int end = 0; end < o->ends; end++)
-    for (int i = 0; i < o->n; i++)
-      square += mean[end] * o->mesh[end][i] * o->mesh[end][i];
+  for (int end = 0; end < oscillator->ends; end++)
+    for (int i = 0; i < oscillator->n; i++)
+      square += mean[end] * oscillator->mesh[end][i] * oscillator->mesh[end][i];
   return sqrt(square);
 }

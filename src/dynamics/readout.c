@@ -39,10 +39,11 @@ static double complex support(const struct eo_spectrum *spectrum, int member, in
   return (stiffness + I * k * spectrum->frequency * damping) * freedom(spectrum, member, end, motion, k);
 }
 
-void eo_vibration_orders(const struct eo_vibration_solver *s, enum eo_channel channel, int end, double complex *order)
+void eo_vibration_orders(const struct eo_vibration_solver *solver, enum eo_channel channel, int end,
+                         double complex *order)
 {
-  const struct eo_spectrum *spectrum = &s->spectrum;
-  const struct eo_dynamics_parameters *p = &s->model.parameters;
+  const struct eo_spectrum *spectrum = &solver->spectrum;
+  const struct eo_dynamics_parameters *parameters = &solver->model.parameters;
   for (int k = 0; k <= spectrum->harmonics; k++) {
     double w2 = -pow(k * spectrum->frequency, 2);
     switch (channel) {
@@ -56,21 +57,21 @@ void eo_vibration_orders(const struct eo_vibration_solver *s, enum eo_channel ch
       order[k] = w2 * spectrum->deflection[end][k];
       break;
     case EO_CHANNEL_TRANSVERSE:
-      order[k] = w2 * along(spectrum, s->model.reading[EO_READING_TRANSVERSE][end], k);
+      order[k] = w2 * along(spectrum, solver->model.reading[EO_READING_TRANSVERSE][end], k);
       break;
     case EO_CHANNEL_ROTATIONAL:
-      order[k] = w2 * along(spectrum, s->model.reading[EO_READING_ROTATIONAL][end], k);
+      order[k] = w2 * along(spectrum, solver->model.reading[EO_READING_ROTATIONAL][end], k);
       break;
     case EO_CHANNEL_PINION_BEARING:
     case EO_CHANNEL_GEAR_BEARING: {
       int member = channel == EO_CHANNEL_PINION_BEARING ? EO_PINION : EO_GEAR;
-      order[k] = support(spectrum, member, end, EO_MOTION_Y, p->bearing_stiffness[member], p->bearing_damping[member],
-                         k);
+      order[k] = support(spectrum, member, end, EO_MOTION_Y, parameters->bearing_stiffness[member],
+                         parameters->bearing_damping[member], k);
       break;
     }
     case EO_CHANNEL_GEAR_THRUST:
-      order[k] = support(spectrum, EO_GEAR, end, EO_MOTION_Z, p->gear_axial_stiffness[end], p->gear_axial_damping[end],
-                         k);
+      order[k] = support(spectrum, EO_GEAR, end, EO_MOTION_Z, parameters->gear_axial_stiffness[end],
+                         parameters->gear_axial_damping[end], k);
       break;
     case EO_CHANNELS:
       order[k] = 0;
@@ -78,13 +79,13 @@ void eo_vibration_orders(const struct eo_vibration_solver *s, enum eo_channel ch
   }
 }
 
-void eo_vibration_histories(const struct eo_vibration_solver *s, int samples, double *const *const *history)
+void eo_vibration_histories(const struct eo_vibration_solver *solver, int samples, double *const *const *history)
 {
-  int harmonics = s->spectrum.harmonics, terms = eo_fourier_terms(harmonics), ends = s->spectrum.ends;
+  int harmonics = solver->spectrum.harmonics, terms = eo_fourier_terms(harmonics), ends = solver->spectrum.ends;
   double complex order[1 + EO_MAX_HARMONICS];
   double series[2 * EO_CHANNELS][MAX_TERMS], basis[MAX_TERMS];
   for (int i = 0; i < ends * EO_CHANNELS; i++) {
-    eo_vibration_orders(s, (enum eo_channel)(i % EO_CHANNELS), i / EO_CHANNELS, order);
+    eo_vibration_orders(solver, (enum eo_channel)(i % EO_CHANNELS), i / EO_CHANNELS, order);
     series_of(harmonics, order, series[i]);
   }
   for (int j = 0; j < samples; j++) {
@@ -99,15 +100,15 @@ void eo_vibration_histories(const struct eo_vibration_solver *s, int samples, do
 }
 
 /* Displacements q_k from those of the oscillator; the zero modes have no part in them. */
-static void spread(struct eo_vibration_solver *s, int k, const double complex *response)
+static void spread(struct eo_vibration_solver *solver, int k, const double complex *response)
 {
-  const struct eo_dynamics_model *m = &s->model;
-  int n = m->oscillator.n;
-  double complex *q = s->spectrum.freedom + (size_t)k * m->freedoms;
-  for (int i = 0; i < m->freedoms; i++) {
+  const struct eo_dynamics_model *model = &solver->model;
+  int n = model->oscillator.n;
+  double complex *q = solver->spectrum.freedom + (size_t)k * model->freedoms;
+  for (int i = 0; i < model->freedoms; i++) {
     q[i] = 0;
     for (int j = 0; j < n; j++)
-      q[i] += m->basis[i * n + j] * response[j];
+      q[i] += model->basis[i * n + j] * response[j];
   }
 }
 
@@ -119,16 +120,16 @@ static double root_of_squares(int harmonics, const double complex *order)
   return sqrt(sum);
 }
 
-static void read_accelerations(const struct eo_vibration_solver *s, struct eo_vibration *result)
+static void read_accelerations(const struct eo_vibration_solver *solver, struct eo_vibration *result)
 {
   static const enum eo_channel channel[EO_READINGS] = {EO_CHANNEL_NORMAL, EO_CHANNEL_TRANSVERSE, EO_CHANNEL_ROTATIONAL};
-  const struct eo_spectrum *spectrum = &s->spectrum;
+  const struct eo_spectrum *spectrum = &solver->spectrum;
   int ends = spectrum->ends, harmonics = spectrum->harmonics;
   double complex order[1 + EO_MAX_HARMONICS], mean[1 + EO_MAX_HARMONICS];
   for (int reading = 0; reading < EO_READINGS; reading++) {
     memset(mean, 0, sizeof mean);
     for (int end = 0; end < ends; end++) {
-      eo_vibration_orders(s, channel[reading], end, order);
+      eo_vibration_orders(solver, channel[reading], end, order);
       result->rms[reading][end] = root_of_squares(harmonics, order);
       result->rms_pair[reading] += result->rms[reading][end] / ends;
       for (int k = 0; k <= harmonics; k++)
@@ -150,184 +151,191 @@ struct range {
 
 static struct range range_of(int n, const double *sample)
 {
-  struct range r = {0, sample[0], sample[0]};
+  struct range range = {0, sample[0], sample[0]};
   for (int i = 0; i < n; i++) {
-    r.mean += sample[i] / n;
-    r.least = fmin(r.least, sample[i]);
-    r.most = fmax(r.most, sample[i]);
+    range.mean += sample[i] / n;
+    range.least = fmin(range.least, sample[i]);
+    range.most = fmax(range.most, sample[i]);
   }
-  return r;
+  return range;
 }
 
 /* Mean and largest size of a force given by its harmonics, on the grid of the solution. */
-static void read_force(const struct eo_vibration_solver *s, const struct eo_alternating *grid,
+static void read_force(const struct eo_vibration_solver *solver, const struct eo_alternating *grid,
                        const double complex *order, double *mean, double *largest)
 {
   double series[MAX_TERMS];
-  series_of(s->spectrum.harmonics, order, series);
+  series_of(solver->spectrum.harmonics, order, series);
   eo_alternating_synthesis(grid, series, grid->end[0].work);
-  struct range r = range_of(grid->samples, grid->end[0].work);
+  struct range range = range_of(grid->samples, grid->end[0].work);
   *mean = series[0];
-  *largest = fmax(fabs(r.least), fabs(r.most));
+  *largest = fmax(fabs(range.least), fabs(range.most));
 }
 
 /* Harmonic k of the axial force of the pinion on its support: that of the spring, or what a rigid one has to take up,
    the axial parts of mesh forces and consistent impacts. */
-static double complex pinion_thrust(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, int k)
+static double complex pinion_thrust(const struct eo_vibration_solver *solver, const struct eo_cycle *cycle, int k)
 {
-  const struct eo_dynamics_parameters *p = &s->model.parameters;
-  const struct eo_spectrum *spectrum = &s->spectrum;
+  const struct eo_dynamics_parameters *parameters = &solver->model.parameters;
+  const struct eo_spectrum *spectrum = &solver->spectrum;
   double complex force = 0, z = 0;
-  for (int end = 0; end < p->ends; end++) {
-    int freedom_z = eo_dynamics_freedom(p->ends, EO_PINION, end, EO_MOTION_Z);
-    double lean = s->model.reading[EO_READING_NORMAL][end][freedom_z];
+  for (int end = 0; end < parameters->ends; end++) {
+    int freedom_z = eo_dynamics_freedom(parameters->ends, EO_PINION, end, EO_MOTION_Z);
+    double lean = solver->model.reading[EO_READING_NORMAL][end][freedom_z];
     force -= lean * spectrum->force[end][k];
-    if (s->condensed_impact == EO_IMPACT_CONSISTENT)
-      force -= lean / cos(p->base_helix_angle) *
+    if (solver->condensed_impact == EO_IMPACT_CONSISTENT)
+      force -= lean / cos(parameters->base_helix_angle) *
                eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, cycle->shift[end], k);
-    z += freedom(spectrum, EO_PINION, end, EO_MOTION_Z, k) / p->ends;
+    z += freedom(spectrum, EO_PINION, end, EO_MOTION_Z, k) / parameters->ends;
   }
-  if (isinf(p->pinion_axial_stiffness))
+  if (isinf(parameters->pinion_axial_stiffness))
     return force;
-  double ground = p->ends == 1 ? p->groove_axial_stiffness[0] : 0,
-         damper = p->ends == 1 ? p->groove_axial_damping[0] : 0;
-  return (p->pinion_axial_stiffness + ground + I * k * spectrum->frequency * (p->pinion_axial_damping + damper)) * z;
+  double ground = parameters->ends == 1 ? parameters->groove_axial_stiffness[0] : 0,
+         damper = parameters->ends == 1 ? parameters->groove_axial_damping[0] : 0;
+  return (parameters->pinion_axial_stiffness + ground +
+          I * k * spectrum->frequency * (parameters->pinion_axial_damping + damper)) *
+         z;
 }
 
-static void read_bearings(const struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+static void read_bearings(const struct eo_vibration_solver *solver, const struct eo_cycle *cycle,
                           const struct eo_alternating *grid, struct eo_vibration *result)
 {
   double complex order[1 + EO_MAX_HARMONICS];
-  for (int end = 0; end < s->spectrum.ends; end++) {
+  for (int end = 0; end < solver->spectrum.ends; end++) {
     for (int member = 0; member < 2; member++) {
-      eo_vibration_orders(s, member == EO_PINION ? EO_CHANNEL_PINION_BEARING : EO_CHANNEL_GEAR_BEARING, end, order);
-      read_force(s, grid, order, &result->bearing_force_mean[member][end], &result->bearing_force_max[member][end]);
+      eo_vibration_orders(solver, member == EO_PINION ? EO_CHANNEL_PINION_BEARING : EO_CHANNEL_GEAR_BEARING, end,
+                          order);
+      read_force(solver, grid, order, &result->bearing_force_mean[member][end],
+                 &result->bearing_force_max[member][end]);
     }
-    eo_vibration_orders(s, EO_CHANNEL_GEAR_THRUST, end, order);
-    read_force(s, grid, order, &result->axial_force_mean[end], &result->axial_force_max[end]);
+    eo_vibration_orders(solver, EO_CHANNEL_GEAR_THRUST, end, order);
+    read_force(solver, grid, order, &result->axial_force_mean[end], &result->axial_force_max[end]);
   }
-  for (int k = 0; k <= s->spectrum.harmonics; k++)
-    order[k] = pinion_thrust(s, cycle, k);
-  read_force(s, grid, order, &result->pinion_thrust_mean, &result->pinion_thrust_max);
+  for (int k = 0; k <= solver->spectrum.harmonics; k++)
+    order[k] = pinion_thrust(solver, cycle, k);
+  read_force(solver, grid, order, &result->pinion_thrust_mean, &result->pinion_thrust_max);
 }
 
 /* Power of the damping outside the meshes at harmonic k of the oscillator's response. */
-static double dissipation(const struct eo_oscillator *o, double w, const double complex *response)
+static double dissipation(const struct eo_oscillator *oscillator, double w, const double complex *response)
 {
   double sum = 0;
-  for (int i = 0; i < o->n; i++)
-    for (int j = 0; j < o->n; j++)
-      sum += o->damping[i * o->n + j] * creal(response[i] * conj(response[j]));
+  for (int i = 0; i < oscillator->n; i++)
+    for (int j = 0; j < oscillator->n; j++)
+      sum += oscillator->damping[i * oscillator->n + j] * creal(response[i] * conj(response[j]));
   return w * w * sum / 2;
 }
 
 /* Mean of W times the velocity at which it acts, harmonic k. */
-static double impact_power(const struct eo_oscillator *o, double w, const double complex *response,
+static double impact_power(const struct eo_oscillator *oscillator, double w, const double complex *response,
                            const double complex impact[2])
 {
   double sum = 0;
-  for (int end = 0; end < o->ends; end++) {
+  for (int end = 0; end < oscillator->ends; end++) {
     double complex velocity = 0;
-    for (int i = 0; i < o->n; i++)
-      velocity += I * w * o->pulse[end][i] * response[i];
+    for (int i = 0; i < oscillator->n; i++)
+      velocity += I * w * oscillator->pulse[end][i] * response[i];
     sum += creal(impact[end] * conj(velocity)) / 2;
   }
   return sum;
 }
 
 /* Fills the spectrum from the deflections in s->x and the forces on the grid, and the power outside the meshes. */
-static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+static void fill_spectrum(struct eo_vibration_solver *solver, const struct eo_cycle *cycle,
                           const struct eo_balance_report *report, struct eo_vibration *result)
 {
-  const struct eo_oscillator *o = &s->model.oscillator;
-  int terms = eo_fourier_terms(s->harmonics);
+  const struct eo_oscillator *oscillator = &solver->model.oscillator;
+  int terms = eo_fourier_terms(solver->harmonics);
   double force[2][MAX_TERMS];
-  for (int end = 0; end < o->ends; end++)
+  for (int end = 0; end < oscillator->ends; end++)
     eo_alternating_transform(report->grid, terms, report->grid->end[end % report->ends].force, force[end]);
-  for (int k = 0; k <= s->harmonics; k++) {
+  for (int k = 0; k <= solver->harmonics; k++) {
     double complex f[2] = {0}, x[2] = {0}, w[2] = {0}, response[EO_MAX_COORDINATES];
-    for (int end = 0; end < o->ends; end++) {
-      s->spectrum.force[end][k] = f[end] = eo_series_harmonic(force[end], k);
-      s->spectrum.deflection[end][k] = eo_series_harmonic(s->x + end * terms, k);
+    for (int end = 0; end < oscillator->ends; end++) {
+      solver->spectrum.force[end][k] = f[end] = eo_series_harmonic(force[end], k);
+      solver->spectrum.deflection[end][k] = eo_series_harmonic(solver->x + end * terms, k);
       double complex motion = eo_motion_harmonic(cycle, end, k);
-      x[end] = s->spectrum.deflection[end][k] - motion;
+      x[end] = solver->spectrum.deflection[end][k] - motion;
       w[end] = eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, cycle->shift[end], k);
       result->power_supplied += creal(f[end] * conj(I * k * cycle->frequency * motion)) / 2;
     }
-    eo_condensed_response(o, s->harmonic, k, f, x, w, response);
-    spread(s, k, response);
-    result->power_dissipated += dissipation(o, k * cycle->frequency, response);
-    result->power_supplied -= impact_power(o, k * cycle->frequency, response, w);
+    eo_condensed_response(oscillator, solver->harmonic, k, f, x, w, response);
+    spread(solver, k, response);
+    result->power_dissipated += dissipation(oscillator, k * cycle->frequency, response);
+    result->power_supplied -= impact_power(oscillator, k * cycle->frequency, response, w);
   }
 }
 
-static void read_mesh(const struct eo_vibration_solver *s, const struct eo_alternating *grid, int from,
+static void read_mesh(const struct eo_vibration_solver *solver, const struct eo_alternating *grid, int from,
                       const struct eo_cycle *cycle, int end, double load, struct eo_vibration *result)
 {
-  const struct eo_time_end *e = &grid->end[from];
+  const struct eo_time_end *time_end = &grid->end[from];
   for (int i = 0; i < grid->samples; i++)
-    e->work[i] = e->elastic[i] + (cycle->gated && e->margin[i] <= 0 ? 0 : cycle->mesh_damping * e->v[i]);
-  struct range force = range_of(grid->samples, e->work), x = range_of(grid->samples, e->x);
-  result->force_mean[end] = creal(s->spectrum.force[end][0]);
+    time_end->work[i] = time_end->elastic[i] +
+                        (cycle->gated && time_end->margin[i] <= 0 ? 0 : cycle->mesh_damping * time_end->v[i]);
+  struct range force = range_of(grid->samples, time_end->work), range = range_of(grid->samples, time_end->x);
+  result->force_mean[end] = creal(solver->spectrum.force[end][0]);
   result->force_min[end] = force.least;
   result->force_max[end] = force.most;
   result->dynamic_factor[end] = force.most / load;
-  result->deflection_mean[end] = x.mean;
-  result->deflection_swing[end] = x.most - x.least;
+  result->deflection_mean[end] = range.mean;
+  result->deflection_swing[end] = range.most - range.least;
   result->contact_loss[end] = eo_alternating_loss(grid, from);
   for (int i = 0; i < grid->samples; i++) {
-    if (e->margin[i] > 0 && e->margin_slope[i] < 0)
+    if (time_end->margin[i] > 0 && time_end->margin_slope[i] < 0)
       result->back_contact = true;
-    result->power_supplied -= e->weight[i] * e->elastic[i] * e->v[i] / grid->samples;
-    result->power_dissipated += cycle->mesh_damping * e->gate[i] * e->v[i] * e->v[i] / grid->samples;
+    result->power_supplied -= time_end->weight[i] * time_end->elastic[i] * time_end->v[i] / grid->samples;
+    result->power_dissipated += cycle->mesh_damping * time_end->gate[i] * time_end->v[i] * time_end->v[i] /
+                                grid->samples;
   }
 }
 
-static void set_outcome(const struct eo_vibration_solver *s, bool found, struct eo_vibration *result)
+static void set_outcome(const struct eo_vibration_solver *solver, bool found, struct eo_vibration *result)
 {
   bool lost = false;
-  for (int end = 0; end < s->spectrum.ends; end++)
+  for (int end = 0; end < solver->spectrum.ends; end++)
     lost = lost || result->contact_loss[end] > 0;
   result->outcome = !found ? EO_VIBRATION_NOT_CONVERGED : lost ? EO_VIBRATION_CONTACT_LOST : EO_VIBRATION_CONVERGED;
 }
 
-static void begin_result(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+static void begin_result(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                          const struct eo_cycle *cycle, struct eo_vibration *result)
 {
-  s->spectrum.harmonics = s->harmonics;
-  s->spectrum.ends = s->model.parameters.ends;
-  s->spectrum.freedoms = s->model.freedoms;
-  s->spectrum.frequency = cycle->frequency;
-  *result = (struct eo_vibration){.ends = s->spectrum.ends,
-                                  .harmonics = s->harmonics,
+  solver->spectrum.harmonics = solver->harmonics;
+  solver->spectrum.ends = solver->model.parameters.ends;
+  solver->spectrum.freedoms = solver->model.freedoms;
+  solver->spectrum.frequency = cycle->frequency;
+  *result = (struct eo_vibration){.ends = solver->spectrum.ends,
+                                  .harmonics = solver->harmonics,
                                   .frequency = cycle->frequency,
                                   .repeat = 1,
                                   .multiplier = NAN};
   if (load->impact == EO_IMPACT_PAPER) {
     double mean[2] = {0};
-    for (int end = 0; end < s->spectrum.ends; end++)
+    for (int end = 0; end < solver->spectrum.ends; end++)
       mean[end] = creal(eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, 0, 0));
-    result->impact_drift = eo_dynamics_model_impact_drift(&s->model, mean);
+    result->impact_drift = eo_dynamics_model_impact_drift(&solver->model, mean);
   }
 }
 
-void eo_vibration_read_balance(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+void eo_vibration_read_balance(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                const struct eo_cycle *cycle, const struct eo_balance_report *report,
                                struct eo_vibration *result)
 {
-  begin_result(s, load, cycle, result);
+  begin_result(solver, load, cycle, result);
   result->iterations = report->iterations;
   result->residual = isfinite(report->residual) ? report->residual : -1;
   if (!report->converged) {
-    memset(s->spectrum.deflection[0], 0, sizeof *s->spectrum.freedom * (4 + EO_MAX_FREEDOMS) * (1 + s->harmonics));
+    memset(solver->spectrum.deflection[0], 0,
+           sizeof *solver->spectrum.freedom * (4 + EO_MAX_FREEDOMS) * (1 + solver->harmonics));
     result->outcome = EO_VIBRATION_NOT_CONVERGED;
     return;
   }
-  fill_spectrum(s, cycle, report, result);
-  for (int end = 0; end < s->spectrum.ends; end++)
-    read_mesh(s, report->grid, end % report->ends, cycle, end,
-              eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
-  read_accelerations(s, result);
-  read_bearings(s, cycle, report->grid, result);
-  set_outcome(s, true, result);
+  fill_spectrum(solver, cycle, report, result);
+  for (int end = 0; end < solver->spectrum.ends; end++)
+    read_mesh(solver, report->grid, end % report->ends, cycle, end,
+              eo_dynamics_mesh_load(&solver->model.parameters, load->torque), result);
+  read_accelerations(solver, result);
+  read_bearings(solver, cycle, report->grid, result);
+  set_outcome(solver, true, result);
 }

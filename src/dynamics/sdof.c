@@ -28,27 +28,27 @@ struct setup {
   struct eo_balance *balance;
 };
 
-static enum eo_code check_sdof(const struct eo_sdof *s, struct eo_error *error)
+static enum eo_code check_sdof(const struct eo_sdof *sdof, struct eo_error *error)
 {
-  if (!(s->damping >= 0 && isfinite(s->damping)))
-    return eo_error_set(error, EO_ERROR_INPUT, "/z", "The damping must not be negative, but is %g.", s->damping);
-  if (!(s->mean_force > 0 && isfinite(s->mean_force)))
-    return eo_error_set(error, EO_ERROR_INPUT, "/Fm", "The mean force must be positive, not %g.", s->mean_force);
-  if (!isfinite(s->alternating_force))
+  if (!(sdof->damping >= 0 && isfinite(sdof->damping)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/z", "The damping must not be negative, but is %g.", sdof->damping);
+  if (!(sdof->mean_force > 0 && isfinite(sdof->mean_force)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/Fm", "The mean force must be positive, not %g.", sdof->mean_force);
+  if (!isfinite(sdof->alternating_force))
     return eo_error_set(error, EO_ERROR_INPUT, "/Fh", "The alternating force must be finite.");
-  if (!(fabs(s->stiffness_share) < 1))
+  if (!(fabs(sdof->stiffness_share) < 1))
     return eo_error_set(error, EO_ERROR_INPUT, "/e", "The stiffness must stay positive: |e| < 1, not %g.",
-                        s->stiffness_share);
-  if (!(s->frequency > 0 && isfinite(s->frequency)))
-    return eo_error_set(error, EO_ERROR_INPUT, "/W", "The frequency must be positive, not %g.", s->frequency);
+                        sdof->stiffness_share);
+  if (!(sdof->frequency > 0 && isfinite(sdof->frequency)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/W", "The frequency must be positive, not %g.", sdof->frequency);
   return EO_OK;
 }
 
-static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int harmonics, int samples,
+static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *sdof, int harmonics, int samples,
                                struct eo_error *error)
 {
-  const double stiffness[3] = {1, s->stiffness_share, 0};
-  enum eo_code code = check_sdof(s, error);
+  const double stiffness[3] = {1, sdof->stiffness_share, 0};
+  enum eo_code code = check_sdof(sdof, error);
   *setup = (struct setup){0};
   if (!code)
     code = eo_law_set_stiffness(&setup->law, 1, stiffness, 1, -1, error);
@@ -56,14 +56,14 @@ static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int
     code = eo_balance_new(&setup->balance, harmonics, samples, error);
   setup->oscillator = (struct eo_oscillator){.n = 1,
                                              .ends = 1,
-                                             .damping = {2 * s->damping},
+                                             .damping = {2 * sdof->damping},
                                              .mesh = {{1}},
                                              .pulse = {{1}},
-                                             .load = {s->mean_force},
+                                             .load = {sdof->mean_force},
                                              .shift = 1};
-  setup->cycle = (struct eo_cycle){.frequency = s->frequency,
+  setup->cycle = (struct eo_cycle){.frequency = sdof->frequency,
                                    .law = {&setup->law, &setup->law},
-                                   .pulse = {{.shape = EO_PULSE_COSINE, .amplitude = -s->alternating_force}}};
+                                   .pulse = {{.shape = EO_PULSE_COSINE, .amplitude = -sdof->alternating_force}}};
   return code;
 }
 
@@ -99,40 +99,40 @@ static enum eo_code guess_from_state(struct setup *setup, const double state[2],
   return code;
 }
 
-static void read_response(const double *x, const struct eo_alternating *grid, struct eo_sdof_response *r)
+static void read_response(const double *x, const struct eo_alternating *grid, struct eo_sdof_response *response)
 {
-  const struct eo_time_end *e = &grid->end[0];
-  double least = e->x[0], most = e->x[0], square = 0;
+  const struct eo_time_end *time_end = &grid->end[0];
+  double least = time_end->x[0], most = time_end->x[0], square = 0;
   for (int i = 0; i < grid->samples; i++) {
-    least = fmin(least, e->x[i]);
-    most = fmax(most, e->x[i]);
-    if (e->x[i] < -1)
-      r->back_contact = true;
+    least = fmin(least, time_end->x[i]);
+    most = fmax(most, time_end->x[i]);
+    if (time_end->x[i] < -1)
+      response->back_contact = true;
   }
   for (int i = 1; i < eo_fourier_terms(grid->harmonics); i++)
     square += x[i] * x[i] / 2;
-  r->mean = x[0];
-  r->rms = sqrt(square);
-  r->peak_to_peak = most - least;
-  r->amplitude[0] = hypot(x[1], x[2]);
-  r->amplitude[1] = hypot(x[3], x[4]);
-  r->contact_loss = eo_alternating_loss(grid, 0);
+  response->mean = x[0];
+  response->rms = sqrt(square);
+  response->peak_to_peak = most - least;
+  response->amplitude[0] = hypot(x[1], x[2]);
+  response->amplitude[1] = hypot(x[3], x[4]);
+  response->contact_loss = eo_alternating_loss(grid, 0);
 }
 
 /* Newton from x, then the reading and the stability of what it found. */
-static enum eo_code finish(struct setup *setup, bool warm, double *x, struct eo_sdof_response *r,
+static enum eo_code finish(struct setup *setup, bool warm, double *x, struct eo_sdof_response *response,
                            struct eo_error *error)
 {
   struct eo_balance_report report;
   double complex multiplier[2];
   enum eo_code code = balance_at(setup, warm, x, &report, error);
-  *r = (struct eo_sdof_response){0};
+  *response = (struct eo_sdof_response){0};
   if (code || !report.converged)
     return code;
-  r->converged = true;
-  read_response(x, report.grid, r);
+  response->converged = true;
+  read_response(x, report.grid, response);
   code = eo_floquet(&setup->oscillator, &setup->cycle, HARMONICS, x, multiplier, error);
-  r->floquet = code ? 0 : cabs(multiplier[0]);
+  response->floquet = code ? 0 : cabs(multiplier[0]);
   return code;
 }
 
@@ -147,17 +147,17 @@ struct passages {
 
 static int note_passage(void *context, const struct eo_branch_point *point)
 {
-  struct passages *p = context;
+  struct passages *passages = context;
   double now = point->frequency;
-  if (p->before > 0 && (p->before - p->frequency) * (now - p->frequency) <= 0 && now != p->before &&
-      p->count < EO_SDOF_MAX_FOLDS) {
-    double share = (p->frequency - p->before) / (now - p->before);
-    for (int i = 0; i < p->terms; i++)
-      p->x[p->count][i] = p->x_before[i] + share * (point->x[i] - p->x_before[i]);
-    p->count++;
+  if (passages->before > 0 && (passages->before - passages->frequency) * (now - passages->frequency) <= 0 &&
+      now != passages->before && passages->count < EO_SDOF_MAX_FOLDS) {
+    double share = (passages->frequency - passages->before) / (now - passages->before);
+    for (int i = 0; i < passages->terms; i++)
+      passages->x[passages->count][i] = passages->x_before[i] + share * (point->x[i] - passages->x_before[i]);
+    passages->count++;
   }
-  p->before = now;
-  memcpy(p->x_before, point->x, sizeof *p->x_before * p->terms);
+  passages->before = now;
+  memcpy(passages->x_before, point->x, sizeof *passages->x_before * passages->terms);
   return 0;
 }
 
@@ -193,22 +193,23 @@ static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, 
 static enum eo_code solve_by_branch(const struct eo_sdof *sdof, enum eo_sdof_start start, struct setup *setup,
                                     struct eo_sdof_response *response, struct eo_error *error)
 {
-  struct passages *p = calloc(1, sizeof *p);
-  if (!p)
+  struct passages *passages = calloc(1, sizeof *passages);
+  if (!passages)
     return eo_error_memory(error);
-  p->frequency = sdof->frequency;
-  p->terms = 1 + 2 * BRANCH_HARMONICS;
-  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage, p,
-                             error);
+  passages->frequency = sdof->frequency;
+  passages->terms = 1 + 2 * BRANCH_HARMONICS;
+  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage,
+                             passages, error);
   *response = (struct eo_sdof_response){0};
-  for (int i = 0; i < p->count && !code; i++) {
-    struct eo_sdof_response r;
-    code = finish(setup, true, p->x[i], &r, error);
-    bool better = !response->converged || (start == EO_SDOF_LOW ? r.rms < response->rms : r.rms > response->rms);
-    if (!code && r.converged && r.floquet < 1 && better)
-      *response = r;
+  for (int i = 0; i < passages->count && !code; i++) {
+    struct eo_sdof_response sdof_response;
+    code = finish(setup, true, passages->x[i], &sdof_response, error);
+    bool better = !response->converged ||
+                  (start == EO_SDOF_LOW ? sdof_response.rms < response->rms : sdof_response.rms > response->rms);
+    if (!code && sdof_response.converged && sdof_response.floquet < 1 && better)
+      *response = sdof_response;
   }
-  free(p);
+  free(passages);
   return code;
 }
 
@@ -239,19 +240,20 @@ struct fold_search {
 /* Folds, and the frequency at which the least margin first passes zero. */
 static int note_fold(void *context, const struct eo_branch_point *point)
 {
-  struct fold_search *s = context;
-  struct eo_sdof_folds *f = &s->found;
-  const struct eo_time_end *e = &point->grid->end[0];
-  double margin = e->margin[0];
+  struct fold_search *search = context;
+  struct eo_sdof_folds *folds = &search->found;
+  const struct eo_time_end *time_end = &point->grid->end[0];
+  double margin = time_end->margin[0];
   for (int i = 1; i < point->grid->samples; i++)
-    margin = fmin(margin, e->margin[i]);
-  if (isnan(f->contact_lost) && s->before > 0 && s->margin_before > 0 && margin <= 0)
-    f->contact_lost = s->before + (point->frequency - s->before) * s->margin_before / (s->margin_before - margin);
-  s->before = point->frequency;
-  s->margin_before = margin;
-  if (point->fold && f->count < EO_SDOF_MAX_FOLDS) {
-    f->frequency[f->count] = point->frequency;
-    f->going_up[f->count++] = point->direction < 0;
+    margin = fmin(margin, time_end->margin[i]);
+  if (isnan(folds->contact_lost) && search->before > 0 && search->margin_before > 0 && margin <= 0)
+    folds->contact_lost = search->before + (point->frequency - search->before) * search->margin_before /
+                                               (search->margin_before - margin);
+  search->before = point->frequency;
+  search->margin_before = margin;
+  if (point->fold && folds->count < EO_SDOF_MAX_FOLDS) {
+    folds->frequency[folds->count] = point->frequency;
+    folds->going_up[folds->count++] = point->direction < 0;
   }
   return 0;
 }
@@ -266,10 +268,10 @@ enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, 
   return code;
 }
 
-int eo_sdof_grazing(const struct eo_sdof *s, double frequency[2])
+int eo_sdof_grazing(const struct eo_sdof *sdof, double frequency[2])
 {
   /* With u = W^2: (1 - (F_h / F_m)^2) u^2 + (4 z^2 - 2) u + 1 = 0. */
-  double a = 1 - pow(s->alternating_force / s->mean_force, 2), b = 4 * s->damping * s->damping - 2;
+  double a = 1 - pow(sdof->alternating_force / sdof->mean_force, 2), b = 4 * sdof->damping * sdof->damping - 2;
   double discriminant = b * b - 4 * a;
   int count = 0;
   if (discriminant < 0)

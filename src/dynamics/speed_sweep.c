@@ -20,17 +20,17 @@ static enum eo_code check_speeds(int count, const struct eo_vibration_case *load
 }
 
 /* No motion keeps to an unstable state, in a sweep neither. holds: the solver has the result's solution. */
-static enum eo_code keep_stable(struct eo_vibration_solver *s, const struct eo_vibration_case *load, bool holds,
+static enum eo_code keep_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, bool holds,
                                 struct eo_vibration *result, struct eo_error *error)
 {
   struct eo_vibration again;
-  enum eo_code code = holds ? EO_OK : eo_vibration_solve(s, load, EO_START_COLD, &again, error);
+  enum eo_code code = holds ? EO_OK : eo_vibration_solve(solver, load, EO_START_COLD, &again, error);
   if (code || (!holds && again.outcome == EO_VIBRATION_NOT_CONVERGED))
     return code;
-  return eo_vibration_keep_stable(s, load, result, error);
+  return eo_vibration_keep_stable(solver, load, result, error);
 }
 
-enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
+enum eo_code eo_vibration_follow(struct eo_vibration_solver *solver, int count, const struct eo_vibration_case *load,
                                  const struct eo_vibration *alone, int direction, struct eo_vibration *result,
                                  struct eo_error *error)
 {
@@ -40,34 +40,34 @@ enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const
     int i = direction > 0 ? step : count - 1 - step;
     struct eo_vibration again;
     if (separated && !holds)
-      code = eo_vibration_solve(s, &load[before], EO_START_COLD, &again, error);
+      code = eo_vibration_solve(solver, &load[before], EO_START_COLD, &again, error);
     if (separated && !code)
-      code = eo_vibration_solve(s, &load[i], EO_START_WARM, &result[i], error);
+      code = eo_vibration_solve(solver, &load[i], EO_START_WARM, &result[i], error);
     holds = separated && !code && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
     if (!holds)
       result[i] = alone[i];
     if (!code && result[i].outcome == EO_VIBRATION_CONTACT_LOST)
-      code = keep_stable(s, &load[i], holds, &result[i], error);
+      code = keep_stable(solver, &load[i], holds, &result[i], error);
     separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
-    holds = s->solved;
+    holds = solver->solved;
     before = i;
   }
   return code;
 }
 
-static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
+static enum eo_code solve_alone(struct eo_vibration_solver *solver, int count, const struct eo_vibration_case *load,
                                 struct eo_vibration *alone, const struct eo_progress *progress, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < count && !code; i++) {
-    code = eo_vibration_solve(s, &load[i], EO_START_COLD, &alone[i], error);
+    code = eo_vibration_solve(solver, &load[i], EO_START_COLD, &alone[i], error);
     if (!code && eo_progress_report(progress, "speed sweep", (double)(i + 1) / count))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The sweep was cancelled.");
   }
   return code;
 }
 
-enum eo_code eo_vibration_sweep(struct eo_vibration_solver *s, const struct eo_vibration_case *load, int count,
+enum eo_code eo_vibration_sweep(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, int count,
                                 const double *speed, struct eo_vibration *up, struct eo_vibration *down,
                                 const struct eo_progress *progress, struct eo_error *error)
 {
@@ -82,11 +82,11 @@ enum eo_code eo_vibration_sweep(struct eo_vibration_solver *s, const struct eo_v
   if (!code)
     code = check_speeds(count, at, error);
   if (!code)
-    code = solve_alone(s, count, at, alone, progress, error);
+    code = solve_alone(solver, count, at, alone, progress, error);
   if (!code && up)
-    code = eo_vibration_follow(s, count, at, alone, +1, up, error);
+    code = eo_vibration_follow(solver, count, at, alone, +1, up, error);
   if (!code && down)
-    code = eo_vibration_follow(s, count, at, alone, -1, down, error);
+    code = eo_vibration_follow(solver, count, at, alone, -1, down, error);
   free(at);
   free(alone);
   return code;
@@ -97,23 +97,25 @@ struct trace {
   struct eo_trace_point *point;
 };
 
-static int note_point(void *context, const struct eo_branch_point *p)
+static int note_point(void *context, const struct eo_branch_point *branch_point)
 {
-  struct trace *t = context;
-  struct eo_trace_point *out = &t->point[t->count++];
-  *out = (struct eo_trace_point){.speed = p->frequency / t->teeth, .direction = p->direction, .fold = p->fold};
-  for (int end = 0; end < t->ends; end++) {
+  struct trace *trace = context;
+  struct eo_trace_point *out = &trace->point[trace->count++];
+  *out = (struct eo_trace_point){.speed = branch_point->frequency / trace->teeth,
+                                 .direction = branch_point->direction,
+                                 .fold = branch_point->fold};
+  for (int end = 0; end < trace->ends; end++) {
     double square = 0;
-    const double *x = p->x + end * eo_fourier_terms(t->harmonics);
-    for (int k = 1; k <= t->harmonics; k++)
-      square += pow(k * p->frequency, 4) * (x[2 * k - 1] * x[2 * k - 1] + x[2 * k] * x[2 * k]) / 2;
+    const double *x = branch_point->x + end * eo_fourier_terms(trace->harmonics);
+    for (int k = 1; k <= trace->harmonics; k++)
+      square += pow(k * branch_point->frequency, 4) * (x[2 * k - 1] * x[2 * k - 1] + x[2 * k] * x[2 * k]) / 2;
     out->rms[end] = sqrt(square);
-    out->contact_loss[end] = eo_alternating_loss(p->grid, end);
+    out->contact_loss[end] = eo_alternating_loss(branch_point->grid, end);
   }
-  return t->count >= t->capacity;
+  return trace->count >= trace->capacity;
 }
 
-enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double low,
+enum eo_code eo_vibration_trace(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, double low,
                                 double high, int direction, int capacity, struct eo_trace_point *point, int *count,
                                 enum eo_branch_end *end, struct eo_error *error)
 {
@@ -124,20 +126,20 @@ enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_v
                         "A branch is traced within 0 < low <= speed <= high, not %g, %g, %g rad/s.", low, load->speed,
                         high);
   *count = 0;
-  enum eo_code code = eo_vibration_solve(s, load, EO_START_COLD, &start, error);
+  enum eo_code code = eo_vibration_solve(solver, load, EO_START_COLD, &start, error);
   if (!code)
-    code = eo_vibration_prepare(s, load, &cycle, error);
+    code = eo_vibration_prepare(solver, load, &cycle, error);
   if (code || start.outcome == EO_VIBRATION_NOT_CONVERGED)
     return code;
-  struct trace trace = {load->pinion_teeth, s->harmonics, s->model.parameters.ends, capacity, 0, point};
+  struct trace trace = {load->pinion_teeth, solver->harmonics, solver->model.parameters.ends, capacity, 0, point};
   struct eo_branch_options options = eo_branch_defaults;
   options.low = low * load->pinion_teeth * (1 - 1e-12);
   options.high = high * load->pinion_teeth * (1 + 1e-12);
   options.max_points = capacity;
-  options.size = fmax(start.deflection_swing[0], start.force_mean[0] / s->model.oscillator.shift);
-  code = eo_branch_follow(s->balance, &s->model.oscillator, &cycle, s->x, direction, &options, note_point, &trace, end,
-                          error);
-  s->solved = false;
+  options.size = fmax(start.deflection_swing[0], start.force_mean[0] / solver->model.oscillator.shift);
+  code = eo_branch_follow(solver->balance, &solver->model.oscillator, &cycle, solver->x, direction, &options,
+                          note_point, &trace, end, error);
+  solver->solved = false;
   *count = trace.count;
   return code;
 }

@@ -29,7 +29,7 @@ static struct mesh_slope slope_at(const struct orbit *orbit, double phase)
   const struct eo_cycle *cycle = orbit->cycle;
   int terms = eo_fourier_terms(orbit->harmonics);
   double basis[1 + 2 * EO_MAX_HARMONICS], row[MAX_LAW_ROWS];
-  struct mesh_slope m = {0};
+  struct mesh_slope slope = {0};
   eo_fourier_basis(orbit->harmonics, phase, basis);
   for (int end = 0; end < orbit->oscillator->ends; end++) {
     const double *series = orbit->x + end * terms;
@@ -39,28 +39,28 @@ static struct mesh_slope slope_at(const struct orbit *orbit, double phase)
       v += cycle->frequency * k * (series[2 * k] * basis[2 * k - 1] - series[2 * k - 1] * basis[2 * k]);
     }
     eo_law_rows(cycle->law[end], phase + cycle->shift[end], row);
-    struct eo_mesh_force f = eo_law_force(cycle->law[end], row, x, 0);
-    m.stiffness[end] = f.slope;
-    m.damping[end] = cycle->gated && f.margin <= 0 ? 0 : cycle->mesh_damping;
-    m.margin[end] = f.margin;
-    m.margin_slope[end] = f.margin_slope;
-    m.rate[end] = v;
+    struct eo_mesh_force force = eo_law_force(cycle->law[end], row, x, 0);
+    slope.stiffness[end] = force.slope;
+    slope.damping[end] = cycle->gated && force.margin <= 0 ? 0 : cycle->mesh_damping;
+    slope.margin[end] = force.margin;
+    slope.margin_slope[end] = force.margin_slope;
+    slope.rate[end] = v;
   }
-  return m;
+  return slope;
 }
 
 /* d(disturbance)/d phase; y[2 n][columns]: positions, then velocities per phase. */
-static void disturb(const struct orbit *orbit, const struct mesh_slope *m, const double *y, double *slope)
+static void disturb(const struct orbit *orbit, const struct mesh_slope *mesh_slope, const double *y, double *slope)
 {
-  const struct eo_oscillator *o = orbit->oscillator;
-  int n = o->n, columns = 2 * n;
+  const struct eo_oscillator *oscillator = orbit->oscillator;
+  int n = oscillator->n, columns = 2 * n;
   double k[N * N], c[N * N], t = orbit->period;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      double stiffness = o->stiffness[i * n + j], damping = o->damping[i * n + j];
-      for (int end = 0; end < o->ends; end++) {
-        stiffness += m->stiffness[end] * o->mesh[end][i] * o->mesh[end][j];
-        damping += m->damping[end] * o->mesh[end][i] * o->mesh[end][j];
+      double stiffness = oscillator->stiffness[i * n + j], damping = oscillator->damping[i * n + j];
+      for (int end = 0; end < oscillator->ends; end++) {
+        stiffness += mesh_slope->stiffness[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+        damping += mesh_slope->damping[end] * oscillator->mesh[end][i] * oscillator->mesh[end][j];
       }
       k[i * n + j] = stiffness * t * t;
       c[i * n + j] = damping * t;
@@ -79,7 +79,7 @@ struct work {
   double y[4 * N * N], k[4][4 * N * N], trial[4 * N * N];
 };
 
-static void advance(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *begin,
+static void advance(const struct orbit *orbit, struct work *work, double h, const struct mesh_slope *begin,
                     const struct mesh_slope *middle, const struct mesh_slope *end)
 {
   int size = 4 * orbit->oscillator->n * orbit->oscillator->n;
@@ -87,20 +87,20 @@ static void advance(const struct orbit *orbit, struct work *w, double h, const s
   const double share[4] = {0, 0.5, 0.5, 1};
   for (int stage = 0; stage < 4; stage++) {
     for (int i = 0; i < size; i++)
-      w->trial[i] = w->y[i] + (stage ? share[stage] * h * w->k[stage - 1][i] : 0);
-    disturb(orbit, at[stage], w->trial, w->k[stage]);
+      work->trial[i] = work->y[i] + (stage ? share[stage] * h * work->k[stage - 1][i] : 0);
+    disturb(orbit, at[stage], work->trial, work->k[stage]);
   }
   for (int i = 0; i < size; i++)
-    w->y[i] += h / 6 * (w->k[0][i] + 2 * w->k[1][i] + 2 * w->k[2][i] + w->k[3][i]);
+    work->y[i] += h / 6 * (work->k[0][i] + 2 * work->k[1][i] + 2 * work->k[2][i] + work->k[3][i]);
 }
 
 /* The damping force c X' is switched where the margin passes zero; a disturbed orbit passes earlier by -dX/X'. */
-static void salt(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *a,
+static void salt(const struct orbit *orbit, struct work *work, double h, const struct mesh_slope *a,
                  const struct mesh_slope *b)
 {
-  const struct eo_oscillator *o = orbit->oscillator;
-  int n = o->n, columns = 2 * n;
-  for (int end = 0; end < o->ends && orbit->cycle->gated; end++) {
+  const struct eo_oscillator *oscillator = orbit->oscillator;
+  int n = oscillator->n, columns = 2 * n;
+  for (int end = 0; end < oscillator->ends && orbit->cycle->gated; end++) {
     if ((a->margin[end] > 0) == (b->margin[end] > 0) || a->margin_slope[end] != b->margin_slope[end])
       continue;
     double rate = (b->margin[end] - a->margin[end]) / h;
@@ -109,9 +109,9 @@ static void salt(const struct orbit *orbit, struct work *w, double h, const stru
     for (int l = 0; l < columns; l++) {
       double x = 0;
       for (int i = 0; i < n; i++)
-        x += o->mesh[end][i] * w->y[(size_t)i * columns + l];
+        x += oscillator->mesh[end][i] * work->y[(size_t)i * columns + l];
       for (int i = 0; i < n; i++)
-        w->y[(size_t)(n + i) * columns + l] -= impulse * o->mesh[end][i] * x;
+        work->y[(size_t)(n + i) * columns + l] -= impulse * oscillator->mesh[end][i] * x;
     }
   }
 }
@@ -119,13 +119,13 @@ static void salt(const struct orbit *orbit, struct work *w, double h, const stru
 /* Steps that follow the fastest oscillation: a tenth of a radian each. */
 static int choose_steps(const struct orbit *orbit)
 {
-  const struct eo_oscillator *o = orbit->oscillator;
+  const struct eo_oscillator *oscillator = orbit->oscillator;
   double norm = 0;
-  struct mesh_slope m = slope_at(orbit, 0);
-  for (int i = 0; i < o->n; i++) {
-    norm += o->stiffness[i * o->n + i];
-    for (int end = 0; end < o->ends; end++)
-      norm += fmax(m.stiffness[end], o->shift) * o->mesh[end][i] * o->mesh[end][i];
+  struct mesh_slope slope = slope_at(orbit, 0);
+  for (int i = 0; i < oscillator->n; i++) {
+    norm += oscillator->stiffness[i * oscillator->n + i];
+    for (int end = 0; end < oscillator->ends; end++)
+      norm += fmax(slope.stiffness[end], oscillator->shift) * oscillator->mesh[end][i] * oscillator->mesh[end][i];
   }
   double steps = 10 * orbit->period * sqrt(norm);
   return steps > MAX_STEPS ? -1 : (int)fmax(steps, MIN_STEPS);
@@ -145,21 +145,21 @@ enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_
   if (steps < 0)
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stability at %g rad/s would need too many steps.",
                         cycle->frequency);
-  struct work *w = calloc(1, sizeof *w);
-  if (!w)
+  struct work *work = calloc(1, sizeof *work);
+  if (!work)
     return eo_error_memory(error);
   for (int i = 0; i < size; i++)
-    w->y[i * size + i] = 1;
+    work->y[i * size + i] = 1;
   double h = 1.0 / steps;
   struct mesh_slope begin = slope_at(&orbit, 0);
   for (int step = 0; step < steps; step++) {
     struct mesh_slope middle = slope_at(&orbit, (step + 0.5) * h), end = slope_at(&orbit, (step + 1) * h);
-    advance(&orbit, w, h, &begin, &middle, &end);
-    salt(&orbit, w, h, &begin, &end);
+    advance(&orbit, work, h, &begin, &middle, &end);
+    salt(&orbit, work, h, &begin, &end);
     begin = end;
   }
-  int failed = eo_dense_eigenvalues(size, w->y, multiplier);
-  free(w);
+  int failed = eo_dense_eigenvalues(size, work->y, multiplier);
+  free(work);
   if (failed)
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The Floquet multipliers could not be found.");
   qsort(multiplier, size, sizeof *multiplier, by_size);
@@ -171,52 +171,53 @@ enum { LEAST_KICKS = 64, MOST_KICKS = 2048, KICKS_PER_HARMONIC = 4 };
 static const double kick_angle = 0.5;
 
 /* Velocities changed at once by what a mesh is stiffer than the mean over one step. */
-static void kick(const struct eo_oscillator *o, int end, double impulse, double *y)
+static void kick(const struct eo_oscillator *oscillator, int end, double impulse, double *y)
 {
-  int n = o->n, columns = 2 * n;
+  int n = oscillator->n, columns = 2 * n;
   for (int l = 0; l < columns; l++) {
     double x = 0;
     for (int i = 0; i < n; i++)
-      x += o->mesh[end][i] * y[i * columns + l];
+      x += oscillator->mesh[end][i] * y[i * columns + l];
     for (int i = 0; i < n; i++)
-      y[(n + i) * columns + l] -= impulse * o->mesh[end][i] * x;
+      y[(n + i) * columns + l] -= impulse * oscillator->mesh[end][i] * x;
   }
 }
 
-enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_cycle *cycle, int harmonics,
+enum eo_code eo_floquet_attached(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, int harmonics,
                                  const double *x, double *largest, struct eo_error *error)
 {
-  struct orbit orbit = {o, cycle, harmonics, x, 2 * M_PI / cycle->frequency};
-  int size = 2 * o->n;
+  struct orbit orbit = {oscillator, cycle, harmonics, x, 2 * M_PI / cycle->frequency};
+  int size = 2 * oscillator->n;
   double mean[2] = {0};
   double complex multiplier[2 * N];
   double(*stiffness)[2] = malloc(sizeof *stiffness * MOST_KICKS);
-  struct work *w = calloc(1, sizeof *w);
-  if (!w || !stiffness) {
-    free(w);
+  struct work *work = calloc(1, sizeof *work);
+  if (!work || !stiffness) {
+    free(work);
     free(stiffness);
     return eo_error_memory(error);
   }
   struct mesh_slope first = slope_at(&orbit, 0);
-  double angle = orbit.period * eo_propagator_mesh_rate(o, first.stiffness) / kick_angle;
-  double least = fmax(LEAST_KICKS, KICKS_PER_HARMONIC * fmax(cycle->law[0]->order, cycle->law[o->ends - 1]->order));
+  double angle = orbit.period * eo_propagator_mesh_rate(oscillator, first.stiffness) / kick_angle;
+  double least = fmax(LEAST_KICKS,
+                      KICKS_PER_HARMONIC * fmax(cycle->law[0]->order, cycle->law[oscillator->ends - 1]->order));
   int kicks = (int)fmin(MOST_KICKS, fmax(least, angle));
   for (int i = 0; i < kicks; i++) {
-    struct mesh_slope m = slope_at(&orbit, (i + 0.5) / kicks);
-    for (int end = 0; end < o->ends; end++) {
-      stiffness[i][end] = m.stiffness[end];
-      mean[end] += m.stiffness[end] / kicks;
+    struct mesh_slope slope = slope_at(&orbit, (i + 0.5) / kicks);
+    for (int end = 0; end < oscillator->ends; end++) {
+      stiffness[i][end] = slope.stiffness[end];
+      mean[end] += slope.stiffness[end] / kicks;
     }
   }
-  double rate = eo_propagator_mesh_rate(o, mean), step = orbit.period / kicks;
-  eo_propagator_fill(o, cycle->mesh_damping, mean, rate, step, w->trial);
-  double *now = w->y, *next = w->k[0];
+  double rate = eo_propagator_mesh_rate(oscillator, mean), step = orbit.period / kicks;
+  eo_propagator_fill(oscillator, cycle->mesh_damping, mean, rate, step, work->trial);
+  double *now = work->y, *next = work->k[0];
   for (int i = 0; i < size; i++)
     now[i * size + i] = 1;
   for (int i = 0; i < kicks; i++) {
-    for (int end = 0; end < o->ends; end++)
-      kick(o, end, (stiffness[i][end] - mean[end]) * step / rate, now);
-    eo_dense_product(size, w->trial, now, next);
+    for (int end = 0; end < oscillator->ends; end++)
+      kick(oscillator, end, (stiffness[i][end] - mean[end]) * step / rate, now);
+    eo_dense_product(size, work->trial, now, next);
     double *swap = now;
     now = next;
     next = swap;
@@ -224,7 +225,7 @@ enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_
   int failed = eo_dense_eigenvalues(size, now, multiplier);
   for (int i = 0; i < size && !failed; i++)
     *largest = fmax(i ? *largest : 0, cabs(multiplier[i]));
-  free(w);
+  free(work);
   free(stiffness);
   return failed ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The Floquet multipliers could not be found.") : EO_OK;
 }

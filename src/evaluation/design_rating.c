@@ -122,41 +122,41 @@ static double root_stress(const struct eo_end_result *end, int member)
   return end->root[member].maximum > 0 ? end->root[member].maximum : NAN;
 }
 
-static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_case_result *c, int k, int end,
+static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_case_result *case_result, int k, int end,
                              struct eo_error *error)
 {
   const struct eo_rating_basis *basis = &rating->basis[end];
   const struct eo_rating_settings *settings = basis->input.rating;
   struct eo_face_factors *face = &rating->load_case[k].face[end];
-  bool periodic = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
+  bool periodic = case_result->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
   const struct eo_rating_load load = {
-      .torque = c->load_case.torque / rating->ends,
-      .speed = c->load_case.speed,
-      .time = time_of(settings, &c->load_case),
-      .side = c->load_case.flank == EO_COAST_FLANK,
+      .torque = case_result->load_case.torque / rating->ends,
+      .speed = case_result->load_case.speed,
+      .time = time_of(settings, &case_result->load_case),
+      .side = case_result->load_case.flank == EO_COAST_FLANK,
       .sharing = rating->load_case[k].sharing[end],
-      .dynamic = periodic ? c->vibration.dynamic_factor[end] : NAN,
+      .dynamic = periodic ? case_result->vibration.dynamic_factor[end] : NAN,
       .face = face->worse,
-      .share = c->end[end].face.share_factor,
-      .pressure = c->end[end].max_pressure,
-      .root = {root_stress(&c->end[end], EO_PINION), root_stress(&c->end[end], EO_GEAR)}};
+      .share = case_result->end[end].face.share_factor,
+      .pressure = case_result->end[end].max_pressure,
+      .root = {root_stress(&case_result->end[end], EO_PINION), root_stress(&case_result->end[end], EO_GEAR)}};
   return eo_rated_case_find(&rating->load_case[k].end[end], basis, &load, error);
 }
 
 /* The distribution of one end, its share of the load, and its tribology: what needs no standard. */
 static void describe_end(struct eo_design_rating *rating, const struct eo_pair *pair, const struct eo_design *design,
-                         const struct eo_case_result *c, int k, int end)
+                         const struct eo_case_result *case_result, int k, int end)
 {
-  struct eo_case_rating *r = &rating->load_case[k];
-  struct eo_face_factors *face = &r->face[end];
+  struct eo_case_rating *case_rating = &rating->load_case[k];
+  struct eo_face_factors *face = &case_rating->face[end];
   struct eo_tribology_state state;
-  face->nominal = c->end[end].face.face_factor;
+  face->nominal = case_result->end[end].face.face_factor;
   if (!rating->rated)
     face->leaning[0] = face->leaning[1] = NAN;
   face->worse = rating->rated ? fmax(face->leaning[0], face->leaning[1]) : NAN;
-  r->sharing[end] = mean(pair->grid->positions, c->end[end].loaded.load) / c->force;
-  eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, c->load_case.speed);
-  eo_tribology_find(&r->tribology[end], &state, eo_pair_half(pair, end)->grid, &c->end[end].loaded);
+  case_rating->sharing[end] = mean(pair->grid->positions, case_result->end[end].loaded.load) / case_result->force;
+  eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, case_result->load_case.speed);
+  eo_tribology_find(&case_rating->tribology[end], &state, eo_pair_half(pair, end)->grid, &case_result->end[end].loaded);
 }
 
 static void decide(struct eo_design_rating *rating)
@@ -199,12 +199,12 @@ void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair
     rating->time += time_of(&design->rating, &evaluation->load_case[k].load_case);
   for (int k = 0; k < rating->cases; k++)
     for (int end = 0; end < rating->ends; end++) {
-      const struct eo_case_result *c = &evaluation->load_case[k];
-      const struct eo_tribology *t = &rating->load_case[k].tribology[end];
-      describe_end(rating, pair, design, c, k, end);
-      rating->film_ratio = fmin(rating->film_ratio, t->film_ratio);
-      rating->contact_temperature = fmax(rating->contact_temperature, t->contact_temperature);
-      rating->rated = rating->rated && !rate_end(rating, c, k, end, &rating->reason);
+      const struct eo_case_result *case_result = &evaluation->load_case[k];
+      const struct eo_tribology *tribology = &rating->load_case[k].tribology[end];
+      describe_end(rating, pair, design, case_result, k, end);
+      rating->film_ratio = fmin(rating->film_ratio, tribology->film_ratio);
+      rating->contact_temperature = fmax(rating->contact_temperature, tribology->contact_temperature);
+      rating->rated = rating->rated && !rate_end(rating, case_result, k, end, &rating->reason);
     }
   if (rating->rated)
     find_spectra(rating);

@@ -77,150 +77,151 @@ static double *copy_axis(int count, const double *value, const double *otherwise
   return copy;
 }
 
-static enum eo_code make_sweep(struct eo_sweep *s, const struct eo_design *design, const struct eo_sweep_plan *plan,
+static enum eo_code make_sweep(struct eo_sweep *sweep, const struct eo_design *design, const struct eo_sweep_plan *plan,
                                struct eo_error *error)
 {
   const struct eo_load_case *standard = heaviest(design);
-  *s = (struct eo_sweep){.ends = design->gear_pair.ends,
-                         .torques = plan->torques ? plan->torques : 1,
-                         .speeds = plan->speeds ? plan->speeds : 1};
-  size_t torques = (size_t)s->torques, points = torques * (size_t)s->speeds;
-  s->torque = copy_axis(plan->torques, plan->torque, &standard->torque);
-  s->speed = copy_axis(plan->speeds, plan->speed, &standard->speed);
-  bool made = s->torque && s->speed;
+  *sweep = (struct eo_sweep){.ends = design->gear_pair.ends,
+                             .torques = plan->torques ? plan->torques : 1,
+                             .speeds = plan->speeds ? plan->speeds : 1};
+  size_t torques = (size_t)sweep->torques, points = torques * (size_t)sweep->speeds;
+  sweep->torque = copy_axis(plan->torques, plan->torque, &standard->torque);
+  sweep->speed = copy_axis(plan->speeds, plan->speed, &standard->speed);
+  bool made = sweep->torque && sweep->speed;
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
-    s->at_torque[v] = calloc(torques, sizeof *s->at_torque[v]);
-    made = made && s->at_torque[v];
+    sweep->at_torque[v] = calloc(torques, sizeof *sweep->at_torque[v]);
+    made = made && sweep->at_torque[v];
     for (int d = 0; d < EO_SWEEP_DIRECTIONS; d++) {
-      s->point[v][d] = calloc(points, sizeof *s->point[v][d]);
-      made = made && s->point[v][d];
+      sweep->point[v][d] = calloc(points, sizeof *sweep->point[v][d]);
+      made = made && sweep->point[v][d];
     }
   }
   return made ? EO_OK : eo_error_memory(error);
 }
 
-void eo_sweep_done(struct eo_sweep *s)
+void eo_sweep_done(struct eo_sweep *sweep)
 {
-  if (!s)
+  if (!sweep)
     return;
-  free(s->torque);
-  free(s->speed);
-  free(s->crossing);
+  free(sweep->torque);
+  free(sweep->speed);
+  free(sweep->crossing);
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
-    free(s->at_torque[v]);
+    free(sweep->at_torque[v]);
     for (int d = 0; d < EO_SWEEP_DIRECTIONS; d++)
-      free(s->point[v][d]);
+      free(sweep->point[v][d]);
   }
-  *s = (struct eo_sweep){0};
+  *sweep = (struct eo_sweep){0};
 }
 
 /* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
-static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
+static void read_point(struct eo_sweep_point *sweep_point, const struct eo_vibration *vibration, bool sound)
 {
-  bool found = sound && r->outcome != EO_VIBRATION_NOT_CONVERGED;
-  p->outcome = sound ? r->outcome : EO_VIBRATION_NOT_CONVERGED;
-  p->back_contact = found && r->back_contact;
+  bool found = sound && vibration->outcome != EO_VIBRATION_NOT_CONVERGED;
+  sweep_point->outcome = sound ? vibration->outcome : EO_VIBRATION_NOT_CONVERGED;
+  sweep_point->back_contact = found && vibration->back_contact;
   for (int end = 0; end < 2 && !sound; end++)
-    p->impact[end] = NAN;
+    sweep_point->impact[end] = NAN;
   for (int reading = 0; reading < EO_READINGS; reading++) {
-    p->rms_pair[reading] = found ? r->rms_pair[reading] : NAN;
-    p->rms_of_mean[reading] = found ? r->rms_of_mean[reading] : NAN;
+    sweep_point->rms_pair[reading] = found ? vibration->rms_pair[reading] : NAN;
+    sweep_point->rms_of_mean[reading] = found ? vibration->rms_of_mean[reading] : NAN;
     for (int end = 0; end < 2; end++)
-      p->rms[reading][end] = found ? r->rms[reading][end] : NAN;
+      sweep_point->rms[reading][end] = found ? vibration->rms[reading][end] : NAN;
   }
   for (int end = 0; end < 2; end++) {
-    p->dynamic_factor[end] = found ? r->dynamic_factor[end] : NAN;
-    p->contact_loss[end] = found ? r->contact_loss[end] : NAN;
+    sweep_point->dynamic_factor[end] = found ? vibration->dynamic_factor[end] : NAN;
+    sweep_point->contact_loss[end] = found ? vibration->contact_loss[end] : NAN;
   }
 }
 
-static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evaluation *r,
+static enum eo_code read_torque(struct eo_sweep_torque *torque, const struct eo_evaluation *evaluation,
                                 const struct eo_dynamics_parameters *parameters, struct eo_error *error)
 {
-  const struct eo_case_result *c = &r->load_case[0];
+  const struct eo_case_result *case_result = &evaluation->load_case[0];
   struct eo_dynamics_model model;
-  double known = c->contact_failures ? NAN : 1;
-  t->peak_to_peak = known * c->peak_to_peak;
-  t->mean = known * c->mean;
-  t->contact_failures = c->contact_failures;
+  double known = case_result->contact_failures ? NAN : 1;
+  torque->peak_to_peak = known * case_result->peak_to_peak;
+  torque->mean = known * case_result->mean;
+  torque->contact_failures = case_result->contact_failures;
   for (int end = 0; end < 2; end++) {
-    const struct eo_end_result *from = &c->end[end < r->ends ? end : 0];
-    t->stiffness[end] = known * eo_periodic_mean(r->positions, from->stiffness);
-    t->tangent[end] = known * eo_periodic_mean(r->positions, from->loaded.tangent);
-    t->max_pressure[end] = known * from->max_pressure;
-    t->max_line_load[end] = known * from->max_line_load;
-    t->edge_share[end] = known * from->edge_share;
+    const struct eo_end_result *from = &case_result->end[end < evaluation->ends ? end : 0];
+    torque->stiffness[end] = known * eo_periodic_mean(evaluation->positions, from->stiffness);
+    torque->tangent[end] = known * eo_periodic_mean(evaluation->positions, from->loaded.tangent);
+    torque->max_pressure[end] = known * from->max_pressure;
+    torque->max_line_load[end] = known * from->max_line_load;
+    torque->edge_share[end] = known * from->edge_share;
   }
-  if (c->contact_failures)
+  if (case_result->contact_failures)
     return EO_OK;
   enum eo_code code = eo_dynamics_model_init(&model, parameters, error);
-  return code ? code : eo_dynamics_model_modes(&model, t->tangent, &t->modes, error);
+  return code ? code : eo_dynamics_model_modes(&model, torque->tangent, &torque->modes, error);
 }
 
-static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r,
-                                 struct eo_error *error)
+static enum eo_code keep_problem(struct problem *problem, const struct eo_evaluator *evaluator,
+                                 const struct eo_evaluation *evaluation, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  p->solvable = eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
-  for (int end = 0; end < r->ends && !code; end++) {
-    p->impact[end] = r->load_case[0].end[end].impact;
-    if (p->solvable)
-      code = eo_law_copy(&p->law[end], p->load.law[end], error);
-    p->load.law[end] = &p->law[end];
+  problem->solvable = eo_evaluator_vibration(evaluator, 0, &problem->parameters, &problem->load);
+  for (int end = 0; end < evaluation->ends && !code; end++) {
+    problem->impact[end] = evaluation->load_case[0].end[end].impact;
+    if (problem->solvable)
+      code = eo_law_copy(&problem->law[end], problem->load.law[end], error);
+    problem->load.law[end] = &problem->law[end];
   }
   return code;
 }
 
-static enum eo_code make_worker(struct job *job, struct worker *w, struct eo_error *error)
+static enum eo_code make_worker(struct job *job, struct worker *worker, struct eo_error *error)
 {
-  if (w->design)
+  if (worker->design)
     return EO_OK;
-  enum eo_code code = eo_evaluator_new(&w->evaluator, job->pair, 1, error);
+  enum eo_code code = eo_evaluator_new(&worker->evaluator, job->pair, 1, error);
   if (!code)
-    code = eo_vibration_new(&w->solver, job->design->resolution.harmonics, 0, error);
+    code = eo_vibration_new(&worker->solver, job->design->resolution.harmonics, 0, error);
   if (code)
     return code;
-  w->model = -1;
-  w->design = malloc(sizeof *w->design);
-  if (!w->design)
+  worker->model = -1;
+  worker->design = malloc(sizeof *worker->design);
+  if (!worker->design)
     return eo_error_memory(error);
-  *w->design = *job->design;
-  w->design->load_cases = 1;
+  *worker->design = *job->design;
+  worker->design->load_cases = 1;
   return EO_OK;
 }
 
 static enum eo_code solve_torque(void *context, int thread, int item, struct eo_error *error)
 {
   struct job *job = context;
-  struct eo_sweep *s = job->sweep;
-  struct worker *w = &job->worker[thread];
-  const struct eo_evaluation *r;
-  int variant = item / s->torques, k = item % s->torques;
-  enum eo_code code = make_worker(job, w, error);
+  struct eo_sweep *sweep = job->sweep;
+  struct worker *worker = &job->worker[thread];
+  const struct eo_evaluation *evaluation;
+  int variant = item / sweep->torques, k = item % sweep->torques;
+  enum eo_code code = make_worker(job, worker, error);
   if (code)
     return code;
-  w->design->load_case[0] = job->design->load_case[0]; /* its direction, driver and alignment */
-  w->design->load_case[0].torque = s->torque[k];
-  w->design->load_case[0].speed = s->speed[0];
-  w->design->load_case[0].share = 1;
-  w->design->modification = job->design->modification;
+  worker->design->load_case[0] = job->design->load_case[0]; /* its direction, driver and alignment */
+  worker->design->load_case[0].torque = sweep->torque[k];
+  worker->design->load_case[0].speed = sweep->speed[0];
+  worker->design->load_case[0].share = 1;
+  worker->design->modification = job->design->modification;
   if (variant == EO_SWEEP_UNMODIFIED)
-    w->design->modification = (struct eo_modification){0};
-  code = eo_evaluator_run(w->evaluator, w->design, NULL, 0, &r, error);
+    worker->design->modification = (struct eo_modification){0};
+  code = eo_evaluator_run(worker->evaluator, worker->design, NULL, 0, &evaluation, error);
   if (!code)
-    code = keep_problem(&job->problem[item], w->evaluator, r, error);
+    code = keep_problem(&job->problem[item], worker->evaluator, evaluation, error);
   if (!code)
-    code = read_torque(&s->at_torque[variant][k], r, &job->problem[item].parameters, error);
+    code = read_torque(&sweep->at_torque[variant][k], evaluation, &job->problem[item].parameters, error);
   if (code)
     return code;
-  job->alone[(size_t)item * (size_t)s->speeds] = r->load_case[0].vibration;
+  job->alone[(size_t)item * (size_t)sweep->speeds] = evaluation->load_case[0].vibration;
   return EO_OK;
 }
 
-static struct eo_vibration_case case_at(const struct job *job, const struct problem *p, double speed, double impact[2])
+static struct eo_vibration_case case_at(const struct job *job, const struct problem *problem, double speed,
+                                        double impact[2])
 {
-  struct eo_vibration_case load = p->load;
-  struct eo_impact strike[2] = {p->impact[0], p->impact[1]};
+  struct eo_vibration_case load = problem->load;
+  struct eo_impact strike[2] = {problem->impact[0], problem->impact[1]};
   load.speed = speed;
   for (int end = 0; end < job->sweep->ends; end++) {
     eo_impact_strike(&strike[end], eo_pair_half(job->pair, end)->grid, &eo_pair_half(job->pair, end)->impact, speed, 1);
@@ -232,13 +233,13 @@ static struct eo_vibration_case case_at(const struct job *job, const struct prob
   return load;
 }
 
-static enum eo_code take_model(struct job *job, struct worker *w, int problem, struct eo_error *error)
+static enum eo_code take_model(struct job *job, struct worker *worker, int problem, struct eo_error *error)
 {
-  enum eo_code code = make_worker(job, w, error);
-  if (!code && w->model != problem)
-    code = eo_vibration_set_model(w->solver, &job->problem[problem].parameters, error);
+  enum eo_code code = make_worker(job, worker, error);
+  if (!code && worker->model != problem)
+    code = eo_vibration_set_model(worker->solver, &job->problem[problem].parameters, error);
   if (!code)
-    w->model = problem;
+    worker->model = problem;
   return code;
 }
 
@@ -246,20 +247,20 @@ static enum eo_code take_model(struct job *job, struct worker *w, int problem, s
 static enum eo_code solve_speed(void *context, int thread, int item, struct eo_error *error)
 {
   struct job *job = context;
-  struct worker *w = &job->worker[thread];
+  struct worker *worker = &job->worker[thread];
   int others = job->sweep->speeds - 1, problem = item / others, j = 1 + item % others;
   struct eo_vibration *result = &job->alone[(size_t)problem * (size_t)job->sweep->speeds + (size_t)j];
   if (!job->problem[problem].solvable) {
     result->outcome = EO_VIBRATION_NOT_CONVERGED;
     return EO_OK;
   }
-  enum eo_code code = take_model(job, w, problem, error);
+  enum eo_code code = take_model(job, worker, problem, error);
   if (code)
     return code;
   struct eo_vibration_case load = case_at(job, &job->problem[problem], job->sweep->speed[j], NULL);
   return job->design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
-             ? eo_vibration_integrate(w->solver, &load, NULL, result, NULL, error)
-             : eo_vibration_solve(w->solver, &load, EO_START_COLD, result, error);
+             ? eo_vibration_integrate(worker->solver, &load, NULL, result, NULL, error)
+             : eo_vibration_solve(worker->solver, &load, EO_START_COLD, result, error);
 }
 
 static bool separates(const struct job *job, const struct eo_vibration *alone)
@@ -273,24 +274,25 @@ static bool separates(const struct job *job, const struct eo_vibration *alone)
 static enum eo_code solve_branch(void *context, int thread, int item, struct eo_error *error)
 {
   struct job *job = context;
-  struct eo_sweep *s = job->sweep;
-  struct worker *w = &job->worker[thread];
+  struct eo_sweep *sweep = job->sweep;
+  struct worker *worker = &job->worker[thread];
   int problem = item / EO_SWEEP_DIRECTIONS, direction = item % EO_SWEEP_DIRECTIONS;
-  size_t speeds = (size_t)s->speeds, first = (size_t)(problem % s->torques) * speeds;
+  size_t speeds = (size_t)sweep->speeds, first = (size_t)(problem % sweep->torques) * speeds;
   const struct eo_vibration *alone = job->alone + (size_t)problem * speeds;
-  struct eo_sweep_point *point = s->point[problem / s->torques][direction] + first;
-  bool sound = s->at_torque[problem / s->torques][problem % s->torques].contact_failures == 0;
+  struct eo_sweep_point *point = sweep->point[problem / sweep->torques][direction] + first;
+  bool sound = sweep->at_torque[problem / sweep->torques][problem % sweep->torques].contact_failures == 0;
   struct eo_vibration_case *load = calloc(speeds, sizeof *load);
   struct eo_vibration *followed = calloc(speeds, sizeof *followed);
   enum eo_code code = load && followed ? EO_OK : eo_error_memory(error);
-  for (int j = 0; j < s->speeds && !code; j++)
-    load[j] = case_at(job, &job->problem[problem], s->speed[j], point[j].impact);
+  for (int j = 0; j < sweep->speeds && !code; j++)
+    load[j] = case_at(job, &job->problem[problem], sweep->speed[j], point[j].impact);
   bool follow = !code && separates(job, alone);
   if (follow)
-    code = take_model(job, w, problem, error);
+    code = take_model(job, worker, problem, error);
   if (follow && !code)
-    code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
-  for (int j = 0; j < s->speeds && !code; j++)
+    code = eo_vibration_follow(worker->solver, sweep->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed,
+                               error);
+  for (int j = 0; j < sweep->speeds && !code; j++)
     read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
   free(load);
   free(followed);
@@ -324,29 +326,29 @@ static void done_job(struct job *job)
 static enum eo_code run_job(struct job *job, const struct eo_progress *progress, struct eo_error *error)
 {
   enum { TORQUE_COST = 20, BRANCH_SHARE = 4 }; /* in vibrations of one speed */
-  const struct eo_sweep *s = job->sweep;
-  int problems = EO_SWEEP_VARIANTS * s->torques;
-  double torques = TORQUE_COST * problems, speeds = (double)problems * s->speeds,
+  const struct eo_sweep *sweep = job->sweep;
+  int problems = EO_SWEEP_VARIANTS * sweep->torques;
+  double torques = TORQUE_COST * problems, speeds = (double)problems * sweep->speeds,
          all = torques + speeds + speeds / BRANCH_SHARE;
-  struct eo_parallel p = {.threads = job->threads,
-                          .work = solve_torque,
-                          .context = job,
-                          .progress = progress,
-                          .what = "loaded contact",
-                          .first = 0,
-                          .last = torques / all};
-  enum eo_code code = eo_parallel_run(&p, problems, error);
-  p.first = p.last;
-  p.last = (torques + speeds) / all;
-  p.work = solve_speed;
-  p.what = "vibration";
+  struct eo_parallel parallel = {.threads = job->threads,
+                                 .work = solve_torque,
+                                 .context = job,
+                                 .progress = progress,
+                                 .what = "loaded contact",
+                                 .first = 0,
+                                 .last = torques / all};
+  enum eo_code code = eo_parallel_run(&parallel, problems, error);
+  parallel.first = parallel.last;
+  parallel.last = (torques + speeds) / all;
+  parallel.work = solve_speed;
+  parallel.what = "vibration";
   if (!code)
-    code = eo_parallel_run(&p, problems * (s->speeds - 1), error);
-  p.first = p.last;
-  p.last = 1;
-  p.work = solve_branch;
-  p.what = "branches";
-  return code ? code : eo_parallel_run(&p, problems * EO_SWEEP_DIRECTIONS, error);
+    code = eo_parallel_run(&parallel, problems * (sweep->speeds - 1), error);
+  parallel.first = parallel.last;
+  parallel.last = 1;
+  parallel.work = solve_branch;
+  parallel.what = "branches";
+  return code ? code : eo_parallel_run(&parallel, problems * EO_SWEEP_DIRECTIONS, error);
 }
 
 /* More than the residual of the harmonic balance leaves open. */
@@ -358,36 +360,36 @@ static bool differ(const struct eo_sweep_point *a, const struct eo_sweep_point *
 }
 
 /* Where one direction found no periodic state and the other did, the other's is a state of that speed too. */
-static void compare_branches(struct eo_sweep *s)
+static void compare_branches(struct eo_sweep *sweep)
 {
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    for (int i = 0; i < s->torques * s->speeds; i++) {
-      struct eo_sweep_point *up = &s->point[v][EO_SWEEP_UP][i], *down = &s->point[v][EO_SWEEP_DOWN][i];
+    for (int i = 0; i < sweep->torques * sweep->speeds; i++) {
+      struct eo_sweep_point *up = &sweep->point[v][EO_SWEEP_UP][i], *down = &sweep->point[v][EO_SWEEP_DOWN][i];
       if (up->outcome == EO_VIBRATION_NOT_CONVERGED)
         *up = *down;
       else if (down->outcome == EO_VIBRATION_NOT_CONVERGED)
         *down = *up;
-      s->branches[v] = s->branches[v] || differ(up, down);
+      sweep->branches[v] = sweep->branches[v] || differ(up, down);
     }
 }
 
-static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth,
+static bool crosses(const struct eo_sweep *sweep, int torque, int mode, int order, int teeth,
                     struct eo_sweep_crossing *crossing)
 {
-  double frequency = s->at_torque[EO_SWEEP_DESIGN][torque].modes.frequency[mode];
+  double frequency = sweep->at_torque[EO_SWEEP_DESIGN][torque].modes.frequency[mode];
   *crossing = (struct eo_sweep_crossing){torque, mode, order, frequency, 2 * M_PI * frequency / (order * teeth)};
-  return crossing->speed >= s->speed[0] && crossing->speed <= s->speed[s->speeds - 1];
+  return crossing->speed >= sweep->speed[0] && crossing->speed <= sweep->speed[sweep->speeds - 1];
 }
 
-static enum eo_code find_crossings(struct eo_sweep *s, int teeth, int orders, struct eo_error *error)
+static enum eo_code find_crossings(struct eo_sweep *sweep, int teeth, int orders, struct eo_error *error)
 {
-  s->crossing = malloc((size_t)(s->torques * EO_MAX_COORDINATES * orders) * sizeof *s->crossing);
-  if (!s->crossing)
+  sweep->crossing = malloc((size_t)(sweep->torques * EO_MAX_COORDINATES * orders) * sizeof *sweep->crossing);
+  if (!sweep->crossing)
     return eo_error_memory(error);
-  for (int k = 0; k < s->torques; k++)
-    for (int mode = 0; mode < s->at_torque[EO_SWEEP_DESIGN][k].modes.n; mode++)
+  for (int k = 0; k < sweep->torques; k++)
+    for (int mode = 0; mode < sweep->at_torque[EO_SWEEP_DESIGN][k].modes.n; mode++)
       for (int order = 1; order <= orders; order++)
-        s->crossings += crosses(s, k, mode, order, teeth, &s->crossing[s->crossings]);
+        sweep->crossings += crosses(sweep, k, mode, order, teeth, &sweep->crossing[sweep->crossings]);
   return EO_OK;
 }
 

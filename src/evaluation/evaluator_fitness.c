@@ -57,11 +57,11 @@ static double part_of(const struct eo_objective_value *value, int part)
 /* The mean, the mean plus k standard deviations, or a percentile of f and J each. */
 static double over_states(const struct eo_objective *objective, int states, double *value)
 {
-  struct eo_summary s = eo_summary_of(states, value);
+  struct eo_summary summary = eo_summary_of(states, value);
   if (objective->robust == EO_ROBUST_SIGMAS)
-    return s.mean + objective->robust_sigmas * s.deviation;
+    return summary.mean + objective->robust_sigmas * summary.deviation;
   if (objective->robust != EO_ROBUST_PERCENTILE)
-    return s.mean;
+    return summary.mean;
   eo_sort_numbers(states, value);
   return eo_percentile(states, value, objective->robust_percent);
 }

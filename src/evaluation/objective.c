@@ -57,16 +57,21 @@ static double worse(double value, double before)
   return before > 0 && value > before ? value / before - 1 : 0;
 }
 
-static double violation(const struct eo_objective *o, const struct eo_objective_case *v,
+static double violation(const struct eo_objective *objective, const struct eo_objective_case *objective_case,
                         const struct eo_objective_case *before)
 {
-  double sum = excess(o->contact_pressure, v->contact_pressure) + excess(o->root_stress, v->root_stress) +
-               excess(o->peak_to_peak, v->peak_to_peak) + excess(o->edge_load_share, v->edge_load_share) +
-               excess(o->contact_loss, v->contact_loss) + shortfall(o->flank_safety, v->flank_safety) +
-               shortfall(o->root_safety, v->root_safety) + shortfall(o->film_ratio, v->film_ratio) +
-               excess(o->contact_temperature, v->contact_temperature);
-  if (o->no_worse_than_unmodified)
-    sum += worse(v->peak_to_peak, before->peak_to_peak) + worse(v->impact, before->impact) + worse(v->rms, before->rms);
+  double sum = excess(objective->contact_pressure, objective_case->contact_pressure) +
+               excess(objective->root_stress, objective_case->root_stress) +
+               excess(objective->peak_to_peak, objective_case->peak_to_peak) +
+               excess(objective->edge_load_share, objective_case->edge_load_share) +
+               excess(objective->contact_loss, objective_case->contact_loss) +
+               shortfall(objective->flank_safety, objective_case->flank_safety) +
+               shortfall(objective->root_safety, objective_case->root_safety) +
+               shortfall(objective->film_ratio, objective_case->film_ratio) +
+               excess(objective->contact_temperature, objective_case->contact_temperature);
+  if (objective->no_worse_than_unmodified)
+    sum += worse(objective_case->peak_to_peak, before->peak_to_peak) + worse(objective_case->impact, before->impact) +
+           worse(objective_case->rms, before->rms);
   return sum;
 }
 
@@ -99,19 +104,20 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
   result->fitness = 1 / result->objective - objective->penalty * result->violation; /* theory (O3) */
 }
 
-bool eo_objective_wants_rating(const struct eo_objective *o)
+bool eo_objective_wants_rating(const struct eo_objective *objective)
 {
-  return !isnan(o->flank_safety) || !isnan(o->root_safety) || !isnan(o->film_ratio) || !isnan(o->contact_temperature);
+  return !isnan(objective->flank_safety) || !isnan(objective->root_safety) || !isnan(objective->film_ratio) ||
+         !isnan(objective->contact_temperature);
 }
 
 bool eo_objective_relief_outside(const struct eo_modification *modification, double bottom, double top)
 {
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < 2; end++) {
-      const struct eo_flank_modification *m = &modification->flank[member][end];
+      const struct eo_flank_modification *flank_modification = &modification->flank[member][end];
       double own_top = member == EO_PINION ? top : -bottom, own_bottom = member == EO_PINION ? -bottom : top;
-      if ((m->tip_relief > 0 && m->tip_relief_start >= own_top) ||
-          (m->root_relief > 0 && m->root_relief_start >= own_bottom))
+      if ((flank_modification->tip_relief > 0 && flank_modification->tip_relief_start >= own_top) ||
+          (flank_modification->root_relief > 0 && flank_modification->root_relief_start >= own_bottom))
         return true;
     }
   return false;

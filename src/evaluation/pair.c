@@ -55,10 +55,11 @@ static enum eo_code add_right_half(struct eo_pair *pair, const struct eo_design 
                                    struct eo_error *error)
 {
   struct eo_pair_options own = *options;
-  const struct eo_geometry *g = &pair->geometry;
+  const struct eo_geometry *geometry = &pair->geometry;
   int n = pair->grid->positions;
-  double step = g->transverse_base_pitch / n,
-         lag = (design->gear_pair.right_face_width - design->gear_pair.face_width) / 2 * tan(g->base_helix_angle),
+  double step = geometry->transverse_base_pitch / n,
+         lag = (design->gear_pair.right_face_width - design->gear_pair.face_width) / 2 *
+               tan(geometry->base_helix_angle),
          rest = lag - step * round(lag / step);
   struct eo_design *right = malloc(sizeof *right);
   double *phase = malloc(sizeof *phase * (size_t)n);
@@ -143,19 +144,20 @@ void eo_pair_free(struct eo_pair *pair)
 
 struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *pair)
 {
-  const struct eo_gear_pair *p = &pair->gear_pair;
-  return (struct eo_iso_stiffness_input){.teeth = {p->teeth[0], p->teeth[1]},
-                                         .virtual_teeth = EO_ISO_VIRTUAL_CUBED,
-                                         .normal_pressure_angle = p->normal_pressure_angle,
-                                         .helix_angle = p->helix_angle,
-                                         .profile_shift = {p->profile_shift[0], p->profile_shift[1]},
-                                         .dedendum_coefficient = (eo_gear_pair_rack(p, EO_PINION).dedendum_coefficient +
-                                                                  eo_gear_pair_rack(p, EO_GEAR).dedendum_coefficient) /
-                                                                 2, /* ISO 6336-1 C_B of unlike racks: the mean */
-                                         .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
-                                         .blank_factor = 1,
-                                         .theory_factor = 0.8,
-                                         .youngs_modulus = eo_material_mean_modulus(&pair->material)};
+  const struct eo_gear_pair *gear_pair = &pair->gear_pair;
+  return (struct eo_iso_stiffness_input){
+      .teeth = {gear_pair->teeth[0], gear_pair->teeth[1]},
+      .virtual_teeth = EO_ISO_VIRTUAL_CUBED,
+      .normal_pressure_angle = gear_pair->normal_pressure_angle,
+      .helix_angle = gear_pair->helix_angle,
+      .profile_shift = {gear_pair->profile_shift[0], gear_pair->profile_shift[1]},
+      .dedendum_coefficient = (eo_gear_pair_rack(gear_pair, EO_PINION).dedendum_coefficient +
+                               eo_gear_pair_rack(gear_pair, EO_GEAR).dedendum_coefficient) /
+                              2, /* ISO 6336-1 C_B of unlike racks: the mean */
+      .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
+      .blank_factor = 1,
+      .theory_factor = 0.8,
+      .youngs_modulus = eo_material_mean_modulus(&pair->material)};
 }
 
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)

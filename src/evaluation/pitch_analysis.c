@@ -36,24 +36,25 @@ static struct eo_pitch_meeting meeting_of(const struct eo_case_result *load_case
 }
 
 /* All teeth of the flanks of one side, once. */
-static enum eo_code compose(struct work *w, const struct eo_pitch_meeting *meeting, struct eo_error *error)
+static enum eo_code compose(struct work *work, const struct eo_pitch_meeting *meeting, struct eo_error *error)
 {
-  const struct eo_geometry *g = &w->evaluator->pair->geometry;
-  if (w->result->used[meeting->side])
+  const struct eo_geometry *geometry = &work->evaluator->pair->geometry;
+  if (work->result->used[meeting->side])
     return EO_OK;
-  w->result->used[meeting->side] = true;
+  work->result->used[meeting->side] = true;
   for (int member = 0; member < 2; member++)
-    for (int end = 0; end < w->design->gear_pair.ends; end++) {
-      int teeth = g->teeth[member];
+    for (int end = 0; end < work->design->gear_pair.ends; end++) {
+      int teeth = geometry->teeth[member];
       struct eo_tooth_deviation *tooth = malloc(sizeof *tooth * (size_t)teeth);
       double *index = malloc(sizeof *index * (size_t)teeth);
-      w->result->tooth[meeting->side][member][end] = tooth;
-      enum eo_code code = tooth && index ? eo_pitch_compose(&w->design->pitch, g, meeting, member, end, tooth, error)
-                                         : eo_error_memory(error);
+      work->result->tooth[meeting->side][member][end] = tooth;
+      enum eo_code code = tooth && index
+                              ? eo_pitch_compose(&work->design->pitch, geometry, meeting, member, end, tooth, error)
+                              : eo_error_memory(error);
       for (int i = 0; i < teeth && !code; i++)
         index[i] = tooth[i].index;
       if (!code)
-        w->result->size[meeting->side][member][end] = eo_pitch_size_of(teeth, index);
+        work->result->size[meeting->side][member][end] = eo_pitch_size_of(teeth, index);
       free(index);
       if (code)
         return code;
@@ -62,37 +63,37 @@ static enum eo_code compose(struct work *w, const struct eo_pitch_meeting *meeti
 }
 
 /* Tables in the order of meshing and gaps of both ends, for one load case. */
-static void arrange(struct work *w, struct eo_case_result *load_case, const struct eo_pitch_case *own)
+static void arrange(struct work *work, struct eo_case_result *load_case, const struct eo_pitch_case *own)
 {
-  struct eo_run run = {.design = w->design};
-  for (int end = 0; end < w->design->gear_pair.ends; end++) {
-    memcpy(w->gap[end], eo_evaluator_gaps_of(w->evaluator, &run, load_case, end)->gap,
-           sizeof(double) * (size_t)eo_evaluator_grid(w->evaluator, end)->points);
+  struct eo_run run = {.design = work->design};
+  for (int end = 0; end < work->design->gear_pair.ends; end++) {
+    memcpy(work->gap[end], eo_evaluator_gaps_of(work->evaluator, &run, load_case, end)->gap,
+           sizeof(double) * (size_t)eo_evaluator_grid(work->evaluator, end)->points);
     for (int member = 0; member < 2; member++)
-      eo_pitch_order(&w->design->pitch, &own->meeting, member, w->evaluator->pair->geometry.teeth[member],
-                     w->result->tooth[own->meeting.side][member][end], w->ordered[end][member]);
+      eo_pitch_order(&work->design->pitch, &own->meeting, member, work->evaluator->pair->geometry.teeth[member],
+                     work->result->tooth[own->meeting.side][member][end], work->ordered[end][member]);
   }
 }
 
-static enum eo_code hunt(struct work *w, const struct eo_case_result *load_case, struct eo_pitch_case *own,
+static enum eo_code hunt(struct work *work, const struct eo_case_result *load_case, struct eo_pitch_case *own,
                          struct eo_error *error)
 {
-  const struct eo_pair *pair = w->evaluator->pair;
+  const struct eo_pair *pair = work->evaluator->pair;
   struct eo_hunting_input input = {
-      .ends = w->design->gear_pair.ends,
+      .ends = work->design->gear_pair.ends,
       .grid = {pair->grid, eo_pair_half(pair, EO_RIGHT)->grid},
-      .gap = {w->gap[EO_LEFT], w->gap[EO_RIGHT]},
+      .gap = {work->gap[EO_LEFT], work->gap[EO_RIGHT]},
       .inwards = load_case->running.inwards,
-      .positions = w->design->pitch.positions,
-      .stagger = eo_evaluator_stagger_of(pair, w->design, &load_case->running, w->design->pitch.positions),
+      .positions = work->design->pitch.positions,
+      .stagger = eo_evaluator_stagger_of(pair, work->design, &load_case->running, work->design->pitch.positions),
       .compliance_factor = 1,
       .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
       .shared_load = load_case->force,
-      .hold = eo_meeting_hold(w->evaluator, w->design, &load_case->running),
-      .threads = w->threads};
+      .hold = eo_meeting_hold(work->evaluator, work->design, &load_case->running),
+      .threads = work->threads};
   for (int i = 0; i < 4; i++)
-    input.tooth[i / 2][i % 2] = w->ordered[i / 2][i % 2];
-  for (int i = 0; i < 4 && w->root; i++)
+    input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
+  for (int i = 0; i < 4 && work->root; i++)
     input.root[i / 2][i % 2] = eo_pair_half(pair, i / 2)->root[i % 2];
   return eo_hunting_run(&own->hunting, &input, NULL, error);
 }
@@ -108,63 +109,64 @@ static double swing(int n, const double *value)
 }
 
 /* Mean and swing over the period and of every cycle; what the pinion does along its axis. */
-static enum eo_code read_curves(const struct work *w, struct eo_pitch_case *own, struct eo_error *error)
+static enum eo_code read_curves(const struct work *work, struct eo_pitch_case *own, struct eo_error *error)
 {
-  const struct eo_hunting *h = &own->hunting;
-  const struct eo_geometry *g = &w->evaluator->pair->geometry;
-  double normal = cos(g->base_helix_angle), lean = sin(g->base_helix_angle), outwards = own->meeting.inwards ? -1 : 1;
+  const struct eo_hunting *hunting = &own->hunting;
+  const struct eo_geometry *geometry = &work->evaluator->pair->geometry;
+  double normal = cos(geometry->base_helix_angle), lean = sin(geometry->base_helix_angle),
+         outwards = own->meeting.inwards ? -1 : 1;
   double low = INFINITY, high = -INFINITY;
-  own->transmission = malloc(sizeof(double) * (size_t)h->instants);
-  own->cycle_mean = malloc(sizeof(double) * (size_t)h->cycles);
-  own->cycle_swing = malloc(sizeof(double) * (size_t)h->cycles);
+  own->transmission = malloc(sizeof(double) * (size_t)hunting->instants);
+  own->cycle_mean = malloc(sizeof(double) * (size_t)hunting->cycles);
+  own->cycle_swing = malloc(sizeof(double) * (size_t)hunting->cycles);
   if (!own->transmission || !own->cycle_mean || !own->cycle_swing)
     return eo_error_memory(error);
-  for (int i = 0; i < h->instants; i++) {
-    double left = h->approach[EO_LEFT][i], right = h->approach[h->ends - 1][i],
-           shift = h->ends == 2 && lean != 0 ? outwards * (left - right) / (2 * lean) : 0;
+  for (int i = 0; i < hunting->instants; i++) {
+    double left = hunting->approach[EO_LEFT][i], right = hunting->approach[hunting->ends - 1][i],
+           shift = hunting->ends == 2 && lean != 0 ? outwards * (left - right) / (2 * lean) : 0;
     own->transmission[i] = (left + right) / (2 * normal);
-    own->float_mean += shift / h->instants;
+    own->float_mean += shift / hunting->instants;
     low = fmin(low, shift);
     high = fmax(high, shift);
   }
   own->float_swing = high - low;
   own->mean = 0;
-  for (int cycle = 0; cycle < h->cycles; cycle++) {
-    const double *part = own->transmission + (size_t)cycle * (size_t)h->positions;
-    own->cycle_mean[cycle] = eo_periodic_mean(h->positions, part);
-    own->cycle_swing[cycle] = swing(h->positions, part);
-    own->mean += own->cycle_mean[cycle] / h->cycles;
+  for (int cycle = 0; cycle < hunting->cycles; cycle++) {
+    const double *part = own->transmission + (size_t)cycle * (size_t)hunting->positions;
+    own->cycle_mean[cycle] = eo_periodic_mean(hunting->positions, part);
+    own->cycle_swing[cycle] = swing(hunting->positions, part);
+    own->mean += own->cycle_mean[cycle] / hunting->cycles;
   }
-  own->peak_to_peak = swing(h->instants, own->transmission);
-  own->lines = h->instants / 2 + 1;
+  own->peak_to_peak = swing(hunting->instants, own->transmission);
+  own->lines = hunting->instants / 2 + 1;
   own->line = malloc(sizeof *own->line * (size_t)own->lines);
-  return own->line ? eo_fft_spectrum(h->instants, own->transmission, own->line, error) : eo_error_memory(error);
+  return own->line ? eo_fft_spectrum(hunting->instants, own->transmission, own->line, error) : eo_error_memory(error);
 }
 
 /* Time-synchronous averages: of each position of a member's turn the mean over all its turns. */
 static enum eo_code average_turns(struct eo_pitch_case *own, bool backwards, struct eo_error *error)
 {
-  const struct eo_hunting *h = &own->hunting;
+  const struct eo_hunting *hunting = &own->hunting;
   for (int member = 0; member < 2; member++) {
-    int bins = h->teeth[member] * h->positions;
+    int bins = hunting->teeth[member] * hunting->positions;
     own->turn[member] = calloc((size_t)bins, sizeof(double));
     if (!own->turn[member])
       return eo_error_memory(error);
-    for (int i = 0; i < h->instants; i++) {
-      int from = backwards ? (h->instants - i) % h->instants : i;
-      own->turn[member][i % bins] += (own->transmission[from] - own->mean) * bins / h->instants;
+    for (int i = 0; i < hunting->instants; i++) {
+      int from = backwards ? (hunting->instants - i) % hunting->instants : i;
+      own->turn[member][i % bins] += (own->transmission[from] - own->mean) * bins / hunting->instants;
     }
   }
   return EO_OK;
 }
 
 /* A member's tables of both hands are the same. */
-static bool hands_alike(const struct work *w, const struct eo_pitch_case *own)
+static bool hands_alike(const struct work *work, const struct eo_pitch_case *own)
 {
   bool alike = true;
-  for (int member = 0; member < 2 && w->design->gear_pair.ends == 2; member++) {
-    struct eo_tooth_deviation *const *of = w->result->tooth[own->meeting.side][member];
-    for (int i = 0; i < w->evaluator->pair->geometry.teeth[member]; i++)
+  for (int member = 0; member < 2 && work->design->gear_pair.ends == 2; member++) {
+    struct eo_tooth_deviation *const *of = work->result->tooth[own->meeting.side][member];
+    for (int i = 0; i < work->evaluator->pair->geometry.teeth[member]; i++)
       alike = alike && of[EO_LEFT][i].index == of[EO_RIGHT][i].index &&
               of[EO_LEFT][i].profile_slope == of[EO_RIGHT][i].profile_slope &&
               of[EO_LEFT][i].helix_slope == of[EO_RIGHT][i].helix_slope;
@@ -175,40 +177,40 @@ static bool hands_alike(const struct work *w, const struct eo_pitch_case *own)
 /* Z at which an end would carry P, from the load it has; both in the order of time. */
 static void order_in_time(const struct eo_pitch_case *own, bool backwards, int end, double *deflection, double *tangent)
 {
-  const struct eo_hunting *h = &own->hunting;
-  for (int i = 0; i < h->instants; i++) {
-    int from = backwards ? (h->instants - i) % h->instants : i;
-    double k = h->tangent[end][from];
+  const struct eo_hunting *hunting = &own->hunting;
+  for (int i = 0; i < hunting->instants; i++) {
+    int from = backwards ? (hunting->instants - i) % hunting->instants : i;
+    double k = hunting->tangent[end][from];
     tangent[i] = k;
-    deflection[i] = h->approach[end][from] + (k > 0 ? (own->force - h->load[end][from]) / k : 0);
+    deflection[i] = hunting->approach[end][from] + (k > 0 ? (own->force - hunting->load[end][from]) / k : 0);
   }
 }
 
-static enum eo_code respond_with(const struct work *w, const struct eo_case_result *load_case,
+static enum eo_code respond_with(const struct work *work, const struct eo_case_result *load_case,
                                  struct eo_pitch_case *own, double *const scratch[4], struct eo_error *error)
 {
-  const struct eo_design *design = w->design;
-  const struct eo_hunting *h = &own->hunting;
+  const struct eo_design *design = work->design;
+  const struct eo_hunting *hunting = &own->hunting;
   struct eo_dynamics_parameters parameters;
   bool held = load_case->at_stop || design->alignment.pinion_axial != EO_AXIAL_STOPS,
        differ = design->gear_pair.ends == 2 &&
-                !(!w->evaluator->pair->right && eo_reuse_same_flanks(design) && hands_alike(w, own));
+                !(!work->evaluator->pair->right && eo_reuse_same_flanks(design) && hands_alike(work, own));
   double stiffness = 0;
-  for (int end = 0; end < h->ends; end++) {
+  for (int end = 0; end < hunting->ends; end++) {
     order_in_time(own, load_case->running.backwards, end, scratch[end], scratch[2 + end]);
-    for (int i = 0; i < h->instants; i++)
-      stiffness += scratch[2 + end][i] / (h->ends * h->instants);
+    for (int i = 0; i < hunting->instants; i++)
+      stiffness += scratch[2 + end][i] / (hunting->ends * hunting->instants);
   }
-  EO_TRY(eo_dynamics_parameters_init(&parameters, &w->evaluator->pair->geometry, h->ends,
+  EO_TRY(eo_dynamics_parameters_init(&parameters, &work->evaluator->pair->geometry, hunting->ends,
                                      held ? eo_alignment_axial_stiffness(&design->alignment) : 0, &design->supports,
                                      differ, stiffness, error));
-  int most = h->positions / 2 - 1, harmonics = design->resolution.te_harmonics;
+  int most = hunting->positions / 2 - 1, harmonics = design->resolution.te_harmonics;
   const struct eo_long_case load = {.parameters = &parameters,
                                     .torque = own->load_case.torque,
                                     .speed = own->load_case.speed,
-                                    .pinion_teeth = h->teeth[EO_PINION],
-                                    .cycles = h->cycles,
-                                    .positions = h->positions,
+                                    .pinion_teeth = hunting->teeth[EO_PINION],
+                                    .cycles = hunting->cycles,
+                                    .positions = hunting->positions,
                                     .harmonics = harmonics < most ? harmonics : most,
                                     .deflection = {scratch[0], scratch[1]},
                                     .tangent = {scratch[2], scratch[3]},
@@ -259,8 +261,8 @@ static void list_orders(struct eo_pitch_case *own)
 /* The vibration of one load case, on any thread. */
 static enum eo_code respond(void *context, int thread, int k, struct eo_error *error)
 {
-  const struct work *w = context;
-  struct eo_pitch_case *own = &w->result->load_case[k];
+  const struct work *work = context;
+  struct eo_pitch_case *own = &work->result->load_case[k];
   double *scratch[4] = {NULL};
   enum eo_code code = EO_OK;
   (void)thread;
@@ -270,7 +272,7 @@ static enum eo_code respond(void *context, int thread, int k, struct eo_error *e
   }
   own->response.outcome = EO_LONG_NO_LAW;
   if (!code && own->hunting.failures == 0)
-    code = respond_with(w, &w->evaluator->result.load_case[k], own, scratch, error);
+    code = respond_with(work, &work->evaluator->result.load_case[k], own, scratch, error);
   for (int i = 0; i < 4; i++)
     free(scratch[i]);
   if (!code)
@@ -278,64 +280,64 @@ static enum eo_code respond(void *context, int thread, int k, struct eo_error *e
   return code;
 }
 
-static enum eo_code make_work(struct work *w, struct eo_error *error)
+static enum eo_code make_work(struct work *work, struct eo_error *error)
 {
-  const struct eo_contact_grid *grid = w->evaluator->pair->grid;
-  struct eo_pitch_analysis *result = w->result;
+  const struct eo_contact_grid *grid = work->evaluator->pair->grid;
+  struct eo_pitch_analysis *result = work->result;
   bool complete = true;
-  result->cases = w->evaluator->result.cases;
+  result->cases = work->evaluator->result.cases;
   result->load_case = calloc((size_t)result->cases, sizeof *result->load_case);
   for (int end = 0; end < 2; end++) {
-    w->gap[end] = malloc(sizeof(double) * (size_t)eo_evaluator_grid(w->evaluator, end)->points);
-    complete = complete && w->gap[end];
+    work->gap[end] = malloc(sizeof(double) * (size_t)eo_evaluator_grid(work->evaluator, end)->points);
+    complete = complete && work->gap[end];
     for (int member = 0; member < 2; member++) {
-      w->ordered[end][member] = calloc((size_t)grid->geometry.teeth[member], sizeof *w->ordered[end][member]);
-      complete = complete && w->ordered[end][member];
+      work->ordered[end][member] = calloc((size_t)grid->geometry.teeth[member], sizeof *work->ordered[end][member]);
+      complete = complete && work->ordered[end][member];
     }
   }
   for (int member = 0; member < 2; member++) {
     result->tolerance[member] = (struct eo_flank_tolerance){.single_pitch = NAN, .total_pitch = NAN};
-    if (w->design->pitch.member[member].tolerance_class > 0)
-      EO_TRY(eo_pitch_tolerance(&result->tolerance[member], &w->design->pitch.member[member], &grid->geometry, member,
-                                error));
+    if (work->design->pitch.member[member].tolerance_class > 0)
+      EO_TRY(eo_pitch_tolerance(&result->tolerance[member], &work->design->pitch.member[member], &grid->geometry,
+                                member, error));
   }
   return complete && result->load_case ? EO_OK : eo_error_memory(error);
 }
 
-static enum eo_code run_cases(struct work *w, struct eo_error *error)
+static enum eo_code run_cases(struct work *work, struct eo_error *error)
 {
-  EO_TRY(make_work(w, error));
-  for (int k = 0; k < w->result->cases; k++) {
-    struct eo_case_result *load_case = &w->evaluator->result.load_case[k];
-    struct eo_pitch_case *own = &w->result->load_case[k];
+  EO_TRY(make_work(work, error));
+  for (int k = 0; k < work->result->cases; k++) {
+    struct eo_case_result *load_case = &work->evaluator->result.load_case[k];
+    struct eo_pitch_case *own = &work->result->load_case[k];
     own->load_case = load_case->load_case;
     own->force = load_case->force;
     own->meeting = meeting_of(load_case);
-    EO_TRY(compose(w, &own->meeting, error));
-    arrange(w, load_case, own);
-    EO_TRY(hunt(w, load_case, own, error));
-    EO_TRY(read_curves(w, own, error));
+    EO_TRY(compose(work, &own->meeting, error));
+    arrange(work, load_case, own);
+    EO_TRY(hunt(work, load_case, own, error));
+    EO_TRY(read_curves(work, own, error));
     EO_TRY(average_turns(own, load_case->running.backwards, error));
   }
-  const struct eo_parallel parallel = {.threads = w->threads, .work = respond, .context = w};
-  return eo_parallel_run(&parallel, w->result->cases, error);
+  const struct eo_parallel parallel = {.threads = work->threads, .work = respond, .context = work};
+  return eo_parallel_run(&parallel, work->result->cases, error);
 }
 
 enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
                                    const struct eo_design *design, bool root, int threads, struct eo_error *error)
 {
-  struct work w = {.result = analysis,
-                   .evaluator = evaluator,
-                   .design = design,
-                   .root = root && evaluator->pair->root[0],
-                   .threads = threads};
+  struct work work = {.result = analysis,
+                      .evaluator = evaluator,
+                      .design = design,
+                      .root = root && evaluator->pair->root[0],
+                      .threads = threads};
   *analysis = (struct eo_pitch_analysis){0};
   EO_TIMED(analysis->milliseconds);
-  enum eo_code code = run_cases(&w, error);
+  enum eo_code code = run_cases(&work, error);
   for (int end = 0; end < 2; end++) {
-    free(w.gap[end]);
+    free(work.gap[end]);
     for (int member = 0; member < 2; member++)
-      free(w.ordered[end][member]);
+      free(work.ordered[end][member]);
   }
   return code;
 }

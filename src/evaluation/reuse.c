@@ -23,11 +23,11 @@ int eo_evaluator_stagger(const struct eo_pair *pair, const struct eo_design *des
 
 bool eo_reuse_same_flanks(const struct eo_design *design)
 {
-  const struct eo_modification *m = &design->modification;
+  const struct eo_modification *modification = &design->modification;
   bool same = true;
   for (int member = 0; member < 2 && same; member++) {
-    same = eo_modification_equal(&m->flank[member][EO_LEFT], &m->flank[member][EO_RIGHT]) &&
-           eo_modification_equal(&m->coast[member][EO_LEFT], &m->coast[member][EO_RIGHT]);
+    same = eo_modification_equal(&modification->flank[member][EO_LEFT], &modification->flank[member][EO_RIGHT]) &&
+           eo_modification_equal(&modification->coast[member][EO_LEFT], &modification->coast[member][EO_RIGHT]);
     for (int side = 0; side < 2 && same; side++) {
       struct eo_flank_grid left = eo_flank_grid_at(&design->grids, (enum eo_flank_side)side, member, EO_LEFT),
                            right = eo_flank_grid_at(&design->grids, (enum eo_flank_side)side, member, EO_RIGHT);
@@ -62,8 +62,9 @@ static bool equal_ends(const struct eo_evaluator *evaluator, const struct eo_run
   bool equal = evaluator->result.ends == 2 && !evaluator->pair->right && eo_reuse_same_flanks(run->design) &&
                !evaluator->bodies_are_elastic && offset[EO_PINION] == offset[EO_GEAR];
   for (int k = 0; k < evaluator->result.cases && equal; k++) {
-    const struct eo_case_result *c = &evaluator->result.load_case[k];
-    equal = c->running.in_plane == 0 && c->running.out_of_plane == 0 && c->end_force[EO_LEFT] == c->end_force[EO_RIGHT];
+    const struct eo_case_result *case_result = &evaluator->result.load_case[k];
+    equal = case_result->running.in_plane == 0 && case_result->running.out_of_plane == 0 &&
+            case_result->end_force[EO_LEFT] == case_result->end_force[EO_RIGHT];
   }
   return equal;
 }

@@ -60,12 +60,12 @@ int eo_scalar_find(const char *key)
   return -1;
 }
 
-static double order_of(const struct eo_evaluation *evaluation, const struct eo_case_result *c, int order)
+static double order_of(const struct eo_evaluation *evaluation, const struct eo_case_result *case_result, int order)
 {
   double amplitude[3][2];
   if (2 * order >= evaluation->positions)
     return NAN;
-  eo_periodic_harmonics(evaluation->positions, c->transmission, order, amplitude);
+  eo_periodic_harmonics(evaluation->positions, case_result->transmission, order, amplitude);
   return hypot(amplitude[order - 1][0], amplitude[order - 1][1]);
 }
 
@@ -78,61 +78,61 @@ static double root_of(const struct eo_end_result *end)
   return largest;
 }
 
-static double at_end(const struct eo_scalar *scalar, const struct eo_case_result *c, int end)
+static double at_end(const struct eo_scalar *scalar, const struct eo_case_result *case_result, int end)
 {
-  const struct eo_end_result *e = &c->end[end];
+  const struct eo_end_result *end_result = &case_result->end[end];
   switch (scalar->what) {
   case SWING:
-    return e->transmission_peak;
+    return end_result->transmission_peak;
   case PRESSURE:
-    return e->max_pressure;
+    return end_result->max_pressure;
   case LINE_LOAD:
-    return e->max_line_load;
+    return end_result->max_line_load;
   case EDGE:
-    return e->edge_share;
+    return end_result->edge_share;
   case FACE_FACTOR:
-    return e->face.face_factor;
+    return end_result->face.face_factor;
   case SHARE_FACTOR:
-    return e->face.share_factor;
+    return end_result->face.share_factor;
   case IMPACT:
-    return e->impact.force;
+    return end_result->impact.force;
   case LOSS:
-    return c->vibration.contact_loss[end];
+    return case_result->vibration.contact_loss[end];
   default:
-    return root_of(e);
+    return root_of(end_result);
   }
 }
 
 /* The worse end; NaN of one does not hide the other. */
 static double worse_of(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation,
-                       const struct eo_case_result *c)
+                       const struct eo_case_result *case_result)
 {
   double worst = NAN;
   for (int end = 0; end < evaluation->ends; end++)
-    worst = fmax(worst, at_end(scalar, c, end));
+    worst = fmax(worst, at_end(scalar, case_result, end));
   return worst;
 }
 
 double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation, int load_case)
 {
-  const struct eo_case_result *c = &evaluation->load_case[load_case];
-  bool shaken = !(scalar->needs & EO_SCALAR_VIBRATION) || c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
-  if (c->contact_failures > 0 || !shaken || scalar->end >= evaluation->ends)
+  const struct eo_case_result *case_result = &evaluation->load_case[load_case];
+  bool shaken = !(scalar->needs & EO_SCALAR_VIBRATION) || case_result->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
+  if (case_result->contact_failures > 0 || !shaken || scalar->end >= evaluation->ends)
     return NAN;
   if (scalar->end >= 0)
-    return at_end(scalar, c, scalar->end) / scalar->unit;
+    return at_end(scalar, case_result, scalar->end) / scalar->unit;
   switch (scalar->what) {
   case SWING:
-    return c->peak_to_peak / scalar->unit;
+    return case_result->peak_to_peak / scalar->unit;
   case MEAN:
-    return c->mean / scalar->unit;
+    return case_result->mean / scalar->unit;
   case ORDER:
-    return order_of(evaluation, c, scalar->order) / scalar->unit;
+    return order_of(evaluation, case_result, scalar->order) / scalar->unit;
   case RMS:
-    return c->vibration.rms_pair[EO_READING_NORMAL] / scalar->unit;
+    return case_result->vibration.rms_pair[EO_READING_NORMAL] / scalar->unit;
   case DYNAMIC:
-    return c->dynamic_force_factor / scalar->unit;
+    return case_result->dynamic_force_factor / scalar->unit;
   default:
-    return worse_of(scalar, evaluation, c) / scalar->unit;
+    return worse_of(scalar, evaluation, case_result) / scalar->unit;
   }
 }

@@ -37,49 +37,49 @@ struct scan {
 };
 
 /* One cell into the text; true when a separator follows it, false at the end of its row. */
-static bool scan_cell(struct scan *s, const char **cell)
+static bool scan_cell(struct scan *scan, const char **cell)
 {
-  char *start = s->out;
+  char *start = scan->out;
   bool quoted = false;
-  while (s->at < s->end && (*s->at == ' ' || (*s->at == '\t' && s->separator != '\t')))
-    s->at++;
-  if (s->at < s->end && *s->at == '"') {
+  while (scan->at < scan->end && (*scan->at == ' ' || (*scan->at == '\t' && scan->separator != '\t')))
+    scan->at++;
+  if (scan->at < scan->end && *scan->at == '"') {
     quoted = true;
-    s->at++;
+    scan->at++;
   }
-  for (; s->at < s->end; s->at++) {
-    if (quoted && *s->at == '"' && s->at + 1 < s->end && s->at[1] == '"')
-      s->at++;
-    else if (quoted && *s->at == '"') {
+  for (; scan->at < scan->end; scan->at++) {
+    if (quoted && *scan->at == '"' && scan->at + 1 < scan->end && scan->at[1] == '"')
+      scan->at++;
+    else if (quoted && *scan->at == '"') {
       quoted = false;
       continue;
-    } else if (!quoted && (*s->at == s->separator || *s->at == '\n'))
+    } else if (!quoted && (*scan->at == scan->separator || *scan->at == '\n'))
       break;
-    if (*s->at != '\r' && *s->at)
-      *s->out++ = *s->at;
+    if (*scan->at != '\r' && *scan->at)
+      *scan->out++ = *scan->at;
   }
-  while (s->out > start && (s->out[-1] == ' ' || s->out[-1] == '\t'))
-    s->out--;
-  *s->out++ = '\0';
+  while (scan->out > start && (scan->out[-1] == ' ' || scan->out[-1] == '\t'))
+    scan->out--;
+  *scan->out++ = '\0';
   *cell = start;
-  bool more = s->at < s->end && *s->at == s->separator;
-  if (s->at < s->end)
-    s->at++;
+  bool more = scan->at < scan->end && *scan->at == scan->separator;
+  if (scan->at < scan->end)
+    scan->at++;
   return more;
 }
 
 /* Rows and columns, for the room that they need. */
-static void measure(struct scan s, int *rows, int *columns)
+static void measure(struct scan scan, int *rows, int *columns)
 {
   const char *cell;
-  char *start = s.out;
+  char *start = scan.out;
   *rows = *columns = 0;
-  while (s.at < s.end) {
+  while (scan.at < scan.end) {
     int count = 0;
     bool more = true;
     while (more) {
-      s.out = start;
-      more = scan_cell(&s, &cell);
+      scan.out = start;
+      more = scan_cell(&scan, &cell);
       count++;
     }
     *columns = count > *columns ? count : *columns;
@@ -98,8 +98,8 @@ enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t siz
   cells->text = malloc(2 * size + 2); /* a cell is no longer than what it is read of, and its end */
   if (!cells->text)
     return eo_error_memory(error);
-  struct scan s = {bytes, bytes + size, cells->separator, cells->text};
-  measure(s, &cells->rows, &cells->columns);
+  struct scan scan = {bytes, bytes + size, cells->separator, cells->text};
+  measure(scan, &cells->rows, &cells->columns);
   if (cells->rows > EO_CELLS_ROWS || cells->columns > EO_CELLS_COLUMNS || cells->rows * cells->columns > EO_CELLS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The table has %d rows and %d columns; that is no table of designs.",
                         cells->rows, cells->columns);
@@ -111,7 +111,7 @@ enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t siz
     for (int column = 0; column < cells->columns; column++) {
       const char *cell = "";
       if (more)
-        more = scan_cell(&s, &cell);
+        more = scan_cell(&scan, &cell);
       cells->cell[row * cells->columns + column] = cell;
     }
   }

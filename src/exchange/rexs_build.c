@@ -53,16 +53,16 @@ static const char *number_text(struct eo_rexs_model *model, double value)
 
 void eo_rexs_build_number(struct eo_rexs_builder *builder, const char *attribute, double value)
 {
-  struct eo_rexs_attribute *a = isnan(value) ? NULL : put(builder, attribute);
-  if (a)
-    a->text = number_text(builder->model, value);
+  struct eo_rexs_attribute *rexs_attribute = isnan(value) ? NULL : put(builder, attribute);
+  if (rexs_attribute)
+    rexs_attribute->text = number_text(builder->model, value);
 }
 
 void eo_rexs_build_whole(struct eo_rexs_builder *builder, const char *attribute, int value)
 {
-  struct eo_rexs_attribute *a = put(builder, attribute);
-  if (a)
-    a->text = eo_rexs_print(builder->model, "%d", value);
+  struct eo_rexs_attribute *rexs_attribute = put(builder, attribute);
+  if (rexs_attribute)
+    rexs_attribute->text = eo_rexs_print(builder->model, "%d", value);
 }
 
 void eo_rexs_build_flag(struct eo_rexs_builder *builder, const char *attribute, bool value)
@@ -72,21 +72,21 @@ void eo_rexs_build_flag(struct eo_rexs_builder *builder, const char *attribute, 
 
 void eo_rexs_build_word(struct eo_rexs_builder *builder, const char *attribute, const char *value)
 {
-  struct eo_rexs_attribute *a = put(builder, attribute);
-  if (a)
-    a->text = eo_rexs_text(builder->model, value, strlen(value));
+  struct eo_rexs_attribute *rexs_attribute = put(builder, attribute);
+  if (rexs_attribute)
+    rexs_attribute->text = eo_rexs_text(builder->model, value, strlen(value));
 }
 
 void eo_rexs_build_numbers(struct eo_rexs_builder *builder, const char *attribute, int count, const double *value)
 {
-  struct eo_rexs_attribute *a = put(builder, attribute);
-  double *copy = a ? eo_rexs_memory(builder->model, (size_t)count * sizeof *copy) : NULL;
+  struct eo_rexs_attribute *rexs_attribute = put(builder, attribute);
+  double *copy = rexs_attribute ? eo_rexs_memory(builder->model, (size_t)count * sizeof *copy) : NULL;
   if (!copy)
     return;
   memcpy(copy, value, (size_t)count * sizeof *copy);
-  a->shape = EO_REXS_ARRAY;
-  a->value = copy;
-  a->count = count;
+  rexs_attribute->shape = EO_REXS_ARRAY;
+  rexs_attribute->value = copy;
+  rexs_attribute->count = count;
 }
 
 void eo_rexs_relate(struct eo_rexs_builder *builder, const char *type, int order, ...)

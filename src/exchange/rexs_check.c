@@ -18,7 +18,7 @@ struct check {
   int *id; /* of all components, sorted */
 };
 
-__attribute__((format(printf, 7, 8))) static void tell(const struct check *c, const char *kind, bool severe,
+__attribute__((format(printf, 7, 8))) static void tell(const struct check *check, const char *kind, bool severe,
                                                        const struct eo_rexs_component *component,
                                                        const struct eo_rexs_attribute *attribute,
                                                        const struct eo_rexs_relation *relation, const char *format, ...)
@@ -28,7 +28,7 @@ __attribute__((format(printf, 7, 8))) static void tell(const struct check *c, co
   va_start(arguments, format);
   vsnprintf(fault.text, sizeof fault.text, format, arguments);
   va_end(arguments);
-  c->tell(c->context, &fault);
+  check->tell(check->context, &fault);
 }
 
 static bool is_word(const char *words, const char *word)
@@ -40,51 +40,56 @@ static bool is_word(const char *words, const char *word)
   return false;
 }
 
-static void check_range(const struct check *c, const struct eo_rexs_rule *rule,
-                        const struct eo_rexs_component *component, const struct eo_rexs_attribute *a, double value)
+static void check_range(const struct check *check, const struct eo_rexs_rule *rule,
+                        const struct eo_rexs_component *component, const struct eo_rexs_attribute *attribute,
+                        double value)
 {
   if (value < rule->low || (rule->above && value == rule->low) || value > rule->high)
-    tell(c, "out_of_range", false, component, a, NULL, "%s is %.6g; REXS allows %s%.6g to %.6g.", a->id, value,
-         rule->above ? "above " : "", rule->low, rule->high);
+    tell(check, "out_of_range", false, component, attribute, NULL, "%s is %.6g; REXS allows %s%.6g to %.6g.",
+         attribute->id, value, rule->above ? "above " : "", rule->low, rule->high);
 }
 
-static void check_number(const struct check *c, const struct eo_rexs_rule *rule,
-                         const struct eo_rexs_component *component, const struct eo_rexs_attribute *a)
+static void check_number(const struct check *check, const struct eo_rexs_rule *rule,
+                         const struct eo_rexs_component *component, const struct eo_rexs_attribute *attribute)
 {
-  double value = eo_rexs_number(a->text);
-  if (a->shape != EO_REXS_SCALAR || isnan(value))
-    tell(c, "not_a_number", true, component, a, NULL, "%s is \"%.40s\"; a number is needed.", a->id, a->text);
+  double value = eo_rexs_number(attribute->text);
+  if (attribute->shape != EO_REXS_SCALAR || isnan(value))
+    tell(check, "not_a_number", true, component, attribute, NULL, "%s is \"%.40s\"; a number is needed.", attribute->id,
+         attribute->text);
   else if (rule->type != EO_REXS_NUMBER && value != floor(value))
-    tell(c, "not_a_whole_number", true, component, a, NULL, "%s is %.40s; a whole number is needed.", a->id, a->text);
+    tell(check, "not_a_whole_number", true, component, attribute, NULL, "%s is %.40s; a whole number is needed.",
+         attribute->id, attribute->text);
   else
-    check_range(c, rule, component, a, value);
+    check_range(check, rule, component, attribute, value);
 }
 
-static void check_value(const struct check *c, const struct eo_rexs_rule *rule,
-                        const struct eo_rexs_component *component, const struct eo_rexs_attribute *a)
+static void check_value(const struct check *check, const struct eo_rexs_rule *rule,
+                        const struct eo_rexs_component *component, const struct eo_rexs_attribute *attribute)
 {
   switch (rule->type) {
   case EO_REXS_NUMBER:
   case EO_REXS_WHOLE:
   case EO_REXS_COMPONENT:
-    check_number(c, rule, component, a);
+    check_number(check, rule, component, attribute);
     break;
   case EO_REXS_FLAG:
-    if (!is_word("true false", a->text))
-      tell(c, "not_a_boolean", true, component, a, NULL, "%s is \"%.40s\"; true or false is needed.", a->id, a->text);
+    if (!is_word("true false", attribute->text))
+      tell(check, "not_a_boolean", true, component, attribute, NULL, "%s is \"%.40s\"; true or false is needed.",
+           attribute->id, attribute->text);
     break;
   case EO_REXS_WORD:
-    if (!is_word(rule->words, a->text))
-      tell(c, "unknown_value", true, component, a, NULL, "%s is \"%.40s\"; it is one of: %s.", a->id, a->text,
-           rule->words);
+    if (!is_word(rule->words, attribute->text))
+      tell(check, "unknown_value", true, component, attribute, NULL, "%s is \"%.40s\"; it is one of: %s.",
+           attribute->id, attribute->text, rule->words);
     break;
   case EO_REXS_NUMBERS:
-    if (a->shape == EO_REXS_SCALAR)
-      tell(c, "not_an_array", true, component, a, NULL, "%s is \"%.40s\"; an array of numbers is needed.", a->id,
-           a->text);
-    for (int i = 0; i < a->count; i++)
-      if (isnan(a->value[i])) {
-        tell(c, "not_a_number", true, component, a, NULL, "Value %d of %s is no number.", i + 1, a->id);
+    if (attribute->shape == EO_REXS_SCALAR)
+      tell(check, "not_an_array", true, component, attribute, NULL, "%s is \"%.40s\"; an array of numbers is needed.",
+           attribute->id, attribute->text);
+    for (int i = 0; i < attribute->count; i++)
+      if (isnan(attribute->value[i])) {
+        tell(check, "not_a_number", true, component, attribute, NULL, "Value %d of %s is no number.", i + 1,
+             attribute->id);
         break;
       }
     break;
@@ -93,47 +98,47 @@ static void check_value(const struct check *c, const struct eo_rexs_rule *rule,
   }
 }
 
-static void check_unit(const struct check *c, const struct eo_rexs_rule *rule,
-                       const struct eo_rexs_component *component, const struct eo_rexs_attribute *a)
+static void check_unit(const struct check *check, const struct eo_rexs_rule *rule,
+                       const struct eo_rexs_component *component, const struct eo_rexs_attribute *attribute)
 {
   if (rule->beside) /* vectors state mm in some files and none in others, and mean the same */
     return;
-  switch (eo_rexs_unit_judge(rule->unit, a->unit, c->version)) {
+  switch (eo_rexs_unit_judge(rule->unit, attribute->unit, check->version)) {
   case EO_REXS_UNIT_RIGHT:
     break;
   case EO_REXS_UNIT_SPELT:
-    tell(c, "unit_spelling", false, component, a, NULL,
-         "The unit of %s is written \"%.20s\"; this version writes \"%s\". It was taken as that.", a->id, a->unit,
-         eo_rexs_unit_in(rule->unit, c->version));
+    tell(check, "unit_spelling", false, component, attribute, NULL,
+         "The unit of %s is written \"%.20s\"; this version writes \"%s\". It was taken as that.", attribute->id,
+         attribute->unit, eo_rexs_unit_in(rule->unit, check->version));
     break;
   case EO_REXS_UNIT_WRONG:
-    tell(c, "wrong_unit", true, component, a, NULL,
-         "%s states the unit \"%.20s\"; in REXS it is always \"%s\", so one of value and unit is wrong.", a->id,
-         a->unit, eo_rexs_unit_in(rule->unit, c->version));
+    tell(check, "wrong_unit", true, component, attribute, NULL,
+         "%s states the unit \"%.20s\"; in REXS it is always \"%s\", so one of value and unit is wrong.", attribute->id,
+         attribute->unit, eo_rexs_unit_in(rule->unit, check->version));
     break;
   case EO_REXS_UNIT_UNKNOWN:
-    tell(c, "unknown_unit", true, component, a, NULL,
+    tell(check, "unknown_unit", true, component, attribute, NULL,
          "%s states the unit \"%.20s\", which REXS does not know; it is "
          "always \"%s\".",
-         a->id, a->unit, eo_rexs_unit_in(rule->unit, c->version));
+         attribute->id, attribute->unit, eo_rexs_unit_in(rule->unit, check->version));
     break;
   }
 }
 
-static void check_component(const struct check *c, const struct eo_rexs_component *component)
+static void check_component(const struct check *check, const struct eo_rexs_component *component)
 {
   if (!eo_rexs_type_known(component->type))
-    tell(c, "unknown_component_type", false, component, NULL, NULL,
+    tell(check, "unknown_component_type", false, component, NULL, NULL,
          "\"%.60s\" is no type of component in any version "
          "of REXS.",
          component->type);
   for (int i = 0; i < component->count; i++) {
-    const struct eo_rexs_attribute *a = &component->attribute[i];
-    const struct eo_rexs_rule *rule = eo_rexs_rule_of(a->id);
+    const struct eo_rexs_attribute *attribute = &component->attribute[i];
+    const struct eo_rexs_rule *rule = eo_rexs_rule_of(attribute->id);
     if (!rule || !eo_rexs_rule_on(rule, component->type))
       continue;
-    check_unit(c, rule, component, a);
-    check_value(c, rule, component, a);
+    check_unit(check, rule, component, attribute);
+    check_value(check, rule, component, attribute);
   }
 }
 
@@ -143,39 +148,39 @@ static int compare(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static bool exists(const struct check *c, int id)
+static bool exists(const struct check *check, int id)
 {
-  return bsearch(&id, c->id, (size_t)c->model->components, sizeof id, compare) != NULL;
+  return bsearch(&id, check->id, (size_t)check->model->components, sizeof id, compare) != NULL;
 }
 
-static void check_relation(const struct check *c, const struct eo_rexs_relation *relation)
+static void check_relation(const struct check *check, const struct eo_rexs_relation *relation)
 {
   for (int i = 0; i < relation->count; i++)
-    if (!exists(c, relation->reference[i].id))
-      tell(c, "missing_reference", true, NULL, NULL, relation,
+    if (!exists(check, relation->reference[i].id))
+      tell(check, "missing_reference", true, NULL, NULL, relation,
            "Relation %d (%.40s) names component %d as %.30s, and there is none of this id.", relation->id,
            relation->type, relation->reference[i].id, relation->reference[i].role);
 }
 
 void eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *context)
 {
-  struct check c = {model, eo_rexs_version(model->version), teller_, context, NULL};
-  c.id = malloc((size_t)(model->components + 1) * sizeof *c.id);
-  if (!c.id)
+  struct check check = {model, eo_rexs_version(model->version), teller_, context, NULL};
+  check.id = malloc((size_t)(model->components + 1) * sizeof *check.id);
+  if (!check.id)
     return;
   for (int i = 0; i < model->components; i++)
-    c.id[i] = model->component[i].id;
-  qsort(c.id, (size_t)model->components, sizeof *c.id, compare);
+    check.id[i] = model->component[i].id;
+  qsort(check.id, (size_t)model->components, sizeof *check.id, compare);
   for (int i = 1; i < model->components; i++)
-    if ((i < 2 || c.id[i - 2] != c.id[i]) && c.id[i] == c.id[i - 1])
-      tell(&c, "duplicate_id", true, eo_rexs_find(model, c.id[i]), NULL, NULL,
-           "Two components have the id %d, so relations to it can mean either.", c.id[i]);
+    if ((i < 2 || check.id[i - 2] != check.id[i]) && check.id[i] == check.id[i - 1])
+      tell(&check, "duplicate_id", true, eo_rexs_find(model, check.id[i]), NULL, NULL,
+           "Two components have the id %d, so relations to it can mean either.", check.id[i]);
   for (int i = 0; i < model->relations; i++)
-    check_relation(&c, &model->relation[i]);
+    check_relation(&check, &model->relation[i]);
   for (int i = 0; i < model->components; i++)
-    check_component(&c, &model->component[i]);
+    check_component(&check, &model->component[i]);
   for (int i = 0; i < model->load_cases; i++)
     for (int k = 0; k < model->load_case[i].count; k++)
-      check_component(&c, &model->load_case[i].component[k]);
-  free(c.id);
+      check_component(&check, &model->load_case[i].component[k]);
+  free(check.id);
 }

@@ -54,264 +54,272 @@ static double number_of(const json_t *object, int member, const char *key)
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static double pair_number(const struct writer *w, const char *key)
+static double pair_number(const struct writer *writer, const char *key)
 {
-  const json_t *value = json_object_get(w->gear_pair, key);
+  const json_t *value = json_object_get(writer->gear_pair, key);
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static double face_width(const struct writer *w, int end)
+static double face_width(const struct writer *writer, int end)
 {
-  return 1e3 * eo_gear_pair_face_width(&w->design->gear_pair, end);
+  return 1e3 * eo_gear_pair_face_width(&writer->design->gear_pair, end);
 }
 
-static double groove_width(const struct writer *w)
+static double groove_width(const struct writer *writer)
 {
-  double width = pair_number(w, "groove_width_mm");
-  return w->ends == 2 && !isnan(width) ? width : 0;
+  double width = pair_number(writer, "groove_width_mm");
+  return writer->ends == 2 && !isnan(width) ? width : 0;
 }
 
-static double own_width(const struct writer *w, int member, int end)
+static double own_width(const struct writer *writer, int member, int end)
 {
-  return 1e3 * eo_geometry_of_half(w->geometry, &w->design->gear_pair, end).member_width[member];
+  return 1e3 * eo_geometry_of_half(writer->geometry, &writer->design->gear_pair, end).member_width[member];
 }
 
 /* Where the left face that both members share stands on the shafts; the whole length of a shaft. */
-static double face_at(const struct writer *w, int end)
+static double face_at(const struct writer *writer, int end)
 {
-  return w->overhang + (end == EO_RIGHT ? face_width(w, EO_LEFT) + groove_width(w) : 0);
+  return writer->overhang + (end == EO_RIGHT ? face_width(writer, EO_LEFT) + groove_width(writer) : 0);
 }
 
 /* Where a member's own left face stands. */
-static double own_face_at(const struct writer *w, int member, int end)
+static double own_face_at(const struct writer *writer, int member, int end)
 {
-  return face_at(w, end) - (own_width(w, member, end) - face_width(w, end)) / 2;
+  return face_at(writer, end) - (own_width(writer, member, end) - face_width(writer, end)) / 2;
 }
 
-static double all_faces(const struct writer *w)
+static double all_faces(const struct writer *writer)
 {
-  return w->ends == 2 ? face_width(w, EO_LEFT) + face_width(w, EO_RIGHT) : face_width(w, EO_LEFT);
+  return writer->ends == 2 ? face_width(writer, EO_LEFT) + face_width(writer, EO_RIGHT) : face_width(writer, EO_LEFT);
 }
 
 /* From the left face to the middle of the groove, or of the only face. */
-static double to_middle(const struct writer *w)
+static double to_middle(const struct writer *writer)
 {
-  return w->ends == 2 ? face_width(w, EO_LEFT) + groove_width(w) / 2 : face_width(w, EO_LEFT) / 2;
+  return writer->ends == 2 ? face_width(writer, EO_LEFT) + groove_width(writer) / 2 : face_width(writer, EO_LEFT) / 2;
 }
 
-static double shaft_length(const struct writer *w)
+static double shaft_length(const struct writer *writer)
 {
-  return 2 * w->overhang + all_faces(w) + groove_width(w);
+  return 2 * writer->overhang + all_faces(writer) + groove_width(writer);
 }
 
-static void put_place(struct writer *w, double u, double distance)
+static void put_place(struct writer *writer, double u, double distance)
 {
   const double support[3] = {u, 0, distance}, along[3] = {1, 0, 0}, up[3] = {0, 0, 1};
-  eo_rexs_build_whole(&w->builder, "reference_component_for_position", UNIT);
-  eo_rexs_build_numbers(&w->builder, "support_vector", 3, support);
-  eo_rexs_build_numbers(&w->builder, "u_axis_vector", 3, along);
-  eo_rexs_build_numbers(&w->builder, "w_axis_vector", 3, up);
+  eo_rexs_build_whole(&writer->builder, "reference_component_for_position", UNIT);
+  eo_rexs_build_numbers(&writer->builder, "support_vector", 3, support);
+  eo_rexs_build_numbers(&writer->builder, "u_axis_vector", 3, along);
+  eo_rexs_build_numbers(&writer->builder, "w_axis_vector", 3, up);
 }
 
-static double distance_of(const struct writer *w, int member)
+static double distance_of(const struct writer *writer, int member)
 {
-  return member == EO_GEAR ? pair_number(w, "centre_distance_mm") : 0;
+  return member == EO_GEAR ? pair_number(writer, "centre_distance_mm") : 0;
 }
 
-static void write_unit(struct writer *w, bool with_design)
+static void write_unit(struct writer *writer, bool with_design)
 {
   struct eo_text text = {0};
-  eo_rexs_build(&w->builder, UNIT, "gear_unit", w->design->name);
-  eo_rexs_build_whole(&w->builder, "number_of_gears", 1);
-  eo_rexs_build_whole(&w->builder, "gear_shift_index", 1);
-  put_place(w, 0, 0);
+  eo_rexs_build(&writer->builder, UNIT, "gear_unit", writer->design->name);
+  eo_rexs_build_whole(&writer->builder, "number_of_gears", 1);
+  eo_rexs_build_whole(&writer->builder, "gear_shift_index", 1);
+  put_place(writer, 0, 0);
   if (with_design) {
-    eo_json_write(&text, w->document, EO_JSON_CANONICAL);
-    eo_rexs_build_word(&w->builder, "custom_easeoff_design", text.data ? text.data : "");
-    w->builder.model->failed = w->builder.model->failed || text.failed;
+    eo_json_write(&text, writer->document, EO_JSON_CANONICAL);
+    eo_rexs_build_word(&writer->builder, "custom_easeoff_design", text.data ? text.data : "");
+    writer->builder.model->failed = writer->builder.model->failed || text.failed;
     eo_text_done(&text);
   }
-  eo_rexs_build(&w->builder, CASING, "gear_casing", "casing");
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", CASING, (char *)NULL);
+  eo_rexs_build(&writer->builder, CASING, "gear_casing", "casing");
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", UNIT, "part", CASING, (char *)NULL);
 }
 
-static void write_section(struct writer *w, int member, int place, double u, double length, double outer, double inner)
+static void write_section(struct writer *writer, int member, int place, double u, double length, double outer,
+                          double inner)
 {
   int id = SECTION + 3 * member + place;
   if (!(length > 0) || !(outer > 0))
     return;
-  eo_rexs_build(&w->builder, id, "shaft_section", "");
-  eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", u);
-  eo_rexs_build_number(&w->builder, "length", length);
-  eo_rexs_build_number(&w->builder, "outer_diameter_begin", outer);
-  eo_rexs_build_number(&w->builder, "outer_diameter_end", outer);
-  eo_rexs_build_number(&w->builder, "inner_diameter_begin", inner);
-  eo_rexs_build_number(&w->builder, "inner_diameter_end", inner);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
+  eo_rexs_build(&writer->builder, id, "shaft_section", "");
+  eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft", u);
+  eo_rexs_build_number(&writer->builder, "length", length);
+  eo_rexs_build_number(&writer->builder, "outer_diameter_begin", outer);
+  eo_rexs_build_number(&writer->builder, "outer_diameter_end", outer);
+  eo_rexs_build_number(&writer->builder, "inner_diameter_begin", inner);
+  eo_rexs_build_number(&writer->builder, "inner_diameter_end", inner);
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
 }
 
-static void write_bearings(struct writer *w, int member)
+static void write_bearings(struct writer *writer, int member)
 {
-  bool fixed = member == EO_GEAR || w->design->alignment.pinion_axial == EO_AXIAL_FIXED || w->ends == 1;
+  bool fixed = member == EO_GEAR || writer->design->alignment.pinion_axial == EO_AXIAL_FIXED || writer->ends == 1;
   for (int side = 0; side < 2; side++) {
     char key[60];
     snprintf(key, sizeof key, "%s_%s_bearing_mm", member_name[member], end_name[side]);
-    const json_t *value = json_object_get(w->shafts, key);
+    const json_t *value = json_object_get(writer->shafts, key);
     int id = BEARING + 2 * member + side;
     if (!json_is_number(value))
       continue;
-    eo_rexs_build(&w->builder, id, "concept_bearing", "");
-    eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft_inner_side",
-                         w->overhang + to_middle(w) + json_number_value(value));
-    eo_rexs_build_flag(&w->builder, "radial_force_absorption", true);
-    eo_rexs_build_word(&w->builder, "axial_force_absorption", fixed && !side ? "both_directions" : "no_direction");
-    eo_rexs_relate(&w->builder, "side", 0, "assembly", id, "inner_part", SHAFT + member, "outer_part", CASING,
+    eo_rexs_build(&writer->builder, id, "concept_bearing", "");
+    eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft_inner_side",
+                         writer->overhang + to_middle(writer) + json_number_value(value));
+    eo_rexs_build_flag(&writer->builder, "radial_force_absorption", true);
+    eo_rexs_build_word(&writer->builder, "axial_force_absorption", fixed && !side ? "both_directions" : "no_direction");
+    eo_rexs_relate(&writer->builder, "side", 0, "assembly", id, "inner_part", SHAFT + member, "outer_part", CASING,
                    (char *)NULL);
   }
 }
 
-static void write_load(struct writer *w, int member)
+static void write_load(struct writer *writer, int member)
 {
   char key[60];
   snprintf(key, sizeof key, "%s_drive_side", member_name[member]);
-  const char *side = json_string_value(json_object_get(w->shafts, key));
-  eo_rexs_build(&w->builder, LOAD + member, "external_load", member == EO_PINION ? "driver" : "driven");
-  eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", side && !strcmp(side, "right") ? shaft_length(w) : 0);
-  eo_rexs_build_flag(&w->builder, "transmits_torque", true);
-  eo_rexs_build_flag(&w->builder, "defines_torque", member == EO_PINION);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", LOAD + member, (char *)NULL);
+  const char *side = json_string_value(json_object_get(writer->shafts, key));
+  eo_rexs_build(&writer->builder, LOAD + member, "external_load", member == EO_PINION ? "driver" : "driven");
+  eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft",
+                       side && !strcmp(side, "right") ? shaft_length(writer) : 0);
+  eo_rexs_build_flag(&writer->builder, "transmits_torque", true);
+  eo_rexs_build_flag(&writer->builder, "defines_torque", member == EO_PINION);
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", SHAFT + member, "part", LOAD + member, (char *)NULL);
 }
 
-static void write_shaft(struct writer *w, int member)
+static void write_shaft(struct writer *writer, int member)
 {
-  double bore = number_of(w->gear_pair, member, "bore_mm"), outer = number_of(w->shafts, member, "shaft_diameter_mm");
-  int last = w->ends - 1;
-  double left = own_face_at(w, member, 0), inner = left + own_width(w, member, 0), from = own_face_at(w, member, last),
-         right = from + own_width(w, member, last);
-  eo_rexs_build(&w->builder, SHAFT + member, "shaft", member == EO_PINION ? "pinion shaft" : "gear shaft");
+  double bore = number_of(writer->gear_pair, member, "bore_mm"),
+         outer = number_of(writer->shafts, member, "shaft_diameter_mm");
+  int last = writer->ends - 1;
+  double left = own_face_at(writer, member, 0), inner = left + own_width(writer, member, 0),
+         from = own_face_at(writer, member, last), right = from + own_width(writer, member, last);
+  eo_rexs_build(&writer->builder, SHAFT + member, "shaft", member == EO_PINION ? "pinion shaft" : "gear shaft");
   if (member == EO_PINION)
-    eo_rexs_build_flag(&w->builder, "defines_speed", true);
-  put_place(w, 0, distance_of(w, member));
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, (char *)NULL);
-  write_section(w, member, 0, 0, left, outer, bore);
-  write_section(w, member, 1, inner, w->ends == 2 ? from - inner : 0,
-                number_of(w->gear_pair, member, "groove_diameter_mm"), bore);
-  write_section(w, member, 2, right, shaft_length(w) - right, outer, bore);
-  write_bearings(w, member);
-  write_load(w, member);
+    eo_rexs_build_flag(&writer->builder, "defines_speed", true);
+  put_place(writer, 0, distance_of(writer, member));
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, (char *)NULL);
+  write_section(writer, member, 0, 0, left, outer, bore);
+  write_section(writer, member, 1, inner, writer->ends == 2 ? from - inner : 0,
+                number_of(writer->gear_pair, member, "groove_diameter_mm"), bore);
+  write_section(writer, member, 2, right, shaft_length(writer) - right, outer, bore);
+  write_bearings(writer, member);
+  write_load(writer, member);
 }
 
 /* + right-handed: the pinion's left end, of one end the other hand; mates are opposite. */
-static double helix_of(const struct writer *w, int member, int end)
+static double helix_of(const struct writer *writer, int member, int end)
 {
-  double hand = w->ends == 1 || end == EO_RIGHT ? -1 : 1;
-  return w->mirror * (member == EO_GEAR ? -hand : hand) * pair_number(w, "helix_angle_deg");
+  double hand = writer->ends == 1 || end == EO_RIGHT ? -1 : 1;
+  return writer->mirror * (member == EO_GEAR ? -hand : hand) * pair_number(writer, "helix_angle_deg");
 }
 
-static void write_flank(struct writer *w, int member, int end, int side, int *modification)
+static void write_flank(struct writer *writer, int member, int end, int side, int *modification)
 {
   int gear = GEAR + 2 * member + end, id = FLANK + 4 * member + 2 * end + side, tool = TOOL + member;
   const json_t *block = json_object_get(
-      json_object_get(json_object_get(w->document, "modification"), member_name[member]), end_name[end]);
-  bool loaded = side == (w->mirror < 0);
-  double leading = helix_of(w, EO_PINION, end) * -w->mirror < 0 ? -1 : 1;
-  struct eo_rexs_flank_export flank = {w->design, w->geometry, member, end, !loaded, leading};
-  eo_rexs_build(&w->builder, id, "cylindrical_gear_flank", "");
-  eo_rexs_build_number(&w->builder, "normal_pressure_angle", pair_number(w, "normal_pressure_angle_deg"));
-  eo_rexs_build_number(&w->builder, "addendum_modification_coefficient",
-                       number_of(w->gear_pair, member, "profile_shift"));
-  eo_rexs_build_number(&w->builder, "addendum_coefficient_basic_profile",
-                       number_of(w->gear_pair, member, "addendum_coefficient"));
-  eo_rexs_build_number(&w->builder, "custom_easeoff_lead_offset",
+      json_object_get(json_object_get(writer->document, "modification"), member_name[member]), end_name[end]);
+  bool loaded = side == (writer->mirror < 0);
+  double leading = helix_of(writer, EO_PINION, end) * -writer->mirror < 0 ? -1 : 1;
+  struct eo_rexs_flank_export flank = {writer->design, writer->geometry, member, end, !loaded, leading};
+  eo_rexs_build(&writer->builder, id, "cylindrical_gear_flank", "");
+  eo_rexs_build_number(&writer->builder, "normal_pressure_angle", pair_number(writer, "normal_pressure_angle_deg"));
+  eo_rexs_build_number(&writer->builder, "addendum_modification_coefficient",
+                       number_of(writer->gear_pair, member, "profile_shift"));
+  eo_rexs_build_number(&writer->builder, "addendum_coefficient_basic_profile",
+                       number_of(writer->gear_pair, member, "addendum_coefficient"));
+  eo_rexs_build_number(&writer->builder, "custom_easeoff_lead_offset",
                        loaded && json_number_value(json_object_get(block, "lead_offset_um")) != 0
                            ? json_number_value(json_object_get(block, "lead_offset_um")) * 1e-3
                            : NAN);
-  eo_rexs_relate(&w->builder, "manufacturing_step", 1, "workpiece", id, "tool", tool, "manufacturing_settings",
+  eo_rexs_relate(&writer->builder, "manufacturing_step", 1, "workpiece", id, "tool", tool, "manufacturing_settings",
                  SETTINGS, (char *)NULL);
   if (side == 1)
-    eo_rexs_relate(&w->builder, "flank", 0, "gear", gear, "left", id - 1, "right", id, (char *)NULL);
-  *modification = eo_rexs_export_flank(&w->builder, &flank, loaded ? block : json_object_get(block, "coast"), id,
+    eo_rexs_relate(&writer->builder, "flank", 0, "gear", gear, "left", id - 1, "right", id, (char *)NULL);
+  *modification = eo_rexs_export_flank(&writer->builder, &flank, loaded ? block : json_object_get(block, "coast"), id,
                                        *modification);
 }
 
-static void write_gear(struct writer *w, int member, int end, int *modification)
+static void write_gear(struct writer *writer, int member, int end, int *modification)
 {
   int id = GEAR + 2 * member + end;
   char name[40];
-  snprintf(name, sizeof name, w->ends == 2 ? "%s %s" : "%s", member_name[member], end_name[end]);
-  eo_rexs_build(&w->builder, id, "cylindrical_gear", name);
-  eo_rexs_build_whole(&w->builder, "number_of_teeth", w->geometry->teeth[member]);
-  eo_rexs_build_number(&w->builder, "normal_module", pair_number(w, "normal_module_mm"));
-  eo_rexs_build_number(&w->builder, "helix_angle_reference_diameter", helix_of(w, member, end));
-  eo_rexs_build_number(&w->builder, "face_width", own_width(w, member, end));
-  eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", own_face_at(w, member, end));
-  eo_rexs_build_number(&w->builder, "tip_diameter", number_of(w->gear_pair, member, "tip_diameter_mm"));
-  eo_rexs_build_number(&w->builder, "root_diameter", 2e3 * w->geometry->root_radius[member]);
-  eo_rexs_build_number(&w->builder, "inner_diameter", number_of(w->gear_pair, member, "bore_mm"));
-  eo_rexs_build_word(&w->builder, "datum_face_orientation", "negative");
-  put_place(w, own_face_at(w, member, end), distance_of(w, member));
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
-  eo_rexs_relate(&w->builder, "reference", 0, "origin", id, "referenced", MATERIAL, (char *)NULL);
+  snprintf(name, sizeof name, writer->ends == 2 ? "%s %s" : "%s", member_name[member], end_name[end]);
+  eo_rexs_build(&writer->builder, id, "cylindrical_gear", name);
+  eo_rexs_build_whole(&writer->builder, "number_of_teeth", writer->geometry->teeth[member]);
+  eo_rexs_build_number(&writer->builder, "normal_module", pair_number(writer, "normal_module_mm"));
+  eo_rexs_build_number(&writer->builder, "helix_angle_reference_diameter", helix_of(writer, member, end));
+  eo_rexs_build_number(&writer->builder, "face_width", own_width(writer, member, end));
+  eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft", own_face_at(writer, member, end));
+  eo_rexs_build_number(&writer->builder, "tip_diameter", number_of(writer->gear_pair, member, "tip_diameter_mm"));
+  eo_rexs_build_number(&writer->builder, "root_diameter", 2e3 * writer->geometry->root_radius[member]);
+  eo_rexs_build_number(&writer->builder, "inner_diameter", number_of(writer->gear_pair, member, "bore_mm"));
+  eo_rexs_build_word(&writer->builder, "datum_face_orientation", "negative");
+  put_place(writer, own_face_at(writer, member, end), distance_of(writer, member));
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
+  eo_rexs_relate(&writer->builder, "reference", 0, "origin", id, "referenced", MATERIAL, (char *)NULL);
   for (int side = 0; side < 2; side++)
-    write_flank(w, member, end, side, modification);
+    write_flank(writer, member, end, side, modification);
 }
 
-static void write_stage(struct writer *w, int end)
+static void write_stage(struct writer *writer, int end)
 {
   int id = STAGE + end;
-  double backlash = 1e3 * w->geometry->normal_backlash;
-  eo_rexs_build(&w->builder, id, "cylindrical_stage", w->ends == 2 ? end ? "mesh right" : "mesh left" : "mesh");
-  eo_rexs_build_number(&w->builder, "center_distance", pair_number(w, "centre_distance_mm"));
-  eo_rexs_build_number(&w->builder, "common_face_width", face_width(w, end));
-  eo_rexs_build_number(&w->builder, "minimum_normal_backlash", backlash);
-  eo_rexs_build_number(&w->builder, "maximum_normal_backlash", backlash);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", id, (char *)NULL);
-  eo_rexs_relate(&w->builder, "stage", 0, "stage", id, "gear_1", GEAR + end, "gear_2", GEAR + 2 + end, (char *)NULL);
+  double backlash = 1e3 * writer->geometry->normal_backlash;
+  eo_rexs_build(&writer->builder, id, "cylindrical_stage",
+                writer->ends == 2 ? end ? "mesh right" : "mesh left" : "mesh");
+  eo_rexs_build_number(&writer->builder, "center_distance", pair_number(writer, "centre_distance_mm"));
+  eo_rexs_build_number(&writer->builder, "common_face_width", face_width(writer, end));
+  eo_rexs_build_number(&writer->builder, "minimum_normal_backlash", backlash);
+  eo_rexs_build_number(&writer->builder, "maximum_normal_backlash", backlash);
+  eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", UNIT, "part", id, (char *)NULL);
+  eo_rexs_relate(&writer->builder, "stage", 0, "stage", id, "gear_1", GEAR + end, "gear_2", GEAR + 2 + end,
+                 (char *)NULL);
   for (int member = 0; member < 2; member++) {
     int data = DATA + 2 * end + member;
-    eo_rexs_build(&w->builder, data, "cylindrical_stage_gear_data", "");
-    eo_rexs_build_flag(&w->builder, "is_driving_gear", member == EO_PINION);
-    eo_rexs_build_word(&w->builder, "loaded_tooth_flank", w->mirror < 0 ? "right" : "left");
-    eo_rexs_relate(&w->builder, "stage_gear_data", 0, "stage", id, "gear", GEAR + 2 * member + end, "stage_gear_data",
-                   data, (char *)NULL);
+    eo_rexs_build(&writer->builder, data, "cylindrical_stage_gear_data", "");
+    eo_rexs_build_flag(&writer->builder, "is_driving_gear", member == EO_PINION);
+    eo_rexs_build_word(&writer->builder, "loaded_tooth_flank", writer->mirror < 0 ? "right" : "left");
+    eo_rexs_relate(&writer->builder, "stage_gear_data", 0, "stage", id, "gear", GEAR + 2 * member + end,
+                   "stage_gear_data", data, (char *)NULL);
   }
 }
 
-static void write_tools(struct writer *w)
+static void write_tools(struct writer *writer)
 {
   for (int member = 0; member < 2; member++) {
-    eo_rexs_build(&w->builder, TOOL + member, "rack_shaped_tool", member == EO_PINION ? "pinion rack" : "gear rack");
-    eo_rexs_build_number(&w->builder, "addendum_coefficient_reference_profile",
-                         number_of(w->gear_pair, member, "dedendum_coefficient"));
-    eo_rexs_build_number(&w->builder, "tip_corner_radius_factor_reference_profile",
-                         number_of(w->gear_pair, member, "fillet_radius_coefficient"));
+    eo_rexs_build(&writer->builder, TOOL + member, "rack_shaped_tool",
+                  member == EO_PINION ? "pinion rack" : "gear rack");
+    eo_rexs_build_number(&writer->builder, "addendum_coefficient_reference_profile",
+                         number_of(writer->gear_pair, member, "dedendum_coefficient"));
+    eo_rexs_build_number(&writer->builder, "tip_corner_radius_factor_reference_profile",
+                         number_of(writer->gear_pair, member, "fillet_radius_coefficient"));
   }
-  eo_rexs_build(&w->builder, SETTINGS, "cylindrical_gear_manufacturing_settings", "");
-  eo_rexs_build_number(&w->builder, "machining_allowance", 0);
-  const json_t *object = json_object_get(w->document, "material");
-  eo_rexs_build(&w->builder, MATERIAL, "material", "material");
-  eo_rexs_build_number(&w->builder, "elastic_modulus",
+  eo_rexs_build(&writer->builder, SETTINGS, "cylindrical_gear_manufacturing_settings", "");
+  eo_rexs_build_number(&writer->builder, "machining_allowance", 0);
+  const json_t *object = json_object_get(writer->document, "material");
+  eo_rexs_build(&writer->builder, MATERIAL, "material", "material");
+  eo_rexs_build_number(&writer->builder, "elastic_modulus",
                        1000 * json_number_value(json_object_get(object, "youngs_modulus_GPa")));
-  eo_rexs_build_number(&w->builder, "poisson_ratio", json_number_value(json_object_get(object, "poissons_ratio")));
-  eo_rexs_build_number(&w->builder, "density", json_number_value(json_object_get(object, "density_kg_per_m3")) / 1000);
+  eo_rexs_build_number(&writer->builder, "poisson_ratio", json_number_value(json_object_get(object, "poissons_ratio")));
+  eo_rexs_build_number(&writer->builder, "density",
+                       json_number_value(json_object_get(object, "density_kg_per_m3")) / 1000);
 }
 
-static void write_load_cases(struct writer *w)
+static void write_load_cases(struct writer *writer)
 {
-  const json_t *list = json_object_get(w->document, "load_cases"), *row;
+  const json_t *list = json_object_get(writer->document, "load_cases"), *row;
   size_t i;
   json_array_foreach(list, i, row)
   {
     const char *direction = json_string_value(json_object_get(row, "direction"));
-    double sign = -w->mirror * (direction && strcmp(direction, "astern") == 0 ? -1 : 1);
-    eo_rexs_build_load_case(&w->builder, (int)i + 1);
-    eo_rexs_vary_one(&w->builder, UNIT, "gear_unit");
-    eo_rexs_build_number(&w->builder, "operating_time_fraction",
+    double sign = -writer->mirror * (direction && strcmp(direction, "astern") == 0 ? -1 : 1);
+    eo_rexs_build_load_case(&writer->builder, (int)i + 1);
+    eo_rexs_vary_one(&writer->builder, UNIT, "gear_unit");
+    eo_rexs_build_number(&writer->builder, "operating_time_fraction",
                          100 * json_number_value(json_object_get(row, "share")));
-    eo_rexs_vary_one(&w->builder, SHAFT, "shaft");
-    eo_rexs_build_number(&w->builder, "rotational_speed", sign * json_number_value(json_object_get(row, "speed_rpm")));
-    eo_rexs_vary_one(&w->builder, LOAD, "external_load");
-    eo_rexs_build_number(&w->builder, "torque_around_u_axis",
+    eo_rexs_vary_one(&writer->builder, SHAFT, "shaft");
+    eo_rexs_build_number(&writer->builder, "rotational_speed",
+                         sign * json_number_value(json_object_get(row, "speed_rpm")));
+    eo_rexs_vary_one(&writer->builder, LOAD, "external_load");
+    eo_rexs_build_number(&writer->builder, "torque_around_u_axis",
                          sign * json_number_value(json_object_get(row, "torque_Nm")));
   }
 }
@@ -321,28 +329,28 @@ static const char *version_name(struct eo_rexs_model *model, int version)
   return version >= 200 ? "2.0.0" : eo_rexs_print(model, "1.%d", version - 100);
 }
 
-static void write_head(struct writer *w)
+static void write_head(struct writer *writer)
 {
-  struct eo_rexs_model *model = w->builder.model;
+  struct eo_rexs_model *model = writer->builder.model;
   char date[40];
   time_t now = time(NULL);
   struct tm utc;
   strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S+00:00", gmtime_r(&now, &utc));
-  model->version = version_name(model, w->builder.version);
+  model->version = version_name(model, writer->builder.version);
   model->application = "Easeoff";
   model->application_version = PACKAGE_VERSION;
   model->date = eo_rexs_text(model, date, strlen(date));
 }
 
 /* Long enough for the bearings and one face width beside the teeth. */
-static double overhang(const struct writer *w)
+static double overhang(const struct writer *writer)
 {
-  double left = to_middle(w), right = all_faces(w) + groove_width(w) - left,
-         reach = fmax(left, right) + face_width(w, EO_LEFT);
+  double left = to_middle(writer), right = all_faces(writer) + groove_width(writer) - left,
+         reach = fmax(left, right) + face_width(writer, EO_LEFT);
   for (int i = 0; i < 4; i++) {
     char key[60];
     snprintf(key, sizeof key, "%s_%s_bearing_mm", member_name[i / 2], end_name[i % 2]);
-    reach = fmax(reach, fabs(json_number_value(json_object_get(w->shafts, key))));
+    reach = fmax(reach, fabs(json_number_value(json_object_get(writer->shafts, key))));
   }
   return reach - fmin(left, right);
 }
@@ -351,30 +359,30 @@ void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *ge
                     struct eo_rexs_model *model)
 {
   int modification = MODIFICATION;
-  struct writer w = {.builder = {model, version}, .design = design, .geometry = geometry};
-  w.document = eo_design_encode(design);
-  if (!w.document) {
+  struct writer writer = {.builder = {model, version}, .design = design, .geometry = geometry};
+  writer.document = eo_design_encode(design);
+  if (!writer.document) {
     model->failed = true;
     return;
   }
-  w.gear_pair = json_object_get(w.document, "gear_pair");
-  w.shafts = json_object_get(w.document, "shafts");
-  w.ends = design->gear_pair.ends;
-  const char *hand = json_string_value(json_object_get(w.gear_pair, "hand"));
-  bool right_handed = w.ends == 2; /* the left end of a design's own frame */
-  w.mirror = hand && (strcmp(hand, "right") == 0) != right_handed ? -1 : 1;
-  w.overhang = overhang(&w);
-  write_head(&w);
-  write_unit(&w, with_design);
+  writer.gear_pair = json_object_get(writer.document, "gear_pair");
+  writer.shafts = json_object_get(writer.document, "shafts");
+  writer.ends = design->gear_pair.ends;
+  const char *hand = json_string_value(json_object_get(writer.gear_pair, "hand"));
+  bool right_handed = writer.ends == 2; /* the left end of a design's own frame */
+  writer.mirror = hand && (strcmp(hand, "right") == 0) != right_handed ? -1 : 1;
+  writer.overhang = overhang(&writer);
+  write_head(&writer);
+  write_unit(&writer, with_design);
   for (int member = 0; member < 2; member++)
-    write_shaft(&w, member);
-  write_tools(&w);
-  for (int end = 0; end < w.ends; end++) {
+    write_shaft(&writer, member);
+  write_tools(&writer);
+  for (int end = 0; end < writer.ends; end++) {
     for (int member = 0; member < 2; member++)
-      write_gear(&w, member, end, &modification);
-    write_stage(&w, end);
+      write_gear(&writer, member, end, &modification);
+    write_stage(&writer, end);
   }
-  write_load_cases(&w);
+  write_load_cases(&writer);
   eo_rexs_index(model);
-  json_decref(w.document);
+  json_decref(writer.document);
 }

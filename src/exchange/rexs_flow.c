@@ -25,8 +25,8 @@ const struct eo_rexs_attribute *eo_rexs_vary(const struct eo_rexs_model *model, 
 static double vary(const struct eo_rexs_train *train, int load_case, const struct eo_rexs_component *component,
                    const char *attribute)
 {
-  const struct eo_rexs_attribute *a = eo_rexs_vary(train->model, load_case, component, attribute);
-  return a && a->shape == EO_REXS_SCALAR ? eo_rexs_number(a->text) : NAN;
+  const struct eo_rexs_attribute *rexs_attribute = eo_rexs_vary(train->model, load_case, component, attribute);
+  return rexs_attribute && rexs_attribute->shape == EO_REXS_SCALAR ? eo_rexs_number(rexs_attribute->text) : NAN;
 }
 
 /* +1, -1: the direction of a shaft's u axis against that of another. */

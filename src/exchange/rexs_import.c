@@ -93,14 +93,14 @@ struct telling {
 
 static void tell(void *context, const struct eo_rexs_fault *found)
 {
-  const struct telling *t = context;
+  const struct telling *telling = context;
   char name[80], of[120];
   if (!found->severe) {
-    eo_import_say(t->out, t->out->notes, "%s: %s: %s", found->kind,
+    eo_import_say(telling->out, telling->out->notes, "%s: %s: %s", found->kind,
                   found->component ? eo_rexs_name(found->component, name) : found->relation->type, found->text);
     return;
   }
-  json_t *fault = eo_import_fault(t->out, found->kind, "%s%s%s",
+  json_t *fault = eo_import_fault(telling->out, found->kind, "%s%s%s",
                                   found->component ? eo_rexs_name(found->component, name) : "",
                                   found->component ? ": " : "", found->text);
   if (!fault)
@@ -113,12 +113,12 @@ static void tell(void *context, const struct eo_rexs_fault *found)
     json_object_set_new(fault, "attribute", json_string(found->attribute->id));
   if (found->relation) {
     int missing = 0;
-    const struct eo_rexs_component *subject = subject_of(t->model, found->relation, &missing);
+    const struct eo_rexs_component *subject = subject_of(telling->model, found->relation, &missing);
     snprintf(of, sizeof of, "%.30s of %.80s", found->relation->type, subject ? eo_rexs_name(subject, name) : "nothing");
     json_object_set_new(fault, "relation", json_string(of));
     json_object_set_new(fault, "component", json_integer(missing));
   }
-  put_place(fault, t->model, found);
+  put_place(fault, telling->model, found);
 }
 
 /* What might be a misspelt name of an attribute that is missing. */
@@ -300,9 +300,9 @@ static json_t *carried_design(const struct eo_rexs_model *model)
 {
   struct eo_error error;
   for (int i = 0; i < model->components; i++) {
-    const struct eo_rexs_attribute *a = eo_rexs_attribute(&model->component[i], "custom_easeoff_design");
-    if (a)
-      return eo_json_parse(a->text, strlen(a->text), &error);
+    const struct eo_rexs_attribute *attribute = eo_rexs_attribute(&model->component[i], "custom_easeoff_design");
+    if (attribute)
+      return eo_json_parse(attribute->text, strlen(attribute->text), &error);
   }
   return NULL;
 }

@@ -14,14 +14,14 @@ struct reader {
   struct eo_rexs_problem *problem;
 };
 
-static const char *kept(struct reader *r, const json_t *object, const char *key)
+static const char *kept(struct reader *reader, const json_t *object, const char *key)
 {
   const json_t *value = json_object_get(object, key);
-  return json_is_string(value) ? eo_rexs_text(r->model, json_string_value(value), json_string_length(value)) : "";
+  return json_is_string(value) ? eo_rexs_text(reader->model, json_string_value(value), json_string_length(value)) : "";
 }
 
 /* An id, as a number or as digits in quotes. */
-static bool whole(struct reader *r, const json_t *object, const char *key, bool needed, int *id)
+static bool whole(struct reader *reader, const json_t *object, const char *key, bool needed, int *id)
 {
   const json_t *value = json_object_get(object, key);
   double number = json_is_string(value) ? eo_rexs_number(json_string_value(value)) : json_number_value(value);
@@ -29,21 +29,21 @@ static bool whole(struct reader *r, const json_t *object, const char *key, bool 
   if (!value && !needed)
     return true;
   if (!value || !(number >= 0 && number <= INT_MAX) || number != (double)(int)number)
-    return eo_rexs_refuse(r->problem, "wrong_id", 0, 0, "\"%s\" is not a whole number from 0 somewhere in the model.",
-                          key);
+    return eo_rexs_refuse(reader->problem, "wrong_id", 0, 0,
+                          "\"%s\" is not a whole number from 0 somewhere in the model.", key);
   *id = (int)number;
   return true;
 }
 
-static bool read_cells(struct reader *r, struct eo_rexs_attribute *attribute, const json_t *list)
+static bool read_cells(struct reader *reader, struct eo_rexs_attribute *attribute, const json_t *list)
 {
   size_t count = json_array_size(list), used = 0;
   for (size_t i = 0; i < json_array_size(list); i++)
     if (json_is_array(json_array_get(list, i)))
       count += json_array_size(json_array_get(list, i));
-  if (count + (size_t)r->model->cells > EO_REXS_CELLS)
-    return eo_rexs_refuse(r->problem, "too_large", 0, 0, "The arrays of the file hold more than 4000000 values.");
-  double *value = count ? eo_rexs_memory(r->model, count * sizeof *value) : NULL;
+  if (count + (size_t)reader->model->cells > EO_REXS_CELLS)
+    return eo_rexs_refuse(reader->problem, "too_large", 0, 0, "The arrays of the file hold more than 4000000 values.");
+  double *value = count ? eo_rexs_memory(reader->model, count * sizeof *value) : NULL;
   for (size_t i = 0; value && i < json_array_size(list); i++) {
     const json_t *cell = json_array_get(list, i);
     if (json_is_array(cell))
@@ -57,159 +57,160 @@ static bool read_cells(struct reader *r, struct eo_rexs_attribute *attribute, co
   }
   attribute->value = value;
   attribute->count = (int)used;
-  r->model->cells += (int)used;
+  reader->model->cells += (int)used;
   return true;
 }
 
 /* {"code": "float64", "value": "..."}: Base64. */
-static bool read_coded(struct reader *r, struct eo_rexs_attribute *attribute, const json_t *coded)
+static bool read_coded(struct reader *reader, struct eo_rexs_attribute *attribute, const json_t *coded)
 {
   const char *code = json_string_value(json_object_get(coded, "code")),
              *text = json_string_value(json_object_get(coded, "value"));
   double *value = NULL;
-  int count = code && text ? eo_rexs_decode_numbers(r->model, text, code, &value) : -1;
-  if (count < 0 || r->model->cells + count > EO_REXS_CELLS)
-    return eo_rexs_refuse(r->problem, "wrong_code", 0, 0,
+  int count = code && text ? eo_rexs_decode_numbers(reader->model, text, code, &value) : -1;
+  if (count < 0 || reader->model->cells + count > EO_REXS_CELLS)
+    return eo_rexs_refuse(reader->problem, "wrong_code", 0, 0,
                           "An array is not Base64 of int32, float32 or float64, or holds too many numbers.");
   attribute->value = value;
   attribute->count = count;
-  r->model->cells += count;
+  reader->model->cells += count;
   return true;
 }
 
-static bool read_value(struct reader *r, struct eo_rexs_attribute *attribute, const json_t *value)
+static bool read_value(struct reader *reader, struct eo_rexs_attribute *attribute, const json_t *value)
 {
   char number[40];
   attribute->shape = json_is_array(value) || json_is_object(value) ? EO_REXS_ARRAY : EO_REXS_SCALAR;
   if (json_is_array(value))
-    return read_cells(r, attribute, value);
+    return read_cells(reader, attribute, value);
   if (json_is_object(value))
-    return read_coded(r, attribute, value);
+    return read_coded(reader, attribute, value);
   if (json_is_string(value))
-    attribute->text = eo_rexs_text(r->model, json_string_value(value), json_string_length(value));
+    attribute->text = eo_rexs_text(reader->model, json_string_value(value), json_string_length(value));
   else if (json_is_boolean(value))
     attribute->text = json_is_true(value) ? "true" : "false";
   else if (json_is_number(value)) {
     int length = eo_json_number(number, sizeof number, json_number_value(value));
-    attribute->text = eo_rexs_text(r->model, number, (size_t)length);
+    attribute->text = eo_rexs_text(reader->model, number, (size_t)length);
   }
   return true;
 }
 
-static bool read_attribute(struct reader *r, struct eo_rexs_component *component, const json_t *object, int index)
+static bool read_attribute(struct reader *reader, struct eo_rexs_component *component, const json_t *object, int index)
 {
   const char *key;
   json_t *value;
-  if (r->model->attributes >= EO_REXS_ATTRIBUTES)
-    return eo_rexs_refuse(r->problem, "too_large", 0, 0,
+  if (reader->model->attributes >= EO_REXS_ATTRIBUTES)
+    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
                           "The file has more than 200000 attributes; leave out results that a design does not need.");
-  struct eo_rexs_attribute *attribute = eo_rexs_add_attribute(r->model, component);
+  struct eo_rexs_attribute *attribute = eo_rexs_add_attribute(reader->model, component);
   if (!attribute)
     return false;
-  attribute->id = kept(r, object, "id");
-  attribute->unit = kept(r, object, "unit");
+  attribute->id = kept(reader, object, "id");
+  attribute->unit = kept(reader, object, "unit");
   attribute->place.index = index;
   json_object_foreach((json_t *)object, key, value)
   {
-    if (strcmp(key, "id") != 0 && strcmp(key, "unit") != 0 && !read_value(r, attribute, value))
+    if (strcmp(key, "id") != 0 && strcmp(key, "unit") != 0 && !read_value(reader, attribute, value))
       return false;
   }
   return true;
 }
 
-static bool read_component(struct reader *r, struct eo_rexs_component *component, const json_t *object, int index)
+static bool read_component(struct reader *reader, struct eo_rexs_component *component, const json_t *object, int index)
 {
   const json_t *attributes = json_object_get(object, "attributes");
-  if (!component || !whole(r, object, "id", true, &component->id))
+  if (!component || !whole(reader, object, "id", true, &component->id))
     return false;
-  component->type = kept(r, object, "type");
-  component->name = kept(r, object, "name");
+  component->type = kept(reader, object, "type");
+  component->name = kept(reader, object, "name");
   component->place.index = index;
   for (size_t i = 0; i < json_array_size(attributes); i++)
-    if (!read_attribute(r, component, json_array_get(attributes, i), (int)i))
+    if (!read_attribute(reader, component, json_array_get(attributes, i), (int)i))
       return false;
   return true;
 }
 
-static bool read_relation(struct reader *r, const json_t *object, int index)
+static bool read_relation(struct reader *reader, const json_t *object, int index)
 {
-  struct eo_rexs_relation *relation = r->model->relations < EO_REXS_RELATIONS ? eo_rexs_add_relation(r->model) : NULL;
+  struct eo_rexs_relation *relation = reader->model->relations < EO_REXS_RELATIONS ? eo_rexs_add_relation(reader->model)
+                                                                                   : NULL;
   const json_t *references = json_object_get(object, "refs");
   if (!relation || json_array_size(references) > EO_REXS_REFERENCES)
-    return eo_rexs_refuse(r->problem, "too_large", 0, 0,
+    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
                           "The file has more than 40000 relations, or one with more than 12 references.");
   relation->place.index = index;
-  relation->type = kept(r, object, "type");
-  if (!whole(r, object, "id", true, &relation->id) || !whole(r, object, "order", false, &relation->order))
+  relation->type = kept(reader, object, "type");
+  if (!whole(reader, object, "id", true, &relation->id) || !whole(reader, object, "order", false, &relation->order))
     return false;
   for (size_t i = 0; i < json_array_size(references); i++) {
     const json_t *reference = json_array_get(references, i);
     struct eo_rexs_reference *to = &relation->reference[relation->count++];
-    to->role = kept(r, reference, "role");
-    to->hint = kept(r, reference, "hint");
-    if (!whole(r, reference, "id", true, &to->id))
+    to->role = kept(reader, reference, "role");
+    to->hint = kept(reader, reference, "hint");
+    if (!whole(reader, reference, "id", true, &to->id))
       return false;
   }
   return true;
 }
 
-static bool read_load_case(struct reader *r, const json_t *object)
+static bool read_load_case(struct reader *reader, const json_t *object)
 {
   const json_t *components = json_object_get(object, "components");
-  if (r->model->load_cases >= EO_REXS_LOAD_CASES ||
-      json_array_size(components) + (size_t)r->model->varying > EO_REXS_COMPONENTS)
-    return eo_rexs_refuse(r->problem, "too_large", 0, 0,
+  if (reader->model->load_cases >= EO_REXS_LOAD_CASES ||
+      json_array_size(components) + (size_t)reader->model->varying > EO_REXS_COMPONENTS)
+    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
                           "The file has more than 2000 load cases, or more than 20000 components vary in them.");
-  struct eo_rexs_load_case *load_case = eo_rexs_add_load_case(r->model);
-  if (!load_case || !whole(r, object, "id", false, &load_case->id))
+  struct eo_rexs_load_case *load_case = eo_rexs_add_load_case(reader->model);
+  if (!load_case || !whole(reader, object, "id", false, &load_case->id))
     return false;
   for (size_t i = 0; i < json_array_size(components); i++)
-    if (!read_component(r, eo_rexs_add_varying(r->model, load_case), json_array_get(components, i), (int)i))
+    if (!read_component(reader, eo_rexs_add_varying(reader->model, load_case), json_array_get(components, i), (int)i))
       return false;
   return true;
 }
 
 /* One spectrum, or a list of them. */
-static bool read_spectrum(struct reader *r, const json_t *spectrum)
+static bool read_spectrum(struct reader *reader, const json_t *spectrum)
 {
   const json_t *cases = json_object_get(spectrum, "load_cases");
   for (size_t i = 0; i < json_array_size(spectrum); i++)
-    if (!read_spectrum(r, json_array_get(spectrum, i)))
+    if (!read_spectrum(reader, json_array_get(spectrum, i)))
       return false;
   for (size_t i = 0; i < json_array_size(cases); i++)
-    if (!read_load_case(r, json_array_get(cases, i)))
+    if (!read_load_case(reader, json_array_get(cases, i)))
       return false;
   return true;
 }
 
-static bool read_model(struct reader *r, const json_t *top)
+static bool read_model(struct reader *reader, const json_t *top)
 {
   const json_t *relations = json_object_get(top, "relations"), *components = json_object_get(top, "components");
-  r->model->json = true;
-  r->model->version = kept(r, top, "version");
-  r->model->application = kept(r, top, "applicationId");
-  r->model->application_version = kept(r, top, "applicationVersion");
-  r->model->date = kept(r, top, "date");
+  reader->model->json = true;
+  reader->model->version = kept(reader, top, "version");
+  reader->model->application = kept(reader, top, "applicationId");
+  reader->model->application_version = kept(reader, top, "applicationVersion");
+  reader->model->date = kept(reader, top, "date");
   if (json_array_size(components) > EO_REXS_COMPONENTS)
-    return eo_rexs_refuse(r->problem, "too_large", 0, 0, "The file has more than 20000 components.");
+    return eo_rexs_refuse(reader->problem, "too_large", 0, 0, "The file has more than 20000 components.");
   for (size_t i = 0; i < json_array_size(relations); i++)
-    if (!read_relation(r, json_array_get(relations, i), (int)i))
+    if (!read_relation(reader, json_array_get(relations, i), (int)i))
       return false;
   for (size_t i = 0; i < json_array_size(components); i++)
-    if (!read_component(r, eo_rexs_add_component(r->model), json_array_get(components, i), (int)i))
+    if (!read_component(reader, eo_rexs_add_component(reader->model), json_array_get(components, i), (int)i))
       return false;
-  return read_spectrum(r, json_object_get(top, "load_spectrum"));
+  return read_spectrum(reader, json_object_get(top, "load_spectrum"));
 }
 
 bool eo_rexs_read_json(struct eo_rexs_model *model, const char *bytes, size_t size, struct eo_rexs_problem *problem)
 {
-  struct reader r = {model, problem};
+  struct reader reader = {model, problem};
   struct eo_error error;
   json_t *document = eo_json_parse(bytes, size, &error);
   if (!document)
     return eo_rexs_refuse(problem, "not_well_formed", 0, 0, "%s", error.text);
   const json_t *top = json_object_get(document, "model");
-  bool good = json_is_object(top) ? read_model(&r, top)
+  bool good = json_is_object(top) ? read_model(&reader, top)
                                   : eo_rexs_refuse(problem, "not_rexs", 0, 0,
                                                    "The file is JSON but no REXS file: it has no \"model\".");
   if (!good && !problem->error.code)

@@ -10,14 +10,14 @@ static const double gap_tolerance = 0.1; /* mm, by which the gaps of both member
 
 double eo_rexs_value(const struct eo_rexs_component *component, const char *attribute)
 {
-  const struct eo_rexs_attribute *a = eo_rexs_attribute(component, attribute);
-  return a && a->shape == EO_REXS_SCALAR ? eo_rexs_number(a->text) : NAN;
+  const struct eo_rexs_attribute *rexs_attribute = eo_rexs_attribute(component, attribute);
+  return rexs_attribute && rexs_attribute->shape == EO_REXS_SCALAR ? eo_rexs_number(rexs_attribute->text) : NAN;
 }
 
 bool eo_rexs_flag(const struct eo_rexs_component *component, const char *attribute)
 {
-  const struct eo_rexs_attribute *a = eo_rexs_attribute(component, attribute);
-  return a && strcmp(a->text, "true") == 0;
+  const struct eo_rexs_attribute *rexs_attribute = eo_rexs_attribute(component, attribute);
+  return rexs_attribute && strcmp(rexs_attribute->text, "true") == 0;
 }
 
 const struct eo_rexs_component *eo_rexs_related(const struct eo_rexs_model *model, const char *type, const char *role,
@@ -36,12 +36,14 @@ const struct eo_rexs_component *eo_rexs_related(const struct eo_rexs_model *mode
 
 void eo_rexs_axis(const struct eo_rexs_component *component, double axis[3], double origin[3])
 {
-  const struct eo_rexs_attribute *u = eo_rexs_attribute(component, "u_axis_vector"),
+  const struct eo_rexs_attribute *attribute = eo_rexs_attribute(component, "u_axis_vector"),
                                  *support = eo_rexs_attribute(component, "support_vector");
-  bool stated = u && u->count == 3;
-  double length = stated ? sqrt(u->value[0] * u->value[0] + u->value[1] * u->value[1] + u->value[2] * u->value[2]) : 0;
+  bool stated = attribute && attribute->count == 3;
+  double length = stated ? sqrt(attribute->value[0] * attribute->value[0] + attribute->value[1] * attribute->value[1] +
+                                attribute->value[2] * attribute->value[2])
+                         : 0;
   for (int i = 0; i < 3; i++) {
-    axis[i] = length > 0 ? u->value[i] / length : i == 0;
+    axis[i] = length > 0 ? attribute->value[i] / length : i == 0;
     origin[i] = support && support->count == 3 && isfinite(support->value[i]) ? support->value[i] : 0;
   }
 }

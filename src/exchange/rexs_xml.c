@@ -70,19 +70,19 @@ struct reader {
   bool stopped, seen_model;
 };
 
-static void refuse(struct reader *r, const char *kind, const char *text)
+static void refuse(struct reader *reader, const char *kind, const char *text)
 {
-  if (!r->stopped)
-    eo_rexs_refuse(r->problem, kind, (int)XML_GetCurrentLineNumber(r->parser),
-                   (int)XML_GetCurrentColumnNumber(r->parser) + 1, "%s", text);
-  r->stopped = true;
-  XML_StopParser(r->parser, XML_FALSE);
+  if (!reader->stopped)
+    eo_rexs_refuse(reader->problem, kind, (int)XML_GetCurrentLineNumber(reader->parser),
+                   (int)XML_GetCurrentColumnNumber(reader->parser) + 1, "%s", text);
+  reader->stopped = true;
+  XML_StopParser(reader->parser, XML_FALSE);
 }
 
-static struct eo_rexs_place here(const struct reader *r)
+static struct eo_rexs_place here(const struct reader *reader)
 {
-  return (struct eo_rexs_place){(int)XML_GetCurrentLineNumber(r->parser),
-                                (int)XML_GetCurrentColumnNumber(r->parser) + 1, 0};
+  return (struct eo_rexs_place){(int)XML_GetCurrentLineNumber(reader->parser),
+                                (int)XML_GetCurrentColumnNumber(reader->parser) + 1, 0};
 }
 
 /* Names come with or without the prefix of a name space. */
@@ -100,13 +100,13 @@ static const char *given(const char **attributes, const char *name)
   return "";
 }
 
-static const char *kept(struct reader *r, const char **attributes, const char *name)
+static const char *kept(struct reader *reader, const char **attributes, const char *name)
 {
   const char *text = given(attributes, name);
-  return eo_rexs_text(r->model, text, strlen(text));
+  return eo_rexs_text(reader->model, text, strlen(text));
 }
 
-static int whole(struct reader *r, const char **attributes, const char *name, bool needed)
+static int whole(struct reader *reader, const char **attributes, const char *name, bool needed)
 {
   const char *text = given(attributes, name);
   char *end;
@@ -114,113 +114,116 @@ static int whole(struct reader *r, const char **attributes, const char *name, bo
   if (!*text && !needed)
     return 0;
   if (!*text || *end || value < 0 || value > INT_MAX) {
-    refuse(r, "wrong_id", "A whole number from 0 is needed here as an id or order.");
+    refuse(reader, "wrong_id", "A whole number from 0 is needed here as an id or order.");
     return 0;
   }
   return (int)value;
 }
 
-static void begin_ref(struct reader *r, const char **attributes)
+static void begin_ref(struct reader *reader, const char **attributes)
 {
-  if (!r->relation)
+  if (!reader->relation)
     return;
-  if (r->relation->count >= EO_REXS_REFERENCES) {
-    refuse(r, "too_large", "A relation has more than 12 references; no relation of REXS has so many.");
+  if (reader->relation->count >= EO_REXS_REFERENCES) {
+    refuse(reader, "too_large", "A relation has more than 12 references; no relation of REXS has so many.");
     return;
   }
-  struct eo_rexs_reference *reference = &r->relation->reference[r->relation->count++];
-  reference->id = whole(r, attributes, "id", true);
-  reference->role = kept(r, attributes, "role");
-  reference->hint = kept(r, attributes, "hint");
+  struct eo_rexs_reference *reference = &reader->relation->reference[reader->relation->count++];
+  reference->id = whole(reader, attributes, "id", true);
+  reference->role = kept(reader, attributes, "role");
+  reference->hint = kept(reader, attributes, "hint");
 }
 
-static void begin_relation(struct reader *r, const char **attributes)
+static void begin_relation(struct reader *reader, const char **attributes)
 {
-  if (r->model->relations >= EO_REXS_RELATIONS) {
-    refuse(r, "too_large", "The file has more than 40000 relations.");
+  if (reader->model->relations >= EO_REXS_RELATIONS) {
+    refuse(reader, "too_large", "The file has more than 40000 relations.");
     return;
   }
-  r->relation = eo_rexs_add_relation(r->model);
-  if (!r->relation)
+  reader->relation = eo_rexs_add_relation(reader->model);
+  if (!reader->relation)
     return;
-  r->relation->place = here(r);
-  r->relation->id = whole(r, attributes, "id", true);
-  r->relation->order = whole(r, attributes, "order", false);
-  r->relation->type = kept(r, attributes, "type");
+  reader->relation->place = here(reader);
+  reader->relation->id = whole(reader, attributes, "id", true);
+  reader->relation->order = whole(reader, attributes, "order", false);
+  reader->relation->type = kept(reader, attributes, "type");
 }
 
-static void begin_component(struct reader *r, const char **attributes)
+static void begin_component(struct reader *reader, const char **attributes)
 {
-  if (r->model->components + r->model->varying >= EO_REXS_COMPONENTS) {
-    refuse(r, "too_large", "The file has more than 20000 components.");
+  if (reader->model->components + reader->model->varying >= EO_REXS_COMPONENTS) {
+    refuse(reader, "too_large", "The file has more than 20000 components.");
     return;
   }
-  r->component = r->load_case ? eo_rexs_add_varying(r->model, r->load_case) : eo_rexs_add_component(r->model);
-  if (!r->component)
+  reader->component = reader->load_case ? eo_rexs_add_varying(reader->model, reader->load_case)
+                                        : eo_rexs_add_component(reader->model);
+  if (!reader->component)
     return;
-  r->component->place = here(r);
-  r->component->id = whole(r, attributes, "id", true);
-  r->component->type = kept(r, attributes, "type");
-  r->component->name = kept(r, attributes, "name");
+  reader->component->place = here(reader);
+  reader->component->id = whole(reader, attributes, "id", true);
+  reader->component->type = kept(reader, attributes, "type");
+  reader->component->name = kept(reader, attributes, "name");
 }
 
-static void begin_attribute(struct reader *r, const char **attributes)
+static void begin_attribute(struct reader *reader, const char **attributes)
 {
-  if (r->model->attributes >= EO_REXS_ATTRIBUTES) {
-    refuse(r, "too_large", "The file has more than 200000 attributes; leave out results that a design does not need.");
+  if (reader->model->attributes >= EO_REXS_ATTRIBUTES) {
+    refuse(reader, "too_large",
+           "The file has more than 200000 attributes; leave out results that a design does not need.");
     return;
   }
-  r->attribute = r->component ? eo_rexs_add_attribute(r->model, r->component) : NULL;
-  r->text.size = 0;
-  r->cells = 0;
-  if (!r->attribute)
+  reader->attribute = reader->component ? eo_rexs_add_attribute(reader->model, reader->component) : NULL;
+  reader->text.size = 0;
+  reader->cells = 0;
+  if (!reader->attribute)
     return;
-  r->attribute->place = here(r);
-  r->attribute->id = kept(r, attributes, "id");
-  r->attribute->unit = kept(r, attributes, "unit");
+  reader->attribute->place = here(reader);
+  reader->attribute->id = kept(reader, attributes, "id");
+  reader->attribute->unit = kept(reader, attributes, "unit");
 }
 
-static void begin_known(struct reader *r, enum element element, const char **attributes)
+static void begin_known(struct reader *reader, enum element element, const char **attributes)
 {
-  struct eo_rexs_model *model = r->model;
+  struct eo_rexs_model *model = reader->model;
   switch (element) {
   case MODEL:
-    r->seen_model = true;
-    model->version = kept(r, attributes, "version");
-    model->application = kept(r, attributes, "applicationId");
-    model->application_version = kept(r, attributes, "applicationVersion");
-    model->date = kept(r, attributes, "date");
+    reader->seen_model = true;
+    model->version = kept(reader, attributes, "version");
+    model->application = kept(reader, attributes, "applicationId");
+    model->application_version = kept(reader, attributes, "applicationVersion");
+    model->date = kept(reader, attributes, "date");
     break;
   case RELATION:
-    begin_relation(r, attributes);
+    begin_relation(reader, attributes);
     break;
   case REF:
-    begin_ref(r, attributes);
+    begin_ref(reader, attributes);
     break;
   case LOAD_CASE:
     if (model->load_cases >= EO_REXS_LOAD_CASES) {
-      refuse(r, "too_large", "The file has more than 2000 load cases.");
+      refuse(reader, "too_large", "The file has more than 2000 load cases.");
       break;
     }
-    r->load_case = eo_rexs_add_load_case(model);
-    if (r->load_case)
-      r->load_case->id = whole(r, attributes, "id", false);
+    reader->load_case = eo_rexs_add_load_case(model);
+    if (reader->load_case)
+      reader->load_case->id = whole(reader, attributes, "id", false);
     break;
   case COMPONENT:
-    begin_component(r, attributes);
+    begin_component(reader, attributes);
     break;
   case ATTRIBUTE:
-    begin_attribute(r, attributes);
+    begin_attribute(reader, attributes);
     break;
   case ARRAY:
   case MATRIX:
-    snprintf(r->code, sizeof r->code, "%s", given(attributes, "code"));
-    if (r->attribute)
-      r->attribute->shape = element == ARRAY && r->stack[r->depth - 2] == ATTRIBUTE ? EO_REXS_ARRAY : EO_REXS_NESTED;
-    r->text.size = 0;
+    snprintf(reader->code, sizeof reader->code, "%s", given(attributes, "code"));
+    if (reader->attribute)
+      reader->attribute->shape = element == ARRAY && reader->stack[reader->depth - 2] == ATTRIBUTE ? EO_REXS_ARRAY
+                                                                                                   : EO_REXS_NESTED;
+    reader->text.size = 0;
     break;
   case CELL:
-    r->text.size = 0;
+    reader->text.size = 0;
     break;
   default:
     break;
@@ -229,133 +232,133 @@ static void begin_known(struct reader *r, enum element element, const char **att
 
 static void XMLCALL begin(void *context, const char *name, const char **attributes)
 {
-  struct reader *r = context;
-  if (r->stopped)
+  struct reader *reader = context;
+  if (reader->stopped)
     return;
-  if (r->depth >= EO_REXS_DEPTH) {
-    refuse(r, "too_deep", "Elements stand in elements more than 16 deep; a REXS file never does that.");
+  if (reader->depth >= EO_REXS_DEPTH) {
+    refuse(reader, "too_deep", "Elements stand in elements more than 16 deep; a REXS file never does that.");
     return;
   }
-  enum element within = r->depth ? r->stack[r->depth - 1] : NOTHING, element = NOTHING;
+  enum element within = reader->depth ? reader->stack[reader->depth - 1] : NOTHING, element = NOTHING;
   for (size_t i = 0; i < sizeof elements / sizeof *elements && !element; i++)
     if (elements[i].within == within && strcmp(local(name), elements[i].name) == 0)
       element = elements[i].element;
-  if (!r->depth && element != MODEL) {
-    refuse(r, "not_rexs", "The file is XML but no REXS file: its outermost element is not \"model\".");
+  if (!reader->depth && element != MODEL) {
+    refuse(reader, "not_rexs", "The file is XML but no REXS file: its outermost element is not \"model\".");
     return;
   }
-  r->stack[r->depth++] = r->skipped ? NOTHING : element;
-  if (!element && !r->skipped)
-    r->skipped = r->depth;
-  if (!r->skipped)
-    begin_known(r, element, attributes);
+  reader->stack[reader->depth++] = reader->skipped ? NOTHING : element;
+  if (!element && !reader->skipped)
+    reader->skipped = reader->depth;
+  if (!reader->skipped)
+    begin_known(reader, element, attributes);
 }
 
 /* The text without blanks around it, in the model's memory. */
-static const char *trimmed(struct reader *r)
+static const char *trimmed(struct reader *reader)
 {
   static const char blank[] = " \t\r\n";
-  const char *text = r->text.size ? r->text.data : "";
-  size_t length = r->text.size;
+  const char *text = reader->text.size ? reader->text.data : "";
+  size_t length = reader->text.size;
   while (length && strchr(blank, text[length - 1]))
     length--;
   size_t skip = 0;
   while (skip < length && strchr(blank, text[skip]))
     skip++;
-  return eo_rexs_text(r->model, text + skip, length - skip);
+  return eo_rexs_text(reader->model, text + skip, length - skip);
 }
 
-static void add_cell(struct reader *r)
+static void add_cell(struct reader *reader)
 {
-  if (r->model->cells >= EO_REXS_CELLS) {
-    refuse(r, "too_large", "The arrays of the file hold more than 4000000 values.");
+  if (reader->model->cells >= EO_REXS_CELLS) {
+    refuse(reader, "too_large", "The arrays of the file hold more than 4000000 values.");
     return;
   }
-  if (r->cells == r->room) {
-    int room = r->room ? 2 * r->room : 64;
-    double *grown = realloc(r->cell, (size_t)room * sizeof *grown);
+  if (reader->cells == reader->room) {
+    int room = reader->room ? 2 * reader->room : 64;
+    double *grown = realloc(reader->cell, (size_t)room * sizeof *grown);
     if (!grown) {
-      r->model->failed = true;
+      reader->model->failed = true;
       return;
     }
-    r->cell = grown;
-    r->room = room;
+    reader->cell = grown;
+    reader->room = room;
   }
   char text[64];
   size_t length = 0;
-  for (size_t i = 0; i < r->text.size && length + 1 < sizeof text; i++)
-    if (!strchr(" \t\r\n", r->text.data[i]))
-      text[length++] = r->text.data[i];
+  for (size_t i = 0; i < reader->text.size && length + 1 < sizeof text; i++)
+    if (!strchr(" \t\r\n", reader->text.data[i]))
+      text[length++] = reader->text.data[i];
   text[length] = '\0';
-  r->cell[r->cells++] = eo_rexs_number(text);
-  r->model->cells++;
+  reader->cell[reader->cells++] = eo_rexs_number(text);
+  reader->model->cells++;
 }
 
-static void end_attribute(struct reader *r)
+static void end_attribute(struct reader *reader)
 {
-  struct eo_rexs_attribute *a = r->attribute;
-  if (a && a->shape == EO_REXS_SCALAR)
-    a->text = trimmed(r);
-  else if (a && r->cells) {
-    double *value = eo_rexs_memory(r->model, (size_t)r->cells * sizeof *value);
+  struct eo_rexs_attribute *attribute = reader->attribute;
+  if (attribute && attribute->shape == EO_REXS_SCALAR)
+    attribute->text = trimmed(reader);
+  else if (attribute && reader->cells) {
+    double *value = eo_rexs_memory(reader->model, (size_t)reader->cells * sizeof *value);
     if (value) {
-      memcpy(value, r->cell, (size_t)r->cells * sizeof *value);
-      a->value = value;
-      a->count = r->cells;
+      memcpy(value, reader->cell, (size_t)reader->cells * sizeof *value);
+      attribute->value = value;
+      attribute->count = reader->cells;
     }
   }
-  r->attribute = NULL;
-  r->text.size = 0;
+  reader->attribute = NULL;
+  reader->text.size = 0;
 }
 
-static void end_array(struct reader *r)
+static void end_array(struct reader *reader)
 {
   double *value;
-  if (!*r->code || !r->attribute)
+  if (!*reader->code || !reader->attribute)
     return;
-  int count = eo_rexs_decode_numbers(r->model, trimmed(r), r->code, &value);
-  if (count < 0 || r->model->cells + count > EO_REXS_CELLS) {
-    refuse(r, "wrong_code", "An array is not Base64 of int32, float32 or float64, or holds too many numbers.");
+  int count = eo_rexs_decode_numbers(reader->model, trimmed(reader), reader->code, &value);
+  if (count < 0 || reader->model->cells + count > EO_REXS_CELLS) {
+    refuse(reader, "wrong_code", "An array is not Base64 of int32, float32 or float64, or holds too many numbers.");
     return;
   }
-  r->model->cells += count;
-  r->attribute->value = value;
-  r->attribute->count = count;
-  r->code[0] = '\0';
-  r->text.size = 0;
+  reader->model->cells += count;
+  reader->attribute->value = value;
+  reader->attribute->count = count;
+  reader->code[0] = '\0';
+  reader->text.size = 0;
 }
 
 static void XMLCALL end(void *context, const char *name)
 {
-  struct reader *r = context;
+  struct reader *reader = context;
   (void)name;
-  if (r->stopped || !r->depth)
+  if (reader->stopped || !reader->depth)
     return;
-  bool known = !r->skipped;
-  if (r->skipped == r->depth)
-    r->skipped = 0;
-  enum element element = r->stack[--r->depth];
+  bool known = !reader->skipped;
+  if (reader->skipped == reader->depth)
+    reader->skipped = 0;
+  enum element element = reader->stack[--reader->depth];
   if (!known)
     return;
   if (element == CELL)
-    add_cell(r);
+    add_cell(reader);
   else if (element == ARRAY || element == MATRIX)
-    end_array(r);
+    end_array(reader);
   else if (element == ATTRIBUTE)
-    end_attribute(r);
+    end_attribute(reader);
   else if (element == COMPONENT)
-    r->component = NULL;
+    reader->component = NULL;
   else if (element == RELATION)
-    r->relation = NULL;
+    reader->relation = NULL;
   else if (element == LOAD_CASE)
-    r->load_case = NULL;
+    reader->load_case = NULL;
 }
 
 static void XMLCALL take_characters(void *context, const char *text, int length)
 {
-  struct reader *r = context;
-  if (r->attribute && !r->skipped)
-    eo_text_add_bytes(&r->text, text, (size_t)length);
+  struct reader *reader = context;
+  if (reader->attribute && !reader->skipped)
+    eo_text_add_bytes(&reader->text, text, (size_t)length);
 }
 
 static void XMLCALL take_doctype(void *context, const char *name, const char *system, const char *public, int subset)
@@ -369,43 +372,43 @@ static void XMLCALL take_doctype(void *context, const char *name, const char *sy
          "unread. Take the line out.");
 }
 
-static bool parse(struct reader *r, const char *bytes, size_t size)
+static bool parse(struct reader *reader, const char *bytes, size_t size)
 {
-  for (size_t at = 0; at < size && !r->stopped; at += PIECE) {
+  for (size_t at = 0; at < size && !reader->stopped; at += PIECE) {
     size_t piece = size - at < PIECE ? size - at : PIECE;
-    if (XML_Parse(r->parser, bytes + at, (int)piece, at + piece == size) == XML_STATUS_OK)
+    if (XML_Parse(reader->parser, bytes + at, (int)piece, at + piece == size) == XML_STATUS_OK)
       continue;
-    if (!r->stopped)
-      eo_rexs_refuse(r->problem, "not_well_formed", (int)XML_GetCurrentLineNumber(r->parser),
-                     (int)XML_GetCurrentColumnNumber(r->parser) + 1,
+    if (!reader->stopped)
+      eo_rexs_refuse(reader->problem, "not_well_formed", (int)XML_GetCurrentLineNumber(reader->parser),
+                     (int)XML_GetCurrentColumnNumber(reader->parser) + 1,
                      "The XML is not well-formed: %s; the file is damaged or was cut off.",
-                     XML_ErrorString(XML_GetErrorCode(r->parser)));
-    r->stopped = true;
+                     XML_ErrorString(XML_GetErrorCode(reader->parser)));
+    reader->stopped = true;
   }
-  return !r->stopped;
+  return !reader->stopped;
 }
 
 bool eo_rexs_read_xml(struct eo_rexs_model *model, const char *bytes, size_t size, struct eo_rexs_problem *problem)
 {
-  struct reader r = {.model = model, .problem = problem, .parser = XML_ParserCreate(NULL)};
-  if (!r.parser) {
+  struct reader reader = {.model = model, .problem = problem, .parser = XML_ParserCreate(NULL)};
+  if (!reader.parser) {
     eo_error_memory(&problem->error);
     return false;
   }
-  XML_SetUserData(r.parser, &r);
-  XML_SetElementHandler(r.parser, begin, end);
-  XML_SetCharacterDataHandler(r.parser, take_characters);
-  XML_SetStartDoctypeDeclHandler(r.parser, take_doctype);
-  bool good = parse(&r, bytes, size);
-  model->failed = model->failed || r.text.failed;
+  XML_SetUserData(reader.parser, &reader);
+  XML_SetElementHandler(reader.parser, begin, end);
+  XML_SetCharacterDataHandler(reader.parser, take_characters);
+  XML_SetStartDoctypeDeclHandler(reader.parser, take_doctype);
+  bool good = parse(&reader, bytes, size);
+  model->failed = model->failed || reader.text.failed;
   if (good && model->failed) {
     eo_error_memory(&problem->error);
     good = false;
   }
-  if (good && !r.seen_model)
+  if (good && !reader.seen_model)
     good = eo_rexs_refuse(problem, "not_well_formed", 1, 1, "The file is empty.");
-  XML_ParserFree(r.parser);
-  eo_text_done(&r.text);
-  free(r.cell);
+  XML_ParserFree(reader.parser);
+  eo_text_done(&reader.text);
+  free(reader.cell);
   return good;
 }

@@ -126,15 +126,15 @@ static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_too
 
 /* Instances: */
 
-__attribute__((format(printf, 2, 3))) static int put(struct writer *w, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static int put(struct writer *writer, const char *format, ...)
 {
   char line[1200];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
-  eo_text_print(w->text, "#%d=%s;\n", ++w->last, line);
-  return w->last;
+  eo_text_print(writer->text, "#%d=%s;\n", ++writer->last, line);
+  return writer->last;
 }
 
 /* A real of Part 21 has a point always. */
@@ -153,11 +153,11 @@ static const char *real(double value, char text[40])
 }
 
 /* turn: of the tooth, from +y towards +x. */
-static int put_point(struct writer *w, const double point[3], double turn)
+static int put_point(struct writer *writer, const double point[3], double turn)
 {
   char x[40], y[40], z[40];
   double c = cos(turn), s = sin(turn);
-  return put(w, "CARTESIAN_POINT('',(%s,%s,%s))", real(1e3 * (c * point[0] + s * point[1]), x),
+  return put(writer, "CARTESIAN_POINT('',(%s,%s,%s))", real(1e3 * (c * point[0] + s * point[1]), x),
              real(1e3 * (c * point[1] - s * point[0]), y), real(1e3 * point[2], z));
 }
 
@@ -182,10 +182,10 @@ static void add_list(struct eo_text *text, int count, const int *id, int stride)
   eo_text_add(text, ")");
 }
 
-static int put_surface(struct writer *w, const struct eo_patch *patch, const int *point)
+static int put_surface(struct writer *writer, const struct eo_patch *patch, const int *point)
 {
-  struct eo_text *text = w->text;
-  eo_text_print(text, "#%d=B_SPLINE_SURFACE_WITH_KNOTS('',3,3,(", ++w->last);
+  struct eo_text *text = writer->text;
+  eo_text_print(text, "#%d=B_SPLINE_SURFACE_WITH_KNOTS('',3,3,(", ++writer->last);
   for (int i = 0; i < patch->count[0]; i++) {
     eo_text_add(text, i ? "," : "");
     add_list(text, patch->count[1], point + i * patch->count[1], 1);
@@ -196,68 +196,68 @@ static int put_surface(struct writer *w, const struct eo_patch *patch, const int
     eo_text_add(text, ",");
   }
   eo_text_add(text, ".UNSPECIFIED.);\n");
-  return w->last;
+  return writer->last;
 }
 
-static int put_curve(struct writer *w, int count, const double *knot, const int *point, int stride)
+static int put_curve(struct writer *writer, int count, const double *knot, const int *point, int stride)
 {
-  struct eo_text *text = w->text;
-  eo_text_print(text, "#%d=B_SPLINE_CURVE_WITH_KNOTS('',3,", ++w->last);
+  struct eo_text *text = writer->text;
+  eo_text_print(text, "#%d=B_SPLINE_CURVE_WITH_KNOTS('',3,", ++writer->last);
   add_list(text, count, point, stride);
   eo_text_add(text, ",.UNSPECIFIED.,.F.,.F.,");
   add_knots(text, count, knot, false);
   eo_text_add(text, ",");
   add_knots(text, count, knot, true);
   eo_text_add(text, ",.UNSPECIFIED.);\n");
-  return w->last;
+  return writer->last;
 }
 
 /* Edges of a piece that no neighbour has written yet: boundary control points are the edge's, so both have one curve.
  */
-static void put_edges(struct writer *w, struct part *part, int i, int j, const int *point)
+static void put_edges(struct writer *writer, struct part *part, int i, int j, const int *point)
 {
   const struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
   int rows = patch->count[0], columns = patch->count[1];
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
       if (!part->vertex[i + a][j + b])
-        part->vertex[i + a][j + b] = put(w, "VERTEX_POINT('',#%d)",
+        part->vertex[i + a][j + b] = put(writer, "VERTEX_POINT('',#%d)",
                                          point[a * (rows - 1) * columns + b * (columns - 1)]);
   for (int side = 0; side < 2; side++) {
     if (!part->along[i][j + side]) {
-      int curve = put_curve(w, rows, patch->knot[0], point + side * (columns - 1), columns);
-      part->along[i][j + side] = put(w, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i][j + side],
+      int curve = put_curve(writer, rows, patch->knot[0], point + side * (columns - 1), columns);
+      part->along[i][j + side] = put(writer, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i][j + side],
                                      part->vertex[i + 1][j + side], curve);
     }
     if (!part->across[i + side][j]) {
-      int curve = put_curve(w, columns, patch->knot[1], point + side * (rows - 1) * columns, 1);
-      part->across[i + side][j] = put(w, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i + side][j],
+      int curve = put_curve(writer, columns, patch->knot[1], point + side * (rows - 1) * columns, 1);
+      part->across[i + side][j] = put(writer, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i + side][j],
                                       part->vertex[i + side][j + 1], curve);
     }
   }
 }
 
 /* The loop runs counter-clockwise seen against the surface's normal: with p at q = 0, with q at p = 1, back. */
-static int put_face(struct writer *w, struct part *part, int i, int j, double turn)
+static int put_face(struct writer *writer, struct part *part, int i, int j, double turn)
 {
   const struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
   int count = patch->count[0] * patch->count[1], point[EO_PATCH_MOST * EO_PATCH_MOST];
   for (int k = 0; k < count; k++)
-    point[k] = put_point(w, patch->control[k], turn);
-  int surface = put_surface(w, patch, point);
-  put_edges(w, part, i, j, point);
+    point[k] = put_point(writer, patch->control[k], turn);
+  int surface = put_surface(writer, patch, point);
+  put_edges(writer, part, i, j, point);
   int edge[4] = {
-      put(w, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->along[i][j]),
-      put(w, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->across[i + 1][j]),
-      put(w, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->along[i][j + 1]),
-      put(w, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->across[i][j]),
+      put(writer, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->along[i][j]),
+      put(writer, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->across[i + 1][j]),
+      put(writer, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->along[i][j + 1]),
+      put(writer, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->across[i][j]),
   };
-  int loop = put(w, "EDGE_LOOP('',(#%d,#%d,#%d,#%d))", edge[0], edge[1], edge[2], edge[3]);
-  int bound = put(w, "FACE_OUTER_BOUND('',#%d,.T.)", loop);
-  return put(w, "ADVANCED_FACE('',(#%d),#%d,.T.)", bound, surface);
+  int loop = put(writer, "EDGE_LOOP('',(#%d,#%d,#%d,#%d))", edge[0], edge[1], edge[2], edge[3]);
+  int bound = put(writer, "FACE_OUTER_BOUND('',#%d,.T.)", loop);
+  return put(writer, "ADVANCED_FACE('',(#%d),#%d,.T.)", bound, surface);
 }
 
-static int put_shell(struct writer *w, struct part *part, int number)
+static int put_shell(struct writer *writer, struct part *part, int number)
 {
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct eo_tooth *tooth = part->tooth;
@@ -268,12 +268,12 @@ static int put_shell(struct writer *w, struct part *part, int number)
   memset(part->across, 0, sizeof part->across);
   for (int i = 0; i < part->pieces[0]; i++)
     for (int j = 0; j < part->pieces[1]; j++)
-      face[count++] = put_face(w, part, i, j, turn);
-  eo_text_print(w->text, "#%d=OPEN_SHELL('%s %s end, tooth %d, %s',", ++w->last, member_name[tooth->member],
+      face[count++] = put_face(writer, part, i, j, turn);
+  eo_text_print(writer->text, "#%d=OPEN_SHELL('%s %s end, tooth %d, %s',", ++writer->last, member_name[tooth->member],
                 tooth->two_ends ? end_name[tooth->end] : "single", number + 1, eo_tooth_part_names[part->part]);
-  add_list(w->text, count, face, 1);
-  eo_text_add(w->text, ");\n");
-  return w->last;
+  add_list(writer->text, count, face, 1);
+  eo_text_add(writer->text, ");\n");
+  return writer->last;
 }
 
 /* The file: */
@@ -305,43 +305,43 @@ static void write_header(struct eo_text *text, const char *name)
 }
 
 /* Product, units and context; returns the shape's definition, *context the representation's. */
-static int write_product(struct writer *w, const char *name, int *context)
+static int write_product(struct writer *writer, const char *name, int *context)
 {
-  int application = put(w, "APPLICATION_CONTEXT('managed model based 3d engineering')");
-  put(w,
+  int application = put(writer, "APPLICATION_CONTEXT('managed model based 3d engineering')");
+  put(writer,
       "APPLICATION_PROTOCOL_DEFINITION('international standard',"
       "'ap242_managed_model_based_3d_engineering',2014,#%d)",
       application);
-  int product_context = put(w, "PRODUCT_CONTEXT('',#%d,'mechanical')", application);
-  int product = put(w, "PRODUCT('%s','%s','',(#%d))", name, name, product_context);
-  put(w, "PRODUCT_RELATED_PRODUCT_CATEGORY('part','',(#%d))", product);
-  int formation = put(w, "PRODUCT_DEFINITION_FORMATION('','',#%d)", product);
-  int definition_context = put(w, "PRODUCT_DEFINITION_CONTEXT('part definition',#%d,'design')", application);
-  int definition = put(w, "PRODUCT_DEFINITION('','',#%d,#%d)", formation, definition_context);
-  int shape = put(w, "PRODUCT_DEFINITION_SHAPE('','',#%d)", definition);
-  int length = put(w, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))"),
-      angle = put(w, "(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"),
-      solid = put(w, "(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
-  int uncertainty = put(w, "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-06),#%d,'distance_accuracy_value','')",
-                        length);
-  *context = put(w,
+  int product_context = put(writer, "PRODUCT_CONTEXT('',#%d,'mechanical')", application);
+  int product = put(writer, "PRODUCT('%s','%s','',(#%d))", name, name, product_context);
+  put(writer, "PRODUCT_RELATED_PRODUCT_CATEGORY('part','',(#%d))", product);
+  int formation = put(writer, "PRODUCT_DEFINITION_FORMATION('','',#%d)", product);
+  int definition_context = put(writer, "PRODUCT_DEFINITION_CONTEXT('part definition',#%d,'design')", application);
+  int definition = put(writer, "PRODUCT_DEFINITION('','',#%d,#%d)", formation, definition_context);
+  int shape = put(writer, "PRODUCT_DEFINITION_SHAPE('','',#%d)", definition);
+  int length = put(writer, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))"),
+      angle = put(writer, "(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"),
+      solid = put(writer, "(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
+  int uncertainty =
+      put(writer, "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-06),#%d,'distance_accuracy_value','')", length);
+  *context = put(writer,
                  "(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#%d))"
                  "GLOBAL_UNIT_ASSIGNED_CONTEXT((#%d,#%d,#%d))REPRESENTATION_CONTEXT('',''))",
                  uncertainty, length, angle, solid);
   return shape;
 }
 
-static bool write_shells(struct writer *w, const struct eo_tooth *tooth, bool whole, int *shell, int *shells)
+static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bool whole, int *shell, int *shells)
 {
   int teeth = whole ? tooth->geometry->teeth[tooth->member] : 1;
   struct part part;
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
     if (good && part.error > tolerance)
-      eo_text_print(w->text, "/* %s: a kink across its pieces; up to %.3g nm off the exact surface */\n",
+      eo_text_print(writer->text, "/* %s: a kink across its pieces; up to %.3g nm off the exact surface */\n",
                     eo_tooth_part_names[kind], 1e9 * part.error);
     for (int number = 0; good && number < teeth; number++)
-      shell[(*shells)++] = put_shell(w, &part, number);
+      shell[(*shells)++] = put_shell(writer, &part, number);
     free(part.patch);
     if (!good)
       return false;
@@ -353,7 +353,7 @@ void eo_step_write(const struct eo_design *design, const struct eo_geometry *geo
                    struct eo_text *text)
 {
   static const char *const member_name[2] = {"pinion", "gear"};
-  struct writer w = {text, 0};
+  struct writer writer = {text, 0};
   char name[200], product[220];
   int context, shells = 0, ends = design->gear_pair.ends;
   int *shell = malloc((size_t)ends * EO_TOOTH_PARTS * (size_t)geometry->teeth[member] * sizeof *shell);
@@ -361,24 +361,25 @@ void eo_step_write(const struct eo_design *design, const struct eo_geometry *geo
   clean_name(design->name, name);
   snprintf(product, sizeof product, "%s%s%s", name, *name ? ", " : "", member_name[member]);
   write_header(text, product);
-  int shape = write_product(&w, product, &context);
+  int shape = write_product(&writer, product, &context);
   for (int end = 0; end < ends && good; end++) {
     struct eo_tooth tooth;
     struct eo_error error;
     good = !eo_tooth_init(&tooth, design, geometry, member, end, &error);
     if (good) {
-      good = write_shells(&w, &tooth, whole, shell, &shells);
+      good = write_shells(&writer, &tooth, whole, shell, &shells);
       eo_tooth_done(&tooth);
     }
   }
   if (good) {
-    eo_text_print(text, "#%d=SHELL_BASED_SURFACE_MODEL('',", ++w.last);
+    eo_text_print(text, "#%d=SHELL_BASED_SURFACE_MODEL('',", ++writer.last);
     add_list(text, shells, shell, 1);
     eo_text_add(text, ");\n");
-    int model = w.last, origin = put(&w, "CARTESIAN_POINT('',(0.,0.,0.))"), z = put(&w, "DIRECTION('',(0.,0.,1.))"),
-        x = put(&w, "DIRECTION('',(1.,0.,0.))"), place = put(&w, "AXIS2_PLACEMENT_3D('',#%d,#%d,#%d)", origin, z, x);
-    int representation = put(&w, "MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#%d,#%d),#%d)", place, model, context);
-    put(&w, "SHAPE_DEFINITION_REPRESENTATION(#%d,#%d)", shape, representation);
+    int model = writer.last, origin = put(&writer, "CARTESIAN_POINT('',(0.,0.,0.))"),
+        z = put(&writer, "DIRECTION('',(0.,0.,1.))"), x = put(&writer, "DIRECTION('',(1.,0.,0.))"),
+        place = put(&writer, "AXIS2_PLACEMENT_3D('',#%d,#%d,#%d)", origin, z, x);
+    int representation = put(&writer, "MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#%d,#%d),#%d)", place, model, context);
+    put(&writer, "SHAPE_DEFINITION_REPRESENTATION(#%d,#%d)", shape, representation);
   }
   eo_text_add(text, "ENDSEC;\nEND-ISO-10303-21;\n");
   text->failed = text->failed || !good;

@@ -31,14 +31,14 @@ struct block {
   int value[2], unit; /* columns; -1: none */
 };
 
-static void fault(struct reader *r, int column, const char *kind, const char *format, const char *a, const char *b)
+static void fault(struct reader *reader, int column, const char *kind, const char *format, const char *a, const char *b)
 {
   char text[300];
   snprintf(text, sizeof text, format, a, b);
-  json_t *object = eo_import_fault(r->out, kind, "%s", text);
+  json_t *object = eo_import_fault(reader->out, kind, "%s", text);
   if (!object)
     return;
-  json_object_set_new(object, "line", json_integer(r->row + 1));
+  json_object_set_new(object, "line", json_integer(reader->row + 1));
   json_object_set_new(object, "column", json_integer(column + 1));
 }
 
@@ -56,19 +56,19 @@ static bool has_decimal(const char *cell, char sign)
 }
 
 /* One decimal sign for the whole table; false: both stand in it. */
-static bool find_decimal_sign(struct reader *r)
+static bool find_decimal_sign(struct reader *reader)
 {
   int point_row = -1;
-  for (int row = 0; row < r->cells->rows; row++)
-    for (int column = 0; column < r->cells->columns; column++) {
-      const char *cell = eo_cells_at(r->cells, row, column);
-      r->comma = r->comma || has_decimal(cell, ',');
+  for (int row = 0; row < reader->cells->rows; row++)
+    for (int column = 0; column < reader->cells->columns; column++) {
+      const char *cell = eo_cells_at(reader->cells, row, column);
+      reader->comma = reader->comma || has_decimal(cell, ',');
       point_row = has_decimal(cell, '.') ? row : point_row;
     }
-  if (!r->comma || point_row < 0)
+  if (!reader->comma || point_row < 0)
     return true;
-  r->row = point_row;
-  fault(r, 0, "two_decimal_signs",
+  reader->row = point_row;
+  fault(reader, 0, "two_decimal_signs",
         "Numbers with a point and numbers with a comma stand in one table, so neither is sure%s%s; write all with one.",
         "", "");
   return false;
@@ -96,43 +96,44 @@ static double read_sexagesimal(const char *cell)
   return count < 2 || *at || part[1] >= 60 || part[2] >= 60 ? NAN : *cell == '-' ? -value : value;
 }
 
-static double read_number(const struct reader *r, const char *cell)
+static double read_number(const struct reader *reader, const char *cell)
 {
   char text[80], *end;
   size_t length = strlen(cell);
   if (length >= sizeof text || strspn(cell, "+-.,0123456789eE") != length || !length)
     return NAN;
   snprintf(text, sizeof text, "%s", cell);
-  for (char *c = text; *c && r->comma; c++)
+  for (char *c = text; *c && reader->comma; c++)
     *c = *c == ',' ? '.' : *c;
   double value = strtod(text, &end);
   return *end || !isfinite(value) ? NAN : value;
 }
 
 /* A number in the unit that the row states, or that its name is usually in. NaN: a fault is told. */
-static double read_quantity(struct reader *r, const struct eo_design_key *key, const char *name, const char *cell,
+static double read_quantity(struct reader *reader, const struct eo_design_key *key, const char *name, const char *cell,
                             const char *unit, int column)
 {
-  double value = read_number(r, cell);
+  double value = read_number(reader, cell);
   bool angle = key->field->unit && strcmp(key->field->unit->suffix, "deg") == 0;
   if (isnan(value) && angle)
     value = read_sexagesimal(cell);
   if (isnan(value)) {
-    fault(r, column, "not_a_number", "%s is \"%.60s\"; a number is needed.", name, cell);
+    fault(reader, column, "not_a_number", "%s is \"%.60s\"; a number is needed.", name, cell);
     return NAN;
   }
   if (*unit && !eo_design_key_convert(key->field, unit, &value)) {
-    fault(r, column, "wrong_unit", "The unit \"%.20s\" of %.100s is not one of it.", unit, name);
+    fault(reader, column, "wrong_unit", "The unit \"%.20s\" of %.100s is not one of it.", unit, name);
     return NAN;
   }
   if (!*unit && key->doubt == EO_KEY_DOUBT && value != 0) {
     if (fabs(value) <= 1) {
-      fault(r, column, "unit_needed", "%s is %.40s without a unit: that could be mm or um. State which.", name, cell);
+      fault(reader, column, "unit_needed", "%s is %.40s without a unit: that could be mm or um. State which.", name,
+            cell);
       return NAN;
     }
-    eo_import_say(r->out, r->out->assumed, "%s is in um", name);
+    eo_import_say(reader->out, reader->out->assumed, "%s is in um", name);
   } else if (!*unit && key->doubt == EO_KEY_USUAL)
-    eo_import_say(r->out, r->out->assumed, "%s is in %s", name, eo_design_key_unit(key->field));
+    eo_import_say(reader->out, reader->out->assumed, "%s is in %s", name, eo_design_key_unit(key->field));
   return value * key->factor;
 }
 
@@ -151,7 +152,7 @@ static json_t *read_list(const char *cell)
   return value;
 }
 
-static json_t *read_value(struct reader *r, const struct eo_design_key *key, const char *name, const char *cell,
+static json_t *read_value(struct reader *reader, const struct eo_design_key *key, const char *name, const char *cell,
                           const char *unit, int column)
 {
   if (strcmp(cell, "null") == 0)
@@ -159,14 +160,14 @@ static json_t *read_value(struct reader *r, const struct eo_design_key *key, con
   if (*cell == '[' || *cell == '{') {
     json_t *list = read_list(cell);
     if (!list)
-      fault(r, column, "not_a_list", "%s is \"%.60s\"; a list as [1, 2] is needed.", name, cell);
+      fault(reader, column, "not_a_list", "%s is \"%.60s\"; a list as [1, 2] is needed.", name, cell);
     return list;
   }
   switch (key->field->kind) {
   case EO_FIELD_FLAG:
     if (strcasecmp(cell, "true") == 0 || strcasecmp(cell, "false") == 0)
       return json_boolean(strcasecmp(cell, "true") == 0);
-    fault(r, column, "not_a_boolean", "%s is \"%.60s\"; true or false is needed.", name, cell);
+    fault(reader, column, "not_a_boolean", "%s is \"%.60s\"; true or false is needed.", name, cell);
     return NULL;
   case EO_FIELD_CHOICE:
   case EO_FIELD_TEXT:
@@ -174,17 +175,17 @@ static json_t *read_value(struct reader *r, const struct eo_design_key *key, con
   default:
     break;
   }
-  double value = read_quantity(r, key, name, cell, unit, column);
+  double value = read_quantity(reader, key, name, cell, unit, column);
   if (isnan(value))
     return NULL;
   bool whole = key->field->kind == EO_FIELD_INTEGER || key->field->kind == EO_FIELD_SEED;
   return whole && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static void put(struct reader *r, const struct eo_design_key *key, json_t *value)
+static void put(struct reader *reader, const struct eo_design_key *key, json_t *value)
 {
   for (int i = 0; i < key->paths && value; i++)
-    r->out->failed = !eo_design_key_set(r->design, key->path[i], json_incref(value)) || r->out->failed;
+    reader->out->failed = !eo_design_key_set(reader->design, key->path[i], json_incref(value)) || reader->out->failed;
   json_decref(value);
 }
 
@@ -202,36 +203,38 @@ static void split_unit(const char *cell, char name[EO_KEY_PATH], char unit[40])
 }
 
 /* One row: for each member its own value, or one for both. */
-static void read_row(struct reader *r, const struct block *block)
+static void read_row(struct reader *reader, const struct block *block)
 {
   char name[EO_KEY_PATH], unit[40];
-  split_unit(eo_cells_at(r->cells, r->row, 0), name, unit);
-  const char *stated = block->unit >= 0 ? eo_cells_at(r->cells, r->row, block->unit) : "";
-  const char *cell[2] = {eo_cells_at(r->cells, r->row, block->value[0]),
-                         block->value[1] >= 0 ? eo_cells_at(r->cells, r->row, block->value[1]) : ""};
+  split_unit(eo_cells_at(reader->cells, reader->row, 0), name, unit);
+  const char *stated = block->unit >= 0 ? eo_cells_at(reader->cells, reader->row, block->unit) : "";
+  const char *cell[2] = {eo_cells_at(reader->cells, reader->row, block->value[0]),
+                         block->value[1] >= 0 ? eo_cells_at(reader->cells, reader->row, block->value[1]) : ""};
   if (!*name || *name == '#' || (!*cell[0] && !*cell[1]))
     return;
   if (strcmp(name, "name") == 0) {
-    json_object_set_new(r->design, "name", json_string(cell[0]));
+    json_object_set_new(reader->design, "name", json_string(cell[0]));
     return;
   }
   if (eo_design_key_is_derived(name)) {
-    eo_import_say(r->out, r->out->not_used, "%s (line %d): it follows from the others", name, r->row + 1);
+    eo_import_say(reader->out, reader->out->not_used, "%s (line %d): it follows from the others", name,
+                  reader->row + 1);
     return;
   }
   struct eo_design_key key[2];
-  if (!eo_design_key_find(&key[0], name, 0, r->ends) || !eo_design_key_find(&key[1], name, 1, r->ends)) {
-    fault(r, 0, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s", name, "");
+  if (!eo_design_key_find(&key[0], name, 0, reader->ends) || !eo_design_key_find(&key[1], name, 1, reader->ends)) {
+    fault(reader, 0, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s", name,
+          "");
     return;
   }
   if (!key[0].of_member && *cell[0] && *cell[1] && strcmp(cell[0], cell[1]) != 0) {
-    fault(r, block->value[1], "one_value", "%s has one value for both members, and here are two.%s", name, "");
+    fault(reader, block->value[1], "one_value", "%s has one value for both members, and here are two.%s", name, "");
     return;
   }
   for (int member = 0; member < 2; member++)
     if (*cell[member])
-      put(r, &key[member],
-          read_value(r, &key[member], name, cell[member], *stated ? stated : unit, block->value[member]));
+      put(reader, &key[member],
+          read_value(reader, &key[member], name, cell[member], *stated ? stated : unit, block->value[member]));
 }
 
 /* Designs: */
@@ -241,11 +244,11 @@ static bool is_header(const struct eo_cells *cells, int row)
   return strcasecmp(eo_cells_at(cells, row, 0), "key") == 0;
 }
 
-static bool read_header(struct reader *r, int row, struct block *block)
+static bool read_header(struct reader *reader, int row, struct block *block)
 {
   *block = (struct block){.first = row + 1, .value = {-1, -1}, .unit = -1};
-  for (int column = 1; column < r->cells->columns; column++) {
-    const char *cell = eo_cells_at(r->cells, row, column);
+  for (int column = 1; column < reader->cells->columns; column++) {
+    const char *cell = eo_cells_at(reader->cells, row, column);
     if (strcasecmp(cell, "pinion") == 0 || strcasecmp(cell, "value") == 0)
       block->value[0] = column;
     else if (strcasecmp(cell, "gear") == 0)
@@ -253,14 +256,14 @@ static bool read_header(struct reader *r, int row, struct block *block)
     else if (strcasecmp(cell, "unit") == 0)
       block->unit = column;
     else if (*cell) {
-      r->row = row;
-      fault(r, column, "unknown_column", "The column \"%.40s\" is none of pinion, gear and unit.%s", cell, "");
+      reader->row = row;
+      fault(reader, column, "unknown_column", "The column \"%.40s\" is none of pinion, gear and unit.%s", cell, "");
     }
   }
-  r->row = row;
+  reader->row = row;
   if (block->value[0] < 0)
-    fault(r, 0, "no_values", "The header has no column \"pinion\"%s%s.", "", "");
-  for (block->last = block->first; block->last < r->cells->rows && !is_header(r->cells, block->last);)
+    fault(reader, 0, "no_values", "The header has no column \"pinion\"%s%s.", "", "");
+  for (block->last = block->first; block->last < reader->cells->rows && !is_header(reader->cells, block->last);)
     block->last++;
   return block->value[0] >= 0;
 }
@@ -282,91 +285,93 @@ static const char *name_in(const struct eo_cells *cells, const struct block *blo
 }
 
 /* The number of ends decides how far a symbol of a modification reaches, so it is read first. */
-static int ends_in(const struct reader *r, const struct block *block)
+static int ends_in(const struct reader *reader, const struct block *block)
 {
   for (int row = block->first; row < block->last; row++)
-    if (strcmp(eo_cells_at(r->cells, row, 0), "gear_pair.ends") == 0)
-      return strcmp(eo_cells_at(r->cells, row, block->value[0]), "1") == 0 ? 1 : 2;
+    if (strcmp(eo_cells_at(reader->cells, row, 0), "gear_pair.ends") == 0)
+      return strcmp(eo_cells_at(reader->cells, row, block->value[0]), "1") == 0 ? 1 : 2;
   return 2;
 }
 
-static int read_blocks(struct reader *r, int wanted)
+static int read_blocks(struct reader *reader, int wanted)
 {
   int designs = 0;
   struct block block, chosen = {0};
-  for (int row = 0; row < r->cells->rows && designs < DESIGNS; row++) {
-    if (!is_header(r->cells, row) || !read_header(r, row, &block))
+  for (int row = 0; row < reader->cells->rows && designs < DESIGNS; row++) {
+    if (!is_header(reader->cells, row) || !read_header(reader, row, &block))
       continue;
-    list_design(r->out, name_in(r->cells, &block));
+    list_design(reader->out, name_in(reader->cells, &block));
     if (++designs == (wanted ? wanted : 1))
       chosen = block;
   }
   if (!chosen.first || (designs > 1 && !wanted))
     return designs;
-  r->ends = ends_in(r, &chosen);
-  for (r->row = chosen.first; r->row < chosen.last; r->row++)
-    read_row(r, &chosen);
+  reader->ends = ends_in(reader, &chosen);
+  for (reader->row = chosen.first; reader->row < chosen.last; reader->row++)
+    read_row(reader, &chosen);
   return designs;
 }
 
-static void read_wide_row(struct reader *r)
+static void read_wide_row(struct reader *reader)
 {
   char name[EO_KEY_PATH], unit[40];
   struct eo_design_key key;
-  for (int column = 0; column < r->cells->columns; column++) {
-    const char *cell = eo_cells_at(r->cells, r->row, column);
-    split_unit(eo_cells_at(r->cells, 0, column), name, unit);
+  for (int column = 0; column < reader->cells->columns; column++) {
+    const char *cell = eo_cells_at(reader->cells, reader->row, column);
+    split_unit(eo_cells_at(reader->cells, 0, column), name, unit);
     if (!*cell || !*name)
       continue;
     if (strcmp(name, "name") == 0)
-      json_object_set_new(r->design, "name", json_string(cell));
-    else if (!eo_design_key_find(&key, name, 0, r->ends))
-      fault(r, column, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s",
+      json_object_set_new(reader->design, "name", json_string(cell));
+    else if (!eo_design_key_find(&key, name, 0, reader->ends))
+      fault(reader, column, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s",
             name, "");
     else if (key.of_member)
-      fault(r, column, "member_needed",
+      fault(reader, column, "member_needed",
             "\"%.100s\" could be the pinion's or the gear's; write the whole key, as %.150s.", name, key.path[0]);
     else
-      put(r, &key, read_value(r, &key, name, cell, unit, column));
+      put(reader, &key, read_value(reader, &key, name, cell, unit, column));
   }
 }
 
-static int read_rows(struct reader *r, int wanted)
+static int read_rows(struct reader *reader, int wanted)
 {
   int designs = 0, name_column = -1, ends_column = -1;
-  for (int column = 0; column < r->cells->columns; column++) {
-    const char *header = eo_cells_at(r->cells, 0, column);
+  for (int column = 0; column < reader->cells->columns; column++) {
+    const char *header = eo_cells_at(reader->cells, 0, column);
     name_column = strcmp(header, "name") == 0 ? column : name_column;
     ends_column = strcmp(header, "gear_pair.ends") == 0 ? column : ends_column;
   }
-  for (int row = 1; row < r->cells->rows && designs < DESIGNS; row++) {
-    list_design(r->out, eo_cells_at(r->cells, row, name_column));
+  for (int row = 1; row < reader->cells->rows && designs < DESIGNS; row++) {
+    list_design(reader->out, eo_cells_at(reader->cells, row, name_column));
     designs++;
   }
   if ((designs > 1 && !wanted) || wanted > designs)
     return designs;
-  r->row = wanted ? wanted : 1;
-  r->ends = strcmp(eo_cells_at(r->cells, r->row, ends_column), "1") == 0 ? 1 : 2;
+  reader->row = wanted ? wanted : 1;
+  reader->ends = strcmp(eo_cells_at(reader->cells, reader->row, ends_column), "1") == 0 ? 1 : 2;
   if (designs)
-    read_wide_row(r);
+    read_wide_row(reader);
   return designs;
 }
 
-static void read_designs(struct reader *r, const struct eo_import_options *options)
+static void read_designs(struct reader *reader, const struct eo_import_options *options)
 {
-  r->wide = true;
-  for (int row = 0; row < r->cells->rows; row++)
-    r->wide = r->wide && !is_header(r->cells, row);
-  int designs = r->wide ? read_rows(r, options->pair) : read_blocks(r, options->pair);
+  reader->wide = true;
+  for (int row = 0; row < reader->cells->rows; row++)
+    reader->wide = reader->wide && !is_header(reader->cells, row);
+  int designs = reader->wide ? read_rows(reader, options->pair) : read_blocks(reader, options->pair);
   if (!designs)
-    eo_import_fault(r->out, "no_design",
+    eo_import_fault(reader->out, "no_design",
                     "The table holds no design: it begins neither with key;pinion;gear;unit nor with a row of keys.");
   else if (!options->pair && designs > 1)
-    eo_import_fault(r->out, "choice_needed", "The table has %d designs; choose one by its number (--pair N).", designs);
+    eo_import_fault(reader->out, "choice_needed", "The table has %d designs; choose one by its number (--pair N).",
+                    designs);
   else if (options->pair > designs)
-    eo_import_fault(r->out, "no_such_pair", "There is no design %d; the table has 1 to %d.", options->pair, designs);
+    eo_import_fault(reader->out, "no_such_pair", "There is no design %d; the table has 1 to %d.", options->pair,
+                    designs);
   else
-    r->out->pair = options->pair ? options->pair : 1;
+    reader->out->pair = options->pair ? options->pair : 1;
 }
 
 void eo_import_table(struct eo_import *out, const char *bytes, size_t size, bool workbook,
@@ -376,17 +381,17 @@ void eo_import_table(struct eo_import *out, const char *bytes, size_t size, bool
   struct eo_error error;
   enum eo_code code = workbook ? eo_cells_read_workbook(&cells, bytes, size, &error)
                                : eo_cells_read(&cells, bytes, size, &error);
-  struct reader r = {.out = out, .cells = &cells, .ends = 2, .design = json_object()};
+  struct reader reader = {.out = out, .cells = &cells, .ends = 2, .design = json_object()};
   snprintf(out->format, sizeof out->format, workbook ? "workbook" : "table");
-  if (code == EO_ERROR_MEMORY || !r.design)
+  if (code == EO_ERROR_MEMORY || !reader.design)
     out->failed = true;
   else if (code)
     eo_import_fault(out, "not_readable", "%s", error.text);
-  else if (find_decimal_sign(&r))
-    read_designs(&r, options);
+  else if (find_decimal_sign(&reader))
+    read_designs(&reader, options);
   eo_cells_done(&cells);
   if (out->pair)
-    out->design = r.design;
+    out->design = reader.design;
   else
-    json_decref(r.design);
+    json_decref(reader.design);
 }

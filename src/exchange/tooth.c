@@ -178,23 +178,23 @@ static void flank_point(const struct eo_tooth *tooth, bool coast, double path, d
 static void swept_point(const struct eo_tooth *tooth, enum eo_tooth_part part, double p, double z, double point[3],
                         double normal[3])
 {
-  const struct eo_geometry *g = tooth->geometry;
+  const struct eo_geometry *geometry = tooth->geometry;
   if (part == EO_TOOTH_TIP) {
     double tip[2], across[2];
-    eo_geometry_involute(g, tooth->member, g->tip_radius[tooth->member], tip, across);
+    eo_geometry_involute(geometry, tooth->member, geometry->tip_radius[tooth->member], tip, across);
     double angle = (2 * p - 1) * atan2(tip[0], tip[1]);
     normal[0] = sin(angle);
     normal[1] = cos(angle);
     for (int i = 0; i < 2; i++)
-      point[i] = g->tip_radius[tooth->member] * normal[i];
+      point[i] = geometry->tip_radius[tooth->member] * normal[i];
   } else {
     double share = tooth->fillet_share;
     if (p <= share)
-      eo_geometry_fillet(g, tooth->member, p / share, point, normal);
+      eo_geometry_fillet(geometry, tooth->member, p / share, point, normal);
     else {
       double path = tooth->form_path + (p - share) / (1 - share) * (tooth->start_path - tooth->form_path);
-      double radius = eo_geometry_radius_at(g, tooth->member, eo_geometry_own_path(tooth->member, path));
-      eo_geometry_involute(g, tooth->member, fmax(radius, g->base_radius[tooth->member]), point, normal);
+      double radius = eo_geometry_radius_at(geometry, tooth->member, eo_geometry_own_path(tooth->member, path));
+      eo_geometry_involute(geometry, tooth->member, fmax(radius, geometry->base_radius[tooth->member]), point, normal);
     }
     if (part == EO_TOOTH_COAST_ROOT) {
       point[0] = -point[0];
@@ -214,16 +214,16 @@ static void swept_point(const struct eo_tooth *tooth, enum eo_tooth_part part, d
 void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
                     double point[3], double normal[3])
 {
-  const struct eo_geometry *g = tooth->geometry;
+  const struct eo_geometry *geometry = tooth->geometry;
   bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
-  double outwards = g->member_width[tooth->member] * (mirrored ? 0.5 - q : q - 0.5), unused[3];
+  double outwards = geometry->member_width[tooth->member] * (mirrored ? 0.5 - q : q - 0.5), unused[3];
   double *across = normal ? normal : unused;
   if (is_flank(part))
     flank_point(tooth, part == EO_TOOTH_COAST, tooth->start_path + p * (tooth->tip_path - tooth->start_path), outwards,
                 point, across);
   else
     swept_point(tooth, part, p, tooth->member == EO_PINION ? outwards : -outwards, point, across);
-  double angle = -tooth->half - tooth->behind + number * 2 * M_PI / g->teeth[tooth->member];
+  double angle = -tooth->half - tooth->behind + number * 2 * M_PI / geometry->teeth[tooth->member];
   double *const both[2] = {point, across};
   for (int i = 0; i < 2; i++) {
     turn_vector(both[i], angle);

@@ -115,51 +115,56 @@ struct scratch {
   double *matrix, *before, *after, *body, *solved;
 };
 
-static void scratch_done(struct scratch *s)
+static void scratch_done(struct scratch *scratch)
 {
-  free(s->matrix);
-  free(s->before);
-  free(s->after);
-  free(s->body);
-  free(s->solved);
+  free(scratch->matrix);
+  free(scratch->before);
+  free(scratch->after);
+  free(scratch->body);
+  free(scratch->solved);
 }
 
-static enum eo_code scratch_init(struct scratch *s, size_t n, struct eo_error *error)
+static enum eo_code scratch_init(struct scratch *scratch, size_t n, struct eo_error *error)
 {
-  *s = (struct scratch){.matrix = malloc(sizeof(double) * n * n),
-                        .before = malloc(sizeof(double) * n * n),
-                        .after = malloc(sizeof(double) * n * n),
-                        .body = malloc(sizeof(double) * PATTERNS * n),
-                        .solved = malloc(sizeof(double) * PATTERNS * n)};
-  return s->matrix && s->before && s->after && s->body && s->solved ? EO_OK : eo_error_memory(error);
+  *scratch = (struct scratch){.matrix = malloc(sizeof(double) * n * n),
+                              .before = malloc(sizeof(double) * n * n),
+                              .after = malloc(sizeof(double) * n * n),
+                              .body = malloc(sizeof(double) * PATTERNS * n),
+                              .solved = malloc(sizeof(double) * PATTERNS * n)};
+  return scratch->matrix && scratch->before && scratch->after && scratch->body && scratch->solved
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 /* Eliminates the face between the two chains; out: fresh. body[2][PATTERNS][face] of the second as the first sees it.
  */
-static void combine(int n, const struct chain *a, const struct chain *b, double *const body[2], struct scratch *s,
+static void combine(int n, const struct chain *a, const struct chain *b, double *const body[2], struct scratch *scratch,
                     struct chain *out)
 {
   size_t size = (size_t)n * (size_t)n;
-  memcpy(s->before, a->across, size * sizeof *s->before);
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n, n, 1, s->matrix, n, s->before, n);
-  memcpy(s->after, b->across, size * sizeof *s->after);
-  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, s->matrix, n, s->after, n);
-  memcpy(s->solved, s->body, PATTERNS * (size_t)n * sizeof *s->solved);
-  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, PATTERNS, 1, s->matrix, n, s->solved,
-              n);
+  memcpy(scratch->before, a->across, size * sizeof *scratch->before);
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, n, n, 1, scratch->matrix, n,
+              scratch->before, n);
+  memcpy(scratch->after, b->across, size * sizeof *scratch->after);
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, n, 1, scratch->matrix, n,
+              scratch->after, n);
+  memcpy(scratch->solved, scratch->body, PATTERNS * (size_t)n * sizeof *scratch->solved);
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, PATTERNS, 1, scratch->matrix, n,
+              scratch->solved, n);
   memcpy(out->left, a->left, size * sizeof *out->left);
   memcpy(out->right, b->right, size * sizeof *out->right);
   memcpy(out->body[0], a->body[0], PATTERNS * (size_t)n * sizeof(double));
   memcpy(out->body[1], body[1], PATTERNS * (size_t)n * sizeof(double));
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, n, -1, s->before, n, 1, out->left, n); /* theory (B8) */
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, n, -1, s->after, n, 1, out->right, n);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, n, -1, scratch->before, n, 1, out->left, n); /* theory (B8) */
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, n, -1, scratch->after, n, 1, out->right, n);
   mirror((size_t)n, out->left);
   mirror((size_t)n, out->right);
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, n, n, -1, s->before, n, s->after, n, 0, out->across, n);
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, PATTERNS, n, -1, s->before, n, s->solved, n, 1,
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, n, n, -1, scratch->before, n, scratch->after, n, 0,
+              out->across, n);
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, PATTERNS, n, -1, scratch->before, n, scratch->solved, n, 1,
               out->body[0], n);
-  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, PATTERNS, n, -1, s->after, n, s->solved, n, 1, out->body[1],
-              n);
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, PATTERNS, n, -1, scratch->after, n, scratch->solved, n, 1,
+              out->body[1], n);
 }
 
 /* a and b side by side -> out. join: NULL, or takes what finds the face again. */
@@ -169,39 +174,40 @@ static enum eo_code merge(struct work *work, const struct chain *a, const struct
   const struct eo_ring_tooth *tooth = work->tooth;
   int n = tooth->face;
   size_t patterns = PATTERNS * (size_t)n;
-  struct scratch s;
+  struct scratch scratch;
   double *body[2] = {malloc(sizeof(double) * patterns), malloc(sizeof(double) * patterns)};
   *out = (struct chain){0};
-  enum eo_code code = scratch_init(&s, (size_t)n, error);
+  enum eo_code code = scratch_init(&scratch, (size_t)n, error);
   if (!code)
     code = body[0] && body[1] ? chain_init(out, (size_t)n, error) : eo_error_memory(error);
   if (!code) {
     for (size_t i = 0; i < (size_t)n * (size_t)n; i++)
-      s.matrix[i] = a->right[i] + b->left[i];
+      scratch.matrix[i] = a->right[i] + b->left[i];
     for (int side = 0; side < 2; side++)
       turn_body(tooth, a->teeth, b->body[side], body[side]);
     for (size_t i = 0; i < patterns; i++)
-      s.body[i] = a->body[1][i] + body[0][i];
-    if (eo_symmetric_factor(n, s.matrix))
+      scratch.body[i] = a->body[1][i] + body[0][i];
+    if (eo_symmetric_factor(n, scratch.matrix))
       code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The stiffness of a chain of %d teeth is not positive definite.",
                           a->teeth + b->teeth);
   }
   if (!code) {
-    combine(n, a, b, body, &s, out);
+    combine(n, a, b, body, &scratch, out);
     out->teeth = a->teeth + b->teeth;
     memcpy(out->moved, a->moved, sizeof out->moved);
     add_moved(tooth, a->teeth, (const double(*)[PATTERNS])b->moved, out->moved);
     for (int p = 0; p < PATTERNS; p++)
       for (int q = 0; q < PATTERNS; q++)
-        out->moved[p][q] += cblas_ddot(n, s.solved + (size_t)p * (size_t)n, 1, s.solved + (size_t)q * (size_t)n, 1);
+        out->moved[p][q] += cblas_ddot(n, scratch.solved + (size_t)p * (size_t)n, 1,
+                                       scratch.solved + (size_t)q * (size_t)n, 1);
     code = advance(work, error);
   }
   if (!code && join) {
-    join->factor = s.matrix;
-    join->body = s.body;
-    s.matrix = s.body = NULL;
+    join->factor = scratch.matrix;
+    join->body = scratch.body;
+    scratch.matrix = scratch.body = NULL;
   }
-  scratch_done(&s);
+  scratch_done(&scratch);
   free(body[0]);
   free(body[1]);
   return code;
@@ -245,9 +251,9 @@ static enum eo_code make_middle(struct work *work, int teeth, struct chain *out,
   enum eo_code code = EO_OK;
   *out = (struct chain){0};
   for (int left = teeth; left && !code; left >>= 1) {
-    const struct chain *p = power.teeth ? &power : &work->single;
+    const struct chain *chain = power.teeth ? &power : &work->single;
     if (left & 1 && out->teeth) {
-      code = merge(work, out, p, &next, NULL, error);
+      code = merge(work, out, chain, &next, NULL, error);
       chain_done(out);
       *out = next;
     } else if (left & 1) {
@@ -255,16 +261,16 @@ static enum eo_code make_middle(struct work *work, int teeth, struct chain *out,
       code = chain_init(out, n, error);
       if (code)
         break;
-      memcpy(out->left, p->left, n * n * sizeof(double));
-      memcpy(out->right, p->right, n * n * sizeof(double));
-      memcpy(out->across, p->across, n * n * sizeof(double));
-      memcpy(out->body[0], p->body[0], PATTERNS * n * sizeof(double));
-      memcpy(out->body[1], p->body[1], PATTERNS * n * sizeof(double));
-      memcpy(out->moved, p->moved, sizeof out->moved);
-      out->teeth = p->teeth;
+      memcpy(out->left, chain->left, n * n * sizeof(double));
+      memcpy(out->right, chain->right, n * n * sizeof(double));
+      memcpy(out->across, chain->across, n * n * sizeof(double));
+      memcpy(out->body[0], chain->body[0], PATTERNS * n * sizeof(double));
+      memcpy(out->body[1], chain->body[1], PATTERNS * n * sizeof(double));
+      memcpy(out->moved, chain->moved, sizeof out->moved);
+      out->teeth = chain->teeth;
     }
     if (left > 1 && !code) {
-      code = merge(work, p, p, &next, NULL, error);
+      code = merge(work, chain, chain, &next, NULL, error);
       chain_done(&power);
       power = next;
     }
@@ -366,26 +372,28 @@ struct closing {
   double *scratch;     /* [5][face] */
 };
 
-static void closing_done(struct closing *c)
+static void closing_done(struct closing *closing)
 {
-  free(c->matrix);
-  free(c->motion);
-  free(c->coefficient);
-  free(c->turned);
-  free(c->mean);
-  free(c->scratch);
+  free(closing->matrix);
+  free(closing->motion);
+  free(closing->coefficient);
+  free(closing->turned);
+  free(closing->mean);
+  free(closing->scratch);
 }
 
-static enum eo_code closing_init(struct closing *c, size_t n, size_t m, struct eo_error *error)
+static enum eo_code closing_init(struct closing *closing, size_t n, size_t m, struct eo_error *error)
 {
-  *c = (struct closing){.matrix = malloc(sizeof(double) * 4 * n * n),
-                        .motion = malloc(sizeof(double) * 2 * n * m),
-                        .coefficient = calloc(PATTERNS * m, sizeof(double)),
-                        .turned = calloc(PATTERNS * m, sizeof(double)),
-                        .mean = calloc(PATTERNS * m, sizeof(double)),
-                        .scratch = malloc(sizeof(double) * 5 * n)};
-  return c->matrix && c->motion && c->coefficient && c->turned && c->mean && c->scratch ? EO_OK
-                                                                                        : eo_error_memory(error);
+  *closing = (struct closing){.matrix = malloc(sizeof(double) * 4 * n * n),
+                              .motion = malloc(sizeof(double) * 2 * n * m),
+                              .coefficient = calloc(PATTERNS * m, sizeof(double)),
+                              .turned = calloc(PATTERNS * m, sizeof(double)),
+                              .mean = calloc(PATTERNS * m, sizeof(double)),
+                              .scratch = malloc(sizeof(double) * 5 * n)};
+  return closing->matrix && closing->motion && closing->coefficient && closing->turned && closing->mean &&
+                 closing->scratch
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 /* y[columns][n at stride] += a[PATTERNS][n] c[PATTERNS][columns]. */
@@ -395,7 +403,7 @@ static void add_patterns(int n, int columns, const double *a, const double *c, d
 }
 
 /* Weighted means of the rigid motion of all faces, by reciprocity from what the balancing forces move. */
-static void find_means(const struct work *work, const struct chain *chain, struct closing *c,
+static void find_means(const struct work *work, const struct chain *chain, struct closing *closing,
                        const double mass[PATTERNS][PATTERNS])
 {
   const struct eo_ring_tooth *tooth = work->tooth;
@@ -403,46 +411,46 @@ static void find_means(const struct work *work, const struct chain *chain, struc
   double turn[PATTERNS][PATTERNS];
   turn_of(tooth, 1, turn);
   for (int j = 0; j < m; j++) {
-    const double *zero = c->motion + (size_t)j * 2 * (size_t)n, *one = zero + n;
+    const double *zero = closing->motion + (size_t)j * 2 * (size_t)n, *one = zero + n;
     double local[PATTERNS], sum[PATTERNS];
     for (int a = 0; a < PATTERNS; a++) {
       size_t at = (size_t)a * (size_t)n;
       sum[a] = cblas_ddot(n, work->single.body[0] + at, 1, zero, 1);
       local[a] = cblas_ddot(n, chain->body[0] + at, 1, one, 1) + cblas_ddot(n, chain->body[1] + at, 1, zero, 1);
       for (int b = 0; b < PATTERNS; b++)
-        local[a] += chain->moved[a][b] * c->turned[b * m + j];
+        local[a] += chain->moved[a][b] * closing->turned[b * m + j];
     }
     for (int a = 0; a < PATTERNS; a++) {
       for (int b = 0; b < PATTERNS; b++)
         sum[a] += turn[b][a] * local[b];
-      c->mean[a * m + j] = sum[a] / mass[a][a];
+      closing->mean[a * m + j] = sum[a] / mass[a][a];
     }
   }
 }
 
-static enum eo_code close_and_solve(const struct work *work, const struct chain *chain, struct closing *c,
+static enum eo_code close_and_solve(const struct work *work, const struct chain *chain, struct closing *closing,
                                     struct eo_error *error)
 {
   const struct eo_ring_tooth *tooth = work->tooth;
   int n = tooth->face, m = tooth->flank;
   double mass[PATTERNS][PATTERNS] = {{0}};
   const double *f = tooth->influence + (size_t)(tooth->inner - m) * 2 * (size_t)n;
-  close_ring(work, chain, c->matrix);
+  close_ring(work, chain, closing->matrix);
   for (size_t i = 0; i < 2 * (size_t)n * (size_t)m; i++)
-    c->motion[i] = -f[i];
+    closing->motion[i] = -f[i];
   if (tooth->floating) {
-    add_rigid_springs(work, c->scratch, c->matrix);
-    balance(work, c->coefficient, mass);
-    turn_coefficients(tooth, 1, c->coefficient, c->turned);
-    add_patterns(n, m, work->single.body[0], c->coefficient, 1, c->motion, 2 * n);
-    add_patterns(n, m, chain->body[1], c->turned, 1, c->motion, 2 * n);
-    add_patterns(n, m, chain->body[0], c->turned, 1, c->motion + n, 2 * n);
+    add_rigid_springs(work, closing->scratch, closing->matrix);
+    balance(work, closing->coefficient, mass);
+    turn_coefficients(tooth, 1, closing->coefficient, closing->turned);
+    add_patterns(n, m, work->single.body[0], closing->coefficient, 1, closing->motion, 2 * n);
+    add_patterns(n, m, chain->body[1], closing->turned, 1, closing->motion, 2 * n);
+    add_patterns(n, m, chain->body[0], closing->turned, 1, closing->motion + n, 2 * n);
   }
-  if (eo_symmetric_factor(2 * n, c->matrix))
+  if (eo_symmetric_factor(2 * n, closing->matrix))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stiffness of the ring is not positive definite.");
-  eo_symmetric_substitute(2 * n, c->matrix, m, c->motion);
+  eo_symmetric_substitute(2 * n, closing->matrix, m, closing->motion);
   if (tooth->floating)
-    find_means(work, chain, c, (const double(*)[PATTERNS])mass);
+    find_means(work, chain, closing, (const double(*)[PATTERNS])mass);
   return EO_OK;
 }
 
@@ -452,7 +460,7 @@ static double *face_of(const struct eo_ring_motion *motion, const struct eo_ring
 }
 
 /* The face between a chain and its added tooth: K u = f c - A_RL u_L - B_LR u_R. */
-static void find_face(const struct work *work, const struct join *join, struct closing *c, const double *left,
+static void find_face(const struct work *work, const struct join *join, struct closing *closing, const double *left,
                       const double *right, double *face)
 {
   const struct eo_ring_tooth *tooth = work->tooth;
@@ -461,28 +469,30 @@ static void find_face(const struct work *work, const struct join *join, struct c
   const double *after = join->leading ? join->across : work->single.across;
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, m, n, -1, before, n, left, n, 0, face, n);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, m, n, -1, after, n, right, n, 1, face, n);
-  turn_coefficients(tooth, join->first, c->coefficient, c->turned);
-  add_patterns(n, m, join->body, c->turned, 1, face, n);
+  turn_coefficients(tooth, join->first, closing->coefficient, closing->turned);
+  add_patterns(n, m, join->body, closing->turned, 1, face, n);
   eo_symmetric_substitute(n, join->factor, m, face);
 }
 
 /* From faces 0 and 1 inwards, in the opposite order of the joining; at last the mean motion is taken out of all. */
-static void find_faces(const struct work *work, struct closing *c, struct eo_ring_motion *motion)
+static void find_faces(const struct work *work, struct closing *closing, struct eo_ring_motion *motion)
 {
   const struct eo_ring_tooth *tooth = work->tooth;
   size_t n = (size_t)tooth->face, m = (size_t)tooth->flank;
   for (size_t j = 0; j < m; j++) {
-    memcpy(face_of(motion, tooth, 0) + j * n, c->motion + j * 2 * n, n * sizeof(double));
-    memcpy(face_of(motion, tooth, 1) + j * n, c->motion + j * 2 * n + n, n * sizeof(double));
+    memcpy(face_of(motion, tooth, 0) + j * n, closing->motion + j * 2 * n, n * sizeof(double));
+    memcpy(face_of(motion, tooth, 1) + j * n, closing->motion + j * 2 * n + n, n * sizeof(double));
   }
   for (int t = 1; t <= motion->reach; t++) {
     const struct join *pair = &work->join[work->joins - 2 * t]; /* [0]: tooth t, [1]: tooth -t */
-    find_face(work, &pair[1], c, face_of(motion, tooth, t), face_of(motion, tooth, 1 - t), face_of(motion, tooth, -t));
-    find_face(work, &pair[0], c, face_of(motion, tooth, t), face_of(motion, tooth, -t), face_of(motion, tooth, t + 1));
+    find_face(work, &pair[1], closing, face_of(motion, tooth, t), face_of(motion, tooth, 1 - t),
+              face_of(motion, tooth, -t));
+    find_face(work, &pair[0], closing, face_of(motion, tooth, t), face_of(motion, tooth, -t),
+              face_of(motion, tooth, t + 1));
   }
   for (int t = -motion->reach; t <= motion->reach + 1; t++) {
-    turn_coefficients(tooth, t, c->mean, c->turned);
-    add_patterns((int)n, (int)m, work->field, c->turned, -1, face_of(motion, tooth, t), (int)n);
+    turn_coefficients(tooth, t, closing->mean, closing->turned);
+    add_patterns((int)n, (int)m, work->field, closing->turned, -1, face_of(motion, tooth, t), (int)n);
   }
 }
 

@@ -125,14 +125,14 @@ static void put_nodes(struct output *out, enum eo_mesh_element element)
 
 static void put_element(struct output *out, enum eo_mesh_element element, int number, int tooth, int l, int q)
 {
-  const struct eo_section *s = out->sector->section;
+  const struct eo_section *section = out->sector->section;
   put(out, "%d", number);
   for (int k = 0; k < 8; k++)
-    put(out, ", %d", corner_number(out, tooth, l + k / 4, s->quad[4 * q + k % 4]));
+    put(out, ", %d", corner_number(out, tooth, l + k / 4, section->quad[4 * q + k % 4]));
   for (int k = 0; k < 8 && element == EO_MESH_C3D20R; k++)
     put(out, "%s%d", k == 2 ? ",\n" : ", ", edge_number(out, tooth, l + k / 4, out->edge[4 * q + k % 4]));
   for (int k = 0; k < 4 && element == EO_MESH_C3D20R; k++)
-    put(out, ", %d", upright_number(out, tooth, l, s->quad[4 * q + k]));
+    put(out, ", %d", upright_number(out, tooth, l, section->quad[4 * q + k]));
   put(out, "\n");
 }
 
@@ -149,17 +149,17 @@ static void put_elements(struct output *out, enum eo_mesh_element element)
 /* An edge's middle is fixed when both ends are: the fixed surfaces meet no free edge. */
 static void put_fixed(struct output *out, enum eo_mesh_element element, int tooth)
 {
-  const struct eo_section *s = out->sector->section;
+  const struct eo_section *section = out->sector->section;
   unsigned char held = out->floating ? EO_HELD_AXIAL : EO_HELD_ALL;
   for (int l = 0; l <= out->sector->layers; l++) {
-    for (int a = 0; a < s->nodes; a++)
-      if (s->fixed[a] == held && out->node_place[a] >= 0)
+    for (int a = 0; a < section->nodes; a++)
+      if (section->fixed[a] == held && out->node_place[a] >= 0)
         put(out, "%d,\n", corner_number(out, tooth, l, a));
     for (int e = 0; e < out->edges && element == EO_MESH_C3D20R; e++)
-      if (s->fixed[out->ends[2 * e]] && s->fixed[out->ends[2 * e + 1]] && out->edge_place[e] >= 0)
+      if (section->fixed[out->ends[2 * e]] && section->fixed[out->ends[2 * e + 1]] && out->edge_place[e] >= 0)
         put(out, "%d,\n", edge_number(out, tooth, l, e));
-    for (int a = 0; a < s->nodes && element == EO_MESH_C3D20R && l < out->sector->layers; a++)
-      if (s->fixed[a] == held && out->node_place[a] >= 0)
+    for (int a = 0; a < section->nodes && element == EO_MESH_C3D20R && l < out->sector->layers; a++)
+      if (section->fixed[a] == held && out->node_place[a] >= 0)
         put(out, "%d,\n", upright_number(out, tooth, l, a));
   }
 }
@@ -168,14 +168,14 @@ static void put_fixed(struct output *out, enum eo_mesh_element element, int toot
 typedef void cut_function(struct output *out, int number, const double p[3], double weight, void *context);
 static void each_cut_node(struct output *out, cut_function *call, void *context)
 {
-  const struct eo_section *s = out->sector->section;
+  const struct eo_section *section = out->sector->section;
   int across = out->sector->layers + 1;
   for (int t = 0; t < out->teeth; t++)
-    for (int i = 0; i < s->cut_nodes; i++)
+    for (int i = 0; i < section->cut_nodes; i++)
       for (int l = 0; l < across; l++) {
         double p[3];
-        place_node(out, t, l, s->cut[0][i], p);
-        call(out, corner_number(out, t, l, s->cut[0][i]), p, out->weight[i * across + l], context);
+        place_node(out, t, l, section->cut[0][i], p);
+        call(out, corner_number(out, t, l, section->cut[0][i]), p, out->weight[i * across + l], context);
       }
 }
 
@@ -186,37 +186,37 @@ struct balance {
 
 static void add_mass(struct output *out, int number, const double p[3], double weight, void *context)
 {
-  struct balance *b = context;
+  struct balance *balance = context;
   (void)out;
   (void)number;
-  b->mass += weight;
-  b->inertia += weight * (p[0] * p[0] + p[1] * p[1]);
+  balance->mass += weight;
+  balance->inertia += weight * (p[0] * p[0] + p[1] * p[1]);
 }
 
 static void put_balance(struct output *out, int number, const double p[3], double weight, void *context)
 {
-  const struct balance *b = context;
-  double turn = b->moment / b->inertia;
-  put(out, "%d, 1, %.12e\n%d, 2, %.12e\n", number, -weight * (b->force[0] / b->mass - turn * p[1]), number,
-      -weight * (b->force[1] / b->mass + turn * p[0]));
+  const struct balance *balance = context;
+  double turn = balance->moment / balance->inertia;
+  put(out, "%d, 1, %.12e\n%d, 2, %.12e\n", number, -weight * (balance->force[0] / balance->mass - turn * p[1]), number,
+      -weight * (balance->force[1] / balance->mass + turn * p[0]));
 }
 
 /* Forces in proportion to mass against what the loads pull in the plane. */
 static void put_balances(struct output *out, const struct eo_mesh_case *load_case)
 {
-  struct balance b = {0};
+  struct balance balance = {0};
   for (int i = 0; i < load_case->loads; i++) {
     const struct eo_mesh_load *load = &load_case->load[i];
     int node = out->sector->section->flank.node[load->row];
     double normal[3], p[3];
     eo_sector_direction(out->sector, node, load->layer, 0, normal);
     eo_sector_position(out->sector, node, load->layer, p);
-    b.force[0] += load->force * normal[0];
-    b.force[1] += load->force * normal[1];
-    b.moment += load->force * (p[0] * normal[1] - p[1] * normal[0]);
+    balance.force[0] += load->force * normal[0];
+    balance.force[1] += load->force * normal[1];
+    balance.moment += load->force * (p[0] * normal[1] - p[1] * normal[0]);
   }
-  each_cut_node(out, add_mass, &b);
-  each_cut_node(out, put_balance, &b);
+  each_cut_node(out, add_mass, &balance);
+  each_cut_node(out, put_balance, &balance);
 }
 
 static void put_number(struct output *out, int number, const double p[3], double weight, void *context)
@@ -231,8 +231,8 @@ static void put_number(struct output *out, int number, const double p[3], double
    ways, the second across the line between them. */
 static void put_pins(struct output *out)
 {
-  const struct eo_section *s = out->sector->section;
-  int node = s->cut[0][s->cut_nodes - 1], other = out->teeth / 2;
+  const struct eo_section *section = out->sector->section;
+  int node = section->cut[0][section->cut_nodes - 1], other = out->teeth / 2;
   double p[3], q[3];
   place_node(out, 0, 0, node, p);
   place_node(out, other, 0, node, q);
@@ -288,16 +288,17 @@ static void put_model(struct output *out, const struct eo_material *material, en
 }
 
 /* Numbers the section's edges; each is met by at most two quadrilaterals. */
-static enum eo_code find_edges(struct output *out, const struct eo_section *s)
+static enum eo_code find_edges(struct output *out, const struct eo_section *section)
 {
-  int *first = malloc((size_t)s->nodes * sizeof *first), *next = malloc((size_t)(4 * s->quads) * sizeof *next);
-  out->edge = malloc((size_t)(4 * s->quads) * sizeof *out->edge);
-  out->ends = malloc((size_t)(8 * s->quads) * sizeof *out->ends);
+  int *first = malloc((size_t)section->nodes * sizeof *first),
+      *next = malloc((size_t)(4 * section->quads) * sizeof *next);
+  out->edge = malloc((size_t)(4 * section->quads) * sizeof *out->edge);
+  out->ends = malloc((size_t)(8 * section->quads) * sizeof *out->ends);
   enum eo_code code = first && next && out->edge && out->ends ? EO_OK : EO_ERROR_MEMORY;
-  for (int a = 0; a < s->nodes && !code; a++)
+  for (int a = 0; a < section->nodes && !code; a++)
     first[a] = -1;
-  for (int i = 0; i < 4 * s->quads && !code; i++) {
-    int a = s->quad[i], b = s->quad[i % 4 == 3 ? i - 3 : i + 1], low = a < b ? a : b, high = a < b ? b : a,
+  for (int i = 0; i < 4 * section->quads && !code; i++) {
+    int a = section->quad[i], b = section->quad[i % 4 == 3 ? i - 3 : i + 1], low = a < b ? a : b, high = a < b ? b : a,
         e = first[low];
     while (e >= 0 && out->ends[2 * e + 1] != high)
       e = next[e];
@@ -316,11 +317,11 @@ static enum eo_code find_edges(struct output *out, const struct eo_section *s)
 }
 
 /* Node of the left cut that is the same as this one of the right cut in the next tooth; -1: not on the right cut. */
-static int left_of(const struct eo_section *s, int node)
+static int left_of(const struct eo_section *section, int node)
 {
-  for (int i = 0; i < s->cut_nodes; i++)
-    if (s->cut[1][i] == node)
-      return s->cut[0][i];
+  for (int i = 0; i < section->cut_nodes; i++)
+    if (section->cut[1][i] == node)
+      return section->cut[0][i];
   return -1;
 }
 
@@ -333,26 +334,26 @@ static int find_edge(const struct output *out, int a, int b)
   return e;
 }
 
-static enum eo_code number_own(struct output *out, const struct eo_section *s)
+static enum eo_code number_own(struct output *out, const struct eo_section *section)
 {
-  out->node_place = malloc((size_t)s->nodes * sizeof *out->node_place);
+  out->node_place = malloc((size_t)section->nodes * sizeof *out->node_place);
   out->edge_place = malloc((size_t)out->edges * sizeof *out->edge_place);
   if (!out->node_place || !out->edge_place)
     return EO_ERROR_MEMORY;
-  for (int a = 0; a < s->nodes; a++) {
-    int left = left_of(s, a);
+  for (int a = 0; a < section->nodes; a++) {
+    int left = left_of(section, a);
     out->node_place[a] = left < 0 ? out->own_nodes++ : -1 - left;
   }
   for (int e = 0; e < out->edges; e++) {
-    int a = left_of(s, out->ends[2 * e]), b = left_of(s, out->ends[2 * e + 1]);
+    int a = left_of(section, out->ends[2 * e]), b = left_of(section, out->ends[2 * e + 1]);
     out->edge_place[e] = a < 0 || b < 0 ? out->own_edges++ : -1 - find_edge(out, a, b);
   }
   return EO_OK;
 }
 
-static enum eo_code weigh_cuts(struct output *out, const struct eo_section *s)
+static enum eo_code weigh_cuts(struct output *out, const struct eo_section *section)
 {
-  size_t count = (size_t)s->cut_nodes * (size_t)(out->sector->layers + 1);
+  size_t count = (size_t)section->cut_nodes * (size_t)(out->sector->layers + 1);
   out->weight = malloc((count + 1) * sizeof *out->weight);
   return out->weight ? eo_member_cut_weights(out->sector, out->teeth, out->weight) : EO_ERROR_MEMORY;
 }

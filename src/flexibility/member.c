@@ -17,46 +17,46 @@ struct wanted {
 
 static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *wanted)
 {
-  const struct eo_section *s = sector->section;
-  int across = sector->layers + 1,
-      nodes = 3 * s->root_nodes + s->flank.count + s->next_flank[0].count + s->next_flank[1].count;
+  const struct eo_section *section = sector->section;
+  int across = sector->layers + 1, nodes = 3 * section->root_nodes + section->flank.count +
+                                           section->next_flank[0].count + section->next_flank[1].count;
   *wanted = (struct wanted){.unknown = malloc((size_t)(nodes * across) * sizeof *wanted->unknown)};
   if (!wanted->unknown)
     return EO_ERROR_MEMORY;
-  wanted->count = eo_member_list_root(sector, s->root_nodes, wanted->unknown);
+  wanted->count = eo_member_list_root(sector, section->root_nodes, wanted->unknown);
   for (int k = 0; k < 2; k++) {
     wanted->next[k] = wanted->count;
-    wanted->count += eo_member_list_flank(sector, &s->next_flank[k], wanted->unknown + wanted->count);
+    wanted->count += eo_member_list_flank(sector, &section->next_flank[k], wanted->unknown + wanted->count);
   }
   wanted->flank = wanted->count;
-  wanted->count += eo_member_list_flank(sector, &s->flank, wanted->unknown + wanted->count);
+  wanted->count += eo_member_list_flank(sector, &section->flank, wanted->unknown + wanted->count);
   return EO_OK;
 }
 
 /* Splits the inverse, one row per load (pair k - 1, pair k + 1, the tooth itself), into the results. */
 static enum eo_code split_inverse(struct eo_member_job *job, const struct wanted *wanted, const double *inverse)
 {
-  struct eo_member_result *r = job->result;
-  const struct eo_section *s = &job->section;
-  int across = r->layers + 1, flank = r->rows * across, next = r->next_rows * across;
-  size_t stresses = (size_t)r->root_points * across * EO_STRESSES;
+  struct eo_member_result *member = job->result;
+  const struct eo_section *section = &job->section;
+  int across = member->layers + 1, flank = member->rows * across, next = member->next_rows * across;
+  size_t stresses = (size_t)member->root_points * across * EO_STRESSES;
   struct eo_stress_operator operator= {0};
-  double *displacement = malloc((size_t)(s->root_nodes * across * 3) * sizeof *displacement);
+  double *displacement = malloc((size_t)(section->root_nodes * across * 3) * sizeof *displacement);
   enum eo_code code = eo_stress_operator_init(&operator, & job->sector, job->material, job->error);
   if (!displacement)
     code = EO_ERROR_MEMORY;
   for (int load = 0; load < wanted->count - wanted->next[0] && !code; load++) {
     const double *kept = inverse + (size_t)load * (size_t)wanted->count;
     int own = load - (wanted->flank - wanted->next[0]), side = load >= next;
-    double *stress = own >= 0 ? r->stress + (size_t)own * stresses
-                              : r->next_stress[side] + (size_t)(load - side * next) * stresses;
-    eo_member_root_displacement(&job->sector, s->root_nodes, kept, kept + wanted->flank, displacement);
+    double *stress = own >= 0 ? member->stress + (size_t)own * stresses
+                              : member->next_stress[side] + (size_t)(load - side * next) * stresses;
+    eo_member_root_displacement(&job->sector, section->root_nodes, kept, kept + wanted->flank, displacement);
     eo_stress_operator_apply(&operator, displacement, stress);
     if (own < 0)
       continue;
-    memcpy(r->full + (size_t)own * (size_t)flank, kept + wanted->flank, (size_t)flank * sizeof *kept);
+    memcpy(member->full + (size_t)own * (size_t)flank, kept + wanted->flank, (size_t)flank * sizeof *kept);
     for (int k = 0; k < 2; k++)
-      memcpy(r->next[k] + (size_t)own * (size_t)next, kept + wanted->next[k], (size_t)next * sizeof *kept);
+      memcpy(member->next[k] + (size_t)own * (size_t)next, kept + wanted->next[k], (size_t)next * sizeof *kept);
   }
   eo_stress_operator_done(&operator);
   free(displacement);
@@ -165,52 +165,54 @@ static void symmetrise(double *matrix, int n)
 }
 
 /* Places of the rows and of the root's nodes. */
-static void fill_places(struct eo_member_result *r, const struct eo_section *s, bool ring)
+static void fill_places(struct eo_member_result *member, const struct eo_section *section, bool ring)
 {
-  const struct eo_flank_nodes *next = ring ? &s->flank : &s->next_flank[0];
-  int step = ring ? eo_member_row_step(r->rows) : 1;
-  memcpy(r->s, s->flank.s, (size_t)r->rows * sizeof *r->s);
-  for (int row = 0; row < r->next_rows; row++)
-    r->next_s[row] = next->s[row * step];
-  for (int i = 0; i < r->root_points; i++) {
-    const double *point = s->point + 2 * s->root[i + 1], *before = s->point + 2 * s->root[i];
-    memcpy(r->root + 2 * i, point, 2 * sizeof *point);
-    r->arc[i] = (i ? r->arc[i - 1] : 0) + hypot(point[0] - before[0], point[1] - before[1]);
+  const struct eo_flank_nodes *next = ring ? &section->flank : &section->next_flank[0];
+  int step = ring ? eo_member_row_step(member->rows) : 1;
+  memcpy(member->s, section->flank.s, (size_t)member->rows * sizeof *member->s);
+  for (int row = 0; row < member->next_rows; row++)
+    member->next_s[row] = next->s[row * step];
+  for (int i = 0; i < member->root_points; i++) {
+    const double *point = section->point + 2 * section->root[i + 1], *before = section->point + 2 * section->root[i];
+    memcpy(member->root + 2 * i, point, 2 * sizeof *point);
+    member->arc[i] = (i ? member->arc[i - 1] : 0) + hypot(point[0] - before[0], point[1] - before[1]);
   }
 }
 
 static enum eo_code allocate(struct eo_member_job *job)
 {
-  struct eo_member_result *r = job->result;
-  const struct eo_section *s = &job->section;
+  struct eo_member_result *member = job->result;
+  const struct eo_section *section = &job->section;
   bool ring = job->settings->section.open;
-  int rows = s->flank.count;
+  int rows = section->flank.count;
   size_t across = (size_t)job->settings->layers + 1;
-  *r = (struct eo_member_result){.rows = rows,
-                                 .coupled_rows = ring ? rows : s->next_flank[0].count,
-                                 .next_rows = ring ? (rows - 1) / eo_member_row_step(rows) + 1 : s->next_flank[0].count,
-                                 .layers = job->settings->layers,
-                                 .root_points = s->root_nodes - 2,
-                                 .reach = job->settings->reach};
-  size_t flank = (size_t)rows * across, next = (size_t)r->next_rows * across, reach = (size_t)r->reach;
-  size_t coupled = (size_t)r->coupled_rows * across, stresses = (size_t)r->root_points * across * EO_STRESSES;
-  r->s = malloc((size_t)rows * sizeof *r->s);
-  r->next_s = malloc((size_t)r->next_rows * sizeof *r->next_s + 1);
-  r->root = malloc((size_t)r->root_points * 2 * sizeof *r->root);
-  r->arc = malloc((size_t)r->root_points * sizeof *r->arc);
-  r->full = calloc(flank * flank, sizeof *r->full);
-  r->half = calloc(flank * flank, sizeof *r->half);
-  r->stress = malloc(flank * stresses * sizeof *r->stress);
-  int complete = r->s && r->next_s && r->root && r->arc && r->full && r->half && r->stress;
+  *member = (struct eo_member_result){.rows = rows,
+                                      .coupled_rows = ring ? rows : section->next_flank[0].count,
+                                      .next_rows = ring ? (rows - 1) / eo_member_row_step(rows) + 1
+                                                        : section->next_flank[0].count,
+                                      .layers = job->settings->layers,
+                                      .root_points = section->root_nodes - 2,
+                                      .reach = job->settings->reach};
+  size_t flank = (size_t)rows * across, next = (size_t)member->next_rows * across, reach = (size_t)member->reach;
+  size_t coupled = (size_t)member->coupled_rows * across, stresses = (size_t)member->root_points * across * EO_STRESSES;
+  member->s = malloc((size_t)rows * sizeof *member->s);
+  member->next_s = malloc((size_t)member->next_rows * sizeof *member->next_s + 1);
+  member->root = malloc((size_t)member->root_points * 2 * sizeof *member->root);
+  member->arc = malloc((size_t)member->root_points * sizeof *member->arc);
+  member->full = calloc(flank * flank, sizeof *member->full);
+  member->half = calloc(flank * flank, sizeof *member->half);
+  member->stress = malloc(flank * stresses * sizeof *member->stress);
+  int complete = member->s && member->next_s && member->root && member->arc && member->full && member->half &&
+                 member->stress;
   for (int k = 0; k < 2; k++) {
-    r->next[k] = malloc(reach * flank * coupled * sizeof(double) + 1);
-    r->next_stress[k] = malloc(reach * next * stresses * sizeof(double) + 1);
-    r->part[k] = calloc((size_t)rows, sizeof *r->part[k]);
-    complete = complete && r->next[k] && r->next_stress[k] && r->part[k];
+    member->next[k] = malloc(reach * flank * coupled * sizeof(double) + 1);
+    member->next_stress[k] = malloc(reach * next * stresses * sizeof(double) + 1);
+    member->part[k] = calloc((size_t)rows, sizeof *member->part[k]);
+    complete = complete && member->next[k] && member->next_stress[k] && member->part[k];
   }
   if (!complete)
     return EO_ERROR_MEMORY;
-  fill_places(r, s, ring);
+  fill_places(member, section, ring);
   return EO_OK;
 }
 

@@ -41,11 +41,11 @@ int eo_member_list_root(const struct eo_sector *sector, int nodes, int *unknown)
 void eo_member_root_displacement(const struct eo_sector *sector, int nodes, const double *root, const double *flank,
                                  double *displacement)
 {
-  const struct eo_section *s = sector->section;
+  const struct eo_section *section = sector->section;
   int across = sector->layers + 1, corner_row = 0;
-  while (s->flank.node[corner_row] != s->root[0])
+  while (section->flank.node[corner_row] != section->root[0])
     corner_row++;
-  const double(*frame)[3] = (const double(*)[3])sector->frame[s->root[0]];
+  const double(*frame)[3] = (const double(*)[3])sector->frame[section->root[0]];
   for (int l = 0; l < across; l++) {
     double local[3] = {flank[corner_row * across + l], root[2 * l], root[2 * l + 1]};
     for (int c = 0; c < 3; c++)
@@ -63,16 +63,16 @@ static double share_of(const double *place, int count, int i)
 
 enum eo_code eo_member_cut_weights(const struct eo_sector *sector, int teeth, double *weight)
 {
-  const struct eo_section *s = sector->section;
-  double *radius = malloc(sizeof *radius * (size_t)s->cut_nodes);
+  const struct eo_section *section = sector->section;
+  double *radius = malloc(sizeof *radius * (size_t)section->cut_nodes);
   if (!radius)
     return EO_ERROR_MEMORY;
-  for (int i = 0; i < s->cut_nodes; i++)
-    radius[i] = hypot(s->point[2 * s->cut[0][i]], s->point[2 * s->cut[0][i] + 1]);
-  for (int i = 0; i < s->cut_nodes; i++)
+  for (int i = 0; i < section->cut_nodes; i++)
+    radius[i] = hypot(section->point[2 * section->cut[0][i]], section->point[2 * section->cut[0][i] + 1]);
+  for (int i = 0; i < section->cut_nodes; i++)
     for (int l = 0; l <= sector->layers; l++) {
       double height = sector->width / sector->layers * (l == 0 || l == sector->layers ? 0.5 : 1);
-      *weight++ = 2 * M_PI / teeth * radius[i] * share_of(radius, s->cut_nodes, i) * height;
+      *weight++ = 2 * M_PI / teeth * radius[i] * share_of(radius, section->cut_nodes, i) * height;
     }
   free(radius);
   return EO_OK;

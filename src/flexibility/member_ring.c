@@ -34,12 +34,12 @@ static void kept_done(struct kept *kept)
 
 static int list_cut(const struct eo_sector *sector, int side, int *unknown, struct kept *kept)
 {
-  const struct eo_section *s = sector->section;
+  const struct eo_section *section = sector->section;
   int count = 0;
-  for (int i = 0; i < s->cut_nodes; i++)
+  for (int i = 0; i < section->cut_nodes; i++)
     for (int l = 0; l <= sector->layers; l++)
       for (int c = 0; c < 3; c++) {
-        int number = eo_sector_unknown(sector, s->cut[side][i], l, c);
+        int number = eo_sector_unknown(sector, section->cut[side][i], l, c);
         if (number < 0)
           continue;
         kept->direction[count] = c;
@@ -52,17 +52,17 @@ static int list_cut(const struct eo_sector *sector, int side, int *unknown, stru
 
 static enum eo_code list_kept(const struct eo_sector *sector, struct kept *kept)
 {
-  const struct eo_section *s = sector->section;
-  size_t across = (size_t)sector->layers + 1, face = 3 * (size_t)s->cut_nodes * across;
-  size_t inner = (size_t)(3 * s->root_nodes + s->flank.count) * across;
+  const struct eo_section *section = sector->section;
+  size_t across = (size_t)sector->layers + 1, face = 3 * (size_t)section->cut_nodes * across;
+  size_t inner = (size_t)(3 * section->root_nodes + section->flank.count) * across;
   *kept = (struct kept){.unknown = malloc(sizeof(int) * (inner + 2 * face)),
                         .direction = malloc(sizeof(int) * face),
                         .node = malloc(sizeof(int) * face),
                         .layer = malloc(sizeof(int) * face)};
   if (!kept->unknown || !kept->direction || !kept->node || !kept->layer)
     return EO_ERROR_MEMORY;
-  kept->root = eo_member_list_root(sector, s->root_nodes - 1, kept->unknown);
-  kept->flank = eo_member_list_flank(sector, &s->flank, kept->unknown + kept->root);
+  kept->root = eo_member_list_root(sector, section->root_nodes - 1, kept->unknown);
+  kept->flank = eo_member_list_flank(sector, &section->flank, kept->unknown + kept->root);
   int *faces = kept->unknown + kept->root + kept->flank;
   kept->face = list_cut(sector, 0, faces, kept);
   list_cut(sector, 1, faces + kept->face, kept);
@@ -85,9 +85,9 @@ static void rigid_motion(const struct eo_sector *sector, int k, int node, int la
 static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept *kept, struct eo_ring_tooth *tooth)
 {
   const struct eo_sector *sector = &job->sector;
-  const struct eo_section *s = &job->section;
+  const struct eo_section *section = &job->section;
   int across = sector->layers + 1;
-  double *weight = malloc(sizeof *weight * (size_t)(s->cut_nodes * across));
+  double *weight = malloc(sizeof *weight * (size_t)(section->cut_nodes * across));
   double complex motion[3];
   if (!weight || eo_member_cut_weights(sector, tooth->teeth, weight)) {
     free(weight);
@@ -97,13 +97,13 @@ static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept
     int node = kept->node[i], layer = kept->layer[i];
     tooth->weight[i] = weight[node * across + layer];
     for (int k = 0; k < EO_RING_RIGID; k++) {
-      rigid_motion(sector, k, s->cut[0][node], layer, motion);
+      rigid_motion(sector, k, section->cut[0][node], layer, motion);
       tooth->rigid[k][i] = motion[kept->direction[i]];
     }
   }
   for (int j = 0; j < kept->flank; j++)
     for (int k = 0; k < EO_RING_RIGID; k++) {
-      int node = s->flank.node[j / across];
+      int node = section->flank.node[j / across];
       const double *into = sector->frame[node][0];
       rigid_motion(sector, k, node, j % across, motion);
       tooth->rigid_flank[k][j] = into[0] * motion[0] + into[1] * motion[1] + into[2] * motion[2];
@@ -165,7 +165,7 @@ struct answer {
 static void stress_of(const struct eo_member_job *job, const struct kept *kept, const struct eo_ring_motion *motion,
                       int t, int step, struct answer *answer, double *stress)
 {
-  const struct eo_section *s = &job->section;
+  const struct eo_section *section = &job->section;
   int layers = job->result->layers, inner = kept->root + kept->flank;
   size_t stresses = (size_t)job->result->root_points * (layers + 1) * EO_STRESSES;
   double alpha = 2 * M_PI / job->geometry->teeth[job->member], c = cos(alpha), sine = sin(alpha);
@@ -174,8 +174,8 @@ static void stress_of(const struct eo_member_job *job, const struct kept *kept, 
     if (j / (layers + 1) % step)
       continue;
     const double *row = answer->all + (size_t)j * (size_t)inner;
-    double *last = answer->displacement + (size_t)(s->root_nodes - 1) * (size_t)(layers + 1) * 3;
-    eo_member_root_displacement(&job->sector, s->root_nodes - 1, row, row + kept->root, answer->displacement);
+    double *last = answer->displacement + (size_t)(section->root_nodes - 1) * (size_t)(layers + 1) * 3;
+    eo_member_root_displacement(&job->sector, section->root_nodes - 1, row, row + kept->root, answer->displacement);
     for (int i = 0; i < kept->face && kept->node[i] == 0; i++)
       last[3 * kept->layer[i] + kept->direction[i]] = face[i];
     for (int l = 0; l <= layers; l++) {
@@ -193,32 +193,33 @@ static void stress_of(const struct eo_member_job *job, const struct kept *kept, 
 static enum eo_code answer_tooth(struct eo_member_job *job, const struct kept *kept, const struct eo_ring_tooth *tooth,
                                  const struct eo_ring_motion *motion, int t, struct answer *answer)
 {
-  struct eo_member_result *r = job->result;
-  size_t flank = (size_t)kept->flank, inner = (size_t)tooth->inner, next = (size_t)r->next_rows * (r->layers + 1);
-  size_t stresses = (size_t)r->root_points * (r->layers + 1) * EO_STRESSES;
+  struct eo_member_result *member = job->result;
+  size_t flank = (size_t)kept->flank, inner = (size_t)tooth->inner,
+         next = (size_t)member->next_rows * (member->layers + 1);
+  size_t stresses = (size_t)member->root_points * (member->layers + 1) * EO_STRESSES;
   int ahead = job->member == EO_PINION ? t : -t, d = abs(t);
   enum eo_code code = eo_ring_displacement(tooth, motion, t, answer->all, job->error);
   if (code)
     return code;
-  double *to = d == 0 ? r->full : r->next[ahead > 0] + (size_t)(d - 1) * flank * flank;
+  double *to = d == 0 ? member->full : member->next[ahead > 0] + (size_t)(d - 1) * flank * flank;
   for (size_t j = 0; j < flank; j++)
     memcpy(to + j * flank, answer->all + j * inner + (inner - flank), flank * sizeof *to);
   /* Seen from that tooth's root, the loads stand as far on the other side. */
-  stress_of(job, kept, motion, t, d == 0 ? 1 : eo_member_row_step(r->rows), answer,
-            d == 0 ? r->stress : r->next_stress[ahead < 0] + (size_t)(d - 1) * next * stresses);
+  stress_of(job, kept, motion, t, d == 0 ? 1 : eo_member_row_step(member->rows), answer,
+            d == 0 ? member->stress : member->next_stress[ahead < 0] + (size_t)(d - 1) * next * stresses);
   return EO_OK;
 }
 
 /* Deflection of mid face under a uniform load of 1 N/m on the row, by the trapezoidal rule. */
-static void fill_parts(struct eo_member_result *r, const struct eo_ring_motion *motion, double width)
+static void fill_parts(struct eo_member_result *member, const struct eo_ring_motion *motion, double width)
 {
-  int across = r->layers + 1, flank = r->rows * across;
+  int across = member->layers + 1, flank = member->rows * across;
   for (int k = 0; k < EO_RING_RIGID; k++)
-    for (int row = 0; row < r->rows; row++)
+    for (int row = 0; row < member->rows; row++)
       for (int l = 0; l < across; l++) {
-        double load = width / r->layers * (l == 0 || l == r->layers ? 0.5 : 1);
+        double load = width / member->layers * (l == 0 || l == member->layers ? 0.5 : 1);
         const double *part = motion->part[k] + (size_t)(row * across + l) * (size_t)flank + row * across;
-        r->part[k][row] += load * 0.5 * (part[r->layers / 2] + part[(r->layers + 1) / 2]);
+        member->part[k][row] += load * 0.5 * (part[member->layers / 2] + part[(member->layers + 1) / 2]);
       }
 }
 

@@ -24,22 +24,24 @@ static int count_held(unsigned char bits)
   return (bits & EO_HELD_X ? 1 : 0) + (bits & EO_HELD_Y ? 1 : 0) + (bits & EO_HELD_AXIAL ? 1 : 0);
 }
 
-static struct size measure(const struct eo_section *s, int layers)
+static struct size measure(const struct eo_section *section, int layers)
 {
   double across = layers + 1, free_directions = 0;
-  for (int i = 0; i < s->nodes; i++)
-    free_directions += 3 - count_held(s->fixed[i]);
-  struct size size = {
-      .unknowns = across * free_directions, .flank = across * s->flank.count, .face = across * 3 * s->cut_nodes};
-  size.inner = across * 3 * s->root_nodes + size.flank + across * (s->next_flank[0].count + s->next_flank[1].count);
+  for (int i = 0; i < section->nodes; i++)
+    free_directions += 3 - count_held(section->fixed[i]);
+  struct size size = {.unknowns = across * free_directions,
+                      .flank = across * section->flank.count,
+                      .face = across * 3 * section->cut_nodes};
+  size.inner = across * 3 * section->root_nodes + size.flank +
+               across * (section->next_flank[0].count + section->next_flank[1].count);
   size.kept = size.inner + 2 * size.face;
   return size;
 }
 
 /* Bytes of what is kept of a member: compliance, coupling and stress (struct eo_member_result). */
-static double find_result(const struct size *size, const struct eo_section *s, int layers, int reach)
+static double find_result(const struct size *size, const struct eo_section *section, int layers, int reach)
 {
-  double stresses = (s->root_nodes - 2.0) * (layers + 1) * EO_STRESSES, flank = size->flank;
+  double stresses = (section->root_nodes - 2.0) * (layers + 1) * EO_STRESSES, flank = size->flank;
   return sizeof(double) * (2 * flank * flank + 2 * reach * flank * flank + flank * stresses + reach * flank * stresses);
 }
 

@@ -119,17 +119,17 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
 }
 
 /* What of one member the key names: its size, and how much of it is modelled. */
-static void add_member(struct eo_hash *hash, const struct eo_geometry *g, int m, const struct worker *worker)
+static void add_member(struct eo_hash *hash, const struct eo_geometry *geometry, int m, const struct worker *worker)
 {
-  eo_hash_add_number(hash, "teeth", g->teeth[m]);
-  eo_hash_add_number(hash, "profile_shift", g->profile_shift[m]);
-  eo_hash_add_number(hash, "reference_radius", g->reference_radius[m]);
-  eo_hash_add_number(hash, "base_radius", g->base_radius[m]);
-  eo_hash_add_number(hash, "start_radius", g->start_radius[m]);
-  eo_hash_add_number(hash, "form_radius", g->form_radius[m]);
-  eo_hash_add_number(hash, "root_radius", g->root_radius[m]);
-  eo_hash_add_number(hash, "tip_radius", g->tip_radius[m]);
-  eo_hash_add_number(hash, "tangent_length", g->tangent_length[m]);
+  eo_hash_add_number(hash, "teeth", geometry->teeth[m]);
+  eo_hash_add_number(hash, "profile_shift", geometry->profile_shift[m]);
+  eo_hash_add_number(hash, "reference_radius", geometry->reference_radius[m]);
+  eo_hash_add_number(hash, "base_radius", geometry->base_radius[m]);
+  eo_hash_add_number(hash, "start_radius", geometry->start_radius[m]);
+  eo_hash_add_number(hash, "form_radius", geometry->form_radius[m]);
+  eo_hash_add_number(hash, "root_radius", geometry->root_radius[m]);
+  eo_hash_add_number(hash, "tip_radius", geometry->tip_radius[m]);
+  eo_hash_add_number(hash, "tangent_length", geometry->tangent_length[m]);
   eo_hash_add_number(hash, "section_teeth", worker->settings.section.teeth);
   eo_hash_add_number(hash, "open", worker->settings.section.open);
   eo_hash_add_number(hash, "floating", worker->settings.section.floating);
@@ -139,8 +139,8 @@ static void add_member(struct eo_hash *hash, const struct eo_geometry *g, int m,
 }
 
 /* Everything the numbers depend on. */
-static void make_key(const struct eo_geometry *g, const struct eo_material *material,
-                     const struct eo_flexibility_settings *s, const struct worker worker[2],
+static void make_key(const struct eo_geometry *geometry, const struct eo_material *material,
+                     const struct eo_flexibility_settings *flexibility_settings, const struct worker worker[2],
                      char key[EO_HASH_LENGTH + 1])
 {
   struct eo_hash hash;
@@ -150,44 +150,46 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
   const struct {
     const char *name;
     double value;
-  } number[] = {{"layers", s->layers},
-                {"flank_rows", s->flank_rows},
-                {"fillet_elements", s->fillet_elements},
-                {"columns", s->columns},
-                {"rim_elements", s->rim_elements},
+  } number[] = {{"layers", flexibility_settings->layers},
+                {"flank_rows", flexibility_settings->flank_rows},
+                {"fillet_elements", flexibility_settings->fillet_elements},
+                {"columns", flexibility_settings->columns},
+                {"rim_elements", flexibility_settings->rim_elements},
                 {"youngs_modulus", material->youngs_modulus},
                 {"poissons_ratio", material->poissons_ratio},
-                {"normal_module", g->normal_module},
-                {"normal_pressure_angle", g->normal_pressure_angle},
-                {"transverse_pressure_angle", g->transverse_pressure_angle},
-                {"working_pressure_angle", g->working_pressure_angle},
-                {"helix_angle", g->helix_angle},
-                {"face_width", g->face_width},
-                {"centre_distance", g->centre_distance},
-                {"path_start", g->path_start},
-                {"path_end", g->path_end},
-                {"dedendum", g->dedendum[EO_PINION]},
-                {"fillet_radius", g->fillet_radius[EO_PINION]}};
+                {"normal_module", geometry->normal_module},
+                {"normal_pressure_angle", geometry->normal_pressure_angle},
+                {"transverse_pressure_angle", geometry->transverse_pressure_angle},
+                {"working_pressure_angle", geometry->working_pressure_angle},
+                {"helix_angle", geometry->helix_angle},
+                {"face_width", geometry->face_width},
+                {"centre_distance", geometry->centre_distance},
+                {"path_start", geometry->path_start},
+                {"path_end", geometry->path_end},
+                {"dedendum", geometry->dedendum[EO_PINION]},
+                {"fillet_radius", geometry->fillet_radius[EO_PINION]}};
   for (size_t i = 0; i < sizeof number / sizeof *number; i++)
     eo_hash_add_number(&hash, number[i].name, number[i].value);
   if (!eo_material_is_one(material)) {
     eo_hash_add_number(&hash, "gear_youngs_modulus", worker[EO_GEAR].material.youngs_modulus);
     eo_hash_add_number(&hash, "gear_poissons_ratio", worker[EO_GEAR].material.poissons_ratio);
   }
-  if (g->dedendum[EO_GEAR] != g->dedendum[EO_PINION] || g->fillet_radius[EO_GEAR] != g->fillet_radius[EO_PINION]) {
-    eo_hash_add_number(&hash, "gear_dedendum", g->dedendum[EO_GEAR]);
-    eo_hash_add_number(&hash, "gear_fillet_radius", g->fillet_radius[EO_GEAR]);
+  if (geometry->dedendum[EO_GEAR] != geometry->dedendum[EO_PINION] ||
+      geometry->fillet_radius[EO_GEAR] != geometry->fillet_radius[EO_PINION]) {
+    eo_hash_add_number(&hash, "gear_dedendum", geometry->dedendum[EO_GEAR]);
+    eo_hash_add_number(&hash, "gear_fillet_radius", geometry->fillet_radius[EO_GEAR]);
   }
   for (int m = 0; m < 2; m++)
-    if (g->generating_shift[m] != g->profile_shift[m] || g->residual_undercut[m] > 0) {
-      eo_hash_add_number(&hash, m ? "gear_generating_shift" : "pinion_generating_shift", g->generating_shift[m]);
-      eo_hash_add_number(&hash, m ? "gear_residual_undercut" : "pinion_residual_undercut", g->residual_undercut[m]);
+    if (geometry->generating_shift[m] != geometry->profile_shift[m] || geometry->residual_undercut[m] > 0) {
+      eo_hash_add_number(&hash, m ? "gear_generating_shift" : "pinion_generating_shift", geometry->generating_shift[m]);
+      eo_hash_add_number(&hash, m ? "gear_residual_undercut" : "pinion_residual_undercut",
+                         geometry->residual_undercut[m]);
     }
   for (int m = 0; m < 2; m++)
-    if (g->member_width[m] != g->face_width)
-      eo_hash_add_number(&hash, m ? "gear_face_width" : "pinion_face_width", g->member_width[m]);
+    if (geometry->member_width[m] != geometry->face_width)
+      eo_hash_add_number(&hash, m ? "gear_face_width" : "pinion_face_width", geometry->member_width[m]);
   for (int m = 0; m < 2; m++)
-    add_member(&hash, g, m, &worker[m]);
+    add_member(&hash, geometry, m, &worker[m]);
   eo_hash_finish(&hash, key);
 }
 
@@ -206,35 +208,37 @@ static int forward_progress(void *context, const char *what, double fraction)
 }
 
 /* The mesh of a tooth whose foot undercut has cut away folds; a shop would not make it either. */
-static enum eo_code refuse_undercut(struct worker *w)
+static enum eo_code refuse_undercut(struct worker *worker)
 {
-  const struct eo_geometry *g = w->geometry;
-  int m = w->member;
+  const struct eo_geometry *geometry = worker->geometry;
+  int m = worker->member;
   return eo_error_set(
-      &w->error, EO_ERROR_INPUT, m == EO_PINION ? "/gear_pair/pinion_profile_shift" : "/gear_pair/gear_profile_shift",
+      &worker->error, EO_ERROR_INPUT,
+      m == EO_PINION ? "/gear_pair/pinion_profile_shift" : "/gear_pair/gear_profile_shift",
       "The %s is undercut so far that finite elements of its tooth root fold: its profile shift is %.4g, and from %.4g "
       "on there is no undercut. A shift nearer to that, more teeth, or a shallower dedendum helps.",
-      m == EO_PINION ? "pinion" : "gear", g->profile_shift[m], g->least_shift[m]);
+      m == EO_PINION ? "pinion" : "gear", geometry->profile_shift[m], geometry->least_shift[m]);
 }
 
 static void *compute_member(void *context)
 {
-  struct worker *w = context;
+  struct worker *worker = context;
   struct eo_member_result result = {0};
-  struct eo_flexibility_report *report = &w->flexibility->report;
-  struct eo_progress progress = {.report = forward_progress, .context = w};
-  w->code = eo_member_compute(&result, w->geometry, w->member, &w->material, &w->settings, &progress,
-                              &report->times[w->member], &w->error);
-  if (w->code == EO_ERROR_NUMERIC && w->geometry->undercut[w->member])
-    w->code = refuse_undercut(w);
-  if (!w->code)
-    w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width[w->member],
-                                  &report->smallest_eigenvalue[w->member], &w->error);
+  struct eo_flexibility_report *report = &worker->flexibility->report;
+  struct eo_progress progress = {.report = forward_progress, .context = worker};
+  worker->code = eo_member_compute(&result, worker->geometry, worker->member, &worker->material, &worker->settings,
+                                   &progress, &report->times[worker->member], &worker->error);
+  if (worker->code == EO_ERROR_NUMERIC && worker->geometry->undercut[worker->member])
+    worker->code = refuse_undercut(worker);
+  if (!worker->code)
+    worker->code = eo_flank_table_fill(&worker->flexibility->table[worker->member], &result,
+                                       worker->flexibility->width[worker->member],
+                                       &report->smallest_eigenvalue[worker->member], &worker->error);
   eo_member_result_done(&result);
-  if (w->code) {
-    pthread_mutex_lock(&w->shared->mutex);
-    w->shared->stop = true;
-    pthread_mutex_unlock(&w->shared->mutex);
+  if (worker->code) {
+    pthread_mutex_lock(&worker->shared->mutex);
+    worker->shared->stop = true;
+    pthread_mutex_unlock(&worker->shared->mutex);
   }
   return NULL;
 }
@@ -260,24 +264,25 @@ static enum eo_code compute(struct worker worker[2], struct eo_error *error)
   return worker[first].code;
 }
 
-static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], const char *cache_directory,
+static enum eo_code fill(struct eo_flexibility *flexibility, struct worker worker[2], const char *cache_directory,
                          const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_cache cache;
-  struct eo_cache_part part[2] = {{f->table[0].data, f->table[0].size}, {f->table[1].data, f->table[1].size}};
-  enum eo_code code = eo_cache_open(&cache, cache_directory, f->report.key, progress, error);
+  struct eo_cache_part part[2] = {{flexibility->table[0].data, flexibility->table[0].size},
+                                  {flexibility->table[1].data, flexibility->table[1].size}};
+  enum eo_code code = eo_cache_open(&cache, cache_directory, flexibility->report.key, progress, error);
   if (code)
     return code;
-  f->report.from_cache = eo_cache_read(&cache, part, 2);
-  if (!f->report.from_cache) {
+  flexibility->report.from_cache = eo_cache_read(&cache, part, 2);
+  if (!flexibility->report.from_cache) {
     code = compute(worker, error);
     if (!code)
       eo_cache_write(&cache, part, 2);
   }
-  for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
-    code = eo_flank_table_connect(&f->table[m], f->width[m], error);
-  if (!f->report.from_cache)
-    memcpy(f->report.note, cache.note, sizeof f->report.note);
+  for (int m = 0; m < 2 && !code && flexibility->report.from_cache; m++)
+    code = eo_flank_table_connect(&flexibility->table[m], flexibility->width[m], error);
+  if (!flexibility->report.from_cache)
+    memcpy(flexibility->report.note, cache.note, sizeof flexibility->report.note);
   eo_cache_close(&cache);
   return code;
 }
@@ -291,36 +296,36 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   enum eo_code code = check(settings, error);
   if (code)
     return code;
-  struct eo_flexibility *f = calloc(1, sizeof *f);
-  if (!f)
+  struct eo_flexibility *this_flexibility = calloc(1, sizeof *this_flexibility);
+  if (!this_flexibility)
     return eo_error_memory(error);
   struct shared shared = {.mutex = PTHREAD_MUTEX_INITIALIZER, .progress = progress};
   struct worker worker[2];
-  f->settings = *settings;
+  this_flexibility->settings = *settings;
   for (int m = 0; m < 2; m++) {
-    f->width[m] = geometry->member_width[m];
-    f->twist[m] = eo_sector_twist(geometry, m);
+    this_flexibility->width[m] = geometry->member_width[m];
+    this_flexibility->twist[m] = eo_sector_twist(geometry, m);
     worker[m] = (struct worker){.shared = &shared,
-                                .flexibility = f,
+                                .flexibility = this_flexibility,
                                 .geometry = geometry,
                                 .material = eo_material_of(material, m),
                                 .member = m,
                                 .settings = eo_flexibility_member_settings(settings, geometry, pair, m)};
-    f->report.support[m] = eo_flexibility_support(settings, pair, m);
-    f->report.radius[m] = worker[m].settings.bore_radius;
-    f->report.reach[m] = settings->neighbour_coupling ? worker[m].settings.reach : 0;
+    this_flexibility->report.support[m] = eo_flexibility_support(settings, pair, m);
+    this_flexibility->report.radius[m] = worker[m].settings.bore_radius;
+    this_flexibility->report.reach[m] = settings->neighbour_coupling ? worker[m].settings.reach : 0;
     if (!code)
-      code = eo_flank_table_init(&f->table[m], &worker[m].settings, error);
+      code = eo_flank_table_init(&this_flexibility->table[m], &worker[m].settings, error);
   }
-  make_key(geometry, material, settings, worker, f->report.key);
+  make_key(geometry, material, settings, worker, this_flexibility->report.key);
   if (!code)
-    code = fill(f, worker, cache_directory, progress, error);
+    code = fill(this_flexibility, worker, cache_directory, progress, error);
   pthread_mutex_destroy(&shared.mutex);
   if (code) {
-    eo_flexibility_free(f);
+    eo_flexibility_free(this_flexibility);
     return code;
   }
-  f->report.seconds = (1e-3 * eo_clock_milliseconds()) - start;
-  *flexibility = f;
+  this_flexibility->report.seconds = (1e-3 * eo_clock_milliseconds()) - start;
+  *flexibility = this_flexibility;
   return EO_OK;
 }

@@ -30,30 +30,30 @@ struct builder {
 };
 
 /* Node at polar coordinates of a tooth; the angle counts from its centre line, + towards x > 0. */
-static int add_node(struct builder *b, const struct tooth *tooth, double radius, double angle)
+static int add_node(struct builder *builder, const struct tooth *tooth, double radius, double angle)
 {
-  struct eo_section *s = b->section;
-  double turned = angle - tooth->place * b->pitch_angle;
-  s->point[2 * s->nodes] = radius * sin(turned);
-  s->point[2 * s->nodes + 1] = radius * cos(turned);
-  return s->nodes++;
+  struct eo_section *section = builder->section;
+  double turned = angle - tooth->place * builder->pitch_angle;
+  section->point[2 * section->nodes] = radius * sin(turned);
+  section->point[2 * section->nodes + 1] = radius * cos(turned);
+  return section->nodes++;
 }
 
 /* Quadrilateral between grid columns i, i + 1 and rows j (outer), j + 1 (inner); flipped where columns run to x < 0.
    half: it is on the loaded side of the loaded tooth. */
-static void add_quad(struct builder *b, const int *grid, int columns, int j, int i, int flipped, int half)
+static void add_quad(struct builder *builder, const int *grid, int columns, int j, int i, int flipped, int half)
 {
-  struct eo_section *s = b->section;
+  struct eo_section *section = builder->section;
   const int *outer = grid + j * (columns + 1) + i, *inner = outer + columns + 1;
-  int *quad = s->quad + 4 * s->quads;
+  int *quad = section->quad + 4 * section->quads;
   quad[0] = inner[flipped];
   quad[1] = inner[!flipped];
   quad[2] = outer[!flipped];
   quad[3] = outer[flipped];
   double radius = 0;
   for (int k = 0; k < 4; k++)
-    radius += 0.25 * hypot(s->point[2 * quad[k]], s->point[2 * quad[k] + 1]);
-  s->half[s->quads++] = half && radius > b->geometry->root_radius[b->member];
+    radius += 0.25 * hypot(section->point[2 * quad[k]], section->point[2 * quad[k] + 1]);
+  section->half[section->quads++] = half && radius > builder->geometry->root_radius[builder->member];
 }
 
 /* Levels between root and bore: the first step has the given share, the others grow geometrically. */
@@ -99,13 +99,13 @@ static int grade_rings(double foot, double bore, double first, double *radius)
 }
 
 /* Length of the root from the form radius to the middle of the tooth space. */
-static double fillet_length(const struct builder *b)
+static double fillet_length(const struct builder *builder)
 {
   enum { PIECES = 64 };
   double length = 0, last[2], point[2], normal[2];
-  eo_geometry_fillet(b->geometry, b->member, 1, last, normal);
+  eo_geometry_fillet(builder->geometry, builder->member, 1, last, normal);
   for (int i = 1; i <= PIECES; i++) {
-    eo_geometry_fillet(b->geometry, b->member, 1 - (double)i / PIECES, point, normal);
+    eo_geometry_fillet(builder->geometry, builder->member, 1 - (double)i / PIECES, point, normal);
     length += hypot(point[0] - last[0], point[1] - last[1]);
     memcpy(last, point, sizeof last);
   }
@@ -114,25 +114,26 @@ static double fillet_length(const struct builder *b)
 
 /* Point and outward normal at share q of the way from the start of the active profile to the middle of the tooth space.
  */
-static void root_point(const struct builder *b, double q, double point[2], double normal[2])
+static void root_point(const struct builder *builder, double q, double point[2], double normal[2])
 {
-  const struct eo_geometry *g = b->geometry;
-  double start = g->start_radius[b->member];
-  if (q <= b->involute_share) {
-    double way = b->involute_share > 0 ? q / b->involute_share : 0;
-    eo_geometry_involute(g, b->member, start + way * (g->form_radius[b->member] - start), point, normal);
+  const struct eo_geometry *geometry = builder->geometry;
+  double start = geometry->start_radius[builder->member];
+  if (q <= builder->involute_share) {
+    double way = builder->involute_share > 0 ? q / builder->involute_share : 0;
+    eo_geometry_involute(geometry, builder->member, start + way * (geometry->form_radius[builder->member] - start),
+                         point, normal);
   } else {
-    eo_geometry_fillet(g, b->member, (1 - q) / (1 - b->involute_share), point, normal);
+    eo_geometry_fillet(geometry, builder->member, (1 - q) / (1 - builder->involute_share), point, normal);
   }
 }
 
 /* Share u of a cubic line from share q of the root down to the foot. It leaves the root halfway between the inward
    normal and the radius and arrives radially. */
-static void line_point(const struct builder *b, double q, double u, double *radius, double *angle)
+static void line_point(const struct builder *builder, double q, double u, double *radius, double *angle)
 {
-  double top[2], normal[2], p[2], bottom = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
-  root_point(b, q, top, normal);
-  double down[2] = {-sin(bottom), -cos(bottom)}, foot = b->foot_radius, r = hypot(top[0], top[1]);
+  double top[2], normal[2], p[2], bottom = builder->inner_angle + q * (builder->pitch_angle / 2 - builder->inner_angle);
+  root_point(builder, q, top, normal);
+  double down[2] = {-sin(bottom), -cos(bottom)}, foot = builder->foot_radius, r = hypot(top[0], top[1]);
   double start[2] = {-normal[0] - top[0] / r, -normal[1] - top[1] / r}, size = hypot(start[0], start[1]);
   double length = hypot(top[0] + foot * down[0], top[1] + foot * down[1]), v = 1 - u;
   for (int i = 0; i < 2; i++)
@@ -143,106 +144,106 @@ static void line_point(const struct builder *b, double q, double u, double *radi
 }
 
 /* Node row j below the root at share q of it: on the cubic lines down to the foot, radially below. */
-static void depth_point(const struct builder *b, double q, int j, double *radius, double *angle)
+static void depth_point(const struct builder *builder, double q, int j, double *radius, double *angle)
 {
-  if (j <= b->settings->rim) {
-    line_point(b, q, b->level[j], radius, angle);
+  if (j <= builder->settings->rim) {
+    line_point(builder, q, builder->level[j], radius, angle);
     return;
   }
-  *radius = b->level[j];
-  *angle = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
+  *radius = builder->level[j];
+  *angle = builder->inner_angle + q * (builder->pitch_angle / 2 - builder->inner_angle);
 }
 
 /* Path coordinate of row j: 0 at the tip, rows at the start of the active profile. */
-static double row_path(const struct builder *b, int rows, int j)
+static double row_path(const struct builder *builder, int rows, int j)
 {
-  const struct eo_geometry *g = b->geometry;
+  const struct eo_geometry *geometry = builder->geometry;
   double share = (double)j / rows;
-  return b->member == EO_PINION ? g->path_end + share * (g->path_start - g->path_end)
-                                : g->path_start + share * (g->path_end - g->path_start);
+  return builder->member == EO_PINION ? geometry->path_end + share * (geometry->path_start - geometry->path_end)
+                                      : geometry->path_start + share * (geometry->path_end - geometry->path_start);
 }
 
-static void add_core_nodes(struct builder *b, struct tooth *tooth)
+static void add_core_nodes(struct builder *builder, struct tooth *tooth)
 {
   int columns = tooth->division->columns, rows = tooth->division->rows, *node = tooth->core;
-  for (int j = 0; j <= rows + b->depth; j++) {
+  for (int j = 0; j <= rows + builder->depth; j++) {
     double radius, angle, point[2], normal[2];
     if (j < rows) {
-      radius = eo_geometry_radius_at(b->geometry, b->member, row_path(b, rows, j));
-      eo_geometry_involute(b->geometry, b->member, radius, point, normal);
+      radius = eo_geometry_radius_at(builder->geometry, builder->member, row_path(builder, rows, j));
+      eo_geometry_involute(builder->geometry, builder->member, radius, point, normal);
       angle = atan2(point[0], point[1]);
     } else {
-      depth_point(b, 0, j - rows, &radius, &angle);
+      depth_point(builder, 0, j - rows, &radius, &angle);
     }
     for (int i = 0; i <= columns; i++)
-      *node++ = add_node(b, tooth, radius, angle * (2.0 * i / columns - 1));
+      *node++ = add_node(builder, tooth, radius, angle * (2.0 * i / columns - 1));
   }
 }
 
 /* The radial cut on the counterclockwise side (side 0) was made by nobody yet; on side 1 the previous tooth made it. */
-static void add_side_nodes(struct builder *b, struct tooth *tooth, int side, const struct tooth *before)
+static void add_side_nodes(struct builder *builder, struct tooth *tooth, int side, const struct tooth *before)
 {
   int columns = tooth->division->columns, fillet = tooth->division->fillet[side], *node = tooth->side[side];
   const int *edge = tooth->core + tooth->division->rows * (columns + 1) + (side ? columns : 0);
-  for (int j = 0; j <= b->depth; j++, node += fillet + 1) {
+  for (int j = 0; j <= builder->depth; j++, node += fillet + 1) {
     node[0] = edge[j * (columns + 1)];
     int last = side && before ? fillet : fillet + 1;
     for (int i = 1; i < last; i++) {
       double radius, angle;
-      depth_point(b, (double)i / fillet, j, &radius, &angle);
-      node[i] = add_node(b, tooth, radius, side ? angle : -angle);
+      depth_point(builder, (double)i / fillet, j, &radius, &angle);
+      node[i] = add_node(builder, tooth, radius, side ? angle : -angle);
     }
     if (side && before)
       node[fillet] = before->side[0][j * (before->division->fillet[0] + 1) + before->division->fillet[0]];
   }
 }
 
-static void add_quads(struct builder *b, const struct tooth *tooth)
+static void add_quads(struct builder *builder, const struct tooth *tooth)
 {
-  const struct eo_tooth_division *d = tooth->division;
-  for (int j = 0; j < d->rows + b->depth; j++)
-    for (int i = 0; i < d->columns; i++)
-      add_quad(b, tooth->core, d->columns, j, i, 0, !tooth->place && i >= d->columns / 2);
+  const struct eo_tooth_division *division = tooth->division;
+  for (int j = 0; j < division->rows + builder->depth; j++)
+    for (int i = 0; i < division->columns; i++)
+      add_quad(builder, tooth->core, division->columns, j, i, 0, !tooth->place && i >= division->columns / 2);
   for (int side = 0; side < 2; side++)
-    for (int j = 0; j < b->depth; j++)
-      for (int i = 0; i < d->fillet[side]; i++)
-        add_quad(b, tooth->side[side], d->fillet[side], j, i, !side, !tooth->place && side);
+    for (int j = 0; j < builder->depth; j++)
+      for (int i = 0; i < division->fillet[side]; i++)
+        add_quad(builder, tooth->side[side], division->fillet[side], j, i, !side, !tooth->place && side);
 }
 
-static void mark_cut(const struct builder *b, const struct tooth *tooth, int side)
+static void mark_cut(const struct builder *builder, const struct tooth *tooth, int side)
 {
   int fillet = tooth->division->fillet[side];
-  for (int j = 0; j <= b->depth; j++) {
+  for (int j = 0; j <= builder->depth; j++) {
     int node = tooth->side[side][j * (fillet + 1) + fillet];
-    if (b->settings->open)
-      b->section->cut[side][j] = node;
+    if (builder->settings->open)
+      builder->section->cut[side][j] = node;
     else
-      b->section->fixed[node] = EO_HELD_ALL;
+      builder->section->fixed[node] = EO_HELD_ALL;
   }
 }
 
-static void mark_nodes(struct builder *b)
+static void mark_nodes(struct builder *builder)
 {
   static const double ROUNDING = 1e-9;
-  struct eo_section *s = b->section;
-  int teeth = b->settings->teeth;
-  for (int i = 0; i < s->nodes; i++) {
-    double radius = hypot(s->point[2 * i], s->point[2 * i + 1]);
-    if (b->settings->floating)
-      s->fixed[i] = radius < b->foot_radius * (1 + ROUNDING) ? EO_HELD_AXIAL : 0;
+  struct eo_section *section = builder->section;
+  int teeth = builder->settings->teeth;
+  for (int i = 0; i < section->nodes; i++) {
+    double radius = hypot(section->point[2 * i], section->point[2 * i + 1]);
+    if (builder->settings->floating)
+      section->fixed[i] = radius < builder->foot_radius * (1 + ROUNDING) ? EO_HELD_AXIAL : 0;
     else
-      s->fixed[i] = radius < s->bore_radius * (1 + ROUNDING) ? EO_HELD_ALL : 0;
+      section->fixed[i] = radius < section->bore_radius * (1 + ROUNDING) ? EO_HELD_ALL : 0;
   }
-  mark_cut(b, &b->tooth[0], 1);
-  mark_cut(b, &b->tooth[teeth - 1], 0);
-  s->cut_nodes = b->settings->open ? b->depth + 1 : 0;
-  const struct tooth *loaded = &b->tooth[teeth / 2];
+  mark_cut(builder, &builder->tooth[0], 1);
+  mark_cut(builder, &builder->tooth[teeth - 1], 0);
+  section->cut_nodes = builder->settings->open ? builder->depth + 1 : 0;
+  const struct tooth *loaded = &builder->tooth[teeth / 2];
   int columns = loaded->division->columns;
-  for (int j = 0; j <= loaded->division->rows + b->depth; j++)
-    s->centre[loaded->core[j * (columns + 1) + columns / 2]] = 1;
+  for (int j = 0; j <= loaded->division->rows + builder->depth; j++)
+    section->centre[loaded->core[j * (columns + 1) + columns / 2]] = 1;
 }
 
-static enum eo_code list_flank(const struct builder *b, const struct tooth *tooth, struct eo_flank_nodes *flank)
+static enum eo_code list_flank(const struct builder *builder, const struct tooth *tooth, struct eo_flank_nodes *flank)
 {
   int rows = tooth->division->rows, columns = tooth->division->columns;
   flank->node = malloc((size_t)(rows + 1) * sizeof *flank->node);
@@ -252,12 +253,12 @@ static enum eo_code list_flank(const struct builder *b, const struct tooth *toot
     return EO_ERROR_MEMORY;
   flank->count = rows + 1;
   for (int k = 0; k <= rows; k++) {
-    int j = b->member == EO_PINION ? rows - k : k;
-    double point[2], normal[2], turn = -tooth->place * b->pitch_angle;
+    int j = builder->member == EO_PINION ? rows - k : k;
+    double point[2], normal[2], turn = -tooth->place * builder->pitch_angle;
     flank->node[k] = tooth->core[j * (columns + 1) + columns];
-    flank->s[k] = row_path(b, rows, j);
-    eo_geometry_involute(b->geometry, b->member, eo_geometry_radius_at(b->geometry, b->member, flank->s[k]), point,
-                         normal);
+    flank->s[k] = row_path(builder, rows, j);
+    eo_geometry_involute(builder->geometry, builder->member,
+                         eo_geometry_radius_at(builder->geometry, builder->member, flank->s[k]), point, normal);
     flank->normal[2 * k] = normal[0] * cos(turn) + normal[1] * sin(turn);
     flank->normal[2 * k + 1] = -normal[0] * sin(turn) + normal[1] * cos(turn);
   }
@@ -265,40 +266,40 @@ static enum eo_code list_flank(const struct builder *b, const struct tooth *toot
 }
 
 /* Both flanks lead the motion of the pinion and trail that of the gear: pair k + 1 is clockwise on the pinion. */
-static enum eo_code list_boundary(struct builder *b)
+static enum eo_code list_boundary(struct builder *builder)
 {
-  struct eo_section *s = b->section;
-  int middle = b->settings->teeth / 2, ahead = b->member == EO_PINION ? -1 : 1;
-  const struct tooth *loaded = &b->tooth[middle];
-  enum eo_code code = list_flank(b, loaded, &s->flank);
+  struct eo_section *section = builder->section;
+  int middle = builder->settings->teeth / 2, ahead = builder->member == EO_PINION ? -1 : 1;
+  const struct tooth *loaded = &builder->tooth[middle];
+  enum eo_code code = list_flank(builder, loaded, &section->flank);
   for (int k = 0; k < 2 && middle > 0 && !code; k++)
-    code = list_flank(b, &b->tooth[middle + (k ? ahead : -ahead)], &s->next_flank[k]);
-  s->root = malloc((size_t)(loaded->division->fillet[1] + 1) * sizeof *s->root);
-  if (code || !s->root)
+    code = list_flank(builder, &builder->tooth[middle + (k ? ahead : -ahead)], &section->next_flank[k]);
+  section->root = malloc((size_t)(loaded->division->fillet[1] + 1) * sizeof *section->root);
+  if (code || !section->root)
     return EO_ERROR_MEMORY;
-  s->root_nodes = loaded->division->fillet[1] + 1;
-  memcpy(s->root, loaded->side[1], (size_t)s->root_nodes * sizeof *s->root);
+  section->root_nodes = loaded->division->fillet[1] + 1;
+  memcpy(section->root, loaded->side[1], (size_t)section->root_nodes * sizeof *section->root);
   return EO_OK;
 }
 
 /* Upper bounds of the number of nodes and quadrilaterals, and the grids of node numbers. */
-static enum eo_code allocate(struct builder *b)
+static enum eo_code allocate(struct builder *builder)
 {
-  int depth = b->depth;
+  int depth = builder->depth;
   size_t nodes = 0, quads = 0;
-  for (int t = 0; t < b->settings->teeth; t++) {
-    struct tooth *tooth = &b->tooth[t];
-    tooth->place = t - b->settings->teeth / 2;
-    tooth->division = !tooth->place            ? &b->settings->loaded
-                      : abs(tooth->place) == 1 ? &b->settings->next
-                                               : &b->settings->outer;
-    const struct eo_tooth_division *d = tooth->division;
-    size_t core = (size_t)(d->rows + depth + 1) * (size_t)(d->columns + 1);
+  for (int t = 0; t < builder->settings->teeth; t++) {
+    struct tooth *tooth = &builder->tooth[t];
+    tooth->place = t - builder->settings->teeth / 2;
+    tooth->division = !tooth->place            ? &builder->settings->loaded
+                      : abs(tooth->place) == 1 ? &builder->settings->next
+                                               : &builder->settings->outer;
+    const struct eo_tooth_division *division = tooth->division;
+    size_t core = (size_t)(division->rows + depth + 1) * (size_t)(division->columns + 1);
     tooth->core = malloc(core * sizeof *tooth->core);
     nodes += core;
     quads += core;
     for (int side = 0; side < 2; side++) {
-      size_t block = (size_t)(depth + 1) * (size_t)(d->fillet[side] + 1);
+      size_t block = (size_t)(depth + 1) * (size_t)(division->fillet[side] + 1);
       tooth->side[side] = malloc(block * sizeof *tooth->side[side]);
       nodes += block;
       quads += block;
@@ -306,89 +307,94 @@ static enum eo_code allocate(struct builder *b)
         return EO_ERROR_MEMORY;
     }
   }
-  struct eo_section *s = b->section;
-  s->point = malloc(nodes * 2 * sizeof *s->point);
-  s->quad = malloc(quads * 4 * sizeof *s->quad);
-  s->half = malloc(quads);
-  s->fixed = calloc(nodes, 1);
-  s->centre = calloc(nodes, 1);
+  struct eo_section *section = builder->section;
+  section->point = malloc(nodes * 2 * sizeof *section->point);
+  section->quad = malloc(quads * 4 * sizeof *section->quad);
+  section->half = malloc(quads);
+  section->fixed = calloc(nodes, 1);
+  section->centre = calloc(nodes, 1);
   for (int side = 0; side < 2; side++)
-    s->cut[side] = malloc((size_t)(depth + 1) * sizeof *s->cut[side]);
-  return s->point && s->quad && s->half && s->fixed && s->centre && s->cut[0] && s->cut[1] ? EO_OK : EO_ERROR_MEMORY;
+    section->cut[side] = malloc((size_t)(depth + 1) * sizeof *section->cut[side]);
+  return section->point && section->quad && section->half && section->fixed && section->centre && section->cut[0] &&
+                 section->cut[1]
+             ? EO_OK
+             : EO_ERROR_MEMORY;
 }
 
-static enum eo_code check(const struct builder *b, struct eo_error *error)
+static enum eo_code check(const struct builder *builder, struct eo_error *error)
 {
   static const char *const name[2] = {"pinion", "gear"};
-  if (b->settings->teeth >= b->geometry->teeth[b->member])
+  if (builder->settings->teeth >= builder->geometry->teeth[builder->member])
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
-                        "A sector of %d teeth does not fit round the %s with its %d teeth.", b->settings->teeth,
-                        name[b->member], b->geometry->teeth[b->member]);
-  if (!(b->section->bore_radius > 0 && b->section->bore_radius < 0.98 * b->geometry->root_radius[b->member]))
-    return eo_error_set(error, EO_ERROR_INPUT, b->member ? "/gear_pair/gear_bore_mm" : "/gear_pair/pinion_bore_mm",
-                        "The bore of the %s leaves no rim below its teeth.", name[b->member]);
+                        "A sector of %d teeth does not fit round the %s with its %d teeth.", builder->settings->teeth,
+                        name[builder->member], builder->geometry->teeth[builder->member]);
+  if (!(builder->section->bore_radius > 0 &&
+        builder->section->bore_radius < 0.98 * builder->geometry->root_radius[builder->member]))
+    return eo_error_set(error, EO_ERROR_INPUT,
+                        builder->member ? "/gear_pair/gear_bore_mm" : "/gear_pair/pinion_bore_mm",
+                        "The bore of the %s leaves no rim below its teeth.", name[builder->member]);
   return EO_OK;
 }
 
 /* Everything that the nodes are placed by. */
-static enum eo_code plan(struct builder *b)
+static enum eo_code plan(struct builder *builder)
 {
-  const struct eo_geometry *g = b->geometry;
-  double point[2], normal[2], start = g->start_radius[b->member], bore = b->section->bore_radius;
-  double fillet = fillet_length(b), involute = start - g->form_radius[b->member];
-  int rim = b->settings->rim;
-  b->level = malloc((size_t)(rim + MOST_RINGS + 1) * sizeof *b->level);
-  if (!b->level)
+  const struct eo_geometry *geometry = builder->geometry;
+  double point[2], normal[2], start = geometry->start_radius[builder->member], bore = builder->section->bore_radius;
+  double fillet = fillet_length(builder), involute = start - geometry->form_radius[builder->member];
+  int rim = builder->settings->rim;
+  builder->level = malloc((size_t)(rim + MOST_RINGS + 1) * sizeof *builder->level);
+  if (!builder->level)
     return EO_ERROR_MEMORY;
-  b->pitch_angle = 2 * M_PI / g->teeth[b->member];
-  b->involute_share = involute > 1e-6 * fillet ? involute / (involute + fillet) : 0;
-  eo_geometry_involute(g, b->member, start, point, normal);
-  b->inner_angle = 0.6 * fmin(atan2(point[0], point[1]), 0.35 * b->pitch_angle);
-  b->foot_radius = fmax(bore, b->settings->foot_radius);
-  double depth = g->root_radius[b->member] - b->foot_radius;
-  grade_levels(b->level, rim, (fillet + involute) / b->settings->loaded.fillet[1] / depth);
-  double last = depth * (b->level[rim] - b->level[rim - 1]), radius[MOST_RINGS + 1];
-  int rings = grade_rings(b->foot_radius, bore, last, radius);
+  builder->pitch_angle = 2 * M_PI / geometry->teeth[builder->member];
+  builder->involute_share = involute > 1e-6 * fillet ? involute / (involute + fillet) : 0;
+  eo_geometry_involute(geometry, builder->member, start, point, normal);
+  builder->inner_angle = 0.6 * fmin(atan2(point[0], point[1]), 0.35 * builder->pitch_angle);
+  builder->foot_radius = fmax(bore, builder->settings->foot_radius);
+  double depth = geometry->root_radius[builder->member] - builder->foot_radius;
+  grade_levels(builder->level, rim, (fillet + involute) / builder->settings->loaded.fillet[1] / depth);
+  double last = depth * (builder->level[rim] - builder->level[rim - 1]), radius[MOST_RINGS + 1];
+  int rings = grade_rings(builder->foot_radius, bore, last, radius);
   for (int k = 1; k <= rings; k++)
-    b->level[rim + k] = radius[k];
-  b->depth = rim + rings;
+    builder->level[rim + k] = radius[k];
+  builder->depth = rim + rings;
   return EO_OK;
 }
 
-static void build(struct builder *b)
+static void build(struct builder *builder)
 {
-  for (int t = 0; t < b->settings->teeth; t++) {
-    struct tooth *tooth = &b->tooth[t];
+  for (int t = 0; t < builder->settings->teeth; t++) {
+    struct tooth *tooth = &builder->tooth[t];
     const struct tooth *before = t ? tooth - 1 : NULL;
-    add_core_nodes(b, tooth);
-    add_side_nodes(b, tooth, 1, before);
-    add_side_nodes(b, tooth, 0, NULL);
-    add_quads(b, tooth);
+    add_core_nodes(builder, tooth);
+    add_side_nodes(builder, tooth, 1, before);
+    add_side_nodes(builder, tooth, 0, NULL);
+    add_quads(builder, tooth);
   }
-  mark_nodes(b);
+  mark_nodes(builder);
 }
 
 enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member,
                              double bore_radius, const struct eo_section_settings *settings, struct eo_error *error)
 {
-  struct builder b = {.section = section, .geometry = geometry, .settings = settings, .member = member};
+  struct builder builder = {.section = section, .geometry = geometry, .settings = settings, .member = member};
   *section = (struct eo_section){.bore_radius = bore_radius};
-  enum eo_code code = check(&b, error);
+  enum eo_code code = check(&builder, error);
   if (code)
     return code;
-  code = plan(&b);
+  code = plan(&builder);
   if (!code)
-    code = allocate(&b);
+    code = allocate(&builder);
   if (!code)
-    build(&b);
+    build(&builder);
   if (!code)
-    code = list_boundary(&b);
+    code = list_boundary(&builder);
   for (int t = 0; t < settings->teeth; t++) {
-    free(b.tooth[t].core);
-    free(b.tooth[t].side[0]);
-    free(b.tooth[t].side[1]);
+    free(builder.tooth[t].core);
+    free(builder.tooth[t].side[0]);
+    free(builder.tooth[t].side[1]);
   }
-  free(b.level);
+  free(builder.level);
   if (code) {
     eo_section_done(section);
     return eo_error_memory(error);

@@ -86,17 +86,17 @@ static int belongs(const struct eo_section *section, enum eo_sector_extent exten
 
 static void number_nodes(struct eo_sector *sector, enum eo_sector_extent extent)
 {
-  const struct eo_section *s = sector->section;
-  for (int a = 0; a < s->nodes; a++)
+  const struct eo_section *section = sector->section;
+  for (int a = 0; a < section->nodes; a++)
     sector->free[a] = -1;
-  for (int q = 0; q < s->quads; q++)
-    for (int k = 0; k < 4 && belongs(s, extent, q); k++)
-      sector->free[s->quad[4 * q + k]] = 0;
-  for (int q = 0; q < s->quads; q++)
-    for (int k = 0; k < 4 && !belongs(s, extent, q); k++)
-      sector->free[s->quad[4 * q + k]] = -1;
-  for (int a = 0; a < s->nodes; a++) {
-    if (s->fixed[a] == EO_HELD_ALL || (extent == EO_HALF_TOOTH && s->centre[a]))
+  for (int q = 0; q < section->quads; q++)
+    for (int k = 0; k < 4 && belongs(section, extent, q); k++)
+      sector->free[section->quad[4 * q + k]] = 0;
+  for (int q = 0; q < section->quads; q++)
+    for (int k = 0; k < 4 && !belongs(section, extent, q); k++)
+      sector->free[section->quad[4 * q + k]] = -1;
+  for (int a = 0; a < section->nodes; a++) {
+    if (section->fixed[a] == EO_HELD_ALL || (extent == EO_HALF_TOOTH && section->centre[a]))
       sector->free[a] = -1;
     if (sector->free[a] == 0)
       sector->free[a] = sector->free_nodes++;
@@ -106,13 +106,13 @@ static void number_nodes(struct eo_sector *sector, enum eo_sector_extent extent)
 /* Numbers the unknowns of one layer: those directions of the free nodes that are not held. */
 static enum eo_code number_unknowns(struct eo_sector *sector)
 {
-  const struct eo_section *s = sector->section;
+  const struct eo_section *section = sector->section;
   sector->place = malloc((size_t)(3 * sector->free_nodes + 1) * sizeof *sector->place);
   if (!sector->place)
     return EO_ERROR_MEMORY;
-  for (int a = 0; a < s->nodes; a++)
+  for (int a = 0; a < section->nodes; a++)
     for (int c = 0; c < 3 && sector->free[a] >= 0; c++)
-      sector->place[3 * sector->free[a] + c] = s->fixed[a] & EO_HELD_X << c ? -1 : sector->layer_unknowns++;
+      sector->place[3 * sector->free[a] + c] = section->fixed[a] & EO_HELD_X << c ? -1 : sector->layer_unknowns++;
   return EO_OK;
 }
 
@@ -124,24 +124,24 @@ static int compare(const void *a, const void *b)
 /* Lists the neighbours of every free node, through the quadrilaterals that belong. */
 static enum eo_code find_neighbours(const struct eo_sector *sector, enum eo_sector_extent extent, struct blocks *blocks)
 {
-  const struct eo_section *s = sector->section;
-  int free_nodes = sector->free_nodes, *list = malloc((size_t)(16 * s->quads + 1) * sizeof *list);
+  const struct eo_section *section = sector->section;
+  int free_nodes = sector->free_nodes, *list = malloc((size_t)(16 * section->quads + 1) * sizeof *list);
   int *start = calloc((size_t)free_nodes + 2, sizeof *start);
   blocks->start = start;
   blocks->row = list;
   if (!start || !list)
     return EO_ERROR_MEMORY;
-  for (int q = 0; q < s->quads; q++)
-    for (int k = 0; k < 4 && belongs(s, extent, q); k++)
-      if (sector->free[s->quad[4 * q + k]] >= 0)
-        start[sector->free[s->quad[4 * q + k]] + 2] += 4;
+  for (int q = 0; q < section->quads; q++)
+    for (int k = 0; k < 4 && belongs(section, extent, q); k++)
+      if (sector->free[section->quad[4 * q + k]] >= 0)
+        start[sector->free[section->quad[4 * q + k]] + 2] += 4;
   for (int f = 0; f < free_nodes; f++)
     start[f + 2] += start[f + 1];
-  for (int q = 0; q < s->quads; q++)
-    for (int k = 0; k < 4 && belongs(s, extent, q); k++) {
-      int f = sector->free[s->quad[4 * q + k]];
+  for (int q = 0; q < section->quads; q++)
+    for (int k = 0; k < 4 && belongs(section, extent, q); k++) {
+      int f = sector->free[section->quad[4 * q + k]];
       for (int m = 0; m < 4 && f >= 0; m++)
-        list[start[f + 1]++] = sector->free[s->quad[4 * q + m]];
+        list[start[f + 1]++] = sector->free[section->quad[4 * q + m]];
     }
   int filled = 0;
   for (int f = 0, from = 0; f < free_nodes; f++) {
@@ -229,7 +229,7 @@ static void add_brick(const struct eo_sector *sector, const int *quad, double k[
 static int put_column(const struct eo_sector *sector, const struct blocks *blocks, int layer, int node, int direction,
                       int filled)
 {
-  const struct eo_sparse *m = &sector->matrix;
+  const struct eo_sparse *sparse = &sector->matrix;
   int base = layer * sector->layer_unknowns, from = blocks->start[node], end = blocks->start[node + 1];
   double below = layer > 0, above = layer < sector->layers;
   for (int p = from; p < end; p++)
@@ -237,33 +237,33 @@ static int put_column(const struct eo_sector *sector, const struct blocks *block
       int place = sector->place[3 * blocks->row[p] + i];
       if (place < 0)
         continue;
-      m->row[filled] = base + place;
-      m->value[filled++] = above * blocks->value[p][LOWER][3 * i + direction] +
-                           below * blocks->value[p][UPPER][3 * i + direction];
+      sparse->row[filled] = base + place;
+      sparse->value[filled++] = above * blocks->value[p][LOWER][3 * i + direction] +
+                                below * blocks->value[p][UPPER][3 * i + direction];
     }
   for (int p = from; p < end && layer < sector->layers; p++)
     for (int i = 0; i < 3; i++) {
       int place = sector->place[3 * blocks->row[p] + i];
       if (place < 0)
         continue;
-      m->row[filled] = base + sector->layer_unknowns + place;
-      m->value[filled++] = blocks->value[p][ACROSS][3 * i + direction];
+      sparse->row[filled] = base + sector->layer_unknowns + place;
+      sparse->value[filled++] = blocks->value[p][ACROSS][3 * i + direction];
     }
   return filled;
 }
 
 static enum eo_code assemble(struct eo_sector *sector, const struct blocks *blocks)
 {
-  struct eo_sparse *m = &sector->matrix;
+  struct eo_sparse *sparse = &sector->matrix;
   int nodes = sector->free_nodes;
   size_t entries = 9 * 2 * (size_t)blocks->start[nodes] * (size_t)(sector->layers + 1);
-  m->n = sector->layer_unknowns * (sector->layers + 1);
-  m->start = malloc(((size_t)m->n + 1) * sizeof *m->start);
-  m->row = malloc(entries * sizeof *m->row);
-  m->value = malloc(entries * sizeof *m->value);
-  sector->group = malloc(((size_t)m->n + 1) * sizeof *sector->group);
+  sparse->n = sector->layer_unknowns * (sector->layers + 1);
+  sparse->start = malloc(((size_t)sparse->n + 1) * sizeof *sparse->start);
+  sparse->row = malloc(entries * sizeof *sparse->row);
+  sparse->value = malloc(entries * sizeof *sparse->value);
+  sector->group = malloc(((size_t)sparse->n + 1) * sizeof *sector->group);
   sector->groups = nodes * (sector->layers + 1);
-  if (!m->start || !m->row || !m->value || !sector->group)
+  if (!sparse->start || !sparse->row || !sparse->value || !sector->group)
     return EO_ERROR_MEMORY;
   int filled = 0, column = 0;
   for (int layer = 0; layer <= sector->layers; layer++)
@@ -271,10 +271,10 @@ static enum eo_code assemble(struct eo_sector *sector, const struct blocks *bloc
       if (sector->place[k] < 0)
         continue;
       sector->group[column] = layer * nodes + k / 3;
-      m->start[column++] = filled;
+      sparse->start[column++] = filled;
       filled = put_column(sector, blocks, layer, k / 3, k % 3, filled);
     }
-  m->start[m->n] = filled;
+  sparse->start[sparse->n] = filled;
   return EO_OK;
 }
 

@@ -30,178 +30,182 @@ static void widen(const double *value, int count, double range[2])
     }
 }
 
-static struct frame find_frame(const struct eo_band_chart *c, struct eo_text *text)
+static struct frame find_frame(const struct eo_band_chart *chart, struct eo_text *text)
 {
   enum { X_PARTS = 9, Y_PARTS = 6 };
-  struct frame f = {.chart = c, .x = {INFINITY, -INFINITY}, .y = {0, 0}, .text = text};
-  widen(c->x, c->count, f.x);
-  widen(c->nominal, c->count, f.y);
-  widen(c->upper, c->count, f.y);
-  widen(c->lower, c->count, f.y);
-  if (!(f.y[1] > f.y[0]))
-    f.y[1] = f.y[0] + 1;
-  f.x_step = round_step(f.x[1] - f.x[0], X_PARTS);
-  f.y_step = round_step(f.y[1] - f.y[0], Y_PARTS);
-  f.y[0] = f.y_step * floor(f.y[0] / f.y_step - 0.5);
-  f.y[1] = f.y_step * ceil(f.y[1] / f.y_step + 0.5);
-  f.height = TOP + FRAME + BELOW + SCALE * c->scales;
-  return f;
+  struct frame frame = {.chart = chart, .x = {INFINITY, -INFINITY}, .y = {0, 0}, .text = text};
+  widen(chart->x, chart->count, frame.x);
+  widen(chart->nominal, chart->count, frame.y);
+  widen(chart->upper, chart->count, frame.y);
+  widen(chart->lower, chart->count, frame.y);
+  if (!(frame.y[1] > frame.y[0]))
+    frame.y[1] = frame.y[0] + 1;
+  frame.x_step = round_step(frame.x[1] - frame.x[0], X_PARTS);
+  frame.y_step = round_step(frame.y[1] - frame.y[0], Y_PARTS);
+  frame.y[0] = frame.y_step * floor(frame.y[0] / frame.y_step - 0.5);
+  frame.y[1] = frame.y_step * ceil(frame.y[1] / frame.y_step + 0.5);
+  frame.height = TOP + FRAME + BELOW + SCALE * chart->scales;
+  return frame;
 }
 
-static double place_x(const struct frame *f, double x)
+static double place_x(const struct frame *frame, double x)
 {
-  return LEFT + (x - f->x[0]) / (f->x[1] - f->x[0]) * (WIDTH - LEFT - RIGHT);
+  return LEFT + (x - frame->x[0]) / (frame->x[1] - frame->x[0]) * (WIDTH - LEFT - RIGHT);
 }
 
-static double place_y(const struct frame *f, double y)
+static double place_y(const struct frame *frame, double y)
 {
-  return TOP + FRAME - (y - f->y[0]) / (f->y[1] - f->y[0]) * FRAME;
+  return TOP + FRAME - (y - frame->y[0]) / (frame->y[1] - frame->y[0]) * FRAME;
 }
 
 /* Straight between the points of the curve. */
-static double value_at(const struct eo_band_chart *c, const double *value, double x)
+static double value_at(const struct eo_band_chart *chart, const double *value, double x)
 {
   int i = 0;
-  while (i < c->count - 2 && c->x[i + 1] < x)
+  while (i < chart->count - 2 && chart->x[i + 1] < x)
     i++;
-  double step = c->x[i + 1] - c->x[i];
-  return value[i] + (step > 0 ? (x - c->x[i]) / step * (value[i + 1] - value[i]) : 0);
+  double step = chart->x[i + 1] - chart->x[i];
+  return value[i] + (step > 0 ? (x - chart->x[i]) / step * (value[i + 1] - value[i]) : 0);
 }
 
-static void draw_x_axis(const struct frame *f)
+static void draw_x_axis(const struct frame *frame)
 {
-  const struct eo_band_chart *c = f->chart;
-  struct eo_text *t = f->text;
+  const struct eo_band_chart *chart = frame->chart;
+  struct eo_text *text = frame->text;
   int bottom = TOP + FRAME;
-  for (double x = f->x_step * ceil(f->x[0] / f->x_step - 1e-9); x <= f->x[1] + 1e-9 * f->x_step; x += f->x_step) {
-    double at = place_x(f, x);
-    eo_text_print(t, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#e4e4e4\"/>", at, at, TOP, bottom);
-    eo_text_print(t, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.6g</text>", at, bottom + 16,
-                  fabs(x) < 1e-9 * f->x_step ? 0 : x);
-    for (int i = 0; i < c->scales; i++)
-      eo_text_print(t, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#555\">%.*f</text>", at,
-                    bottom + 16 + SCALE * (i + 1), c->scale[i].decimals, value_at(c, c->scale[i].value, x));
-    eo_text_add(t, "\n");
+  for (double x = frame->x_step * ceil(frame->x[0] / frame->x_step - 1e-9); x <= frame->x[1] + 1e-9 * frame->x_step;
+       x += frame->x_step) {
+    double at = place_x(frame, x);
+    eo_text_print(text, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#e4e4e4\"/>", at, at, TOP, bottom);
+    eo_text_print(text, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.6g</text>", at, bottom + 16,
+                  fabs(x) < 1e-9 * frame->x_step ? 0 : x);
+    for (int i = 0; i < chart->scales; i++)
+      eo_text_print(text, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#555\">%.*f</text>", at,
+                    bottom + 16 + SCALE * (i + 1), chart->scale[i].decimals, value_at(chart, chart->scale[i].value, x));
+    eo_text_add(text, "\n");
   }
-  eo_text_print(t, "<text x=\"8\" y=\"%d\">", bottom + 16);
-  eo_plot_escape(t, c->x_label);
-  eo_text_add(t, "</text>\n");
-  for (int i = 0; i < c->scales; i++) {
-    eo_text_print(t, "<text x=\"8\" y=\"%d\" fill=\"#555\">", bottom + 16 + SCALE * (i + 1));
-    eo_plot_escape(t, c->scale[i].label);
-    eo_text_add(t, "</text>\n");
+  eo_text_print(text, "<text x=\"8\" y=\"%d\">", bottom + 16);
+  eo_plot_escape(text, chart->x_label);
+  eo_text_add(text, "</text>\n");
+  for (int i = 0; i < chart->scales; i++) {
+    eo_text_print(text, "<text x=\"8\" y=\"%d\" fill=\"#555\">", bottom + 16 + SCALE * (i + 1));
+    eo_plot_escape(text, chart->scale[i].label);
+    eo_text_add(text, "</text>\n");
   }
 }
 
-static void draw_y_axis(const struct frame *f)
+static void draw_y_axis(const struct frame *frame)
 {
-  struct eo_text *t = f->text;
-  for (double y = f->y[0]; y <= f->y[1] + 1e-9 * f->y_step; y += f->y_step) {
-    double at = place_y(f, y);
-    bool zero = fabs(y) < 1e-9 * f->y_step;
-    eo_text_print(t, "<line x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>", LEFT, WIDTH - RIGHT, at, at,
-                  zero ? "#999" : "#e4e4e4");
-    eo_text_print(t, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.6g</text>\n", LEFT - 6, at + 4, zero ? 0 : y);
+  struct eo_text *text = frame->text;
+  for (double y = frame->y[0]; y <= frame->y[1] + 1e-9 * frame->y_step; y += frame->y_step) {
+    double at = place_y(frame, y);
+    bool zero = fabs(y) < 1e-9 * frame->y_step;
+    eo_text_print(text, "<line x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>", LEFT, WIDTH - RIGHT, at,
+                  at, zero ? "#999" : "#e4e4e4");
+    eo_text_print(text, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.6g</text>\n", LEFT - 6, at + 4, zero ? 0 : y);
   }
-  eo_text_print(t, "<text transform=\"translate(%d %d) rotate(-90)\" text-anchor=\"middle\">", LEFT - 44,
+  eo_text_print(text, "<text transform=\"translate(%d %d) rotate(-90)\" text-anchor=\"middle\">", LEFT - 44,
                 TOP + FRAME / 2);
-  eo_plot_escape(t, f->chart->y_label);
-  eo_text_add(t, "</text>\n");
+  eo_plot_escape(text, frame->chart->y_label);
+  eo_text_add(text, "</text>\n");
 }
 
 /* One polygon for each stretch where both limits are there. */
-static void draw_band(const struct frame *f)
+static void draw_band(const struct frame *frame)
 {
-  const struct eo_band_chart *c = f->chart;
-  for (int first = 0; first < c->count; first++) {
+  const struct eo_band_chart *chart = frame->chart;
+  for (int first = 0; first < chart->count; first++) {
     int last = first;
-    while (last < c->count && isfinite(c->upper[last]) && isfinite(c->lower[last]))
+    while (last < chart->count && isfinite(chart->upper[last]) && isfinite(chart->lower[last]))
       last++;
     if (last - first < 2)
       continue;
-    eo_text_add(f->text, "<path class=\"band\" fill=\"#cfe3f5\" stroke=\"#0072b2\" stroke-width=\"0.8\" d=\"");
+    eo_text_add(frame->text, "<path class=\"band\" fill=\"#cfe3f5\" stroke=\"#0072b2\" stroke-width=\"0.8\" d=\"");
     for (int i = first; i < last; i++)
-      eo_text_print(f->text, "%c%.2f %.2f", i == first ? 'M' : 'L', place_x(f, c->x[i]), place_y(f, c->upper[i]));
+      eo_text_print(frame->text, "%c%.2f %.2f", i == first ? 'M' : 'L', place_x(frame, chart->x[i]),
+                    place_y(frame, chart->upper[i]));
     for (int i = last - 1; i >= first; i--)
-      eo_text_print(f->text, "L%.2f %.2f", place_x(f, c->x[i]), place_y(f, c->lower[i]));
-    eo_text_add(f->text, "Z\"/>\n");
+      eo_text_print(frame->text, "L%.2f %.2f", place_x(frame, chart->x[i]), place_y(frame, chart->lower[i]));
+    eo_text_add(frame->text, "Z\"/>\n");
     first = last;
   }
 }
 
-static void draw_nominal(const struct frame *f)
+static void draw_nominal(const struct frame *frame)
 {
-  const struct eo_band_chart *c = f->chart;
-  eo_text_add(f->text, "<path class=\"nominal\" fill=\"none\" stroke=\"#000\" stroke-width=\"1.8\" d=\"");
-  for (int i = 0; i < c->count; i++)
-    eo_text_print(f->text, "%c%.2f %.2f", i ? 'L' : 'M', place_x(f, c->x[i]), place_y(f, c->nominal[i]));
-  eo_text_add(f->text, "\"/>\n");
+  const struct eo_band_chart *chart = frame->chart;
+  eo_text_add(frame->text, "<path class=\"nominal\" fill=\"none\" stroke=\"#000\" stroke-width=\"1.8\" d=\"");
+  for (int i = 0; i < chart->count; i++)
+    eo_text_print(frame->text, "%c%.2f %.2f", i ? 'L' : 'M', place_x(frame, chart->x[i]),
+                  place_y(frame, chart->nominal[i]));
+  eo_text_add(frame->text, "\"/>\n");
 }
 
 /* Evaluation range: an arrow above the frame between two dashed lines. */
-static void draw_range(const struct frame *f)
+static void draw_range(const struct frame *frame)
 {
-  const struct eo_band_chart *c = f->chart;
-  if (!(c->range[1] > c->range[0]))
+  const struct eo_band_chart *chart = frame->chart;
+  if (!(chart->range[1] > chart->range[0]))
     return;
-  double from = place_x(f, c->range[0]), to = place_x(f, c->range[1]);
+  double from = place_x(frame, chart->range[0]), to = place_x(frame, chart->range[1]);
   for (int i = 0; i < 2; i++)
-    eo_text_print(f->text,
+    eo_text_print(frame->text,
                   "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#d55e00\" stroke-dasharray=\"5 3\"/>",
                   i ? to : from, i ? to : from, TOP - 10, TOP + FRAME);
-  eo_text_print(f->text, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#d55e00\"/>\n", from, to, TOP - 8,
-                TOP - 8);
-  eo_text_print(f->text, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#b04a00\">", (from + to) / 2,
+  eo_text_print(frame->text, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#d55e00\"/>\n", from, to,
+                TOP - 8, TOP - 8);
+  eo_text_print(frame->text, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#b04a00\">", (from + to) / 2,
                 TOP - 13);
-  eo_plot_escape(f->text, c->range_label);
-  eo_text_add(f->text, "</text>\n");
+  eo_plot_escape(frame->text, chart->range_label);
+  eo_text_add(frame->text, "</text>\n");
 }
 
 /* Labels stand at the top of the frame, turned along their lines. */
-static void draw_marks(const struct frame *f)
+static void draw_marks(const struct frame *frame)
 {
-  const struct eo_band_chart *c = f->chart;
-  for (int i = 0; i < c->marks; i++) {
-    double at = place_x(f, c->mark[i].x);
-    if (!isfinite(c->mark[i].x) || at < LEFT - 0.5 || at > WIDTH - RIGHT + 0.5)
+  const struct eo_band_chart *chart = frame->chart;
+  for (int i = 0; i < chart->marks; i++) {
+    double at = place_x(frame, chart->mark[i].x);
+    if (!isfinite(chart->mark[i].x) || at < LEFT - 0.5 || at > WIDTH - RIGHT + 0.5)
       continue;
-    eo_text_print(f->text, "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#666\" stroke-width=\"0.8\"/>",
-                  at, at, TOP, TOP + FRAME);
-    eo_text_print(f->text, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"11\" fill=\"#333\">",
+    eo_text_print(frame->text,
+                  "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#666\" stroke-width=\"0.8\"/>", at, at,
+                  TOP, TOP + FRAME);
+    eo_text_print(frame->text, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"11\" fill=\"#333\">",
                   at > WIDTH - RIGHT - 14 ? at - 4 : at + 11, TOP + FRAME - 6);
-    eo_plot_escape(f->text, c->mark[i].label);
-    eo_text_add(f->text, "</text>\n");
+    eo_plot_escape(frame->text, chart->mark[i].label);
+    eo_text_add(frame->text, "</text>\n");
   }
 }
 
-static void draw_sides(const struct frame *f)
+static void draw_sides(const struct frame *frame)
 {
-  const char *side[2] = {f->chart->above, f->chart->below};
+  const char *side[2] = {frame->chart->above, frame->chart->below};
   for (int i = 0; i < 2; i++)
     if (side[i]) {
-      eo_text_print(f->text, "<text x=\"%d\" y=\"%d\" font-style=\"italic\" fill=\"#777\">", 8,
+      eo_text_print(frame->text, "<text x=\"%d\" y=\"%d\" font-style=\"italic\" fill=\"#777\">", 8,
                     i ? TOP + FRAME - 6 : TOP + 12);
-      eo_plot_escape(f->text, side[i]);
-      eo_text_add(f->text, "</text>\n");
+      eo_plot_escape(frame->text, side[i]);
+      eo_text_add(frame->text, "</text>\n");
     }
 }
 
 void eo_band_chart_svg(const struct eo_band_chart *chart, struct eo_text *text)
 {
-  struct frame f = find_frame(chart, text);
+  struct frame frame = find_frame(chart, text);
   eo_text_print(text,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
                 "font-family=\"sans-serif\" font-size=\"12\">\n<text x=\"8\" y=\"18\" font-weight=\"bold\">",
-                WIDTH, f.height);
+                WIDTH, frame.height);
   eo_plot_escape(text, chart->title);
   eo_text_add(text, "</text>\n");
-  draw_x_axis(&f);
-  draw_y_axis(&f);
-  draw_band(&f);
-  draw_marks(&f);
-  draw_nominal(&f);
-  draw_range(&f);
-  draw_sides(&f);
+  draw_x_axis(&frame);
+  draw_y_axis(&frame);
+  draw_band(&frame);
+  draw_marks(&frame);
+  draw_nominal(&frame);
+  draw_range(&frame);
+  draw_sides(&frame);
   eo_text_print(text, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\"/>\n</svg>\n",
                 LEFT, TOP, WIDTH - LEFT - RIGHT, FRAME);
 }

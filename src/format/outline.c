@@ -122,15 +122,15 @@ static json_t *take_each(const struct eo_outline *outline, const json_t *array)
 
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document)
 {
-  struct eo_object o = eo_object_open_as(outline);
+  struct eo_object object = eo_object_open_as(outline);
   const struct eo_outline_row *row;
   for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
     json_t *value = json_object_get(document, row->key);
     if (row->outline && json_is_array(value))
-      eo_object_put(&o, row->key, take_each(row->outline, value));
+      eo_object_put(&object, row->key, take_each(row->outline, value));
     else if (value)
-      eo_object_put(&o, row->key,
+      eo_object_put(&object, row->key,
                     row->outline && json_is_object(value) ? eo_outline_take(row->outline, value) : json_incref(value));
   }
-  return eo_object_close(&o);
+  return eo_object_close(&object);
 }

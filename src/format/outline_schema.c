@@ -65,17 +65,18 @@ static json_t *read_shape(const char **at, const struct eo_outline_row *row)
 static json_t *property(const struct eo_outline_row *row)
 {
   const char *at = row->shape;
-  struct eo_object o = {.json = read_shape(&at, row)};
-  o.failed = !o.json || *at;
-  eo_object_put(&o, "description", row->when ? json_sprintf("%s; %s", row->help, row->when) : json_string(row->help));
+  struct eo_object object = {.json = read_shape(&at, row)};
+  object.failed = !object.json || *at;
+  eo_object_put(&object, "description",
+                row->when ? json_sprintf("%s; %s", row->help, row->when) : json_string(row->help));
   if (row->unit)
-    eo_object_put(&o, "x-unit", json_string(row->unit->symbol));
-  return eo_object_close(&o);
+    eo_object_put(&object, "x-unit", json_string(row->unit->symbol));
+  return eo_object_close(&object);
 }
 
 static json_t *object_schema(const struct eo_outline *outline)
 {
-  struct eo_object o = eo_object_open(), properties = eo_object_open();
+  struct eo_object object = eo_object_open(), properties = eo_object_open();
   const struct eo_outline_row *row;
   json_t *required = json_array();
   for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
@@ -83,10 +84,10 @@ static json_t *object_schema(const struct eo_outline *outline)
     if (!row->when)
       json_array_append_new(required, json_string(row->key));
   }
-  eo_object_put(&o, "type", json_string("object"));
-  eo_object_put(&o, "properties", eo_object_close(&properties));
-  eo_object_put(&o, "required", required);
-  return eo_object_close(&o);
+  eo_object_put(&object, "type", json_string("object"));
+  eo_object_put(&object, "properties", eo_object_close(&properties));
+  eo_object_put(&object, "required", required);
+  return eo_object_close(&object);
 }
 
 bool eo_outline_add_schemas(const struct eo_outline *outline, json_t *schemas)

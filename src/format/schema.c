@@ -51,10 +51,10 @@ static bool is_numeric(const struct eo_field *field)
 }
 
 /* Ranges without an end are left out; a whole number reads 17, not 17.0. */
-static void put_bound(struct eo_object *o, const char *key, double bound)
+static void put_bound(struct eo_object *object, const char *key, double bound)
 {
   if (isfinite(bound))
-    eo_object_put(o, key,
+    eo_object_put(object, key,
                   fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
 }
 
@@ -72,53 +72,53 @@ static json_t *list_texts(const char *const *text)
 
 static json_t *list_fields(const struct eo_table *table);
 
-static void put_range(struct eo_object *o, const struct eo_field *field)
+static void put_range(struct eo_object *object, const struct eo_field *field)
 {
   bool numbers = field->kind == EO_FIELD_SERIES || field->kind == EO_FIELD_MATRIX;
   bool rows = field->kind == EO_FIELD_LIST || numbers;
   if (is_numeric(field) || rows) {
-    put_bound(o, "low", field->low);
-    put_bound(o, "high", field->high);
+    put_bound(object, "low", field->low);
+    put_bound(object, "high", field->high);
   }
   if (numbers) {
-    put_bound(o, "number_low", field->series_low);
-    put_bound(o, "number_high", field->series_high);
+    put_bound(object, "number_low", field->series_low);
+    put_bound(object, "number_high", field->series_high);
   }
   if (field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIST)
-    eo_object_put(o, "count", json_integer(field->count));
+    eo_object_put(object, "count", json_integer(field->count));
   if (field->kind == EO_FIELD_TEXT)
-    eo_object_put(o, "count", json_integer(field->count - 1));
+    eo_object_put(object, "count", json_integer(field->count - 1));
 }
 
 static json_t *encode_field(const struct eo_field *field, const json_t *defaults)
 {
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "key", json_string(field->key));
-  eo_object_put(&o, "kind", json_string(kind_names[field->kind]));
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "key", json_string(field->key));
+  eo_object_put(&object, "kind", json_string(kind_names[field->kind]));
   if (field->unit) {
-    eo_object_put(&o, "unit", json_string(field->unit->suffix));
-    eo_object_put(&o, "symbol", json_string(field->unit->symbol));
+    eo_object_put(&object, "unit", json_string(field->unit->suffix));
+    eo_object_put(&object, "symbol", json_string(field->unit->symbol));
   }
-  put_range(&o, field);
+  put_range(&object, field);
   if (has_default(field))
-    eo_object_put(&o, "default", default_of(field, defaults));
+    eo_object_put(&object, "default", default_of(field, defaults));
   if (field->choices)
-    eo_object_put(&o, "choices", list_texts(field->choices));
+    eo_object_put(&object, "choices", list_texts(field->choices));
   if (field->help)
-    eo_object_put(&o, "help", json_string(field->help));
-  eo_object_put(&o, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
-  eo_object_put(&o, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
+    eo_object_put(&object, "help", json_string(field->help));
+  eo_object_put(&object, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
+  eo_object_put(&object, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
   if (field->derived)
-    eo_object_put(&o, "derived", json_string(field->derived));
+    eo_object_put(&object, "derived", json_string(field->derived));
   if (field->basis)
-    eo_object_put(&o, "basis", json_string(field->basis));
+    eo_object_put(&object, "basis", json_string(field->basis));
   if (field->flags & EO_FIELD_ENTRY)
-    eo_object_put(&o, "entry", json_string(field->states));
+    eo_object_put(&object, "entry", json_string(field->states));
   if (field->instead)
-    eo_object_put(&o, "instead", list_texts(field->instead));
+    eo_object_put(&object, "instead", list_texts(field->instead));
   if (field->table)
-    eo_object_put(&o, "fields", list_fields(field->table));
-  return eo_object_close(&o);
+    eo_object_put(&object, "fields", list_fields(field->table));
+  return eo_object_close(&object);
 }
 
 static json_t *list_fields(const struct eo_table *table)
@@ -136,132 +136,132 @@ static json_t *list_fields(const struct eo_table *table)
 
 json_t *eo_table_fields(const struct eo_table *table)
 {
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "name", json_string(table->name));
-  eo_object_put(&o, "fields", list_fields(table));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "name", json_string(table->name));
+  eo_object_put(&object, "fields", list_fields(table));
+  return eo_object_close(&object);
 }
 
-static void put_type(struct eo_object *o, const char *type, bool nullable)
+static void put_type(struct eo_object *object, const char *type, bool nullable)
 {
-  eo_object_put(o, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
+  eo_object_put(object, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
 }
 
-static void put_number(struct eo_object *o, const struct eo_field *field, double low, double high, bool nullable,
+static void put_number(struct eo_object *object, const struct eo_field *field, double low, double high, bool nullable,
                        bool input)
 {
-  put_type(o, is_whole(field) ? "integer" : "number", nullable);
+  put_type(object, is_whole(field) ? "integer" : "number", nullable);
   if (!input)
     return;
-  put_bound(o, "minimum", low);
-  put_bound(o, "maximum", high);
+  put_bound(object, "minimum", low);
+  put_bound(object, "maximum", high);
 }
 
 /* Numbers of an array that is written may be missing one by one. */
 static json_t *number_items(const struct eo_field *field, double low, double high, bool input)
 {
-  struct eo_object o = eo_object_open();
-  put_number(&o, field, low, high, !input, input);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  put_number(&object, field, low, high, !input, input);
+  return eo_object_close(&object);
 }
 
-static void put_text(struct eo_object *o, const struct eo_field *field)
+static void put_text(struct eo_object *object, const struct eo_field *field)
 {
-  put_type(o, "string", field->flags & EO_FIELD_NULLABLE);
+  put_type(object, "string", field->flags & EO_FIELD_NULLABLE);
   if (!field->choices && field->low > 0)
-    eo_object_put(o, "minLength", json_integer((json_int_t)field->low));
+    eo_object_put(object, "minLength", json_integer((json_int_t)field->low));
   if (field->choices)
-    eo_object_put(o, "enum", list_texts(field->choices));
+    eo_object_put(object, "enum", list_texts(field->choices));
   else
-    eo_object_put(o, "maxLength", json_integer(field->count - 1));
+    eo_object_put(object, "maxLength", json_integer(field->count - 1));
 }
 
-static void put_array(struct eo_object *o, const struct eo_field *field, json_t *items, double low, double high)
+static void put_array(struct eo_object *object, const struct eo_field *field, json_t *items, double low, double high)
 {
-  put_type(o, "array", field->flags & EO_FIELD_NULLABLE);
-  eo_object_put(o, "items", items);
-  put_bound(o, "minItems", low);
-  put_bound(o, "maxItems", high);
+  put_type(object, "array", field->flags & EO_FIELD_NULLABLE);
+  eo_object_put(object, "items", items);
+  put_bound(object, "minItems", low);
+  put_bound(object, "maxItems", high);
 }
 
-static void put_object(struct eo_object *o, const struct eo_table *table, bool nullable, bool input);
+static void put_object(struct eo_object *object, const struct eo_table *table, bool nullable, bool input);
 
 static json_t *row_schema(const struct eo_table *table, bool input)
 {
-  struct eo_object o = eo_object_open();
-  put_object(&o, table, false, input);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  put_object(&object, table, false, input);
+  return eo_object_close(&object);
 }
 
-static void put_reference(struct eo_object *o, const struct eo_field *field)
+static void put_reference(struct eo_object *object, const struct eo_field *field)
 {
   json_t *reference = json_sprintf("#/components/schemas/%s", field->document);
   if (field->flags & EO_FIELD_NULLABLE)
-    eo_object_put(o, "anyOf", json_pack("[{s:o}, {s:s}]", "$ref", reference, "type", "null"));
+    eo_object_put(object, "anyOf", json_pack("[{s:o}, {s:s}]", "$ref", reference, "type", "null"));
   else
-    eo_object_put(o, "$ref", reference);
+    eo_object_put(object, "$ref", reference);
 }
 
 /* Rows of numbers. */
 static json_t *matrix_row(const struct eo_field *field, bool input)
 {
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "type", json_string("array"));
-  eo_object_put(&o, "items", number_items(field, field->series_low, field->series_high, input));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "type", json_string("array"));
+  eo_object_put(&object, "items", number_items(field, field->series_low, field->series_high, input));
+  return eo_object_close(&object);
 }
 
-static void put_constraints(struct eo_object *o, const struct eo_field *field, bool input)
+static void put_constraints(struct eo_object *object, const struct eo_field *field, bool input)
 {
   bool nullable = field->flags & EO_FIELD_NULLABLE || (!input && field->kind == EO_FIELD_NUMBER);
   switch (field->kind) {
   case EO_FIELD_NUMBER:
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
-    put_number(o, field, field->low, field->high, nullable, input);
+    put_number(object, field, field->low, field->high, nullable, input);
     break;
   case EO_FIELD_FLAG:
-    put_type(o, "boolean", false);
+    put_type(object, "boolean", false);
     break;
   case EO_FIELD_TEXT:
   case EO_FIELD_CHOICE:
-    put_text(o, field);
+    put_text(object, field);
     break;
   case EO_FIELD_NUMBERS:
-    put_array(o, field, number_items(field, field->low, field->high, input), field->count, field->count);
+    put_array(object, field, number_items(field, field->low, field->high, input), field->count, field->count);
     break;
   case EO_FIELD_SERIES:
-    put_array(o, field, number_items(field, field->series_low, field->series_high, input), input ? field->low : NAN,
-              input ? field->high : NAN);
+    put_array(object, field, number_items(field, field->series_low, field->series_high, input),
+              input ? field->low : NAN, input ? field->high : NAN);
     break;
   case EO_FIELD_MATRIX:
-    put_array(o, field, matrix_row(field, input), input ? field->low : NAN, input ? field->high : NAN);
+    put_array(object, field, matrix_row(field, input), input ? field->low : NAN, input ? field->high : NAN);
     break;
   case EO_FIELD_LIST:
-    put_array(o, field, row_schema(field->table, input), field->low, field->high);
+    put_array(object, field, row_schema(field->table, input), field->low, field->high);
     break;
   case EO_FIELD_OBJECT:
-    put_object(o, field->table, nullable, input);
+    put_object(object, field->table, nullable, input);
     break;
   case EO_FIELD_DOCUMENT:
-    put_reference(o, field);
+    put_reference(object, field);
     break;
   }
 }
 
 static json_t *property(const struct eo_field *field, const json_t *defaults, bool input)
 {
-  struct eo_object o = eo_object_open();
-  put_constraints(&o, field, input);
+  struct eo_object object = eo_object_open();
+  put_constraints(&object, field, input);
   if (field->help && field->derived)
-    eo_object_put(&o, "description", json_sprintf("%s; null: %s", field->help, field->derived));
+    eo_object_put(&object, "description", json_sprintf("%s; null: %s", field->help, field->derived));
   else if (field->help)
-    eo_object_put(&o, "description", json_string(field->help));
+    eo_object_put(&object, "description", json_string(field->help));
   if (field->unit)
-    eo_object_put(&o, "x-unit", json_string(field->unit->symbol));
+    eo_object_put(&object, "x-unit", json_string(field->unit->symbol));
   if (input && has_default(field))
-    eo_object_put(&o, "default", default_of(field, defaults));
-  return eo_object_close(&o);
+    eo_object_put(&object, "default", default_of(field, defaults));
+  return eo_object_close(&object);
 }
 
 /* An object that is absent is read as an empty one, in which a required key is missing. What another key may stand for
@@ -276,13 +276,13 @@ static bool must_be_there(const struct eo_field *field)
   return required;
 }
 
-static void put_object(struct eo_object *o, const struct eo_table *table, bool nullable, bool input)
+static void put_object(struct eo_object *object, const struct eo_table *table, bool nullable, bool input)
 {
   json_t *required = json_array(), *defaults = encode_defaults(table);
   struct eo_object properties = eo_object_open();
-  o->failed = o->failed || !required || !defaults;
-  put_type(o, "object", nullable);
-  for (int i = 0; i < table->count && !o->failed; i++) {
+  object->failed = object->failed || !required || !defaults;
+  put_type(object, "object", nullable);
+  for (int i = 0; i < table->count && !object->failed; i++) {
     const struct eo_field *field = &table->field[i];
     if (!input && field->flags & EO_FIELD_ENTRY)
       continue;
@@ -290,12 +290,12 @@ static void put_object(struct eo_object *o, const struct eo_table *table, bool n
     if (input && field->alias)
       eo_object_put(&properties, field->alias, property(field, defaults, input));
     if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES | EO_FIELD_ELSEWHERE)))
-      o->failed = json_array_append_new(required, json_string(field->key)) != 0;
+      object->failed = json_array_append_new(required, json_string(field->key)) != 0;
   }
-  eo_object_put(o, "properties", eo_object_close(&properties));
+  eo_object_put(object, "properties", eo_object_close(&properties));
   if (json_array_size(required))
-    eo_object_put(o, "required", json_incref(required));
-  eo_object_put(o, "additionalProperties", json_false());
+    eo_object_put(object, "required", json_incref(required));
+  eo_object_put(object, "additionalProperties", json_false());
   json_decref(required);
   json_decref(defaults);
 }

@@ -42,16 +42,16 @@ double eo_geometry_involute_inverse(double value)
   return angle;
 }
 
-static void set_widths(struct eo_geometry *g, const struct eo_gear_pair *pair)
+static void set_widths(struct eo_geometry *geometry, const struct eo_gear_pair *pair)
 {
-  g->face_width = pair->face_width;
+  geometry->face_width = pair->face_width;
   for (int i = 0; i < 2; i++)
-    g->member_width[i] = pair->member_width[i] > 0 ? pair->member_width[i] : g->face_width;
+    geometry->member_width[i] = pair->member_width[i] > 0 ? pair->member_width[i] : geometry->face_width;
 }
 
-static void set_overlap(struct eo_geometry *g)
+static void set_overlap(struct eo_geometry *geometry)
 {
-  g->overlap_ratio = g->face_width * tan(g->base_helix_angle) / g->transverse_base_pitch;
+  geometry->overlap_ratio = geometry->face_width * tan(geometry->base_helix_angle) / geometry->transverse_base_pitch;
 }
 
 struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int end)
@@ -63,153 +63,171 @@ struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const
   return half;
 }
 
-static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
+static void set_basics(struct eo_geometry *geometry, const struct eo_gear_pair *pair)
 {
-  g->normal_module = pair->normal_module;
-  g->normal_pressure_angle = pair->normal_pressure_angle;
-  g->helix_angle = pair->helix_angle;
-  g->transverse_module = g->normal_module / cos(g->helix_angle);                            /* theory (G1) */
-  g->transverse_pressure_angle = atan(tan(g->normal_pressure_angle) / cos(g->helix_angle)); /* theory (G2) */
-  g->base_helix_angle = asin(sin(g->helix_angle) * cos(g->normal_pressure_angle));          /* theory (G3) */
-  set_widths(g, pair);
+  geometry->normal_module = pair->normal_module;
+  geometry->normal_pressure_angle = pair->normal_pressure_angle;
+  geometry->helix_angle = pair->helix_angle;
+  geometry->transverse_module = geometry->normal_module / cos(geometry->helix_angle); /* theory (G1) */
+  geometry->transverse_pressure_angle =
+      atan(tan(geometry->normal_pressure_angle) / cos(geometry->helix_angle)); /* theory (G2) */
+  geometry->base_helix_angle =
+      asin(sin(geometry->helix_angle) * cos(geometry->normal_pressure_angle)); /* theory (G3) */
+  set_widths(geometry, pair);
   for (int i = 0; i < 2; i++) {
     struct eo_rack rack = eo_gear_pair_rack(pair, i);
-    g->dedendum[i] = rack.dedendum_coefficient * g->normal_module;
-    g->fillet_radius[i] = rack.fillet_radius_coefficient * g->normal_module;
-    g->teeth[i] = pair->teeth[i];
-    g->profile_shift[i] = pair->profile_shift[i];
-    g->reference_radius[i] = g->transverse_module * g->teeth[i] / 2; /* theory (G4) */
-    g->base_radius[i] = g->reference_radius[i] * cos(g->transverse_pressure_angle);
-    g->generating_shift[i] = g->profile_shift[i] + pair->generating_offset[i];
-    g->residual_undercut[i] = fmax(0, pair->protuberance[i] - pair->grinding_stock[i]);
-    g->root_radius[i] = g->reference_radius[i] - g->dedendum[i] + g->generating_shift[i] * g->normal_module;
+    geometry->dedendum[i] = rack.dedendum_coefficient * geometry->normal_module;
+    geometry->fillet_radius[i] = rack.fillet_radius_coefficient * geometry->normal_module;
+    geometry->teeth[i] = pair->teeth[i];
+    geometry->profile_shift[i] = pair->profile_shift[i];
+    geometry->reference_radius[i] = geometry->transverse_module * geometry->teeth[i] / 2; /* theory (G4) */
+    geometry->base_radius[i] = geometry->reference_radius[i] * cos(geometry->transverse_pressure_angle);
+    geometry->generating_shift[i] = geometry->profile_shift[i] + pair->generating_offset[i];
+    geometry->residual_undercut[i] = fmax(0, pair->protuberance[i] - pair->grinding_stock[i]);
+    geometry->root_radius[i] = geometry->reference_radius[i] - geometry->dedendum[i] +
+                               geometry->generating_shift[i] * geometry->normal_module;
   }
-  g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle); /* theory (G5) */
-  g->normal_base_pitch = g->transverse_base_pitch * cos(g->base_helix_angle);
-  g->rack_factor = sin(g->transverse_pressure_angle) / cos(g->normal_pressure_angle); /* theory (G14) */
+  geometry->transverse_base_pitch = M_PI * geometry->transverse_module *
+                                    cos(geometry->transverse_pressure_angle); /* theory (G5) */
+  geometry->normal_base_pitch = geometry->transverse_base_pitch * cos(geometry->base_helix_angle);
+  geometry->rack_factor = sin(geometry->transverse_pressure_angle) /
+                          cos(geometry->normal_pressure_angle); /* theory (G14) */
 }
 
 /* What the distance takes from the backlash, and which shifts it would suit. */
-static enum eo_code refuse_jam(const struct eo_geometry *g, const struct eo_gear_pair *pair, double tight,
+static enum eo_code refuse_jam(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, double tight,
                                struct eo_error *error)
 {
   if (isnan(pair->centre_distance))
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/backlash_um",
-                        "The normal backlash %.6g um is not positive: the teeth would jam.", 1e6 * g->normal_backlash);
+                        "The normal backlash %.6g um is not positive: the teeth would jam.",
+                        1e6 * geometry->normal_backlash);
   return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/centre_distance_mm",
                       "At %.9g mm the normal backlash is %.6g um, not positive: the teeth would jam. Without backlash "
                       "the profile shifts ask for %.9g mm, and this distance for a sum of the shifts of %.6g.",
-                      1e3 * g->centre_distance, 1e6 * g->normal_backlash, 1e3 * tight,
-                      eo_geometry_shift_sum(g->teeth, g->normal_pressure_angle, g->transverse_pressure_angle,
-                                            g->working_pressure_angle));
+                      1e3 * geometry->centre_distance, 1e6 * geometry->normal_backlash, 1e3 * tight,
+                      eo_geometry_shift_sum(geometry->teeth, geometry->normal_pressure_angle,
+                                            geometry->transverse_pressure_angle, geometry->working_pressure_angle));
 }
 
 /* Working centre distance and pressure angle; the backlash that a larger centre distance adds. */
-static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair *pair, struct eo_error *error)
+static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
 {
-  double sum = g->reference_radius[0] + g->reference_radius[1], base = g->base_radius[0] + g->base_radius[1];
+  double sum = geometry->reference_radius[0] + geometry->reference_radius[1],
+         base = geometry->base_radius[0] + geometry->base_radius[1];
   /* theory (G6) */
-  double value = eo_geometry_involute_function(g->transverse_pressure_angle) +
-                 2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(g->normal_pressure_angle) /
-                     (g->teeth[0] + g->teeth[1]);
+  double value = eo_geometry_involute_function(geometry->transverse_pressure_angle) +
+                 2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(geometry->normal_pressure_angle) /
+                     (geometry->teeth[0] + geometry->teeth[1]);
   if (value <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
                         "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
                         pair->profile_shift[0] + pair->profile_shift[1]);
   /* Exactly the reference values when nothing shifts them. */
-  double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle
+  double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? geometry->transverse_pressure_angle
                                                                       : eo_geometry_involute_inverse(value);
-  g->working_pressure_angle = tight;
-  g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight); /* theory (G7) */
-  double stated = isnan(pair->backlash)
-                      ? eo_gear_pair_backlash(isnan(pair->centre_distance) ? g->centre_distance : pair->centre_distance,
-                                              g->normal_module)
-                      : pair->backlash;
-  g->normal_backlash = g->stated_backlash = stated;
+  geometry->working_pressure_angle = tight;
+  geometry->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0
+                                  ? sum
+                                  : base / cos(tight); /* theory (G7) */
+  double stated = isnan(pair->backlash) ? eo_gear_pair_backlash(isnan(pair->centre_distance) ? geometry->centre_distance
+                                                                                             : pair->centre_distance,
+                                                                geometry->normal_module)
+                                        : pair->backlash;
+  geometry->normal_backlash = geometry->stated_backlash = stated;
   if (!isnan(pair->centre_distance)) {
     if (pair->centre_distance <= base)
       return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/centre_distance_mm",
                           "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.",
                           1e3 * pair->centre_distance, 1e3 * base);
-    g->centre_distance = pair->centre_distance;
-    g->working_pressure_angle = acos(base / pair->centre_distance);
+    geometry->centre_distance = pair->centre_distance;
+    geometry->working_pressure_angle = acos(base / pair->centre_distance);
     /* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b */
     /* theory (G8) */
-    g->normal_backlash +=
-        2 * base * cos(g->base_helix_angle) *
-        (eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(tight));
+    geometry->normal_backlash +=
+        2 * base * cos(geometry->base_helix_angle) *
+        (eo_geometry_involute_function(geometry->working_pressure_angle) - eo_geometry_involute_function(tight));
   }
-  if (g->normal_backlash <= 0)
-    return refuse_jam(g, pair, base / cos(tight), error);
+  if (geometry->normal_backlash <= 0)
+    return refuse_jam(geometry, pair, base / cos(tight), error);
   for (int i = 0; i < 2; i++) {
-    g->tip_radius[i] = isnan(pair->tip_diameter[i]) ? eo_gear_pair_tip_diameter(pair, g->centre_distance, i) / 2
-                                                    : pair->tip_diameter[i] / 2;
-    g->working_radius[i] = g->centre_distance * g->teeth[i] / (g->teeth[0] + g->teeth[1]);
-    g->tangent_length[i] = g->base_radius[i] * tan(g->working_pressure_angle);
-    g->rack_offset[i] = g->rack_factor * g->base_radius[i] *
-                        (tan(g->working_pressure_angle) - tan(g->transverse_pressure_angle));
+    geometry->tip_radius[i] = isnan(pair->tip_diameter[i])
+                                  ? eo_gear_pair_tip_diameter(pair, geometry->centre_distance, i) / 2
+                                  : pair->tip_diameter[i] / 2;
+    geometry->working_radius[i] = geometry->centre_distance * geometry->teeth[i] /
+                                  (geometry->teeth[0] + geometry->teeth[1]);
+    geometry->tangent_length[i] = geometry->base_radius[i] * tan(geometry->working_pressure_angle);
+    geometry->rack_offset[i] = geometry->rack_factor * geometry->base_radius[i] *
+                               (tan(geometry->working_pressure_angle) - tan(geometry->transverse_pressure_angle));
   }
   return EO_OK;
 }
 
-double eo_geometry_half_angle(const struct eo_geometry *g, int member, double radius)
+double eo_geometry_half_angle(const struct eo_geometry *geometry, int member, double radius)
 {
   /* theory (G12) */
-  double reference = M_PI / 2 / g->teeth[member] +
-                     2 * g->profile_shift[member] * tan(g->normal_pressure_angle) / g->teeth[member];
-  return reference + eo_geometry_involute_function(g->transverse_pressure_angle) -
-         eo_geometry_involute_function(acos(fmin(1, g->base_radius[member] / radius)));
+  double reference = M_PI / 2 / geometry->teeth[member] + 2 * geometry->profile_shift[member] *
+                                                              tan(geometry->normal_pressure_angle) /
+                                                              geometry->teeth[member];
+  return reference + eo_geometry_involute_function(geometry->transverse_pressure_angle) -
+         eo_geometry_involute_function(acos(fmin(1, geometry->base_radius[member] / radius)));
 }
 
 /* The root of the generated tooth: the rounding must fit into the rack's tip. Where the involute starts: at the point
    that the end of the rack's straight flank cuts or, with undercut, where the trochoid cuts the involute. */
-static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *error)
+static enum eo_code set_root(struct eo_geometry *geometry, int i, struct eo_error *error)
 {
-  double flank_end = g->dedendum[i] - g->fillet_radius[i] * (1 - sin(g->normal_pressure_angle)) -
-                     g->generating_shift[i] * g->normal_module;
+  double flank_end = geometry->dedendum[i] - geometry->fillet_radius[i] * (1 - sin(geometry->normal_pressure_angle)) -
+                     geometry->generating_shift[i] * geometry->normal_module;
   /* theory (G13) */
-  double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
-  if (g->root_radius[i] <= 0)
+  double roll = geometry->base_radius[i] * tan(geometry->transverse_pressure_angle) -
+                flank_end / sin(geometry->transverse_pressure_angle);
+  if (geometry->root_radius[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
-                        "The root radius of the %s, %.6g mm, is not positive.", name[i], 1e3 * g->root_radius[i]);
-  double tip_half = M_PI * g->normal_module / 4 -
-                    (g->dedendum[i] - g->fillet_radius[i]) * tan(g->normal_pressure_angle);
-  if (tip_half - g->fillet_radius[i] / cos(g->normal_pressure_angle) < -1e-9 * g->normal_module)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/fillet_radius_coefficient",
-                        "The fillet radius of the %s, %.6g m_n, does not fit into the tip of the basic rack: with a "
-                        "dedendum of %.6g m_n at most %.4g m_n.",
-                        name[i], g->fillet_radius[i] / g->normal_module, g->dedendum[i] / g->normal_module,
-                        eo_gear_rack_largest_fillet(g->dedendum[i] / g->normal_module, g->normal_pressure_angle));
-  g->undercut[i] = roll <= 0;
-  g->least_shift[i] = g->profile_shift[i] - roll * sin(g->transverse_pressure_angle) / g->normal_module;
-  g->fillet_end[i] = g->normal_pressure_angle;
-  if (g->undercut[i] || g->residual_undercut[i] > 0)
-    g->fillet_end[i] = eo_fillet_undercut(g, i, &g->form_radius[i]);
+                        "The root radius of the %s, %.6g mm, is not positive.", name[i],
+                        1e3 * geometry->root_radius[i]);
+  double tip_half = M_PI * geometry->normal_module / 4 -
+                    (geometry->dedendum[i] - geometry->fillet_radius[i]) * tan(geometry->normal_pressure_angle);
+  if (tip_half - geometry->fillet_radius[i] / cos(geometry->normal_pressure_angle) < -1e-9 * geometry->normal_module)
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/gear_pair/fillet_radius_coefficient",
+        "The fillet radius of the %s, %.6g m_n, does not fit into the tip of the basic rack: with a "
+        "dedendum of %.6g m_n at most %.4g m_n.",
+        name[i], geometry->fillet_radius[i] / geometry->normal_module, geometry->dedendum[i] / geometry->normal_module,
+        eo_gear_rack_largest_fillet(geometry->dedendum[i] / geometry->normal_module, geometry->normal_pressure_angle));
+  geometry->undercut[i] = roll <= 0;
+  geometry->least_shift[i] = geometry->profile_shift[i] -
+                             roll * sin(geometry->transverse_pressure_angle) / geometry->normal_module;
+  geometry->fillet_end[i] = geometry->normal_pressure_angle;
+  if (geometry->undercut[i] || geometry->residual_undercut[i] > 0)
+    geometry->fillet_end[i] = eo_fillet_undercut(geometry, i, &geometry->form_radius[i]);
   else
-    g->form_radius[i] = hypot(g->base_radius[i], roll);
+    geometry->form_radius[i] = hypot(geometry->base_radius[i], roll);
   return EO_OK;
 }
 
 /* Tip radius of the other member at which the active profile starts so far beyond the start of the involute along the
    line of action. */
-static double clearing_tip(const struct eo_geometry *g, int i, double spare)
+static double clearing_tip(const struct eo_geometry *geometry, int i, double spare)
 {
-  double roll = sqrt(fmax(0, g->form_radius[i] * g->form_radius[i] - g->base_radius[i] * g->base_radius[i])) + spare;
-  return hypot(g->base_radius[1 - i], fmax(0, g->tangent_length[0] + g->tangent_length[1] - roll));
+  double roll = sqrt(fmax(0, geometry->form_radius[i] * geometry->form_radius[i] -
+                                 geometry->base_radius[i] * geometry->base_radius[i])) +
+                spare;
+  return hypot(geometry->base_radius[1 - i], fmax(0, geometry->tangent_length[0] + geometry->tangent_length[1] - roll));
 }
 
 /* Tip radius at which the tooth is no thicker than a share of m_n in its transverse section; the radius itself where
    it is thicker. */
-static double blunt_tip(const struct eo_geometry *g, int i, double radius)
+static double blunt_tip(const struct eo_geometry *geometry, int i, double radius)
 {
   static const double LEAST = 0.2; /* m_n: what ISO and shops take as the least */
   enum { HALVINGS = 60 };
-  double low = g->base_radius[i], high = radius, least = LEAST * g->normal_module;
-  if (2 * high * eo_geometry_half_angle(g, i, high) >= least)
+  double low = geometry->base_radius[i], high = radius, least = LEAST * geometry->normal_module;
+  if (2 * high * eo_geometry_half_angle(geometry, i, high) >= least)
     return radius;
   for (int k = 0; k < HALVINGS; k++) {
     double middle = (low + high) / 2;
-    if (2 * middle * eo_geometry_half_angle(g, i, middle) >= least)
+    if (2 * middle * eo_geometry_half_angle(geometry, i, middle) >= least)
       low = middle;
     else
       high = middle;
@@ -224,140 +242,147 @@ static double whole_nanometres(double radius, double usual)
 }
 
 /* A tip that nobody stated clears the mate's root with a hundredth of a module to spare. */
-static void shorten_tips(struct eo_geometry *g, const struct eo_gear_pair *pair)
+static void shorten_tips(struct eo_geometry *geometry, const struct eo_gear_pair *pair)
 {
   for (int i = 0; i < 2; i++) {
-    double usual = g->tip_radius[i];
+    double usual = geometry->tip_radius[i];
     if (isnan(pair->tip_diameter[i]) && isnan(pair->tip_alteration))
-      g->tip_radius[i] = whole_nanometres(fmin(blunt_tip(g, i, usual), clearing_tip(g, 1 - i, 0.01 * g->normal_module)),
-                                          usual);
-    g->shortened[i] = usual - g->tip_radius[i];
-    g->tip_form_radius[i] = g->tip_radius[i] - pair->tip_chamfer[i];
+      geometry->tip_radius[i] = whole_nanometres(
+          fmin(blunt_tip(geometry, i, usual), clearing_tip(geometry, 1 - i, 0.01 * geometry->normal_module)), usual);
+    geometry->shortened[i] = usual - geometry->tip_radius[i];
+    geometry->tip_form_radius[i] = geometry->tip_radius[i] - pair->tip_chamfer[i];
   }
 }
 
 /* Where the tip of the other member reaches too deep: at its diameter when that is stated, else at the shift of the
    member that has too little, or at the addendum. */
-static const char *tip_or_shift(const struct eo_geometry *g, const struct eo_gear_pair *pair, int i)
+static const char *tip_or_shift(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int i)
 {
   return !isnan(pair->tip_diameter[1 - i]) ? tip_key[1 - i]
-         : g->undercut[i]                  ? shift_key[i]
+         : geometry->undercut[i]           ? shift_key[i]
                                            : "/gear_pair/addendum_coefficient";
 }
 
-static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *pair, struct eo_error *error)
+static enum eo_code set_path(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
 {
   double length[2];
   for (int i = 0; i < 2; i++) {
-    if (g->tip_form_radius[i] <= g->working_radius[i])
+    if (geometry->tip_form_radius[i] <= geometry->working_radius[i])
       return eo_error_set(
           error, EO_ERROR_INPUT, isnan(pair->tip_diameter[i]) ? shift_key[i] : tip_key[i],
           "The flank of the %s ends at %.6g mm, not above its working pitch radius, %.6g mm: more profile "
           "shift on this member and less on the other.",
-          name[i], 1e3 * g->tip_form_radius[i], 1e3 * g->working_radius[i]);
-    length[i] = sqrt(g->tip_form_radius[i] * g->tip_form_radius[i] - g->base_radius[i] * g->base_radius[i]) -
-                g->tangent_length[i];
+          name[i], 1e3 * geometry->tip_form_radius[i], 1e3 * geometry->working_radius[i]);
+    length[i] = sqrt(geometry->tip_form_radius[i] * geometry->tip_form_radius[i] -
+                     geometry->base_radius[i] * geometry->base_radius[i]) -
+                geometry->tangent_length[i];
   }
-  g->path_start = -length[EO_GEAR]; /* theory (G10) */
-  g->path_end = length[EO_PINION];
-  g->transverse_contact_ratio = (length[0] + length[1]) / g->transverse_base_pitch; /* theory (G11) */
-  set_overlap(g);
-  g->rack_bottom = g->rack_factor * g->path_start;
-  g->rack_top = g->rack_factor * g->path_end;
+  geometry->path_start = -length[EO_GEAR]; /* theory (G10) */
+  geometry->path_end = length[EO_PINION];
+  geometry->transverse_contact_ratio = (length[0] + length[1]) / geometry->transverse_base_pitch; /* theory (G11) */
+  set_overlap(geometry);
+  geometry->rack_bottom = geometry->rack_factor * geometry->path_start;
+  geometry->rack_top = geometry->rack_factor * geometry->path_end;
   for (int i = 0; i < 2; i++) {
-    double roll = g->tangent_length[i] - length[1 - i];
+    double roll = geometry->tangent_length[i] - length[1 - i];
     if (roll <= 0)
-      return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
-                          "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of "
-                          "the %s%s: at most "
-                          "%.6g mm of tip radius.",
-                          name[1 - i], -1e3 * roll, name[i], g->undercut[i] ? ", which is undercut" : "",
-                          1e3 * hypot(g->base_radius[1 - i], g->tangent_length[0] + g->tangent_length[1]));
-    g->start_radius[i] = hypot(g->base_radius[i], roll);
+      return eo_error_set(
+          error, EO_ERROR_INPUT, tip_or_shift(geometry, pair, i),
+          "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of "
+          "the %s%s: at most "
+          "%.6g mm of tip radius.",
+          name[1 - i], -1e3 * roll, name[i], geometry->undercut[i] ? ", which is undercut" : "",
+          1e3 * hypot(geometry->base_radius[1 - i], geometry->tangent_length[0] + geometry->tangent_length[1]));
+    geometry->start_radius[i] = hypot(geometry->base_radius[i], roll);
   }
-  if (g->transverse_contact_ratio + g->overlap_ratio < 1)
+  if (geometry->transverse_contact_ratio + geometry->overlap_ratio < 1)
     return eo_error_set(
         error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
         "The total contact ratio %.4g is below 1: the teeth do not mesh continuously. A wider face, a larger "
         "helix angle or a longer addendum adds to it.",
-        g->transverse_contact_ratio + g->overlap_ratio);
+        geometry->transverse_contact_ratio + geometry->overlap_ratio);
   return EO_OK;
 }
 
-static enum eo_code check_tip(struct eo_geometry *g, int i, const struct eo_gear_pair *pair, struct eo_error *error)
+static enum eo_code check_tip(struct eo_geometry *geometry, int i, const struct eo_gear_pair *pair,
+                              struct eo_error *error)
 {
   int other = 1 - i;
-  g->tip_thickness[i] = 2 * g->tip_radius[i] * eo_geometry_half_angle(g, i, g->tip_radius[i]);
-  if (g->tip_thickness[i] <= 0)
+  geometry->tip_thickness[i] = 2 * geometry->tip_radius[i] *
+                               eo_geometry_half_angle(geometry, i, geometry->tip_radius[i]);
+  if (geometry->tip_thickness[i] <= 0)
     return eo_error_set(
         error, EO_ERROR_INPUT, shift_key[i],
         "The teeth of the %s are pointed below the tip radius %.6g mm: less profile shift, or a smaller tip "
         "diameter.",
-        name[i], 1e3 * g->tip_radius[i]);
-  if (g->start_radius[i] < g->form_radius[i])
-    return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
+        name[i], 1e3 * geometry->tip_radius[i]);
+  if (geometry->start_radius[i] < geometry->form_radius[i])
+    return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(geometry, pair, i),
                         "The tip of the %s interferes with the fillet of the %s: the active profile would start at "
                         "radius %.6g mm, the involute at %.6g mm%s: a tip radius of at most %.6g mm clears it.",
-                        name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i],
-                        g->undercut[i] ? ", where the undercut ends" : "", 1e3 * clearing_tip(g, i, 0));
-  g->tip_clearance[i] = g->centre_distance - g->tip_radius[i] - g->root_radius[other];
-  if (g->tip_clearance[i] <= 0)
+                        name[other], name[i], 1e3 * geometry->start_radius[i], 1e3 * geometry->form_radius[i],
+                        geometry->undercut[i] ? ", where the undercut ends" : "", 1e3 * clearing_tip(geometry, i, 0));
+  geometry->tip_clearance[i] = geometry->centre_distance - geometry->tip_radius[i] - geometry->root_radius[other];
+  if (geometry->tip_clearance[i] <= 0)
     return eo_error_set(
         error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
         "The tip of the %s touches the root of the %s (clearance %.4g mm): a smaller tip diameter, a deeper "
         "dedendum of the %s, or a larger centre distance.",
-        name[i], name[other], 1e3 * g->tip_clearance[i], name[other]);
+        name[i], name[other], 1e3 * geometry->tip_clearance[i], name[other]);
   return EO_OK;
 }
 
 enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
 {
-  struct eo_geometry g = {0};
-  set_basics(&g, pair);
-  enum eo_code code = set_working(&g, pair, error);
+  struct eo_geometry this_geometry = {0};
+  set_basics(&this_geometry, pair);
+  enum eo_code code = set_working(&this_geometry, pair, error);
   for (int i = 0; i < 2 && !code; i++)
-    code = set_root(&g, i, error);
+    code = set_root(&this_geometry, i, error);
   if (!code)
-    shorten_tips(&g, pair);
+    shorten_tips(&this_geometry, pair);
   if (!code)
-    code = set_path(&g, pair, error);
+    code = set_path(&this_geometry, pair, error);
   for (int i = 0; i < 2 && !code; i++)
-    code = check_tip(&g, i, pair, error);
+    code = check_tip(&this_geometry, i, pair, error);
   if (!code)
-    *geometry = g;
+    *geometry = this_geometry;
   return code;
 }
 
-double eo_geometry_radius_at(const struct eo_geometry *g, int member, double s)
+double eo_geometry_radius_at(const struct eo_geometry *geometry, int member, double s)
 {
-  return hypot(g->base_radius[member], g->tangent_length[member] + eo_geometry_own_path(member, s));
+  return hypot(geometry->base_radius[member], geometry->tangent_length[member] + eo_geometry_own_path(member, s));
 }
 
-double eo_geometry_path_at(const struct eo_geometry *g, int member, double radius)
+double eo_geometry_path_at(const struct eo_geometry *geometry, int member, double radius)
 {
-  double roll = sqrt(fmax(0, radius * radius - g->base_radius[member] * g->base_radius[member]));
-  return eo_geometry_own_path(member, roll - g->tangent_length[member]);
+  double roll = sqrt(fmax(0, radius * radius - geometry->base_radius[member] * geometry->base_radius[member]));
+  return eo_geometry_own_path(member, roll - geometry->tangent_length[member]);
 }
 
-double eo_geometry_relative_radius(const struct eo_geometry *g, double s)
+double eo_geometry_relative_radius(const struct eo_geometry *geometry, double s)
 {
-  double length = g->tangent_length[0] + g->tangent_length[1];
+  double length = geometry->tangent_length[0] + geometry->tangent_length[1];
   /* theory (G15) */
-  return (g->tangent_length[0] + s) * (g->tangent_length[1] - s) / (length * cos(g->base_helix_angle));
+  return (geometry->tangent_length[0] + s) * (geometry->tangent_length[1] - s) /
+         (length * cos(geometry->base_helix_angle));
 }
 
-void eo_geometry_involute(const struct eo_geometry *g, int member, double radius, double point[2], double normal[2])
+void eo_geometry_involute(const struct eo_geometry *geometry, int member, double radius, double point[2],
+                          double normal[2])
 {
-  double angle = eo_geometry_half_angle(g, member, radius), pressure = acos(fmin(1, g->base_radius[member] / radius));
+  double angle = eo_geometry_half_angle(geometry, member, radius),
+         pressure = acos(fmin(1, geometry->base_radius[member] / radius));
   point[0] = radius * sin(angle);
   point[1] = radius * cos(angle);
   normal[0] = cos(angle - pressure);
   normal[1] = -sin(angle - pressure);
 }
 
-double eo_geometry_depth(const struct eo_geometry *g, int member, double s)
+double eo_geometry_depth(const struct eo_geometry *geometry, int member, double s)
 {
   double point[2], normal[2];
-  eo_geometry_involute(g, member, eo_geometry_radius_at(g, member, s), point, normal);
-  return point[0] / normal[0] * cos(g->base_helix_angle); /* theory (G16) */
+  eo_geometry_involute(geometry, member, eo_geometry_radius_at(geometry, member, s), point, normal);
+  return point[0] / normal[0] * cos(geometry->base_helix_angle); /* theory (G16) */
 }

@@ -25,9 +25,9 @@ bool eo_material_is_one(const struct eo_material *material)
          pinion.density == gear.density;
 }
 
-static double plane_compliance(const struct eo_material *m)
+static double plane_compliance(const struct eo_material *material)
 {
-  return (1 - m->poissons_ratio * m->poissons_ratio) / m->youngs_modulus;
+  return (1 - material->poissons_ratio * material->poissons_ratio) / material->youngs_modulus;
 }
 
 double eo_material_contact_modulus(const struct eo_material *material)

@@ -43,39 +43,41 @@ bool eo_modification_equal(const struct eo_flank_modification *a, const struct e
          same_places(&a->place[0], &b->place[0]) && same_places(&a->place[1], &b->place[1]) && same_triangles(a, b);
 }
 
-bool eo_modification_is_none(const struct eo_flank_modification *m)
+bool eo_modification_is_none(const struct eo_flank_modification *modification)
 {
-  bool none = m->tip_relief == 0 && m->root_relief == 0 && m->profile_crowning == 0 && m->lead_crowning == 0 &&
-              m->helix_slope == 0 && m->lead_offset == 0 && m->end_relief[0] == 0 && m->end_relief[1] == 0 &&
-              m->profile_slope == 0 && m->profile_barrel == 0 && m->twist == 0;
+  bool none = modification->tip_relief == 0 && modification->root_relief == 0 && modification->profile_crowning == 0 &&
+              modification->lead_crowning == 0 && modification->helix_slope == 0 && modification->lead_offset == 0 &&
+              modification->end_relief[0] == 0 && modification->end_relief[1] == 0 &&
+              modification->profile_slope == 0 && modification->profile_barrel == 0 && modification->twist == 0;
   for (int i = 0; i < 4 && none; i++)
-    none = m->triangular[i / 2][i % 2].amount == 0;
+    none = modification->triangular[i / 2][i % 2].amount == 0;
   return none;
 }
 
-double eo_modification_lead_coefficient(const struct eo_geometry *g, double crowning)
+double eo_modification_lead_coefficient(const struct eo_geometry *geometry, double crowning)
 {
-  double half = g->face_width / 2 / cos(g->helix_angle);
+  double half = geometry->face_width / 2 / cos(geometry->helix_angle);
   return crowning / (half * half);
 }
 
-void eo_active_profile(const struct eo_geometry *g, int member, double end[2])
+void eo_active_profile(const struct eo_geometry *geometry, int member, double end[2])
 {
-  end[EO_ROOT_SIDE] = member == EO_PINION ? g->rack_bottom : -g->rack_top;
-  end[EO_TIP_SIDE] = member == EO_PINION ? g->rack_top : -g->rack_bottom;
+  end[EO_ROOT_SIDE] = member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top;
+  end[EO_TIP_SIDE] = member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom;
 }
 
 /* u = k_u sigma; roll length L = T C + sigma, radius^2 = r_b^2 + L^2. */
-struct eo_profile_place eo_profile_place_at(const struct eo_geometry *g, int member, double u)
+struct eo_profile_place eo_profile_place_at(const struct eo_geometry *geometry, int member, double u)
 {
-  double sigma = u / g->rack_factor, roll = g->tangent_length[member] + sigma, base = g->base_radius[member], end[2];
-  eo_active_profile(g, member, end);
+  double sigma = u / geometry->rack_factor, roll = geometry->tangent_length[member] + sigma,
+         base = geometry->base_radius[member], end[2];
+  eo_active_profile(geometry, member, end);
   return (struct eo_profile_place){
       .rack = u,
       .diameter = 2 * hypot(base, roll),
       .roll_length = roll,
       .roll_angle = roll / base,
-      .length = {sigma - end[EO_ROOT_SIDE] / g->rack_factor, end[EO_TIP_SIDE] / g->rack_factor - sigma}};
+      .length = {sigma - end[EO_ROOT_SIDE] / geometry->rack_factor, end[EO_TIP_SIDE] / geometry->rack_factor - sigma}};
 }
 
 int eo_relief_places_stated(const struct eo_relief_place *place)
@@ -83,77 +85,78 @@ int eo_relief_places_stated(const struct eo_relief_place *place)
   return (place->diameter > 0) + (place->roll_length > 0) + (place->roll_angle > 0) + (place->length > 0);
 }
 
-double eo_relief_start_at(const struct eo_geometry *g, int member, const struct eo_flank_modification *flank, int side)
+double eo_relief_start_at(const struct eo_geometry *geometry, int member, const struct eo_flank_modification *flank,
+                          int side)
 {
   const struct eo_relief_place *place = &flank->place[side];
-  double roll, end[2], base = g->base_radius[member];
+  double roll, end[2], base = geometry->base_radius[member];
   if (eo_relief_places_stated(place) == 0)
     return side == EO_TIP_SIDE ? flank->tip_relief_start : -flank->root_relief_start;
   if (place->length > 0) {
-    eo_active_profile(g, member, end);
-    return end[side] + (side == EO_TIP_SIDE ? -1 : 1) * g->rack_factor * place->length;
+    eo_active_profile(geometry, member, end);
+    return end[side] + (side == EO_TIP_SIDE ? -1 : 1) * geometry->rack_factor * place->length;
   }
   roll = place->roll_length > 0  ? place->roll_length
          : place->roll_angle > 0 ? place->roll_angle * base
                                  : sqrt(place->diameter * place->diameter / 4 - base * base);
-  return g->rack_factor * (roll - g->tangent_length[member]);
+  return geometry->rack_factor * (roll - geometry->tangent_length[member]);
 }
 
 static struct eo_relief relief(double start, double end, double amount, double crowning)
 {
-  struct eo_relief r = {.start = start, .length = fmax(0, end - start)};
-  r.value = crowning * start * start;
-  r.slope = 2 * crowning * start;
-  r.depth = amount - r.value - r.slope * r.length;
+  struct eo_relief this_relief = {.start = start, .length = fmax(0, end - start)};
+  this_relief.value = crowning * start * start;
+  this_relief.slope = 2 * crowning * start;
+  this_relief.depth = amount - this_relief.value - this_relief.slope * this_relief.length;
   if (amount == 0) /* no relief on this side: the crowning goes on */
-    r.length = 0;
-  return r;
+    this_relief.length = 0;
+  return this_relief;
 }
 
-static void init_reliefs(struct eo_modification_shape *shape, const struct eo_geometry *g, int member,
+static void init_reliefs(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member,
                          const struct eo_flank_modification *flank, const double end[2])
 {
   for (int side = 0; side < 2; side++) {
     int outwards = side == EO_TIP_SIDE ? 1 : -1, own = flank->own_shape[side];
     double amount = side == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief;
-    double start = outwards * eo_relief_start_at(g, member, flank, side);
+    double start = outwards * eo_relief_start_at(geometry, member, flank, side);
     shape->side[side] = relief(start, outwards * end[side], amount, flank->profile_crowning);
     shape->side[side].shape = own == EO_RELIEF_AS_SHARED ? flank->shape : (enum eo_relief_shape)(own - 1);
     shape->side[side].exponent = flank->exponent[side] > 0 ? flank->exponent[side] : 2;
   }
 }
 
-static void init_lead(struct eo_modification_shape *shape, const struct eo_geometry *g,
+static void init_lead(struct eo_modification_shape *shape, const struct eo_geometry *geometry,
                       const struct eo_flank_modification *flank)
 {
   shape->lead[0] = flank->lead_offset;
   shape->lead[1] = flank->helix_slope / 2 / shape->half_width;
-  shape->lead[2] = eo_modification_lead_coefficient(g, flank->lead_crowning);
+  shape->lead[2] = eo_modification_lead_coefficient(geometry, flank->lead_crowning);
   for (int i = 0; i < 2; i++)
     shape->end[i] =
         (struct eo_end_relief){.shape = flank->end_shape[i],
                                .exponent = flank->end_exponent[i] > 0 ? flank->end_exponent[i] : 2,
                                .amount = flank->end_relief[i],
-                               .start = shape->half_width - flank->end_relief_length[i] / cos(g->helix_angle)};
+                               .start = shape->half_width - flank->end_relief_length[i] / cos(geometry->helix_angle)};
 }
 
-void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *g, int member,
+void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member,
                           const struct eo_flank_modification *flank)
 {
   double end[2];
-  eo_active_profile(g, member, end);
+  eo_active_profile(geometry, member, end);
   *shape = (struct eo_modification_shape){.crowning = flank->profile_crowning,
-                                          .half_width = g->face_width / 2 / cos(g->helix_angle),
-                                          .lengthen = 1 / cos(g->helix_angle),
+                                          .half_width = geometry->face_width / 2 / cos(geometry->helix_angle),
+                                          .lengthen = 1 / cos(geometry->helix_angle),
                                           .middle = (end[0] + end[1]) / 2,
                                           .half_profile = (end[1] - end[0]) / 2};
   double half = shape->half_profile;
-  init_reliefs(shape, g, member, flank, end);
-  init_lead(shape, g, flank);
+  init_reliefs(shape, geometry, member, flank, end);
+  init_lead(shape, geometry, flank);
   shape->incline = flank->profile_slope / 2 / half;
   shape->barrel = flank->profile_barrel / (half * half);
   shape->grid_share = 1 + flank->grid_gain;
-  shape->twist = flank->twist / 4 / (half * g->face_width / 2);
+  shape->twist = flank->twist / 4 / (half * geometry->face_width / 2);
   memcpy(shape->triangular, flank->triangular, sizeof shape->triangular);
   shape->varies = shape->twist != 0;
   for (int i = 0; i < 4; i++)
@@ -179,15 +182,16 @@ static void cut_triangles(struct eo_modification_shape *slice, double y)
   slice->wedges = 0;
   for (int side = 0; side < 2; side++)
     for (int face = 0; face < 2; face++) {
-      const struct eo_triangular_relief *t = &slice->triangular[side][face];
-      double left = 1 - (half_face - (face == EO_LEADING_SIDE ? y : -y)) / t->face_length;
+      const struct eo_triangular_relief *triangular_relief = &slice->triangular[side][face];
+      double left = 1 - (half_face - (face == EO_LEADING_SIDE ? y : -y)) / triangular_relief->face_length;
       int outwards = side == EO_TIP_SIDE ? 1 : -1;
       double end = outwards * slice->middle + slice->half_profile;
-      if (t->amount != 0 && left > 0)
-        slice->wedge[slice->wedges++] = (struct eo_wedge){.start = end - t->profile_length * left,
-                                                          .length = outwards * t->profile_length,
-                                                          .amount = t->amount,
-                                                          .exponent = t->exponent > 0 ? t->exponent : 1};
+      if (triangular_relief->amount != 0 && left > 0)
+        slice->wedge[slice->wedges++] =
+            (struct eo_wedge){.start = end - triangular_relief->profile_length * left,
+                              .length = outwards * triangular_relief->profile_length,
+                              .amount = triangular_relief->amount,
+                              .exponent = triangular_relief->exponent > 0 ? triangular_relief->exponent : 1};
     }
 }
 
@@ -203,31 +207,32 @@ void eo_modification_slice(const struct eo_modification_shape *shape, double eta
 }
 
 /* Relief at distance t >= 0 beyond its vertex; *slope along t. */
-static double relief_value(const struct eo_relief *r, double t, double *slope)
+static double relief_value(const struct eo_relief *this_relief, double t, double *slope)
 {
-  double tangent = r->value + r->slope * t, ratio = t / r->length;
-  switch (r->shape) {
+  double tangent = this_relief->value + this_relief->slope * t, ratio = t / this_relief->length;
+  switch (this_relief->shape) {
   case EO_RELIEF_LINEAR:
-    *slope = r->slope + r->depth / r->length;
-    return tangent + r->depth * t / r->length;
+    *slope = this_relief->slope + this_relief->depth / this_relief->length;
+    return tangent + this_relief->depth * t / this_relief->length;
   case EO_RELIEF_CIRCULAR: {
-    double depth = fabs(r->depth), sign = r->depth < 0 ? -1 : 1;
+    double depth = fabs(this_relief->depth), sign = this_relief->depth < 0 ? -1 : 1;
     if (depth == 0)
       break;
     /* theory (F3) */
-    double radius = (r->length * r->length + depth * depth) / (2 * depth),
+    double radius = (this_relief->length * this_relief->length + depth * depth) / (2 * depth),
            root = sqrt(fmax(radius * radius - t * t, 1e-6 * radius * radius));
-    *slope = r->slope + sign * t / root;
+    *slope = this_relief->slope + sign * t / root;
     return tangent + sign * t * t / (radius + root);
   }
   case EO_RELIEF_EXPONENT:
-    *slope = r->slope + r->exponent * r->depth * pow(ratio, r->exponent - 1) / r->length;
-    return tangent + r->depth * pow(ratio, r->exponent);
+    *slope = this_relief->slope +
+             this_relief->exponent * this_relief->depth * pow(ratio, this_relief->exponent - 1) / this_relief->length;
+    return tangent + this_relief->depth * pow(ratio, this_relief->exponent);
   case EO_RELIEF_PARABOLIC:
     break;
   }
-  *slope = r->slope + 2 * r->depth * ratio / r->length;
-  return tangent + r->depth * ratio * ratio; /* theory (F2) */
+  *slope = this_relief->slope + 2 * this_relief->depth * ratio / this_relief->length;
+  return tangent + this_relief->depth * ratio * ratio; /* theory (F2) */
 }
 
 /* Reliefs and crowning: the parabola between the vertices. */
@@ -241,18 +246,18 @@ static double relieved_profile(const struct eo_modification_shape *shape, double
   else if (root->length > 0 && root->start < 0)
     on_tip = -u < root->start;
   int direction = on_tip ? 1 : -1;
-  const struct eo_relief *r = &shape->side[on_tip];
-  double beyond = direction * u - r->start;
-  if (r->length == 0 || beyond < 0) {
+  const struct eo_relief *this_relief = &shape->side[on_tip];
+  double beyond = direction * u - this_relief->start;
+  if (this_relief->length == 0 || beyond < 0) {
     slope[0] = slope[1] = middle;
     return shape->crowning * u * u; /* theory (F1) */
   }
-  double outer, value = relief_value(r, beyond, &outer);
+  double outer, value = relief_value(this_relief, beyond, &outer);
   slope[0] = slope[1] = direction * outer;
   if (beyond == 0) { /* at the vertex: the inner side belongs to the middle parabola */
     slope[on_tip ? 0 : 1] = middle;
     const struct eo_relief *other = &shape->side[1 - on_tip];
-    if (other->length > 0 && other->start == -r->start) {
+    if (other->length > 0 && other->start == -this_relief->start) {
       relief_value(other, 0, &unused);
       slope[on_tip ? 0 : 1] = -direction * unused;
     }
@@ -260,18 +265,19 @@ static double relieved_profile(const struct eo_modification_shape *shape, double
   return value;
 }
 
-static double wedge_value(const struct eo_wedge *w, double u, double slope[2])
+static double wedge_value(const struct eo_wedge *wedge, double u, double slope[2])
 {
-  int direction = w->length > 0 ? 1 : -1;
-  double length = fabs(w->length), beyond = direction * u - w->start, ratio = beyond / length;
-  if (beyond < 0 || (beyond == 0 && w->exponent != 1))
+  int direction = wedge->length > 0 ? 1 : -1;
+  double length = fabs(wedge->length), beyond = direction * u - wedge->start, ratio = beyond / length;
+  if (beyond < 0 || (beyond == 0 && wedge->exponent != 1))
     return 0;
-  double rate = direction * w->amount / length * w->exponent * (beyond > 0 ? pow(ratio, w->exponent - 1) : 1);
+  double rate = direction * wedge->amount / length * wedge->exponent *
+                (beyond > 0 ? pow(ratio, wedge->exponent - 1) : 1);
   if (beyond > 0 || direction < 0)
     slope[0] += rate;
   if (beyond > 0 || direction > 0)
     slope[1] += rate;
-  return beyond > 0 ? w->amount * pow(ratio, w->exponent) : 0;
+  return beyond > 0 ? wedge->amount * pow(ratio, wedge->exponent) : 0;
 }
 
 double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2])

@@ -14,13 +14,13 @@ static double profile_at(const struct eo_modification_shape *shape, double u, do
   return eo_modification_profile(&slice, u, slope);
 }
 
-void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
-                         double v, struct eo_surface_point *point)
+void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                         double u, double v, struct eo_surface_point *point)
 {
-  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle),
-         cb = cos(g->helix_angle);
+  double sa = sin(geometry->normal_pressure_angle), ca = cos(geometry->normal_pressure_angle),
+         sb = sin(geometry->helix_angle), cb = cos(geometry->helix_angle);
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
-  double rack = u + g->rack_offset[member], r = g->reference_radius[member];
+  double rack = u + geometry->rack_offset[member], r = geometry->reference_radius[member];
   double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
   double across_face = side * (v + rack * skew);
   double delta = profile_at(shape, u, across_face, profile_slope) +
@@ -52,12 +52,12 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   point->normal[2] = n[2] / length;
 }
 
-void eo_surface_coordinates(const struct eo_geometry *g, int member, double s, double eta, double *u, double *v)
+void eo_surface_coordinates(const struct eo_geometry *geometry, int member, double s, double eta, double *u, double *v)
 {
-  *u = g->rack_factor * eo_geometry_own_path(member, s);
-  double rack = *u + g->rack_offset[member];
-  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) /
-       cos(g->helix_angle);
+  *u = geometry->rack_factor * eo_geometry_own_path(member, s);
+  double rack = *u + geometry->rack_offset[member];
+  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(geometry->normal_pressure_angle) * sin(geometry->helix_angle)) /
+       cos(geometry->helix_angle);
 }
 
 /* What a slice's flank shows to its partner: the arm of its normal about its own axis, the distance along the normal
@@ -71,19 +71,19 @@ struct rack {
   double sa, ca, sb, cb; /* sin and cos of alpha_n and beta */
 };
 
-static struct rack rack_of(const struct eo_geometry *g)
+static struct rack rack_of(const struct eo_geometry *geometry)
 {
-  return (struct rack){sin(g->normal_pressure_angle), cos(g->normal_pressure_angle), sin(g->helix_angle),
-                       cos(g->helix_angle)};
+  return (struct rack){sin(geometry->normal_pressure_angle), cos(geometry->normal_pressure_angle),
+                       sin(geometry->helix_angle), cos(geometry->helix_angle)};
 }
 
 /* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about
    the vertex). */
-static struct ray sloped_ray_on(const struct rack *t, const struct eo_geometry *g, int member, double u, double delta,
-                                double d)
+static struct ray sloped_ray_on(const struct rack *this_rack, const struct eo_geometry *geometry, int member, double u,
+                                double delta, double d)
 {
-  double sa = t->sa, ca = t->ca, sb = t->sb, cb = t->cb;
-  double rack = u + g->rack_offset[member], r = g->reference_radius[member];
+  double sa = this_rack->sa, ca = this_rack->ca, sb = this_rack->sb, cb = this_rack->cb;
+  double rack = u + geometry->rack_offset[member], r = geometry->reference_radius[member];
   /* Moved along the rack's trace back into the slice: the gap would come out sin^2(beta_b) too small without. */
   double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb,
          y = rack * ca - delta * sa;
@@ -94,24 +94,24 @@ static struct ray sloped_ray_on(const struct rack *t, const struct eo_geometry *
   return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
 }
 
-static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
+static struct ray sloped_ray(const struct eo_geometry *geometry, int member, double u, double delta, double d)
 {
-  struct rack rack = rack_of(g);
-  return sloped_ray_on(&rack, g, member, u, delta, d);
+  struct rack rack = rack_of(geometry);
+  return sloped_ray_on(&rack, geometry, member, u, delta, d);
 }
 
 /* side: 0 takes the slope just below u, 1 just above. */
-static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape,
+static struct ray slice_ray(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                             double u, int side)
 {
   double slope[2], delta = eo_modification_profile(shape, u, slope);
-  return sloped_ray(g, member, u, delta, slope[side]);
+  return sloped_ray(geometry, member, u, delta, slope[side]);
 }
 
-void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
-                       struct eo_slice_point *point)
+void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                       double u, struct eo_slice_point *point)
 {
-  struct ray ray = slice_ray(g, member, shape, u, 0);
+  struct ray ray = slice_ray(geometry, member, shape, u, 0);
   double c = cos(ray.angle), s = sin(ray.angle);
   point->normal[0] = c;
   point->normal[1] = s;
@@ -119,17 +119,17 @@ void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_
   point->position[1] = ray.distance * s + ray.arm * c;
 }
 
-static struct ray involute_ray(const struct eo_geometry *g, int member, double distance)
+static struct ray involute_ray(const struct eo_geometry *geometry, int member, double distance)
 {
-  double base = g->base_radius[member], start = base * tan(g->transverse_pressure_angle);
+  double base = geometry->base_radius[member], start = base * tan(geometry->transverse_pressure_angle);
   return (struct ray){
-      .arm = base, .distance = distance, .angle = (distance - start) / base + g->transverse_pressure_angle};
+      .arm = base, .distance = distance, .angle = (distance - start) / base + geometry->transverse_pressure_angle};
 }
 
 /* Angle of the common normal for two arms. */
-static double common_angle(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+static double common_angle(const struct eo_geometry *geometry, const struct ray *ray, const struct ray *this_ray)
 {
-  return acos((p->arm + q->arm) / g->centre_distance); /* theory (K5) (S3) */
+  return acos((ray->arm + this_ray->arm) / geometry->centre_distance); /* theory (K5) (S3) */
 }
 
 /* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found
@@ -147,13 +147,13 @@ struct walk {
   double low, high;        /* w at the ends */
 };
 
-static void walk_init(struct walk *walk, const struct eo_geometry *g, int member,
+static void walk_init(struct walk *walk, const struct eo_geometry *geometry, int member,
                       const struct eo_modification_shape *shape)
 {
-  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[EO_MOST_VERTICES];
-  *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
-  walk->low = (member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin;
-  walk->high = (member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin;
+  double margin = 0.3 * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
+  *walk = (struct walk){.geometry = geometry, .shape = shape, .member = member};
+  walk->low = (member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top) - margin;
+  walk->high = (member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom) + margin;
   int vertices = eo_modification_vertices(shape, vertex);
   for (int i = 0; i < vertices; i++) {
     double slope[2];
@@ -190,30 +190,31 @@ static double walk_place(const struct walk *walk, double u, int side)
 }
 
 /* How far two normals are from lying in one line: their distances along it have to add up to a sin(alpha'). */
-static double miss_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+static double miss_of(const struct eo_geometry *geometry, const struct ray *ray, const struct ray *this_ray)
 {
-  return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance; /* theory (S4) */
+  return geometry->centre_distance * sin(common_angle(geometry, ray, this_ray)) - ray->distance -
+         this_ray->distance; /* theory (S4) */
 }
 
 /* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank;
    regula falsi with halving (Illinois). False when there is none: beyond reliefs so steep that the flank's normals
    leave the mesh. */
-static bool in_line_with(const struct walk *walk, const struct ray *other, double *w, struct ray *q)
+static bool in_line_with(const struct walk *walk, const struct ray *other, double *w, struct ray *ray)
 {
   enum { STEPS = 80 };
   double span = 0.01 * (walk->high - walk->low), end[2], miss[2] = {-1, 1};
   for (int widen = 0; widen < 7 && !(miss[0] >= 0 && miss[1] <= 0); widen++, span *= 2)
     for (int i = 0; i < 2; i++) {
       end[i] = fmin(walk->high, fmax(walk->low, *w + (i ? span : -span)));
-      *q = walk_ray(walk, end[i]);
-      miss[i] = miss_of(walk->geometry, other, q);
+      *ray = walk_ray(walk, end[i]);
+      miss[i] = miss_of(walk->geometry, other, ray);
     }
   if (!(miss[0] >= 0 && miss[1] <= 0))
     return false;
   for (int i = 0, last = -1; i < STEPS; i++) {
     *w = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
-    *q = walk_ray(walk, *w);
-    double here = miss_of(walk->geometry, other, q);
+    *ray = walk_ray(walk, *w);
+    double here = miss_of(walk->geometry, other, ray);
     if (fabs(here) < 1e-14 || end[1] - end[0] < 1e-15)
       return true;
     int side = here > 0 ? 0 : 1;
@@ -223,35 +224,38 @@ static bool in_line_with(const struct walk *walk, const struct ray *other, doubl
       miss[1 - side] /= 2;
     last = side;
   }
-  return fabs(miss_of(walk->geometry, other, q)) < 1e-10;
+  return fabs(miss_of(walk->geometry, other, ray)) < 1e-10;
 }
 
 /* The unmodified flank's ray in line with that of the other member: its arm is the base radius. */
-static struct ray involute_in_line_with(const struct eo_geometry *g, int member, const struct ray *other)
+static struct ray involute_in_line_with(const struct eo_geometry *geometry, int member, const struct ray *other)
 {
-  struct ray q = involute_ray(g, member, 0);
-  return involute_ray(g, member, g->centre_distance * sin(common_angle(g, other, &q)) - other->distance);
+  struct ray ray = involute_ray(geometry, member, 0);
+  return involute_ray(geometry, member,
+                      geometry->centre_distance * sin(common_angle(geometry, other, &ray)) - other->distance);
 }
 
 /* By how much the pitch point's angle on the working circles is ahead of that on the reference circles. */
-static double angle_ahead(const struct eo_geometry *g)
+static double angle_ahead(const struct eo_geometry *geometry)
 {
-  return eo_geometry_involute_function(g->working_pressure_angle) -
-         eo_geometry_involute_function(g->transverse_pressure_angle);
+  return eo_geometry_involute_function(geometry->working_pressure_angle) -
+         eo_geometry_involute_function(geometry->transverse_pressure_angle);
 }
 
 /* Base-circle phase of a member whose ray lies in the common normal. */
-static double phase_of(const struct eo_geometry *g, int member, const struct ray *ray, double common, double offset)
+static double phase_of(const struct eo_geometry *geometry, int member, const struct ray *ray, double common,
+                       double offset)
 {
-  return g->base_radius[member] * (ray->angle - common - offset);
+  return geometry->base_radius[member] * (ray->angle - common - offset);
 }
 
-struct eo_tilt eo_tilt_at(const struct eo_geometry *g, double angle, double ratio, const double place[2])
+struct eo_tilt eo_tilt_at(const struct eo_geometry *geometry, double angle, double ratio, const double place[2])
 {
-  double normal = ratio * cos(g->base_helix_angle), axial = sin(g->base_helix_angle); /* theory (K1) (K2) */
+  double normal = ratio * cos(geometry->base_helix_angle),
+         axial = sin(geometry->base_helix_angle); /* theory (K1) (K2) */
   /* theory (K3) */
   return (struct eo_tilt){.lever = {-normal * sin(angle), normal * cos(angle)},
-                          .shift = {-axial * (place[1] + g->working_radius[EO_GEAR]), axial * place[0]}};
+                          .shift = {-axial * (place[1] + geometry->working_radius[EO_GEAR]), axial * place[0]}};
 }
 
 struct node {
@@ -259,16 +263,17 @@ struct node {
   struct eo_tilt tilt;
 };
 
-static struct node node_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+static struct node node_of(const struct eo_geometry *geometry, const struct ray *ray, const struct ray *this_ray)
 {
-  double offset = angle_ahead(g), common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common, offset),
-         normal = cos(g->base_helix_angle);
-  double turned = g->base_radius[EO_GEAR] / q->arm, rate = p->arm * turned / g->base_radius[EO_PINION];
-  double along[2] = {cos(common), sin(common)},
-         place[2] = {q->arm * along[1] - q->distance * along[0], -q->arm * along[0] - q->distance * along[1]};
+  double offset = angle_ahead(geometry), common = common_angle(geometry, ray, this_ray),
+         c = phase_of(geometry, EO_PINION, ray, common, offset), normal = cos(geometry->base_helix_angle);
+  double turned = geometry->base_radius[EO_GEAR] / this_ray->arm,
+         rate = ray->arm * turned / geometry->base_radius[EO_PINION];
+  double along[2] = {cos(common), sin(common)}, place[2] = {this_ray->arm * along[1] - this_ray->distance * along[0],
+                                                            -this_ray->arm * along[0] - this_ray->distance * along[1]};
   /* theory (S5) */
-  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common, offset)) * normal, (1 - rate) * normal,
-                       eo_tilt_at(g, common, turned, place)};
+  return (struct node){c, (c + phase_of(geometry, EO_GEAR, this_ray, common, offset)) * normal, (1 - rate) * normal,
+                       eo_tilt_at(geometry, common, turned, place)};
 }
 
 static void sort(int count, double *value)
@@ -285,10 +290,10 @@ static void sort(int count, double *value)
    sorted. */
 static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
 {
-  const struct eo_geometry *g = lead->geometry;
-  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[EO_MOST_VERTICES];
-  double low = walk_place(lead, (lead->member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin, 0);
-  double high = walk_place(lead, (lead->member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin, 1);
+  const struct eo_geometry *geometry = lead->geometry;
+  double margin = 0.15 * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
+  double low = walk_place(lead, (lead->member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top) - margin, 0);
+  double high = walk_place(lead, (lead->member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom) + margin, 1);
   int count = 0, kept = 0, vertices = eo_modification_vertices(lead->shape, vertex);
   breaks[count++] = low;
   breaks[count++] = high;
@@ -296,9 +301,9 @@ static int collect_breaks(const struct walk *lead, const struct walk *other, dou
     breaks[count++] = walk_place(lead, vertex[i / 2], i % 2);
   vertices = other ? eo_modification_vertices(other->shape, vertex) : 0;
   for (int i = 0; i < 2 * vertices; i++) {
-    struct ray q = walk_ray(other, walk_place(other, vertex[i / 2], i % 2)), p;
+    struct ray ray = walk_ray(other, walk_place(other, vertex[i / 2], i % 2)), this_ray;
     double w = walk_place(lead, -vertex[i / 2], 0);
-    if (in_line_with(lead, &q, &w, &p))
+    if (in_line_with(lead, &ray, &w, &this_ray))
       breaks[count++] = w;
   }
   sort(count, breaks);
@@ -337,16 +342,17 @@ static void fill_buckets(struct eo_slice_gap *table)
 static int follow(const struct walk *lead, const struct walk *other, int places, const double *place, int first,
                   int direction, struct node *node)
 {
-  const struct eo_geometry *g = lead->geometry;
+  const struct eo_geometry *geometry = lead->geometry;
   double w = -place[first];
   int count = 0, sense = lead->member == EO_PINION ? direction : -direction;
   for (int i = first; i >= 0 && i < places; i += direction) {
-    struct ray p = walk_ray(lead, place[i]), q;
+    struct ray ray = walk_ray(lead, place[i]), this_ray;
     if (!other)
-      q = involute_in_line_with(g, 1 - lead->member, &p);
-    else if (!in_line_with(other, &p, &w, &q))
+      this_ray = involute_in_line_with(geometry, 1 - lead->member, &ray);
+    else if (!in_line_with(other, &ray, &w, &this_ray))
       break;
-    struct node here = lead->member == EO_PINION ? node_of(g, &p, &q) : node_of(g, &q, &p);
+    struct node here = lead->member == EO_PINION ? node_of(geometry, &ray, &this_ray)
+                                                 : node_of(geometry, &this_ray, &ray);
     if (!isfinite(here.phase + here.gap + here.slope))
       break;
     if (count == 0 || sense * (here.phase - node[count - 1].phase) > 0)
@@ -356,36 +362,39 @@ static int follow(const struct walk *lead, const struct walk *other, int places,
 }
 
 /* Where the gear's flank is in line with the pinion's ray, and what both make; *w: a place near it on the gear. */
-static bool meet(const struct eo_geometry *g, const struct walk walk[2], const bool modified[2], double place,
+static bool meet(const struct eo_geometry *geometry, const struct walk walk[2], const bool modified[2], double place,
                  double *w, struct node *node)
 {
-  struct ray p = modified[EO_PINION]
-                     ? walk_ray(&walk[EO_PINION], place)
-                     : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + place / g->rack_factor),
-             q;
+  struct ray ray = modified[EO_PINION]
+                       ? walk_ray(&walk[EO_PINION], place)
+                       : involute_ray(geometry, EO_PINION,
+                                      geometry->tangent_length[EO_PINION] + place / geometry->rack_factor),
+             this_ray;
   if (!modified[EO_GEAR])
-    q = involute_in_line_with(g, EO_GEAR, &p);
-  else if (!in_line_with(&walk[EO_GEAR], &p, w, &q))
+    this_ray = involute_in_line_with(geometry, EO_GEAR, &ray);
+  else if (!in_line_with(&walk[EO_GEAR], &ray, w, &this_ray))
     return false;
-  *node = node_of(g, &p, &q);
+  *node = node_of(geometry, &ray, &this_ray);
   return isfinite(node->phase + node->gap + node->slope);
 }
 
 /* The slow way, for slices that touch at a kink: the pinion's place whose phase is c, between two that bracket it
    (regula falsi with halving). */
-static bool touch_at_kink(const struct eo_geometry *g, const struct eo_modification_shape slice[2],
+static bool touch_at_kink(const struct eo_geometry *geometry, const struct eo_modification_shape slice[2],
                           const bool modified[2], double c, struct node *node)
 {
   enum { STEPS = 60 };
   struct walk walk[2];
-  double w = -g->rack_factor * c, span = 0.02 * (g->rack_top - g->rack_bottom), end[2], miss[2] = {1, -1};
+  double w = -geometry->rack_factor * c, span = 0.02 * (geometry->rack_top - geometry->rack_bottom), end[2],
+         miss[2] = {1, -1};
   for (int member = 0; member < 2; member++)
-    walk_init(&walk[member], g, member, &slice[member]);
-  double place = modified[EO_PINION] ? walk_place(&walk[EO_PINION], g->rack_factor * c, 0) : g->rack_factor * c;
+    walk_init(&walk[member], geometry, member, &slice[member]);
+  double place = modified[EO_PINION] ? walk_place(&walk[EO_PINION], geometry->rack_factor * c, 0)
+                                     : geometry->rack_factor * c;
   for (int widen = 0; widen < 6 && !(miss[0] <= 0 && miss[1] >= 0); widen++, span *= 2)
     for (int i = 0; i < 2; i++) {
       end[i] = place + (i ? span : -span);
-      if (!meet(g, walk, modified, end[i], &w, node))
+      if (!meet(geometry, walk, modified, end[i], &w, node))
         return false;
       miss[i] = node->phase - c;
     }
@@ -393,7 +402,7 @@ static bool touch_at_kink(const struct eo_geometry *g, const struct eo_modificat
     return false;
   for (int i = 0, last = -1; i < STEPS && end[1] - end[0] > 1e-15; i++) {
     double at = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
-    if (!meet(g, walk, modified, at, &w, node))
+    if (!meet(geometry, walk, modified, at, &w, node))
       return false;
     double here = node->phase - c;
     if (fabs(here) < 1e-11)
@@ -411,48 +420,52 @@ static bool touch_at_kink(const struct eo_geometry *g, const struct eo_modificat
 /* Newton for the places of both flanks with the derivatives of the involutes: phase = c, and the distances along the
    common normal add up. What either is off by in the end costs its square times the bend of the gap: DONE is a
    picometre at a bend of 4 per metre. */
-static bool touch_smoothly(const struct eo_geometry *g, const struct eo_modification_shape slice[2],
+static bool touch_smoothly(const struct eo_geometry *geometry, const struct eo_modification_shape slice[2],
                            const bool modified[2], double c, struct node *node)
 {
   enum { STEPS = 12 };
   static const double DONE = 5e-7;
-  const struct rack rack = rack_of(g);
-  double u[2] = {g->rack_factor * c, -g->rack_factor * c}, offset = angle_ahead(g), slope[2], miss = 0;
+  const struct rack rack = rack_of(geometry);
+  double u[2] = {geometry->rack_factor * c, -geometry->rack_factor * c}, offset = angle_ahead(geometry), slope[2],
+         miss = 0;
   for (int i = 0; i < STEPS; i++) {
-    struct ray p = involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u[EO_PINION] / g->rack_factor), q;
+    struct ray ray = involute_ray(geometry, EO_PINION,
+                                  geometry->tangent_length[EO_PINION] + u[EO_PINION] / geometry->rack_factor),
+               this_ray;
     if (modified[EO_PINION]) {
       double delta = eo_modification_profile(&slice[EO_PINION], u[EO_PINION], slope);
-      p = sloped_ray_on(&rack, g, EO_PINION, u[EO_PINION], delta, slope[0]);
+      ray = sloped_ray_on(&rack, geometry, EO_PINION, u[EO_PINION], delta, slope[0]);
     }
     if (modified[EO_GEAR]) {
       double delta = eo_modification_profile(&slice[EO_GEAR], u[EO_GEAR], slope);
-      q = sloped_ray_on(&rack, g, EO_GEAR, u[EO_GEAR], delta, slope[0]);
-      miss = miss_of(g, &p, &q);
+      this_ray = sloped_ray_on(&rack, geometry, EO_GEAR, u[EO_GEAR], delta, slope[0]);
+      miss = miss_of(geometry, &ray, &this_ray);
     } else
-      q = involute_in_line_with(g, EO_GEAR, &p);
-    double off = c - phase_of(g, EO_PINION, &p, common_angle(g, &p, &q), offset);
+      this_ray = involute_in_line_with(geometry, EO_GEAR, &ray);
+    double off = c - phase_of(geometry, EO_PINION, &ray, common_angle(geometry, &ray, &this_ray), offset);
     if (!(isfinite(off) && isfinite(miss)))
       return false;
     if (fabs(off) < DONE && fabs(miss) < DONE) {
-      *node = node_of(g, &p, &q);
-      node->gap += miss * cos(g->base_helix_angle); /* what is missing along the normal is missing in the gap */
+      *node = node_of(geometry, &ray, &this_ray);
+      node->gap += miss * cos(geometry->base_helix_angle); /* what is missing along the normal is missing in the gap */
       return isfinite(node->gap + node->slope);
     }
-    u[EO_PINION] += g->rack_factor * off;
-    u[EO_GEAR] += g->rack_factor * (miss - off);
+    u[EO_PINION] += geometry->rack_factor * off;
+    u[EO_GEAR] += geometry->rack_factor * (miss - off);
   }
   return false;
 }
 
-bool eo_slice_touch_at(const struct eo_geometry *g, const struct eo_modification_shape slice[2], double c,
+bool eo_slice_touch_at(const struct eo_geometry *geometry, const struct eo_modification_shape slice[2], double c,
                        struct eo_slice_touch *touch)
 {
   const bool modified[2] = {eo_modification_has_profile(&slice[EO_PINION]),
                             eo_modification_has_profile(&slice[EO_GEAR])};
-  double margin = 0.15 * (g->path_end - g->path_start),
-         inside = fmin(g->path_end + margin, fmax(g->path_start - margin, c));
+  double margin = 0.15 * (geometry->path_end - geometry->path_start),
+         inside = fmin(geometry->path_end + margin, fmax(geometry->path_start - margin, c));
   struct node node;
-  if (!touch_smoothly(g, slice, modified, inside, &node) && !touch_at_kink(g, slice, modified, inside, &node))
+  if (!touch_smoothly(geometry, slice, modified, inside, &node) &&
+      !touch_at_kink(geometry, slice, modified, inside, &node))
     return false;
   touch->gap = node.gap + node.slope * (c - node.phase);
   touch->slope = node.slope;
@@ -460,7 +473,7 @@ bool eo_slice_touch_at(const struct eo_geometry *g, const struct eo_modification
   return true;
 }
 
-void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
+void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geometry,
                        const struct eo_modification_shape shape[2])
 {
   bool pinion = eo_modification_has_profile(&shape[EO_PINION]), gear = eo_modification_has_profile(&shape[EO_GEAR]);
@@ -470,8 +483,8 @@ void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
   struct walk walk[2];
   struct node node[2][EO_SLICE_NODES]; /* before and behind the pitch point */
   double breaks[MOST_BREAKS], place[EO_SLICE_NODES];
-  walk_init(&walk[0], g, pinion ? EO_PINION : EO_GEAR, &shape[pinion ? EO_PINION : EO_GEAR]);
-  walk_init(&walk[1], g, EO_GEAR, &shape[EO_GEAR]);
+  walk_init(&walk[0], geometry, pinion ? EO_PINION : EO_GEAR, &shape[pinion ? EO_PINION : EO_GEAR]);
+  walk_init(&walk[1], geometry, EO_GEAR, &shape[EO_GEAR]);
   const struct walk *other = pinion && gear ? &walk[1] : NULL;
   int count = spread_places(collect_breaks(&walk[0], other, breaks), breaks, place), middle = 0;
   while (middle < count - 1 && place[middle] < 0)
@@ -479,11 +492,11 @@ void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
   int outwards[2] = {follow(&walk[0], other, count, place, middle, pinion ? -1 : 1, node[0]),
                      follow(&walk[0], other, count, place, middle, pinion ? 1 : -1, node[1])};
   for (int i = -outwards[0] + 1; i < outwards[1]; i++) {
-    const struct node *n = i <= 0 ? &node[0][-i] : &node[1][i];
-    table->phase[table->nodes] = n->phase;
-    table->gap[table->nodes] = n->gap;
-    table->tilt[table->nodes] = n->tilt;
-    table->slope[table->nodes++] = n->slope;
+    const struct node *this_node = i <= 0 ? &node[0][-i] : &node[1][i];
+    table->phase[table->nodes] = this_node->phase;
+    table->gap[table->nodes] = this_node->gap;
+    table->tilt[table->nodes] = this_node->tilt;
+    table->slope[table->nodes++] = this_node->slope;
   }
   if (table->nodes < 2)
     table->nodes = 0; /* no two places with a normal in common: no table either */
@@ -530,12 +543,12 @@ double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope
   return eo_slice_gap_within(table, piece, part, slope);
 }
 
-struct eo_tilt eo_slice_tilt_at(const struct eo_slice_gap *table, const struct eo_geometry *g, double c)
+struct eo_tilt eo_slice_tilt_at(const struct eo_slice_gap *table, const struct eo_geometry *geometry, double c)
 {
-  double along[2] = {cos(g->working_pressure_angle), sin(g->working_pressure_angle)},
-         place[2] = {c * along[0], c * along[1] - g->working_radius[EO_GEAR]}, t;
+  double along[2] = {cos(geometry->working_pressure_angle), sin(geometry->working_pressure_angle)},
+         place[2] = {c * along[0], c * along[1] - geometry->working_radius[EO_GEAR]}, t;
   if (!table || table->nodes == 0)
-    return eo_tilt_at(g, g->working_pressure_angle, 1, place); /* theory (K4) */
+    return eo_tilt_at(geometry, geometry->working_pressure_angle, 1, place); /* theory (K4) */
   int i = eo_slice_gap_piece(table, c, &t);
   struct eo_tilt tilt = table->tilt[i];
   t = fmin(1, fmax(0, t));

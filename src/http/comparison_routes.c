@@ -48,9 +48,11 @@ static bool is_wanted(const json_t *wanted, int64_t id)
 
 static enum eo_code collect(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
 {
-  struct collected *c = context;
-  c->design = row->design;
-  return is_wanted(c->wanted, row->id) ? eo_rig_points_add(&c->points, row->id, row->summary, row->pair, error) : EO_OK;
+  struct collected *collected = context;
+  collected->design = row->design;
+  return is_wanted(collected->wanted, row->id)
+             ? eo_rig_points_add(&collected->points, row->id, row->summary, row->pair, error)
+             : EO_OK;
 }
 
 /* The stored design; false: the reply is there. */
@@ -77,13 +79,13 @@ static void compare(struct eo_request *request, const struct eo_design *design, 
 
 static void compare_all(struct eo_request *request, int64_t id, const struct eo_design *design)
 {
-  struct collected c = {0};
+  struct collected collected = {0};
   struct eo_error error;
-  if (eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error))
+  if (eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &collected, &error))
     eo_reply_error(&request->reply, "", &error);
   else
-    compare(request, design, &c.points);
-  eo_rig_points_done(&c.points);
+    compare(request, design, &collected.points);
+  eo_rig_points_done(&collected.points);
 }
 
 static void compare_design(struct eo_request *request)
@@ -108,20 +110,20 @@ static void compare_what_if(struct eo_request *request)
 
 static void compare_one(struct eo_request *request)
 {
-  struct collected c = {0};
+  struct collected collected = {0};
   struct eo_design design;
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
-  if (eo_store_find_measurement(request->store, id, collect, &c, &outcome, &error))
+  if (eo_store_find_measurement(request->store, id, collect, &collected, &outcome, &error))
     eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_MISSING)
     eo_reply_no_measurement(&request->reply);
-  else if (find_design(request, c.design, &design, NULL))
-    compare(request, &design, &c.points);
-  eo_rig_points_done(&c.points);
+  else if (find_design(request, collected.design, &design, NULL))
+    compare(request, &design, &collected.points);
+  eo_rig_points_done(&collected.points);
 }
 
 /* What a fit works on besides its unknowns. */
@@ -170,20 +172,20 @@ static bool find_basis(struct eo_request *request, int64_t id, struct basis *bas
 static void put_fit(struct eo_request *request, int64_t id, const struct basis *basis,
                     const struct eo_update_settings *settings)
 {
-  struct collected c = {.wanted = basis->wanted};
+  struct collected collected = {.wanted = basis->wanted};
   struct eo_error error;
   struct eo_work work;
   char *given = json_dumps(basis->given, JSON_COMPACT);
-  enum eo_code code = given
-                          ? eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error)
-                          : eo_error_memory(&error);
+  enum eo_code code = given ? eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect,
+                                                         &collected, &error)
+                            : eo_error_memory(&error);
   if (!code)
-    code = eo_rig_fit(&work, &c.points, settings, given, &error);
+    code = eo_rig_fit(&work, &collected.points, settings, given, &error);
   if (code)
     eo_reply_error(&request->reply, "", &error);
   else
     ask(request, &basis->design, &work);
-  eo_rig_points_done(&c.points);
+  eo_rig_points_done(&collected.points);
   free(given);
 }
 

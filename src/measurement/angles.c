@@ -8,15 +8,15 @@
 static const double DEGREES = 180 / M_PI;
 static const double MOVING = 0.1; /* of the fastest block: slower ones do not tell the usual speed */
 
-static int64_t line_of(const struct eo_angles_maker *m, int64_t row)
+static int64_t line_of(const struct eo_angles_maker *maker, int64_t row)
 {
-  return row < 0 ? 0 : eo_recording_line(m->recording, row);
+  return row < 0 ? 0 : eo_recording_line(maker->recording, row);
 }
 
-struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *m, struct eo_finding *finding, int64_t row)
+struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *maker, struct eo_finding *finding, int64_t row)
 {
   finding->row = row;
-  finding->line = line_of(m, row);
+  finding->line = line_of(maker, row);
   return finding;
 }
 
@@ -73,34 +73,35 @@ static void judge_gaps(struct eo_angles_maker *maker)
 }
 
 /* A channel that stands still altogether or for a part of a turn while the other moves on. */
-static void judge_still(struct eo_angles_maker *m, int channel)
+static void judge_still(struct eo_angles_maker *maker, int channel)
 {
-  for (int k = 0; k < eo_track_columns(&m->tracks->channel[channel]); k++) {
-    const struct eo_scan_column *c = &m->scan->column[channel][k];
-    bool constant = !(c->high > c->low), raw = m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE;
-    double advance = (double)c->longest * c->typical * (raw ? 0 : m->sampler.scale[channel]);
+  for (int k = 0; k < eo_track_columns(&maker->tracks->channel[channel]); k++) {
+    const struct eo_scan_column *column = &maker->scan->column[channel][k];
+    bool constant = !(column->high > column->low), raw = maker->tracks->channel[channel].track == EO_TRACK_SINE_COSINE;
+    double advance = (double)column->longest * column->typical * (raw ? 0 : maker->sampler.scale[channel]);
     if (constant)
-      eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, c->low,
-                      "The %s channel is constant: every row holds %.9g.", eo_channel_name(channel), c->low);
-    else if (advance > 0.5 && (double)c->longest * c->typical > 20 * c->quantum && c->longest > 20)
-      eo_angles_at_row(m,
-                       eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel,
-                                       (double)c->longest, "The %s channel stands still for %lld rows from row %lld.",
-                                       eo_channel_name(channel), (long long)c->longest, (long long)c->longest_row + 1),
-                       c->longest_row);
-    double clipped = raw && !constant ? eo_scan_clipped(c, m->scan->used) : 0;
+      eo_findings_add(maker->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, column->low,
+                      "The %s channel is constant: every row holds %.9g.", eo_channel_name(channel), column->low);
+    else if (advance > 0.5 && (double)column->longest * column->typical > 20 * column->quantum && column->longest > 20)
+      eo_angles_at_row(
+          maker,
+          eo_findings_add(maker->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, (double)column->longest,
+                          "The %s channel stands still for %lld rows from row %lld.", eo_channel_name(channel),
+                          (long long)column->longest, (long long)column->longest_row + 1),
+          column->longest_row);
+    double clipped = raw && !constant ? eo_scan_clipped(column, maker->scan->used) : 0;
     if (clipped > 0)
-      eo_findings_add(m->findings, EO_FINDING_SATURATED, clipped > 0.2 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING,
+      eo_findings_add(maker->findings, EO_FINDING_SATURATED, clipped > 0.2 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING,
                       channel, clipped, "The %s of the %s is cut off: %.1f %% of its values are exactly %.6g or %.6g.",
-                      k ? "cosine" : "sine", eo_channel_name(channel), 100 * clipped, c->low, c->high);
+                      k ? "cosine" : "sine", eo_channel_name(channel), 100 * clipped, column->low, column->high);
   }
 }
 
 /* Where an angle starts again and what that says about its unit. */
 static void judge_turns(struct eo_angles_maker *maker, int channel)
 {
-  const struct eo_scan_column *c = &maker->scan->column[channel][0];
-  double scale = maker->tracks->channel[channel].scale, period = eo_scan_period(c, 2 * M_PI / scale),
+  const struct eo_scan_column *column = &maker->scan->column[channel][0];
+  double scale = maker->tracks->channel[channel].scale, period = eo_scan_period(column, 2 * M_PI / scale),
          turn = period * scale;
   maker->sampler.scale[channel] = scale;
   if (fabs(scale - 1) < 1e-9)
@@ -119,7 +120,7 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
   }
-  int64_t index = eo_scan_index_row(c, turn / maker->sampler.scale[channel]);
+  int64_t index = eo_scan_index_row(column, turn / maker->sampler.scale[channel]);
   if (index) {
     maker->sampler.begin = index > maker->sampler.begin ? index : maker->sampler.begin;
     eo_angles_at_row(
@@ -132,9 +133,9 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   }
   maker->sampler.period[channel] = turn;
   maker->wrapped[channel] = true;
-  eo_findings_add(maker->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)c->jumps,
+  eo_findings_add(maker->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)column->jumps,
                   "The %s angle starts again every %.6g, %d times; its turns were counted.", eo_channel_name(channel),
-                  turn / maker->sampler.scale[channel], c->jumps);
+                  turn / maker->sampler.scale[channel], column->jumps);
 }
 
 static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
@@ -145,19 +146,20 @@ static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles
   double *block = malloc(sizeof *block * EO_SAMPLER_BLOCK * (size_t)columns);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int channel = 0; channel < 2; channel++) {
-    const struct eo_scan_column *c = maker->scan->column[channel];
-    eo_ellipse_start(&sums[channel], (double[]){(c[0].low + c[0].high) / 2, (c[1].low + c[1].high) / 2},
-                     fmax(c[0].high - c[0].low, 1e-300) / 2);
+    const struct eo_scan_column *column = maker->scan->column[channel];
+    eo_ellipse_start(&sums[channel],
+                     (double[]){(column[0].low + column[0].high) / 2, (column[1].low + column[1].high) / 2},
+                     fmax(column[0].high - column[0].low, 1e-300) / 2);
   }
   for (int64_t first = 0; first < rows && !code; first += EO_SAMPLER_BLOCK) {
     int count = rows - first < EO_SAMPLER_BLOCK ? (int)(rows - first) : EO_SAMPLER_BLOCK;
     code = eo_recording_read(maker->recording, first, count, block, error);
     for (int i = 0; i < count && !code; i++)
       for (int channel = 0; channel < 2; channel++) {
-        const struct eo_track_channel *c = &maker->tracks->channel[channel];
-        double sine = block[(size_t)i * (size_t)columns + (size_t)c->column[0]],
-               cosine = block[(size_t)i * (size_t)columns + (size_t)c->column[1]];
-        if (c->track == EO_TRACK_SINE_COSINE && isfinite(sine) && isfinite(cosine))
+        const struct eo_track_channel *track_channel = &maker->tracks->channel[channel];
+        double sine = block[(size_t)i * (size_t)columns + (size_t)track_channel->column[0]],
+               cosine = block[(size_t)i * (size_t)columns + (size_t)track_channel->column[1]];
+        if (track_channel->track == EO_TRACK_SINE_COSINE && isfinite(sine) && isfinite(cosine))
           eo_ellipse_add(&sums[channel], sine, cosine);
       }
   }
@@ -173,14 +175,14 @@ static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles
 /* Usual limits of 1 Vpp and 11 uA encoders: 0.6..1.2 Vpp, 7..16 uApp, ratio 0.8..1.25, phase 90 +- 10 degrees. */
 static void judge_ellipse(struct eo_angles_maker *maker, const struct eo_ellipse *ellipse, int channel)
 {
-  const struct eo_track_channel *c = &maker->tracks->channel[channel];
+  const struct eo_track_channel *track_channel = &maker->tracks->channel[channel];
   double ratio = ellipse->amplitude[0] / ellipse->amplitude[1], phase = DEGREES * ellipse->skew;
   eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_NOTE, channel, ratio,
                   "Offsets (%.2g, %.2g), ratio %.4g and phase %.2f degrees of the %s tracks were corrected.",
                   ellipse->offset[0], ellipse->offset[1], ratio, 90 + phase, eo_channel_name(channel));
-  for (int k = 0; k < 2 && c->unit != EO_TRACK_UNKNOWN; k++) {
-    bool volt = c->unit == EO_TRACK_VOLT;
-    double size = 2 * ellipse->amplitude[k] * c->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
+  for (int k = 0; k < 2 && track_channel->unit != EO_TRACK_UNKNOWN; k++) {
+    bool volt = track_channel->unit == EO_TRACK_VOLT;
+    double size = 2 * ellipse->amplitude[k] * track_channel->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
     if (size < low || size > high)
       eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, size,
                       "The %s of the %s has an amplitude of %.3g %s, outside the usual %.3g..%.3g.",
@@ -324,20 +326,20 @@ enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording 
   return code;
 }
 
-void eo_angles_done(struct eo_angles *a)
+void eo_angles_done(struct eo_angles *angles)
 {
-  eo_recording_free(a->series);
-  a->series = NULL;
+  eo_recording_free(angles->series);
+  angles->series = NULL;
 }
 
-enum eo_code eo_angles_read(const struct eo_angles *a, int64_t first, int64_t count, double *rows,
+enum eo_code eo_angles_read(const struct eo_angles *angles, int64_t first, int64_t count, double *rows,
                             struct eo_error *error)
 {
-  enum eo_code code = eo_recording_read(a->series, first, count, rows, error);
+  enum eo_code code = eo_recording_read(angles->series, first, count, rows, error);
   for (int64_t i = 0; i < count && !code; i++) {
     double *row = rows + 3 * i, channel[2] = {row[1], row[2]};
-    row[1] = a->factor[0] * channel[a->from[0]];
-    row[2] = a->factor[1] * channel[a->from[1]];
+    row[1] = angles->factor[0] * channel[angles->from[0]];
+    row[2] = angles->factor[1] * channel[angles->from[1]];
   }
   return code;
 }

@@ -8,12 +8,12 @@ enum { SIDEBANDS = 2 }; /* whole turns that count as such */
 static const double REPEATS =
     2.5; /* times the power between the orders: the median of a dozen reaches it by chance in 1 % */
 
-void eo_beside_init(struct eo_beside *b, const int teeth[2], int harmonics, double turns)
+void eo_beside_init(struct eo_beside *beside, const int teeth[2], int harmonics, double turns)
 {
-  *b = (struct eo_beside){.harmonics = harmonics,
-                          .teeth = teeth[EO_PINION],
-                          .gear = (double)teeth[EO_PINION] / teeth[EO_GEAR],
-                          .turns = turns};
+  *beside = (struct eo_beside){.harmonics = harmonics,
+                               .teeth = teeth[EO_PINION],
+                               .gear = (double)teeth[EO_PINION] / teeth[EO_GEAR],
+                               .turns = turns};
 }
 
 /* Places of the phasors: below, then above, in each of the three families. */
@@ -72,9 +72,9 @@ void eo_beside_add(struct eo_beside *beside, double theta, double residual)
   beside->rows++;
 }
 
-static double power_at(const struct eo_beside *b, int h, int i)
+static double power_at(const struct eo_beside *beside, int h, int i)
 {
-  return b->real[h][i] * b->real[h][i] + b->imaginary[h][i] * b->imaginary[h][i];
+  return beside->real[h][i] * beside->real[h][i] + beside->imaginary[h][i] * beside->imaginary[h][i];
 }
 
 static int ascending(const void *a, const void *b)
@@ -96,21 +96,21 @@ static double mean_power(double *power, int n)
   return (power[(n - 1) / 2] + power[n / 2]) / (2 * expected);
 }
 
-static double repeating_power(const struct eo_beside *b, int h, int member)
+static double repeating_power(const struct eo_beside *beside, int h, int member)
 {
   double power[2 * EO_BESIDE_TURNS];
   int n = 0;
   for (int side = 0; side < 2; side++)
     for (int turn = SIDEBANDS + 1; turn <= EO_BESIDE_TURNS; turn++)
-      power[n++] = power_at(b, h, turn_at(member, side, turn));
+      power[n++] = power_at(beside, h, turn_at(member, side, turn));
   return mean_power(power, n);
 }
 
-static bool is_sideband(const struct eo_beside *b, double distance)
+static bool is_sideband(const struct eo_beside *beside, double distance)
 {
   bool near = false;
   for (int k = 1; k <= SIDEBANDS; k++)
-    near = near || fabs(distance - k) < 1.5 / b->turns || fabs(distance - k * b->gear) < 1.5 / b->turns;
+    near = near || fabs(distance - k) < 1.5 / beside->turns || fabs(distance - k * beside->gear) < 1.5 / beside->turns;
   return near;
 }
 
@@ -129,8 +129,8 @@ double eo_beside_sigma(const struct eo_beside *beside, int h, double residual)
   return sqrt(2 * most) / rows;
 }
 
-double complex eo_beside_sideband(const struct eo_beside *b, int h, int member, int turns)
+double complex eo_beside_sideband(const struct eo_beside *beside, int h, int member, int turns)
 {
   int at = turn_at(member, turns > 0, abs(turns));
-  return 2 * (b->real[h][at] + I * b->imaginary[h][at]) / (double)b->rows;
+  return 2 * (beside->real[h][at] + I * beside->imaginary[h][at]) / (double)beside->rows;
 }

@@ -10,26 +10,28 @@ static const double SAME_TORQUE = 0.01, SAME_SPEED = 0.02;
 static const double FAR = 3.5;        /* robust standard deviations (Iglewicz and Hoaglin 1993) */
 static const double LEAST_FAR = 0.25; /* of log(ratio): nearer is no outlier whatever the spread */
 
-void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, const struct eo_findings *findings)
+void eo_measured_take(struct eo_measured *measured, const struct eo_transmission *transmission,
+                      const struct eo_findings *findings)
 {
-  m->speed = t->speed;
-  m->harmonics = t->harmonics;
-  memcpy(m->order, t->mesh, sizeof m->order);
-  m->rms = t->rms;
-  m->rms_sigma = t->rms_sigma;
-  m->warnings = 0;
+  measured->speed = transmission->speed;
+  measured->harmonics = transmission->harmonics;
+  memcpy(measured->order, transmission->mesh, sizeof measured->order);
+  measured->rms = transmission->rms;
+  measured->rms_sigma = transmission->rms_sigma;
+  measured->warnings = 0;
   for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++)
-    m->warnings += findings->finding[i].severity >= EO_SEVERITY_WARNING;
+    measured->warnings += findings->finding[i].severity >= EO_SEVERITY_WARNING;
 }
 
-static double likeness_at(const struct eo_measured *m, const struct eo_rig_prediction *p, double shift)
+static double likeness_at(const struct eo_measured *measured, const struct eo_rig_prediction *prediction, double shift)
 {
   double sum = 0, size[2] = {0, 0};
-  int harmonics = m->harmonics < p->harmonics ? m->harmonics : p->harmonics;
+  int harmonics = measured->harmonics < prediction->harmonics ? measured->harmonics : prediction->harmonics;
   for (int h = 1; h <= harmonics; h++) {
-    sum += creal(conj(m->order[h - 1].amplitude) * p->order[h - 1] * cexp(2 * M_PI * I * h * shift)); /* theory (M5) */
-    size[0] += pow(cabs(m->order[h - 1].amplitude), 2);
-    size[1] += pow(cabs(p->order[h - 1]), 2);
+    sum += creal(conj(measured->order[h - 1].amplitude) * prediction->order[h - 1] *
+                 cexp(2 * M_PI * I * h * shift)); /* theory (M5) */
+    size[0] += pow(cabs(measured->order[h - 1].amplitude), 2);
+    size[1] += pow(cabs(prediction->order[h - 1]), 2);
   }
   return size[0] > 0 && size[1] > 0 ? sum / sqrt(size[0] * size[1]) : 0;
 }
@@ -57,16 +59,17 @@ static void align(const struct eo_measured *measured, struct eo_compared *compar
   compared->shift -= floor(compared->shift);
 }
 
-void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared *c, int count, double *measured_curve,
-                          double *predicted_curve)
+void eo_comparison_curves(const struct eo_measured *measured, const struct eo_compared *compared, int count,
+                          double *measured_curve, double *predicted_curve)
 {
   for (int i = 0; i < count; i++) {
     double phase = (double)i / count;
     measured_curve[i] = predicted_curve[i] = 0;
-    for (int h = 1; h <= m->harmonics; h++)
-      measured_curve[i] += creal(m->order[h - 1].amplitude * cexp(2 * M_PI * I * h * phase));
-    for (int h = 1; h <= c->prediction.harmonics; h++)
-      predicted_curve[i] += creal(c->prediction.order[h - 1] * cexp(2 * M_PI * I * h * (phase + c->shift)));
+    for (int h = 1; h <= measured->harmonics; h++)
+      measured_curve[i] += creal(measured->order[h - 1].amplitude * cexp(2 * M_PI * I * h * phase));
+    for (int h = 1; h <= compared->prediction.harmonics; h++)
+      predicted_curve[i] +=
+          creal(compared->prediction.order[h - 1] * cexp(2 * M_PI * I * h * (phase + compared->shift)));
   }
 }
 
@@ -108,23 +111,24 @@ static enum eo_code find_ratios(struct eo_comparison *comparison, struct eo_erro
 }
 
 /* Repeats of the same point that disagree by more than their uncertainty allows. */
-static double nearest_repeat(const struct eo_measured *m, int count, int at)
+static double nearest_repeat(const struct eo_measured *measured, int count, int at)
 {
   double nearest = INFINITY;
   for (int i = 0; i < count; i++)
-    if (i != at && m[i].unmodified == m[at].unmodified && same_point(&m[i], &m[at]))
-      nearest = fmin(nearest,
-                     fabs(m[i].rms - m[at].rms) / fmax(hypot(m[i].rms_sigma, m[at].rms_sigma), 0.05 * m[at].rms));
+    if (i != at && measured[i].unmodified == measured[at].unmodified && same_point(&measured[i], &measured[at]))
+      nearest = fmin(nearest, fabs(measured[i].rms - measured[at].rms) /
+                                  fmax(hypot(measured[i].rms_sigma, measured[at].rms_sigma), 0.05 * measured[at].rms));
   return nearest;
 }
 
-static void judge_point(struct eo_comparison *c, const struct eo_measured *measured, int at)
+static void judge_point(struct eo_comparison *comparison, const struct eo_measured *measured, int at)
 {
-  struct eo_compared *compared = &c->point[at];
-  double off = fabs(log(compared->ratio / c->ratio)), repeat = nearest_repeat(measured, c->count, at);
-  if (c->count >= 4 && isfinite(off) && off > LEAST_FAR && off > FAR * c->spread)
+  struct eo_compared *compared = &comparison->point[at];
+  double off = fabs(log(compared->ratio / comparison->ratio)), repeat = nearest_repeat(measured, comparison->count, at);
+  if (comparison->count >= 4 && isfinite(off) && off > LEAST_FAR && off > FAR * comparison->spread)
     snprintf(compared->reason, sizeof compared->reason,
-             "Its RMS is %.3g times the prediction, that of the others about %.3g times.", compared->ratio, c->ratio);
+             "Its RMS is %.3g times the prediction, that of the others about %.3g times.", compared->ratio,
+             comparison->ratio);
   else if (isfinite(repeat) && repeat > 4)
     snprintf(compared->reason, sizeof compared->reason,
              "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", measured[at].rms);
@@ -170,16 +174,16 @@ enum eo_code eo_comparison_run(struct eo_comparison *comparison, struct eo_evalu
   if (!comparison->point || !comparison->reduction)
     return eo_error_memory(error);
   for (int i = 0; i < count && !code; i++) {
-    const struct eo_measured *m = &measured[i];
+    const struct eo_measured *this_measured = &measured[i];
     struct eo_compared *compared = &comparison->point[i];
     if (eo_progress_report(progress, "predictions", (double)i / count))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-    code = eo_prediction_run(&compared->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end,
-                             m->harmonics, error);
+    code = eo_prediction_run(&compared->prediction, evaluator, design, this_measured->unmodified, this_measured->torque,
+                             this_measured->speed, this_measured->end, this_measured->harmonics, error);
     compared->ratio = compared->likeness = compared->shift = NAN;
     if (!code && compared->prediction.valid) {
-      compared->ratio = m->rms / compared->prediction.rms;
-      align(m, compared);
+      compared->ratio = this_measured->rms / compared->prediction.rms;
+      align(this_measured, compared);
     }
   }
   if (!code)
@@ -193,9 +197,9 @@ enum eo_code eo_comparison_run(struct eo_comparison *comparison, struct eo_evalu
   return EO_OK;
 }
 
-void eo_comparison_done(struct eo_comparison *c)
+void eo_comparison_done(struct eo_comparison *comparison)
 {
-  free(c->point);
-  free(c->reduction);
-  *c = (struct eo_comparison){0};
+  free(comparison->point);
+  free(comparison->reduction);
+  *comparison = (struct eo_comparison){0};
 }

@@ -15,13 +15,13 @@ struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding
 {
   va_list arguments;
   int at = findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS - 1;
-  struct eo_finding *f = &findings->finding[at];
+  struct eo_finding *finding = &findings->finding[at];
   findings->count++;
-  *f = (struct eo_finding){.kind = kind, .severity = severity, .channel = channel, .row = -1, .value = value};
+  *finding = (struct eo_finding){.kind = kind, .severity = severity, .channel = channel, .row = -1, .value = value};
   va_start(arguments, format);
-  vsnprintf(f->text, sizeof f->text, format, arguments);
+  vsnprintf(finding->text, sizeof finding->text, format, arguments);
   va_end(arguments);
-  return f;
+  return finding;
 }
 
 const char *eo_finding_name(enum eo_finding_kind kind)

@@ -41,29 +41,29 @@ static void learn(struct eo_angles_maker *maker, const struct eo_sample *sample,
 }
 
 /* How far the step between two samples is from the usual one. */
-static bool odd_step(const struct eo_usual *u, const double limit[2], const struct eo_sample *from,
+static bool odd_step(const struct eo_usual *usual, const double limit[2], const struct eo_sample *from,
                      const struct eo_sample *to, double excess[2])
 {
   bool odd = false;
   double time = to->time - from->time,
-         slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * u->interval); /* of a gap in time */
+         slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * usual->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
-    excess[c] = step_of(from, to, c) - u->rate[c] * time;
-    odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(u->rate[c]) * slack;
+    excess[c] = step_of(from, to, c) - usual->rate[c] * time;
+    odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(usual->rate[c]) * slack;
   }
   return odd;
 }
 
 /* What is usual between two samples, with a speed that holds on one side of them. */
-static bool fits_beside(const struct eo_usual *u, const struct eo_sample *from, const struct eo_sample *to,
+static bool fits_beside(const struct eo_usual *usual, const struct eo_sample *from, const struct eo_sample *to,
                         const struct eo_sample *a, const struct eo_sample *b, struct eo_usual *here)
 {
   double time = b->time - a->time, passed = to->time - from->time;
   bool fits = time > 0;
-  *here = *u;
+  *here = *usual;
   for (int c = 0; c < 2 && time > 0; c++) {
     here->rate[c] = step_of(a, b, c) / time;
-    here->limit[c] = fmax(u->limit[c], 0.4 * fabs(here->rate[c]) * u->interval);
+    here->limit[c] = fmax(usual->limit[c], 0.4 * fabs(here->rate[c]) * usual->interval);
     fits = fits && fabs(step_of(from, to, c) - here->rate[c] * passed) <= here->limit[c];
   }
   return fits;
@@ -171,28 +171,28 @@ static bool note_block(struct eo_angles_maker *maker, const struct eo_usual *usu
 }
 
 /* A value far off that is followed by good ones; how many samples to leave out, 0 when it is no such thing. */
-static int spike_length(const struct eo_usual *u, const double limit[2], const struct eo_sample *last,
-                        const struct eo_sample *s, int left)
+static int spike_length(const struct eo_usual *usual, const double limit[2], const struct eo_sample *last,
+                        const struct eo_sample *sample, int left)
 {
   double excess[2];
   for (int i = 1; i < EO_AHEAD && i < left; i++)
-    if (!odd_step(u, limit, last, &s[i], excess))
+    if (!odd_step(usual, limit, last, &sample[i], excess))
       return i;
   return 0;
 }
 
 /* One channel moves on by less than a row and stays there. Where that happens often it is how the encoder counts. */
-static void note_lost_counts(struct eo_angles_maker *m, const struct eo_usual *u, const double excess[2],
-                             const struct eo_sample *s, int left)
+static void note_lost_counts(struct eo_angles_maker *maker, const struct eo_usual *usual, const double excess[2],
+                             const struct eo_sample *sample, int left)
 {
-  double ratio = u->rate[1] / u->rate[0];
-  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(u->fine[1], fabs(ratio) * u->fine[0]);
-  if (both || spike_length(u, u->fine, &m->last, s, left))
+  double ratio = usual->rate[1] / usual->rate[0];
+  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(usual->fine[1], fabs(ratio) * usual->fine[0]);
+  if (both || spike_length(usual, usual->fine, &maker->last, sample, left))
     return;
-  int channel = fabs(excess[0]) / u->fine[0] > fabs(excess[1]) / u->fine[1] ? 0 : 1;
-  if (m->losses < EO_MOST_LOSSES)
-    m->loss[m->losses] = (struct loss){channel, s->row, excess[channel]};
-  m->losses++;
+  int channel = fabs(excess[0]) / usual->fine[0] > fabs(excess[1]) / usual->fine[1] ? 0 : 1;
+  if (maker->losses < EO_MOST_LOSSES)
+    maker->loss[maker->losses] = (struct loss){channel, sample->row, excess[channel]};
+  maker->losses++;
 }
 
 enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *angles, bool final, double (*out)[3],

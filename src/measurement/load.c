@@ -52,9 +52,9 @@ static struct eo_load_column conclude(const struct sums *sums)
   return column;
 }
 
-static double time_of(const struct eo_tracks *t, const double *row, int64_t at)
+static double time_of(const struct eo_tracks *tracks, const double *row, int64_t at)
 {
-  return t->time_column < 0 ? t->interval * (double)at : row[t->time_column] * t->time_scale;
+  return tracks->time_column < 0 ? tracks->interval * (double)at : row[tracks->time_column] * tracks->time_scale;
 }
 
 enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recording, const struct eo_tracks *tracks,
@@ -100,19 +100,19 @@ static void judge_torque(struct eo_load *load, const struct eo_load_known *known
   double ratio = (double)known->teeth[EO_PINION] / known->teeth[EO_GEAR];
   double own = load->torque[EO_PINION].mean, other = load->torque[EO_GEAR].mean * ratio;
   int from = isnan(own) ? EO_GEAR : EO_PINION;
-  const struct eo_load_column *c = &load->torque[from];
+  const struct eo_load_column *load_column = &load->torque[from];
   load->pinion_torque = from == EO_GEAR ? other : own;
   if (isnan(load->pinion_torque))
     return;
-  double spread = (c->high - c->low) / c->mean;
+  double spread = (load_column->high - load_column->low) / load_column->mean;
   eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_NOTE, from, load->pinion_torque,
                   "The torque column of the %s has a mean of %.5g N m over what is measured%s.", member_name[from],
-                  c->mean,
+                  load_column->mean,
                   from == EO_GEAR ? "; over the ratio of the teeth, without losses, it stands for the pinion's" : "");
   if (spread > STEADY_TORQUE)
     eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_WARNING, from, spread,
                     "The torque of the %s is not steady: %.5g to %.5g N m; the vibration belongs to no single load.",
-                    member_name[from], c->low, c->high);
+                    member_name[from], load_column->low, load_column->high);
   if (!isnan(own) && !isnan(other) && fabs(other / own - 1) > SAME_RATIO)
     eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_WARNING, -1, other / own,
                     "The torque columns contradict each other: %.5g N m at the pinion, %.5g N m at the gear, which "

@@ -8,9 +8,9 @@
 #include "measurement/units_probe.h"
 
 /* Turns, lines per turn and a stated speed leave no doubt about the unit. */
-static bool unit_is_open(const struct eo_angles *a, const struct eo_tracks *tracks, double stated)
+static bool unit_is_open(const struct eo_angles *angles, const struct eo_tracks *tracks, double stated)
 {
-  return isnan(stated) && !a->wrapped[0] && !a->wrapped[1] && tracks->channel[0].track == EO_TRACK_ANGLE &&
+  return isnan(stated) && !angles->wrapped[0] && !angles->wrapped[1] && tracks->channel[0].track == EO_TRACK_ANGLE &&
          tracks->channel[1].track == EO_TRACK_ANGLE;
 }
 
@@ -65,7 +65,7 @@ enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct
   return code;
 }
 
-void eo_measurement_done(struct eo_measurement *m)
+void eo_measurement_done(struct eo_measurement *measurement)
 {
-  eo_transmission_done(&m->transmission);
+  eo_transmission_done(&measurement->transmission);
 }

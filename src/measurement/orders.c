@@ -4,11 +4,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-double eo_transmission_mesh(const struct eo_transmission *r, double phase)
+double eo_transmission_mesh(const struct eo_transmission *transmission, double phase)
 {
   double sum = 0;
-  for (int h = 0; h < r->harmonics; h++)
-    sum += creal(r->mesh[h].amplitude * cexp(2 * M_PI * I * (h + 1) * phase));
+  for (int h = 0; h < transmission->harmonics; h++)
+    sum += creal(transmission->mesh[h].amplitude * cexp(2 * M_PI * I * (h + 1) * phase));
   return sum;
 }
 

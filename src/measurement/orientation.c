@@ -29,9 +29,9 @@ bool eo_orientation_nearest(double ratio, double tolerance, const int teeth[2], 
   return false;
 }
 
-static bool matches(const struct eo_angles *a, double ratio, double expected)
+static bool matches(const struct eo_angles *angles, double ratio, double expected)
 {
-  return fabs(ratio / expected - 1) < a->ratio_tolerance;
+  return fabs(ratio / expected - 1) < angles->ratio_tolerance;
 }
 
 static void refuse_teeth(const struct eo_angles *angles, const int teeth[2], struct eo_findings *findings)
@@ -131,15 +131,15 @@ static void settle_speed(struct eo_angles *angles, double stated, struct eo_find
   }
 }
 
-void eo_orientation_judge(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
+void eo_orientation_judge(struct eo_angles *angles, const int teeth[2], double stated, struct eo_findings *findings)
 {
-  if (!(fabs(a->ratio) > 0) || !isfinite(a->ratio)) {
-    eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, a->ratio,
+  if (!(fabs(angles->ratio) > 0) || !isfinite(angles->ratio)) {
+    eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, angles->ratio,
                     "One of the shafts does not turn.");
     return;
   }
-  if (!settle_ratio(a, teeth, stated, findings))
+  if (!settle_ratio(angles, teeth, stated, findings))
     return;
-  settle_directions(a, findings);
-  settle_speed(a, stated, findings);
+  settle_directions(angles, findings);
+  settle_speed(angles, stated, findings);
 }

@@ -58,9 +58,9 @@ static enum eo_code each_row(struct finder *finder, int64_t first, int64_t last,
   return code;
 }
 
-static int64_t rows_each(const struct finder *f)
+static int64_t rows_each(const struct finder *finder)
 {
-  int64_t rows = f->angles->rows, each = rows / MOST_STRETCHES + 1, least = rows / 16 < 32 ? rows / 16 : 32;
+  int64_t rows = finder->angles->rows, each = rows / MOST_STRETCHES + 1, least = rows / 16 < 32 ? rows / 16 : 32;
   return each > least ? each : least > 1 ? least : 1;
 }
 
@@ -80,15 +80,15 @@ static void add_stretch(struct finder *finder, int64_t index, const double row[3
 }
 
 /* The speed of every stretch and the size of the fast ones. */
-static double find_speeds(struct finder *f)
+static double find_speeds(struct finder *finder)
 {
-  int n = --f->stretches;
+  int n = --finder->stretches;
   for (int i = 0; i < n; i++) {
-    double time = f->stretch[i + 1].time - f->stretch[i].time;
-    f->speed[i] = time > 0 ? (f->stretch[i + 1].angle - f->stretch[i].angle) / time : 0;
-    f->scratch[i] = fabs(f->speed[i]);
+    double time = finder->stretch[i + 1].time - finder->stretch[i].time;
+    finder->speed[i] = time > 0 ? (finder->stretch[i + 1].angle - finder->stretch[i].angle) / time : 0;
+    finder->scratch[i] = fabs(finder->speed[i]);
   }
-  return eo_scan_quantile(f->scratch, n, 0.9);
+  return eo_scan_quantile(finder->scratch, n, 0.9);
 }
 
 static int direction_of(double speed, double fast)
@@ -96,12 +96,12 @@ static int direction_of(double speed, double fast)
   return speed > STANDING * fast ? 1 : speed < -STANDING * fast ? -1 : 0;
 }
 
-static struct eo_part part_between(const struct finder *f, const struct stretch *from, const struct stretch *to)
+static struct eo_part part_between(const struct finder *finder, const struct stretch *from, const struct stretch *to)
 {
   return (struct eo_part){.first = from->row,
                           .last = to->row,
-                          .from = from->time - f->origin,
-                          .to = to->time - f->origin,
+                          .from = from->time - finder->origin,
+                          .to = to->time - finder->origin,
                           .turns = (to->angle - from->angle) / (2 * M_PI)};
 }
 
@@ -109,7 +109,7 @@ static struct eo_part part_between(const struct finder *f, const struct stretch 
    left out. */
 static void find_runs(struct finder *finder, double fast)
 {
-  struct eo_parts *p = finder->parts;
+  struct eo_parts *parts = finder->parts;
   int n = finder->stretches;
   for (int from = 0, to; from < n; from = to) {
     int way = direction_of(finder->speed[from], fast);
@@ -121,64 +121,65 @@ static void find_runs(struct finder *finder, double fast)
     struct eo_part part = part_between(finder, &finder->stretch[begin], &finder->stretch[end]);
     if (to == n)
       part.last = finder->last;
-    if (fabs(part.turns) < LEAST_TURNS && p->count)
+    if (fabs(part.turns) < LEAST_TURNS && parts->count)
       continue;
-    if (p->count && fabs(p->part[0].turns) < LEAST_TURNS)
-      p->count = 0; /* a short part stands for itself only where there is nothing else */
-    if (p->count < EO_PARTS)
-      p->part[p->count] = part;
-    p->count++;
+    if (parts->count && fabs(parts->part[0].turns) < LEAST_TURNS)
+      parts->count = 0; /* a short part stands for itself only where there is nothing else */
+    if (parts->count < EO_PARTS)
+      parts->part[parts->count] = part;
+    parts->count++;
   }
 }
 
-static void add_turn(struct finder *f, int64_t index, const double row[3])
+static void add_turn(struct finder *finder, int64_t index, const double row[3])
 {
-  double angle = fabs(row[1] - f->turn[0].angle);
-  if (f->turns == 0 && f->turn[0].row < 0)
-    f->turn[0] = (struct stretch){index, row[0], row[1]};
-  else if (f->turns < MOST_TURNS && angle >= 2 * M_PI * f->turns_each * (f->turns + 1))
-    f->turn[++f->turns] = (struct stretch){index, row[0], row[1]};
+  double angle = fabs(row[1] - finder->turn[0].angle);
+  if (finder->turns == 0 && finder->turn[0].row < 0)
+    finder->turn[0] = (struct stretch){index, row[0], row[1]};
+  else if (finder->turns < MOST_TURNS && angle >= 2 * M_PI * finder->turns_each * (finder->turns + 1))
+    finder->turn[++finder->turns] = (struct stretch){index, row[0], row[1]};
 }
 
-static double turn_speed(const struct finder *f, int turn)
+static double turn_speed(const struct finder *finder, int turn)
 {
-  return fabs((f->turn[turn + 1].angle - f->turn[turn].angle) / (f->turn[turn + 1].time - f->turn[turn].time));
+  return fabs((finder->turn[turn + 1].angle - finder->turn[turn].angle) /
+              (finder->turn[turn + 1].time - finder->turn[turn].time));
 }
 
-static void find_range(const struct finder *f, int from, int to, struct eo_part *part)
+static void find_range(const struct finder *finder, int from, int to, struct eo_part *part)
 {
   part->speed_low = INFINITY;
   part->speed_high = 0;
   for (int i = from; i < to; i++) {
-    part->speed_low = fmin(part->speed_low, turn_speed(f, i));
-    part->speed_high = fmax(part->speed_high, turn_speed(f, i));
+    part->speed_low = fmin(part->speed_low, turn_speed(finder, i));
+    part->speed_high = fmax(part->speed_high, turn_speed(finder, i));
   }
   if (to <= from)
     part->speed_low = part->speed_high = fabs(part->turns) * 2 * M_PI / (part->to - part->from);
 }
 
-static enum eo_code find_turns(struct finder *f, struct eo_part *part, struct eo_error *error)
+static enum eo_code find_turns(struct finder *finder, struct eo_part *part, struct eo_error *error)
 {
-  f->turns = 0;
-  f->turn[0] = (struct stretch){-1, 0, 0};
-  f->turns_each = ceil(fabs(part->turns) / MOST_TURNS);
-  f->turns_each = f->turns_each > 1 ? f->turns_each : 1;
-  enum eo_code code = each_row(f, part->first, part->last, add_turn, error);
+  finder->turns = 0;
+  finder->turn[0] = (struct stretch){-1, 0, 0};
+  finder->turns_each = ceil(fabs(part->turns) / MOST_TURNS);
+  finder->turns_each = finder->turns_each > 1 ? finder->turns_each : 1;
+  enum eo_code code = each_row(finder, part->first, part->last, add_turn, error);
   if (!code)
-    find_range(f, 0, f->turns, part);
+    find_range(finder, 0, finder->turns, part);
   return code;
 }
 
 /* The longest run of turns near the median of the part's turns: the steady state, if there is one. */
-static void find_steady(const struct finder *f, int *from, int *to)
+static void find_steady(const struct finder *finder, int *from, int *to)
 {
-  double *speed = f->scratch;
-  for (int i = 0; i < f->turns; i++)
-    speed[i] = turn_speed(f, i);
-  double usual = eo_scan_quantile(speed, f->turns, 0.5);
+  double *speed = finder->scratch;
+  for (int i = 0; i < finder->turns; i++)
+    speed[i] = turn_speed(finder, i);
+  double usual = eo_scan_quantile(speed, finder->turns, 0.5);
   *from = *to = 0;
-  for (int i = 0, begin = 0; i <= f->turns; i++) {
-    if (i < f->turns && fabs(turn_speed(f, i) / usual - 1) < STEADY)
+  for (int i = 0, begin = 0; i <= finder->turns; i++) {
+    if (i < finder->turns && fabs(turn_speed(finder, i) / usual - 1) < STEADY)
       continue;
     if (i - begin > *to - *from) {
       *from = begin;
@@ -192,11 +193,11 @@ static const double RPM = 30 / M_PI;
 
 static void say_parts(const struct finder *finder)
 {
-  const struct eo_parts *p = finder->parts;
-  const struct eo_part *used = &p->part[p->used];
+  const struct eo_parts *parts = finder->parts;
+  const struct eo_part *used = &parts->part[parts->used];
   double all = finder->stretch[finder->stretches].time - finder->stretch[0].time;
-  int kept = p->count < EO_PARTS ? p->count : EO_PARTS;
-  if (finder->choice->part || (p->count == 1 && used->first == finder->first && used->last == finder->last))
+  int kept = parts->count < EO_PARTS ? parts->count : EO_PARTS;
+  if (finder->choice->part || (parts->count == 1 && used->first == finder->first && used->last == finder->last))
     return;
   if (kept == 1)
     eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
@@ -205,54 +206,54 @@ static void say_parts(const struct finder *finder)
                     all - (used->to - used->from), all, used->from, used->to)
         ->row = used->first;
   else
-    eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_WARNING, -1, p->count,
+    eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_WARNING, -1, parts->count,
                     "The shafts stop or turn back between %d parts; part %d with the most turns, %.4g s to %.4g s, is "
                     "measured. Choose another one by its number.",
-                    p->count, p->used + 1, used->from, used->to)
+                    parts->count, parts->used + 1, used->from, used->to)
         ->row = used->first;
 }
 
-static void say_steady(const struct finder *f, const struct eo_part *whole)
+static void say_steady(const struct finder *finder, const struct eo_part *whole)
 {
-  const struct eo_part *m = &f->parts->measured;
-  eo_findings_add(f->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, whole->speed_high / whole->speed_low,
+  const struct eo_part *part = &finder->parts->measured;
+  eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, whole->speed_high / whole->speed_low,
                   "The speed goes from %.5g to %.5g rpm; the steady state from %.4g s to %.4g s (%.0f of %.0f turns, "
                   "%.5g to %.5g rpm) is measured, what leads to it is left out.",
-                  RPM * whole->speed_low, RPM * whole->speed_high, m->from, m->to, fabs(m->turns), fabs(whole->turns),
-                  RPM * m->speed_low, RPM * m->speed_high)
-      ->row = m->first;
+                  RPM * whole->speed_low, RPM * whole->speed_high, part->from, part->to, fabs(part->turns),
+                  fabs(whole->turns), RPM * part->speed_low, RPM * part->speed_high)
+      ->row = part->first;
 }
 
 /* Run-up and run-down beside a long steady state are left out; the caller may keep them. */
 static enum eo_code settle_part(struct finder *finder, struct eo_error *error)
 {
-  struct eo_parts *p = finder->parts;
-  struct eo_part *whole = &p->part[p->used];
+  struct eo_parts *parts = finder->parts;
+  struct eo_part *whole = &parts->part[parts->used];
   int from, to;
   enum eo_code code = find_turns(finder, whole, error);
-  p->measured = *whole;
+  parts->measured = *whole;
   if (code || finder->choice->whole || whole->speed_high < RUN_UP * whole->speed_low)
     return code;
   find_steady(finder, &from, &to);
   if ((to - from) * finder->turns_each < fmax(MOSTLY * fabs(whole->turns), LEAST_TURNS))
     return EO_OK;
-  p->measured = part_between(finder, &finder->turn[from], &finder->turn[to]);
+  parts->measured = part_between(finder, &finder->turn[from], &finder->turn[to]);
   if (to == finder->turns)
-    p->measured.last = whole->last;
-  find_range(finder, from, to, &p->measured);
+    parts->measured.last = whole->last;
+  find_range(finder, from, to, &parts->measured);
   say_steady(finder, whole);
   return EO_OK;
 }
 
-static void refuse(const struct finder *f, const char *why, double value)
+static void refuse(const struct finder *finder, const char *why, double value)
 {
-  eo_findings_add(f->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, value, "%s", why);
+  eo_findings_add(finder->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, value, "%s", why);
 }
 
 static enum eo_code choose(struct finder *finder, struct eo_error *error)
 {
-  struct eo_parts *p = finder->parts;
-  int kept = p->count < EO_PARTS ? p->count : EO_PARTS;
+  struct eo_parts *parts = finder->parts;
+  int kept = parts->count < EO_PARTS ? parts->count : EO_PARTS;
   if (!kept) {
     refuse(finder, "The pinion does not turn far enough for a measurement.", 0);
     return EO_OK;
@@ -264,13 +265,13 @@ static enum eo_code choose(struct finder *finder, struct eo_error *error)
     return EO_OK;
   }
   enum eo_code code = EO_OK;
-  p->used = finder->choice->part > 0 ? finder->choice->part - 1 : 0;
+  parts->used = finder->choice->part > 0 ? finder->choice->part - 1 : 0;
   for (int i = 0; i < kept && !finder->choice->part; i++)
-    if (fabs(p->part[i].turns) > LONGER * fabs(p->part[p->used].turns))
-      p->used = i;
+    if (fabs(parts->part[i].turns) > LONGER * fabs(parts->part[parts->used].turns))
+      parts->used = i;
   for (int i = 0; i < kept && !code; i++)
-    if (i != p->used)
-      code = find_turns(finder, &p->part[i], error);
+    if (i != parts->used)
+      code = find_turns(finder, &parts->part[i], error);
   say_parts(finder);
   return code ? code : settle_part(finder, error);
 }
@@ -296,16 +297,18 @@ static enum eo_code find(struct finder *finder, struct eo_error *error)
 enum eo_code eo_parts_find(struct eo_parts *parts, const struct eo_angles *angles, const struct eo_part_choice *choice,
                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error)
 {
-  struct finder f = {.angles = angles, .choice = choice, .findings = findings, .progress = progress, .parts = parts};
+  struct finder finder = {
+      .angles = angles, .choice = choice, .findings = findings, .progress = progress, .parts = parts};
   *parts = (struct eo_parts){.used = -1};
-  f.stretch = malloc(sizeof *f.stretch * MOST_STRETCHES);
-  f.speed = malloc(sizeof *f.speed * MOST_STRETCHES);
-  f.turn = malloc(sizeof *f.turn * (MOST_TURNS + 1));
-  f.scratch = malloc(sizeof *f.scratch * (MOST_STRETCHES + MOST_TURNS));
-  enum eo_code code = f.stretch && f.speed && f.turn && f.scratch ? find(&f, error) : eo_error_memory(error);
-  free(f.stretch);
-  free(f.speed);
-  free(f.turn);
-  free(f.scratch);
+  finder.stretch = malloc(sizeof *finder.stretch * MOST_STRETCHES);
+  finder.speed = malloc(sizeof *finder.speed * MOST_STRETCHES);
+  finder.turn = malloc(sizeof *finder.turn * (MOST_TURNS + 1));
+  finder.scratch = malloc(sizeof *finder.scratch * (MOST_STRETCHES + MOST_TURNS));
+  enum eo_code code = finder.stretch && finder.speed && finder.turn && finder.scratch ? find(&finder, error)
+                                                                                      : eo_error_memory(error);
+  free(finder.stretch);
+  free(finder.speed);
+  free(finder.turn);
+  free(finder.scratch);
   return code;
 }

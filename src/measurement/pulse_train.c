@@ -27,55 +27,56 @@ struct maker {
   int held;
 };
 
-static enum eo_code flush(struct maker *m, struct eo_error *error)
+static enum eo_code flush(struct maker *maker, struct eo_error *error)
 {
-  enum eo_code code = m->held ? eo_recording_append(m->train->pulses, m->out[0], m->held, error) : EO_OK;
-  m->train->count += m->held;
-  m->held = 0;
+  enum eo_code code = maker->held ? eo_recording_append(maker->train->pulses, maker->out[0], maker->held, error)
+                                  : EO_OK;
+  maker->train->count += maker->held;
+  maker->held = 0;
   return code;
 }
 
 /* The usual distance of two lines there: the median of those before and after. */
-static double usual_distance(const struct maker *m, const double *time, int ahead)
+static double usual_distance(const struct maker *maker, const double *time, int ahead)
 {
   double distance[WINDOW];
   int count = 0;
-  for (int i = 0; i < SIDE && i < m->seen - 1; i++)
-    distance[count++] = m->usual[i];
+  for (int i = 0; i < SIDE && i < maker->seen - 1; i++)
+    distance[count++] = maker->usual[i];
   for (int i = 1; i <= ahead && i <= SIDE; i++)
     distance[count++] = time[i] - time[i - 1];
   return eo_scan_quantile(distance, count, 0.5);
 }
 
-static void note_gap(struct maker *m, int size, int64_t row)
+static void note_gap(struct maker *maker, int size, int64_t row)
 {
-  struct eo_pulse_train *t = m->train;
-  if (m->gaps < MOST_GAPS) {
-    m->gap_line[m->gaps] = m->line;
-    m->gap_size[m->gaps] = size;
+  struct eo_pulse_train *train = maker->train;
+  if (maker->gaps < MOST_GAPS) {
+    maker->gap_line[maker->gaps] = maker->line;
+    maker->gap_size[maker->gaps] = size;
   }
-  if (!m->gaps++)
-    t->missed_at = row;
-  t->missed += size;
+  if (!maker->gaps++)
+    train->missed_at = row;
+  train->missed += size;
 }
 
 /* One pulse: time[0] is judged, time[1..ahead] are those after it. */
 static enum eo_code take(struct maker *maker, const double *time, int ahead, int64_t row, struct eo_error *error)
 {
-  struct eo_pulse_train *t = maker->train;
+  struct eo_pulse_train *train = maker->train;
   double distance = time[0] - maker->before, lines = 1;
   if (maker->seen > 0) {
     double usual = usual_distance(maker, time, ahead), share = distance / usual;
     if (share < DOUBLE) {
-      if (!t->doubled++)
-        t->doubled_at = row;
+      if (!train->doubled++)
+        train->doubled_at = row;
       return EO_OK;
     }
     lines = fmax(1, round(share));
     if (lines > 1 && fabs(share - lines) > WHOLE * lines) {
-      if (!t->unclear)
-        t->unclear_at = row;
-      t->unclear = true;
+      if (!train->unclear)
+        train->unclear_at = row;
+      train->unclear = true;
     }
     if (lines > 1)
       note_gap(maker, (int)lines - 1, row);
@@ -93,9 +94,9 @@ static enum eo_code take(struct maker *maker, const double *time, int ahead, int
    stated with them or without. */
 static void find_wheel(struct maker *maker, double stated)
 {
-  struct eo_pulse_train *t = maker->train;
+  struct eo_pulse_train *train = maker->train;
   int gaps = maker->gaps < MOST_GAPS ? (int)maker->gaps : MOST_GAPS, size = maker->gap_size[0];
-  t->lines = stated;
+  train->lines = stated;
   for (int with = 0; with < 2 && gaps >= 2; with++) {
     double turn = stated + (with ? size : 0);
     bool each = true;
@@ -103,9 +104,9 @@ static void find_wheel(struct maker *maker, double stated)
       each = each && maker->gap_size[i] == size && fabs(maker->gap_line[i] - maker->gap_line[i - 1] - turn) < 0.5;
     if (!each)
       continue;
-    t->lines = turn;
-    t->teeth_missing = size;
-    t->missed = 0;
+    train->lines = turn;
+    train->teeth_missing = size;
+    train->missed = 0;
     return;
   }
 }
@@ -166,29 +167,29 @@ void eo_pulse_train_done(struct eo_pulse_train *train)
   train->pulses = NULL;
 }
 
-void eo_pulse_train_judge(const struct eo_pulse_train *t, int channel, struct eo_findings *findings)
+void eo_pulse_train_judge(const struct eo_pulse_train *train, int channel, struct eo_findings *findings)
 {
   const char *name = channel ? "gear" : "pinion";
-  if (t->teeth_missing)
-    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_NOTE, channel, t->teeth_missing,
+  if (train->teeth_missing)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_NOTE, channel, train->teeth_missing,
                     "The wheel of the %s has %.0f teeth less %d that are missing; their lines were counted.", name,
-                    t->lines, t->teeth_missing);
-  if (t->missed)
-    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)t->missed,
+                    train->lines, train->teeth_missing);
+  if (train->missed)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)train->missed,
                     "%lld lines of the %s gave no pulse, the first before row %lld; they were counted by the time that "
                     "passed.",
-                    (long long)t->missed, name, (long long)t->missed_at + 1)
-        ->row = t->missed_at;
-  if (t->doubled)
-    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)t->doubled,
+                    (long long)train->missed, name, (long long)train->missed_at + 1)
+        ->row = train->missed_at;
+  if (train->doubled)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)train->doubled,
                     "%lld pulses of the %s follow the one before at once, the first in row %lld; they were left out.",
-                    (long long)t->doubled, name, (long long)t->doubled_at + 1)
-        ->row = t->doubled_at;
-  if (t->unclear)
+                    (long long)train->doubled, name, (long long)train->doubled_at + 1)
+        ->row = train->doubled_at;
+  if (train->unclear)
     eo_findings_add(
-        findings, EO_FINDING_PULSE, EO_SEVERITY_REFUSED, channel, (double)t->unclear_at,
+        findings, EO_FINDING_PULSE, EO_SEVERITY_REFUSED, channel, (double)train->unclear_at,
         "Before row %lld the %s has a gap that is no whole number of lines: how many pulses were lost there "
         "cannot be told.",
-        (long long)t->unclear_at + 1, name)
-        ->row = t->unclear_at;
+        (long long)train->unclear_at + 1, name)
+        ->row = train->unclear_at;
 }

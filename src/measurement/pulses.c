@@ -27,28 +27,28 @@ struct eo_pulses {
 enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
                            const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error)
 {
-  struct eo_pulses *p = calloc(1, sizeof *p);
-  enum eo_code code = p ? EO_OK : eo_error_memory(error);
+  struct eo_pulses *this_pulses = calloc(1, sizeof *this_pulses);
+  enum eo_code code = this_pulses ? EO_OK : eo_error_memory(error);
   for (int i = 0; i < 2 && !code; i++)
-    code = eo_pulse_train_make(&p->train[i].made, recording, tracks, i, spool_directory, error);
+    code = eo_pulse_train_make(&this_pulses->train[i].made, recording, tracks, i, spool_directory, error);
   if (code)
-    eo_pulses_free(p);
+    eo_pulses_free(this_pulses);
   else
-    *pulses = p;
+    *pulses = this_pulses;
   return code;
 }
 
-void eo_pulses_free(struct eo_pulses *p)
+void eo_pulses_free(struct eo_pulses *pulses)
 {
-  for (int i = 0; i < 2 && p; i++)
-    eo_pulse_train_done(&p->train[i].made);
-  free(p);
+  for (int i = 0; i < 2 && pulses; i++)
+    eo_pulse_train_done(&pulses->train[i].made);
+  free(pulses);
 }
 
-void eo_pulses_judge(const struct eo_pulses *p, struct eo_findings *findings)
+void eo_pulses_judge(const struct eo_pulses *pulses, struct eo_findings *findings)
 {
   for (int i = 0; i < 2; i++)
-    eo_pulse_train_judge(&p->train[i].made, i, findings);
+    eo_pulse_train_judge(&pulses->train[i].made, i, findings);
 }
 
 /* Time and line of a pulse; the block moves when the pulse is not in it. */
@@ -68,10 +68,10 @@ static enum eo_code pulse_at(struct train *train, int64_t pulse, const double **
 }
 
 /* The line of the gear, with its fraction, that passes at `time`: between pulses near and near + 1. */
-static enum eo_code interpolate(struct eo_pulses *p, double time, double *line, struct eo_error *error)
+static enum eo_code interpolate(struct eo_pulses *pulses, double time, double *line, struct eo_error *error)
 {
-  struct train *gear = &p->train[1];
-  int64_t first = p->near - NODES / 2 + 1;
+  struct train *gear = &pulses->train[1];
+  int64_t first = pulses->near - NODES / 2 + 1;
   double node[NODES][2];
   *line = 0;
   for (int i = 0; i < NODES; i++) {
@@ -94,54 +94,57 @@ static enum eo_code interpolate(struct eo_pulses *p, double time, double *line, 
 }
 
 /* Moves the gear's pulses on until the next one is after `time`. */
-static enum eo_code advance(struct eo_pulses *p, double time, struct eo_error *error)
+static enum eo_code advance(struct eo_pulses *pulses, double time, struct eo_error *error)
 {
   const double *after;
-  while (p->near + 1 < p->train[1].made.count) {
-    enum eo_code code = pulse_at(&p->train[1], p->near + 1, &after, error);
+  while (pulses->near + 1 < pulses->train[1].made.count) {
+    enum eo_code code = pulse_at(&pulses->train[1], pulses->near + 1, &after, error);
     if (code || after[0] > time)
       return code;
-    p->near++;
+    pulses->near++;
   }
   return EO_OK;
 }
 
 /* One sample at a pinion pulse. *taken: it lies between neighbouring lines of the gear. */
-static enum eo_code sample_at(struct eo_pulses *p, struct eo_sample *sample, bool *taken, struct eo_error *error)
+static enum eo_code sample_at(struct eo_pulses *pulses, struct eo_sample *sample, bool *taken, struct eo_error *error)
 {
   const double *pulse;
   double time, own, line, low[2] = {0}, high[2] = {0};
   *taken = false;
-  enum eo_code code = pulse_at(&p->train[0], p->next, &pulse, error);
+  enum eo_code code = pulse_at(&pulses->train[0], pulses->next, &pulse, error);
   if (code)
     return code;
   time = pulse[0];
   own = pulse[1];
-  code = advance(p, time, error);
-  for (int i = 0; i < 2 && !code && p->near + 1 < p->train[1].made.count; i++) {
-    code = pulse_at(&p->train[1], p->near + i, &pulse, error);
+  code = advance(pulses, time, error);
+  for (int i = 0; i < 2 && !code && pulses->near + 1 < pulses->train[1].made.count; i++) {
+    code = pulse_at(&pulses->train[1], pulses->near + i, &pulse, error);
     (i ? high : low)[0] = pulse[0];
     (i ? high : low)[1] = pulse[1];
   }
-  bool amid = p->near >= NODES / 2 - 1 && p->near + NODES / 2 < p->train[1].made.count;
+  bool amid = pulses->near >= NODES / 2 - 1 && pulses->near + NODES / 2 < pulses->train[1].made.count;
   if (code || !amid || time < low[0] || high[1] - low[1] > 1.5)
     return code;
-  code = interpolate(p, time, &line, error);
-  *sample = (struct eo_sample){
-      time, {2 * M_PI * own / p->train[0].made.lines, 2 * M_PI * line / p->train[1].made.lines}, p->next};
+  code = interpolate(pulses, time, &line, error);
+  *sample =
+      (struct eo_sample){time,
+                         {2 * M_PI * own / pulses->train[0].made.lines, 2 * M_PI * line / pulses->train[1].made.lines},
+                         pulses->next};
   *taken = !code && isfinite(line);
   return code;
 }
 
-enum eo_code eo_pulses_next(struct eo_pulses *p, struct eo_sample *sample, int *count, struct eo_error *error)
+enum eo_code eo_pulses_next(struct eo_pulses *pulses, struct eo_sample *sample, int *count, struct eo_error *error)
 {
   *count = 0;
-  if (p->train[1].made.count < NODES)
+  if (pulses->train[1].made.count < NODES)
     return EO_OK;
-  for (; *count < EO_SAMPLER_BLOCK && p->next < p->train[0].made.count && p->near + 1 < p->train[1].made.count;
-       p->next++) {
+  for (; *count < EO_SAMPLER_BLOCK && pulses->next < pulses->train[0].made.count &&
+         pulses->near + 1 < pulses->train[1].made.count;
+       pulses->next++) {
     bool taken;
-    enum eo_code code = sample_at(p, &sample[*count], &taken, error);
+    enum eo_code code = sample_at(pulses, &sample[*count], &taken, error);
     if (code)
       return code;
     *count += taken;

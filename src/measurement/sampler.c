@@ -4,30 +4,31 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum eo_code eo_sampler_init(struct eo_sampler *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
-                             const char *spool_directory, struct eo_error *error)
+enum eo_code eo_sampler_init(struct eo_sampler *sampler, const struct eo_recording *recording,
+                             const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error)
 {
-  *s = (struct eo_sampler){.recording = recording, .tracks = tracks};
+  *sampler = (struct eo_sampler){.recording = recording, .tracks = tracks};
   if (tracks->channel[0].track == EO_TRACK_PULSES)
-    return eo_pulses_new(&s->pulses, recording, tracks, spool_directory, error);
-  s->rows = malloc(sizeof *s->rows * EO_SAMPLER_BLOCK * (size_t)eo_recording_columns(recording));
-  return s->rows ? EO_OK : eo_error_memory(error);
+    return eo_pulses_new(&sampler->pulses, recording, tracks, spool_directory, error);
+  sampler->rows = malloc(sizeof *sampler->rows * EO_SAMPLER_BLOCK * (size_t)eo_recording_columns(recording));
+  return sampler->rows ? EO_OK : eo_error_memory(error);
 }
 
-void eo_sampler_done(struct eo_sampler *s)
+void eo_sampler_done(struct eo_sampler *sampler)
 {
-  free(s->rows);
-  eo_pulses_free(s->pulses);
-  *s = (struct eo_sampler){0};
+  free(sampler->rows);
+  eo_pulses_free(sampler->pulses);
+  *sampler = (struct eo_sampler){0};
 }
 
 /* rad, not unwrapped; NaN when a value is missing */
-static double raw_angle(const struct eo_sampler *s, int channel, const double *row)
+static double raw_angle(const struct eo_sampler *sampler, int channel, const double *row)
 {
-  const struct eo_track_channel *c = &s->tracks->channel[channel];
-  if (c->track == EO_TRACK_SINE_COSINE)
-    return eo_ellipse_angle(&s->ellipse[channel], row[c->column[0]], row[c->column[1]]) / c->lines;
-  return row[c->column[0]] * s->scale[channel];
+  const struct eo_track_channel *track_channel = &sampler->tracks->channel[channel];
+  if (track_channel->track == EO_TRACK_SINE_COSINE)
+    return eo_ellipse_angle(&sampler->ellipse[channel], row[track_channel->column[0]], row[track_channel->column[1]]) /
+           track_channel->lines;
+  return row[track_channel->column[0]] * sampler->scale[channel];
 }
 
 /* The step is the one nearest to the usual one; whole turns are counted so that rounding does not grow. */

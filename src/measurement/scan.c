@@ -23,19 +23,19 @@ double eo_scan_quantile(double *value, int count, double share)
   return value[(int)(share * (count - 1) + 0.5)];
 }
 
-static void learn_column(struct eo_scan_column *c, const double *rows, int count, int columns, int column,
+static void learn_column(struct eo_scan_column *scan_column, const double *rows, int count, int columns, int column,
                          double *scratch)
 {
   int steps = 0;
   double sum = 0, before = NAN;
-  c->quantum = INFINITY;
+  scan_column->quantum = INFINITY;
   for (int i = 0; i < count; i++) {
     double value = rows[(size_t)i * (size_t)columns + (size_t)column];
     if (i % CHUNK && isfinite(value) && isfinite(before)) {
       double step = fabs(value - before);
       scratch[steps++] = step;
-      if (step > 0 && step < c->quantum)
-        c->quantum = step;
+      if (step > 0 && step < scan_column->quantum)
+        scan_column->quantum = step;
     }
     before = isfinite(value) ? value : before;
   }
@@ -43,9 +43,9 @@ static void learn_column(struct eo_scan_column *c, const double *rows, int count
   eo_scan_quantile(scratch, steps, 0.5);
   for (int i = 0; i < kept; i++)
     sum += scratch[i];
-  c->typical = kept ? sum / kept : 0;
-  if (!isfinite(c->quantum))
-    c->quantum = 0;
+  scan_column->typical = kept ? sum / kept : 0;
+  if (!isfinite(scan_column->quantum))
+    scan_column->quantum = 0;
 }
 
 static double typical_interval(const struct eo_tracks *tracks, const double *rows, int count, int columns,
@@ -65,12 +65,12 @@ static double typical_interval(const struct eo_tracks *tracks, const double *row
   return eo_scan_quantile(scratch, steps, 0.5);
 }
 
-static bool usable(const struct eo_tracks *t, const double *row)
+static bool usable(const struct eo_tracks *tracks, const double *row)
 {
-  bool good = t->time_column < 0 || isfinite(row[t->time_column]);
+  bool good = tracks->time_column < 0 || isfinite(row[tracks->time_column]);
   for (int member = 0; member < 2; member++)
-    for (int k = 0; k < eo_track_columns(&t->channel[member]); k++)
-      good = good && isfinite(row[t->channel[member].column[k]]);
+    for (int k = 0; k < eo_track_columns(&tracks->channel[member]); k++)
+      good = good && isfinite(row[tracks->channel[member].column[k]]);
   return good;
 }
 
@@ -176,16 +176,16 @@ static enum eo_code read_samples(const struct eo_recording *recording, int64_t t
   return EO_OK;
 }
 
-static enum eo_code learn(struct eo_scan *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
+static enum eo_code learn(struct eo_scan *scan, const struct eo_recording *recording, const struct eo_tracks *tracks,
                           double *rows, double *scratch, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording), count;
-  enum eo_code code = read_samples(recording, s->rows, rows, &count, error);
+  enum eo_code code = read_samples(recording, scan->rows, rows, &count, error);
   for (int member = 0; member < 2 && !code; member++)
     for (int k = 0; k < eo_track_columns(&tracks->channel[member]); k++)
-      learn_column(&s->column[member][k], rows, count, columns, tracks->channel[member].column[k], scratch);
+      learn_column(&scan->column[member][k], rows, count, columns, tracks->channel[member].column[k], scratch);
   if (!code)
-    s->interval = typical_interval(tracks, rows, count, columns, scratch);
+    scan->interval = typical_interval(tracks, rows, count, columns, scratch);
   return code;
 }
 
@@ -235,18 +235,18 @@ double eo_scan_period(const struct eo_scan_column *column, double turn)
   return wide && (alike >= 0.8 * wide || first_differs) && range < 1.05 * period ? period : NAN;
 }
 
-int64_t eo_scan_index_row(const struct eo_scan_column *c, double period)
+int64_t eo_scan_index_row(const struct eo_scan_column *column, double period)
 {
-  int below = 2 * c->falls < c->jumps;
-  bool partial = c->landing[below] > 0 &&
-                 fabs(c->landed[below] + c->typical - period) > 2 * c->typical + 0.001 * period;
-  return partial ? c->landing[below] : 0;
+  int below = 2 * column->falls < column->jumps;
+  bool partial = column->landing[below] > 0 &&
+                 fabs(column->landed[below] + column->typical - period) > 2 * column->typical + 0.001 * period;
+  return partial ? column->landing[below] : 0;
 }
 
-double eo_scan_clipped(const struct eo_scan_column *c, int64_t rows)
+double eo_scan_clipped(const struct eo_scan_column *column, int64_t rows)
 {
-  double amplitude = (c->high - c->low) / 2, step = fmin(c->quantum, amplitude);
+  double amplitude = (column->high - column->low) / 2, step = fmin(column->quantum, amplitude);
   double expected = amplitude > 0 ? acos(1 - step / amplitude) / M_PI : 1;
-  double share = (double)(c->at_low > c->at_high ? c->at_low : c->at_high) / (double)rows;
+  double share = (double)(column->at_low > column->at_high ? column->at_low : column->at_high) / (double)rows;
   return share > 3 * expected + 0.005 ? share : 0;
 }

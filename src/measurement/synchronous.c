@@ -37,34 +37,36 @@ static int power_of_two(double least)
 enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struct eo_transmission *transmission,
                                 const int teeth[2], double from, double turns, struct eo_error *error)
 {
-  struct eo_synchronous *s = calloc(1, sizeof *s);
-  if (!s)
+  struct eo_synchronous *this_synchronous = calloc(1, sizeof *this_synchronous);
+  if (!this_synchronous)
     return eo_error_memory(error);
   double per_turn = (double)transmission->rows / turns;
   int whole = turns >= transmission->hunting ? transmission->hunting : (int)(turns + 1e-9);
   while (whole > 0 && turns >= transmission->hunting && whole + transmission->hunting <= turns + 1e-9 &&
          (whole + transmission->hunting) * per_turn < 0.5 * MOST_SAMPLES)
     whole += transmission->hunting;
-  s->teeth[0] = teeth[0];
-  s->teeth[1] = teeth[1];
-  s->from = from;
-  s->turns = whole > 0 ? whole : 1;
-  s->samples = power_of_two(fmax(per_turn, 2.2 * (transmission->harmonics + 1) * teeth[0]) * s->turns);
-  s->rows_per_level = (int64_t)fmax(fmax(16, 2 * per_turn / teeth[0]), (double)transmission->rows / MOST_LEVELS + 1);
-  s->grid = calloc((size_t)s->samples, sizeof *s->grid);
-  if (!s->grid) {
-    free(s);
+  this_synchronous->teeth[0] = teeth[0];
+  this_synchronous->teeth[1] = teeth[1];
+  this_synchronous->from = from;
+  this_synchronous->turns = whole > 0 ? whole : 1;
+  this_synchronous->samples =
+      power_of_two(fmax(per_turn, 2.2 * (transmission->harmonics + 1) * teeth[0]) * this_synchronous->turns);
+  this_synchronous->rows_per_level = (int64_t)fmax(fmax(16, 2 * per_turn / teeth[0]),
+                                                   (double)transmission->rows / MOST_LEVELS + 1);
+  this_synchronous->grid = calloc((size_t)this_synchronous->samples, sizeof *this_synchronous->grid);
+  if (!this_synchronous->grid) {
+    free(this_synchronous);
     return eo_error_memory(error);
   }
-  *synchronous = s;
+  *synchronous = this_synchronous;
   return EO_OK;
 }
 
-void eo_synchronous_free(struct eo_synchronous *s)
+void eo_synchronous_free(struct eo_synchronous *synchronous)
 {
-  if (s)
-    free(s->grid);
-  free(s);
+  if (synchronous)
+    free(synchronous->grid);
+  free(synchronous);
 }
 
 static int bin_of(double turns, int bins)
@@ -73,41 +75,49 @@ static int bin_of(double turns, int bins)
   return bin < bins ? bin : bins - 1;
 }
 
-static double grid_angle(const struct eo_synchronous *s, int i)
+static double grid_angle(const struct eo_synchronous *synchronous, int i)
 {
-  return s->from + 2 * M_PI * s->turns * (double)i / s->samples;
+  return synchronous->from + 2 * M_PI * synchronous->turns * (double)i / synchronous->samples;
 }
 
-static void interpolate(struct eo_synchronous *s, double theta, double residual)
+static void interpolate(struct eo_synchronous *synchronous, double theta, double residual)
 {
-  for (; s->filled < s->samples && grid_angle(s, s->filled) <= theta; s->filled++) {
-    double span = theta - s->theta, share = s->begun && span > 0 ? (grid_angle(s, s->filled) - s->theta) / span : 1;
-    s->grid[s->filled] = s->begun ? s->residual + share * (residual - s->residual) : residual;
+  for (; synchronous->filled < synchronous->samples && grid_angle(synchronous, synchronous->filled) <= theta;
+       synchronous->filled++) {
+    double span = theta - synchronous->theta,
+           share = synchronous->begun && span > 0
+                       ? (grid_angle(synchronous, synchronous->filled) - synchronous->theta) / span
+                       : 1;
+    synchronous->grid[synchronous->filled] = synchronous->begun
+                                                 ? synchronous->residual + share * (residual - synchronous->residual)
+                                                 : residual;
   }
-  s->theta = theta;
-  s->residual = residual;
-  s->begun = true;
+  synchronous->theta = theta;
+  synchronous->residual = residual;
+  synchronous->begun = true;
 }
 
-void eo_synchronous_add(struct eo_synchronous *s, int64_t row, double theta, double mesh, double shaft, double residual)
+void eo_synchronous_add(struct eo_synchronous *synchronous, int64_t row, double theta, double mesh, double shaft,
+                        double residual)
 {
   double turns = theta / (2 * M_PI);
-  int bin = bin_of(turns * s->teeth[EO_PINION], EO_CYCLE_BINS);
-  s->cycle[bin] += mesh + residual;
-  s->in_cycle[bin]++;
+  int bin = bin_of(turns * synchronous->teeth[EO_PINION], EO_CYCLE_BINS);
+  synchronous->cycle[bin] += mesh + residual;
+  synchronous->in_cycle[bin]++;
   for (int member = 0; member < 2; member++) {
-    bin = bin_of(member == EO_GEAR ? turns * s->teeth[EO_PINION] / s->teeth[EO_GEAR] : turns, EO_TURN_BINS);
-    s->turn[member][bin] += mesh + shaft + residual;
-    s->in_turn[member][bin]++;
+    bin = bin_of(member == EO_GEAR ? turns * synchronous->teeth[EO_PINION] / synchronous->teeth[EO_GEAR] : turns,
+                 EO_TURN_BINS);
+    synchronous->turn[member][bin] += mesh + shaft + residual;
+    synchronous->in_turn[member][bin]++;
   }
-  if (s->levels < MOST_LEVELS) {
-    s->level[s->levels] += residual / (double)s->rows_per_level;
-    if (++s->row_in_level == s->rows_per_level) {
-      s->level_row[s->levels++] = row;
-      s->row_in_level = 0;
+  if (synchronous->levels < MOST_LEVELS) {
+    synchronous->level[synchronous->levels] += residual / (double)synchronous->rows_per_level;
+    if (++synchronous->row_in_level == synchronous->rows_per_level) {
+      synchronous->level_row[synchronous->levels++] = row;
+      synchronous->row_in_level = 0;
     }
   }
-  interpolate(s, theta, residual);
+  interpolate(synchronous, theta, residual);
 }
 
 static void average(int bins, const double *sum, const int64_t *count, double *mean)
@@ -117,36 +127,38 @@ static void average(int bins, const double *sum, const int64_t *count, double *m
 }
 
 /* The lines of interpolated residual and exact mesh orders. */
-static enum eo_code make_spectrum(struct eo_synchronous *s, struct eo_transmission *transmission,
+static enum eo_code make_spectrum(struct eo_synchronous *synchronous, struct eo_transmission *transmission,
                                   struct eo_error *error)
 {
-  int lines = s->turns * (transmission->harmonics + 1) * s->teeth[EO_PINION] + 1;
-  if (lines > s->samples / 2)
-    lines = s->samples / 2;
+  int lines = synchronous->turns * (transmission->harmonics + 1) * synchronous->teeth[EO_PINION] + 1;
+  if (lines > synchronous->samples / 2)
+    lines = synchronous->samples / 2;
   transmission->spectrum = malloc(sizeof *transmission->spectrum * (size_t)lines);
   if (!transmission->spectrum)
     return eo_error_memory(error);
-  for (int i = 0; i < s->samples; i++)
-    s->grid[i] += eo_transmission_mesh(transmission, grid_angle(s, i) * s->teeth[EO_PINION] / (2 * M_PI));
-  eo_fft_forward(s->samples, s->grid);
-  transmission->spectrum_turns = s->turns;
+  for (int i = 0; i < synchronous->samples; i++)
+    synchronous->grid[i] +=
+        eo_transmission_mesh(transmission, grid_angle(synchronous, i) * synchronous->teeth[EO_PINION] / (2 * M_PI));
+  eo_fft_forward(synchronous->samples, synchronous->grid);
+  transmission->spectrum_turns = synchronous->turns;
   transmission->spectrum_lines = lines;
   for (int k = 0; k < lines; k++)
-    transmission->spectrum[k] = (float)(cabs(s->grid[k]) * (k ? 2.0 : 1.0) / s->samples);
+    transmission->spectrum[k] = (float)(cabs(synchronous->grid[k]) * (k ? 2.0 : 1.0) / synchronous->samples);
   return EO_OK;
 }
 
-static double squared_acceleration(const struct eo_transmission *r, int line)
+static double squared_acceleration(const struct eo_transmission *transmission, int line)
 {
-  double order = (double)line / r->spectrum_turns;
-  return pow(order * r->speed, 4) * r->spectrum[line] * r->spectrum[line] / 2;
+  double order = (double)line / transmission->spectrum_turns;
+  return pow(order * transmission->speed, 4) * transmission->spectrum[line] * transmission->spectrum[line] / 2;
 }
 
-static void read_spectrum(const struct eo_synchronous *s, struct eo_transmission *transmission)
+static void read_spectrum(const struct eo_synchronous *synchronous, struct eo_transmission *transmission)
 {
   double lines = 0, band = 0;
   for (int h = 1; h <= transmission->harmonics; h++) {
-    int centre = h * s->teeth[EO_PINION] * s->turns, width = (int)(fmin(BAND, 0.49 * s->teeth[EO_PINION]) * s->turns);
+    int centre = h * synchronous->teeth[EO_PINION] * synchronous->turns,
+        width = (int)(fmin(BAND, 0.49 * synchronous->teeth[EO_PINION]) * synchronous->turns);
     for (int k = centre - width; k <= centre + width; k++)
       if (k > 0 && k < transmission->spectrum_lines)
         band += squared_acceleration(transmission, k);
@@ -164,17 +176,18 @@ static int ascending(const void *a, const void *b)
 }
 
 /* A change of level between two pairs of neighbouring means that stands out of all others. */
-static enum eo_code find_step(const struct eo_synchronous *s, struct eo_transmission *transmission,
+static enum eo_code find_step(const struct eo_synchronous *synchronous, struct eo_transmission *transmission,
                               struct eo_error *error)
 {
-  int n = s->levels - 3, at = 0;
+  int n = synchronous->levels - 3, at = 0;
   if (n < 16)
     return EO_OK;
   double *size = malloc(sizeof *size * (size_t)n), largest = 0;
   if (!size)
     return eo_error_memory(error);
   for (int i = 0; i < n; i++) {
-    double change = (s->level[i + 3] + s->level[i + 2] - s->level[i + 1] - s->level[i]) / 2;
+    double change =
+        (synchronous->level[i + 3] + synchronous->level[i + 2] - synchronous->level[i + 1] - synchronous->level[i]) / 2;
     size[i] = fabs(change);
     if (size[i] > fabs(largest)) {
       largest = change;
@@ -184,23 +197,23 @@ static enum eo_code find_step(const struct eo_synchronous *s, struct eo_transmis
   qsort(size, (size_t)n, sizeof *size, ascending);
   if (fabs(largest) > STEP_LIMIT * 1.4826 * size[n / 2] && fabs(largest) > 1e-7) {
     transmission->step = largest;
-    transmission->step_row = s->level_row[at + 1];
+    transmission->step_row = synchronous->level_row[at + 1];
   }
   free(size);
   return EO_OK;
 }
 
-enum eo_code eo_synchronous_finish(struct eo_synchronous *s, struct eo_transmission *transmission,
+enum eo_code eo_synchronous_finish(struct eo_synchronous *synchronous, struct eo_transmission *transmission,
                                    struct eo_error *error)
 {
-  average(EO_CYCLE_BINS, s->cycle, s->in_cycle, transmission->cycle);
+  average(EO_CYCLE_BINS, synchronous->cycle, synchronous->in_cycle, transmission->cycle);
   for (int member = 0; member < 2; member++)
-    average(EO_TURN_BINS, s->turn[member], s->in_turn[member], transmission->turn[member]);
-  for (; s->filled < s->samples; s->filled++)
-    s->grid[s->filled] = s->residual;
-  enum eo_code code = make_spectrum(s, transmission, error);
+    average(EO_TURN_BINS, synchronous->turn[member], synchronous->in_turn[member], transmission->turn[member]);
+  for (; synchronous->filled < synchronous->samples; synchronous->filled++)
+    synchronous->grid[synchronous->filled] = synchronous->residual;
+  enum eo_code code = make_spectrum(synchronous, transmission, error);
   if (code)
     return code;
-  read_spectrum(s, transmission);
-  return find_step(s, transmission, error);
+  read_spectrum(synchronous, transmission);
+  return find_step(synchronous, transmission, error);
 }

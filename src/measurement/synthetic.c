@@ -22,9 +22,9 @@ struct column {
   int channel, track;
 };
 
-static bool own_clock(const struct eo_synthetic *s)
+static bool own_clock(const struct eo_synthetic *synthetic)
 {
-  return s->gear_rate > 0 || s->gear_delay != 0;
+  return synthetic->gear_rate > 0 || synthetic->gear_delay != 0;
 }
 
 static int list_columns(const struct eo_synthetic *synthetic, struct column list[EO_SYNTHETIC_COLUMNS])
@@ -45,27 +45,27 @@ static int list_columns(const struct eo_synthetic *synthetic, struct column list
   return count;
 }
 
-static double rate_of(const struct eo_synthetic *s, int channel)
+static double rate_of(const struct eo_synthetic *synthetic, int channel)
 {
-  return channel == EO_GEAR && s->gear_rate > 0 ? s->gear_rate : s->sample_rate;
+  return channel == EO_GEAR && synthetic->gear_rate > 0 ? synthetic->gear_rate : synthetic->sample_rate;
 }
 
 /* Of the way there. */
-static double duration(const struct eo_synthetic *s)
+static double duration(const struct eo_synthetic *synthetic)
 {
-  return 2 * M_PI * s->turns / s->speed;
+  return 2 * M_PI * synthetic->turns / synthetic->speed;
 }
 
 /* Of the run-up. */
-static double run_up_duration(const struct eo_synthetic *s)
+static double run_up_duration(const struct eo_synthetic *synthetic)
 {
-  return 2 * (2 * M_PI * s->run_up / s->speed) / (1 + RUN_UP_FROM);
+  return 2 * (2 * M_PI * synthetic->run_up / synthetic->speed) / (1 + RUN_UP_FROM);
 }
 
-static double whole_duration(const struct eo_synthetic *s)
+static double whole_duration(const struct eo_synthetic *synthetic)
 {
-  double longer = run_up_duration(s) * (1 - RUN_UP_FROM) / 2;
-  return s->rest[0] + (duration(s) + longer) * (s->turn_back ? 2 : 1) + s->rest[1];
+  double longer = run_up_duration(synthetic) * (1 - RUN_UP_FROM) / 2;
+  return synthetic->rest[0] + (duration(synthetic) + longer) * (synthetic->turn_back ? 2 : 1) + synthetic->rest[1];
 }
 
 static double log_cosh(double x)
@@ -75,14 +75,16 @@ static double log_cosh(double x)
 
 /* The pinion's angle without vibration on its way: speed (1 + drift (t/T - 1/2) + swing sin + step/2 tanh) integrated.
  */
-static double way(const struct eo_synthetic *s, double time)
+static double way(const struct eo_synthetic *synthetic, double time)
 {
-  double total = duration(s), start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
-  double x = time / total, rate = s->swing_turns > 0 ? s->speed / s->swing_turns : 0;
-  double slow = rate > 0 ? s->swing / rate * (1 - cos(rate * time)) : 0;
-  double change = 2 * M_PI / s->speed * STEP_TURNS; /* s, of the tanh */
-  double step = s->step / 2 * change * (log_cosh((time - total / 2) / change) - log_cosh(total / 2 / change));
-  return start + s->speed * (time + s->drift * total * (x * x - x) / 2 + slow + (s->step != 0 ? step : 0));
+  double total = duration(synthetic),
+         start = 2 * M_PI * eo_random_unit(eo_random_at(synthetic->seed, STREAM_PLACES, 0, 0), 0);
+  double x = time / total, rate = synthetic->swing_turns > 0 ? synthetic->speed / synthetic->swing_turns : 0;
+  double slow = rate > 0 ? synthetic->swing / rate * (1 - cos(rate * time)) : 0;
+  double change = 2 * M_PI / synthetic->speed * STEP_TURNS; /* s, of the tanh */
+  double step = synthetic->step / 2 * change * (log_cosh((time - total / 2) / change) - log_cosh(total / 2 / change));
+  return start + synthetic->speed *
+                     (time + synthetic->drift * total * (x * x - x) / 2 + slow + (synthetic->step != 0 ? step : 0));
 }
 
 /* The same with rests, run through backwards on the way back, slower in the run-up: there time goes by as the integral
@@ -102,39 +104,41 @@ static double smooth(const struct eo_synthetic *synthetic, double time)
   return way(synthetic, time - ramp * (1 - RUN_UP_FROM) / 2);
 }
 
-static double vibration(const struct eo_synthetic *s, double theta)
+static double vibration(const struct eo_synthetic *synthetic, double theta)
 {
-  double complex mesh = cexp(I * s->teeth[EO_PINION] * theta), power = 1;
+  double complex mesh = cexp(I * synthetic->teeth[EO_PINION] * theta), power = 1;
   double sum = 0;
-  for (int h = 0; h < s->orders; h++)
-    sum += creal(s->order[h] * (power *= mesh));
+  for (int h = 0; h < synthetic->orders; h++)
+    sum += creal(synthetic->order[h] * (power *= mesh));
   return sum;
 }
 
 /* First order of a shaft at its angle, m. */
-static double shaft_order(const struct eo_synthetic *s, int member, double turn)
+static double shaft_order(const struct eo_synthetic *synthetic, int member, double turn)
 {
-  double place = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 1), (uint64_t)member);
-  return s->eccentricity[member] * cos(turn + place);
+  double place = 2 * M_PI * eo_random_unit(eo_random_at(synthetic->seed, STREAM_PLACES, 0, 1), (uint64_t)member);
+  return synthetic->eccentricity[member] * cos(turn + place);
 }
 
 /* What the shaft's encoder would show at a time if it were without noise and steps. */
-static double shown_angle(const struct eo_synthetic *s, int member, double time)
+static double shown_angle(const struct eo_synthetic *synthetic, int member, double time)
 {
-  double theta = smooth(s, time), sign = member == EO_GEAR ? 1 : -1,
-         share = member == EO_GEAR ? 1 - s->pinion_share : s->pinion_share;
-  int gear_teeth = s->teeth[EO_GEAR] + (s->fault == EO_FAULT_TEETH ? (int)s->size : 0);
-  double turn = member == EO_GEAR ? theta * s->teeth[EO_PINION] / gear_teeth : theta;
-  double start = member == EO_GEAR ? 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 2), 0) : 0;
-  double own = s->run_out ? share * (shaft_order(s, EO_PINION, theta) +
-                                     shaft_order(s, EO_GEAR, theta * s->teeth[EO_PINION] / gear_teeth))
-                          : shaft_order(s, member, turn);
-  return start + turn + sign * (share * vibration(s, theta) + own) / s->base_radius[member];
+  double theta = smooth(synthetic, time), sign = member == EO_GEAR ? 1 : -1,
+         share = member == EO_GEAR ? 1 - synthetic->pinion_share : synthetic->pinion_share;
+  int gear_teeth = synthetic->teeth[EO_GEAR] + (synthetic->fault == EO_FAULT_TEETH ? (int)synthetic->size : 0);
+  double turn = member == EO_GEAR ? theta * synthetic->teeth[EO_PINION] / gear_teeth : theta;
+  double start = member == EO_GEAR ? 2 * M_PI * eo_random_unit(eo_random_at(synthetic->seed, STREAM_PLACES, 0, 2), 0)
+                                   : 0;
+  double own = synthetic->run_out
+                   ? share * (shaft_order(synthetic, EO_PINION, theta) +
+                              shaft_order(synthetic, EO_GEAR, theta * synthetic->teeth[EO_PINION] / gear_teeth))
+                   : shaft_order(synthetic, member, turn);
+  return start + turn + sign * (share * vibration(synthetic, theta) + own) / synthetic->base_radius[member];
 }
 
-static double draw(const struct eo_synthetic *s, uint64_t stream, int64_t row, int channel)
+static double draw(const struct eo_synthetic *synthetic, uint64_t stream, int64_t row, int channel)
 {
-  return eo_random_normal(eo_random_at(s->seed, stream, (uint64_t)row, 0), (uint64_t)channel);
+  return eo_random_normal(eo_random_at(synthetic->seed, stream, (uint64_t)row, 0), (uint64_t)channel);
 }
 
 /* The row of the undisturbed recording that a channel shows. */
@@ -175,18 +179,18 @@ static double turn_begin(double angle)
   return 2 * M_PI * floor(angle / (2 * M_PI));
 }
 
-static double step_of(const struct eo_synthetic *s, int channel)
+static double step_of(const struct eo_synthetic *synthetic, int channel)
 {
-  return s->interpolation > 0 ? 2 * M_PI / ((double)s->lines[channel] * s->interpolation) : 0;
+  return synthetic->interpolation > 0 ? 2 * M_PI / ((double)synthetic->lines[channel] * synthetic->interpolation) : 0;
 }
 
 /* Counts since the encoder was switched on, or since the last index pulse once one has come. */
-static double written_count(const struct eo_synthetic *s, double angle, int channel)
+static double written_count(const struct eo_synthetic *synthetic, double angle, int channel)
 {
-  double step = step_of(s, channel), begin = shown_angle(s, channel, 0);
-  if (s->index)
+  double step = step_of(synthetic, channel), begin = shown_angle(synthetic, channel, 0);
+  if (synthetic->index)
     begin = fabs(turn_begin(angle) - turn_begin(begin)) > 1 ? turn_begin(angle) : begin;
-  return s->index ? floor((angle - begin) / step) : floor(angle / step + 0.5);
+  return synthetic->index ? floor((angle - begin) / step) : floor(angle / step + 0.5);
 }
 
 static double written_angle(const struct eo_synthetic *synthetic, int64_t row, int channel)
@@ -205,35 +209,39 @@ static double written_angle(const struct eo_synthetic *synthetic, int64_t row, i
   return in_radians ? angle : DEGREES * angle;
 }
 
-static double written_track(const struct eo_synthetic *s, int64_t row, int channel, int track)
+static double written_track(const struct eo_synthetic *synthetic, int64_t row, int channel, int track)
 {
-  double phase = channel_angle(s, row, channel) * s->lines[channel], size = s->amplitude * (track ? 1 : 1 + s->gain);
-  if (s->output == EO_SYNTHETIC_SQUARE)
+  double phase = channel_angle(synthetic, row, channel) * synthetic->lines[channel],
+         size = synthetic->amplitude * (track ? 1 : 1 + synthetic->gain);
+  if (synthetic->output == EO_SYNTHETIC_SQUARE)
     return (track ? cos(phase) : sin(phase)) >= 0 ? SQUARE_HIGH : SQUARE_LOW;
-  double value = (track ? cos(phase - s->phase) : sin(phase)) * size + s->offset * s->amplitude * (track ? -0.5 : 1);
-  value += s->track_noise * draw(s, STREAM_TRACKS, row, 2 * channel + track);
-  if (s->fault == EO_FAULT_SATURATED)
-    value = fmin(fmax(value, -0.8 * s->amplitude), 0.8 * s->amplitude);
-  return s->track_step > 0 ? s->track_step * round(value / s->track_step) : value;
+  double value = (track ? cos(phase - synthetic->phase) : sin(phase)) * size +
+                 synthetic->offset * synthetic->amplitude * (track ? -0.5 : 1);
+  value += synthetic->track_noise * draw(synthetic, STREAM_TRACKS, row, 2 * channel + track);
+  if (synthetic->fault == EO_FAULT_SATURATED)
+    value = fmin(fmax(value, -0.8 * synthetic->amplitude), 0.8 * synthetic->amplitude);
+  return synthetic->track_step > 0 ? synthetic->track_step * round(value / synthetic->track_step) : value;
 }
 
-static double written_time(const struct eo_synthetic *s, int64_t row, int channel)
+static double written_time(const struct eo_synthetic *synthetic, int64_t row, int channel)
 {
-  int64_t at = s->fault == EO_FAULT_DROPPED ? shown_row(s, row, EO_PINION) : row;
-  if (s->fault == EO_FAULT_TIME && row >= s->row)
-    at -= s->size > 0 ? s->size : 10;
-  return (double)at / rate_of(s, channel) + (channel == EO_GEAR ? s->gear_delay : 0);
+  int64_t at = synthetic->fault == EO_FAULT_DROPPED ? shown_row(synthetic, row, EO_PINION) : row;
+  if (synthetic->fault == EO_FAULT_TIME && row >= synthetic->row)
+    at -= synthetic->size > 0 ? synthetic->size : 10;
+  return (double)at / rate_of(synthetic, channel) + (channel == EO_GEAR ? synthetic->gear_delay : 0);
 }
 
 /* The time at which an encoder's line passes, by secants: the angle goes one way. */
-static double passing_time(const struct eo_synthetic *s, int channel, double line)
+static double passing_time(const struct eo_synthetic *synthetic, int channel, double line)
 {
-  double step = 2 * M_PI / s->lines[channel], first = ceil(shown_angle(s, channel, s->rest[0]) / step);
+  double step = 2 * M_PI / synthetic->lines[channel],
+         first = ceil(shown_angle(synthetic, channel, synthetic->rest[0]) / step);
   double wanted = step * (first + line),
-         rate = channel == EO_GEAR ? s->speed * s->teeth[EO_PINION] / s->teeth[EO_GEAR] : s->speed;
-  double time = s->rest[0] + (wanted - shown_angle(s, channel, s->rest[0])) / rate;
+         rate = channel == EO_GEAR ? synthetic->speed * synthetic->teeth[EO_PINION] / synthetic->teeth[EO_GEAR]
+                                   : synthetic->speed;
+  double time = synthetic->rest[0] + (wanted - shown_angle(synthetic, channel, synthetic->rest[0])) / rate;
   for (int i = 0; i < 400; i++) {
-    double off = wanted - shown_angle(s, channel, time);
+    double off = wanted - shown_angle(synthetic, channel, time);
     time += off / rate;
     if (fabs(off) < 1e-14 * fabs(wanted))
       break;
@@ -241,14 +249,14 @@ static double passing_time(const struct eo_synthetic *s, int channel, double lin
   return time;
 }
 
-static int64_t pulses_of(const struct eo_synthetic *s, int channel)
+static int64_t pulses_of(const struct eo_synthetic *synthetic, int channel)
 {
-  double ratio = channel == EO_GEAR ? (double)s->teeth[EO_PINION] / s->teeth[EO_GEAR] : 1;
-  double teeth = s->lines[channel] - s->missing[channel], turns = s->turns * ratio;
-  int64_t pulses = (int64_t)(turns * teeth) - (s->missing[channel] ? (int64_t)teeth : 1);
-  if (channel == EO_GEAR && s->fault == EO_FAULT_MISSED_PULSE)
-    pulses -= s->size;
-  return pulses + (channel == EO_GEAR && s->fault == EO_FAULT_DOUBLE_PULSE);
+  double ratio = channel == EO_GEAR ? (double)synthetic->teeth[EO_PINION] / synthetic->teeth[EO_GEAR] : 1;
+  double teeth = synthetic->lines[channel] - synthetic->missing[channel], turns = synthetic->turns * ratio;
+  int64_t pulses = (int64_t)(turns * teeth) - (synthetic->missing[channel] ? (int64_t)teeth : 1);
+  if (channel == EO_GEAR && synthetic->fault == EO_FAULT_MISSED_PULSE)
+    pulses -= synthetic->size;
+  return pulses + (channel == EO_GEAR && synthetic->fault == EO_FAULT_DOUBLE_PULSE);
 }
 
 /* The pulse-th time that the wheel gives: teeth that are missing and faults left out or put in. */
@@ -267,11 +275,12 @@ static double pulse_time(const struct eo_synthetic *synthetic, int channel, int6
          synthetic->jitter * draw(synthetic, STREAM_JITTER, pulse, channel);
 }
 
-static int64_t rows_of(const struct eo_synthetic *s, int channel)
+static int64_t rows_of(const struct eo_synthetic *synthetic, int channel)
 {
-  double delay = channel == EO_GEAR ? s->gear_delay : 0;
-  return s->output == EO_SYNTHETIC_PULSES ? pulses_of(s, channel)
-                                          : (int64_t)((whole_duration(s) - delay) * rate_of(s, channel)) + 1;
+  double delay = channel == EO_GEAR ? synthetic->gear_delay : 0;
+  return synthetic->output == EO_SYNTHETIC_PULSES
+             ? pulses_of(synthetic, channel)
+             : (int64_t)((whole_duration(synthetic) - delay) * rate_of(synthetic, channel)) + 1;
 }
 
 static double cell(const struct eo_synthetic *synthetic, const struct column *column, int64_t row)
@@ -312,15 +321,15 @@ void eo_synthetic_fill(const struct eo_synthetic *synthetic, int64_t first, int6
   }
 }
 
-int64_t eo_synthetic_rows(const struct eo_synthetic *s)
+int64_t eo_synthetic_rows(const struct eo_synthetic *synthetic)
 {
-  return rows_of(s, 0) > rows_of(s, 1) ? rows_of(s, 0) : rows_of(s, 1);
+  return rows_of(synthetic, 0) > rows_of(synthetic, 1) ? rows_of(synthetic, 0) : rows_of(synthetic, 1);
 }
 
-int eo_synthetic_columns(const struct eo_synthetic *s)
+int eo_synthetic_columns(const struct eo_synthetic *synthetic)
 {
   struct column list[EO_SYNTHETIC_COLUMNS];
-  return list_columns(s, list);
+  return list_columns(synthetic, list);
 }
 
 const char *eo_synthetic_heading(const struct eo_synthetic *synthetic, int column)
@@ -332,15 +341,15 @@ const char *eo_synthetic_heading(const struct eo_synthetic *synthetic, int colum
   static const char *const squares[2][2] = {{"pinion_A_V", "pinion_B_V"}, {"gear_A_V", "gear_B_V"}};
   struct column list[EO_SYNTHETIC_COLUMNS];
   list_columns(synthetic, list);
-  const struct column *c = &list[column];
+  const struct column *this_column = &list[column];
   bool counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
-  switch (c->content) {
+  switch (this_column->content) {
   case TIME:
-    return time[c->channel];
+    return time[this_column->channel];
   case PULSE:
-    return pulses[c->channel];
+    return pulses[this_column->channel];
   case TRACK:
-    return (synthetic->output == EO_SYNTHETIC_SQUARE ? squares : sines)[c->channel][c->track];
+    return (synthetic->output == EO_SYNTHETIC_SQUARE ? squares : sines)[this_column->channel][this_column->track];
   case TORQUE:
     return "torque1_Nm";
   case SPEED:
@@ -348,7 +357,7 @@ const char *eo_synthetic_heading(const struct eo_synthetic *synthetic, int colum
   case ANGLE:
     break;
   }
-  return (counted ? counts : synthetic->radians ? radians : degrees)[c->channel];
+  return (counted ? counts : synthetic->radians ? radians : degrees)[this_column->channel];
 }
 
 int eo_synthetic_decimals(const struct eo_synthetic *synthetic, int column)
@@ -372,10 +381,10 @@ int eo_synthetic_decimals(const struct eo_synthetic *synthetic, int column)
   return counted ? 0 : synthetic->radians ? 11 : 9;
 }
 
-static int column_of(const struct eo_synthetic *s, enum content content, int channel)
+static int column_of(const struct eo_synthetic *synthetic, enum content content, int channel)
 {
   struct column list[EO_SYNTHETIC_COLUMNS];
-  int columns = list_columns(s, list);
+  int columns = list_columns(synthetic, list);
   for (int c = 0; c < columns; c++)
     if (list[c].content == content && list[c].channel == channel)
       return c;
@@ -387,14 +396,16 @@ void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks 
   bool pulses = synthetic->output == EO_SYNTHETIC_PULSES, raw = synthetic->output == EO_SYNTHETIC_SINE_COSINE;
   *tracks = (struct eo_tracks){.time_column = pulses ? -1 : 0, .time_scale = 1, .interval = 1 / synthetic->sample_rate};
   for (int i = 0; i < 2; i++) {
-    struct eo_track_channel *c = &tracks->channel[i];
-    c->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
-    c->column[0] = column_of(synthetic, pulses ? PULSE : raw ? TRACK : ANGLE, i);
-    c->column[1] = c->column[0] + 1;
-    c->scale = synthetic->output == EO_SYNTHETIC_COUNTS ? step_of(synthetic, i) : synthetic->radians ? 1 : M_PI / 180;
-    c->lines = synthetic->lines[i];
-    c->unit = EO_TRACK_VOLT;
-    c->factor = 1;
+    struct eo_track_channel *channel = &tracks->channel[i];
+    channel->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
+    channel->column[0] = column_of(synthetic, pulses ? PULSE : raw ? TRACK : ANGLE, i);
+    channel->column[1] = channel->column[0] + 1;
+    channel->scale = synthetic->output == EO_SYNTHETIC_COUNTS ? step_of(synthetic, i)
+                     : synthetic->radians                     ? 1
+                                                              : M_PI / 180;
+    channel->lines = synthetic->lines[i];
+    channel->unit = EO_TRACK_VOLT;
+    channel->factor = 1;
   }
   if (synthetic->torque != 0 && !pulses)
     tracks->torque[EO_PINION] =
@@ -463,26 +474,26 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo
   return code;
 }
 
-double eo_synthetic_speed(const struct eo_synthetic *s)
+double eo_synthetic_speed(const struct eo_synthetic *synthetic)
 {
-  return (way(s, duration(s)) - way(s, 0)) / duration(s);
+  return (way(synthetic, duration(synthetic)) - way(synthetic, 0)) / duration(synthetic);
 }
 
-double eo_synthetic_swing(const struct eo_synthetic *s)
+double eo_synthetic_swing(const struct eo_synthetic *synthetic)
 {
-  double turn = 2 * M_PI / s->speed, low = INFINITY, high = 0;
-  for (int i = 0; i + 1 <= s->turns; i++) {
-    double speed = (way(s, (i + 1) * turn) - way(s, i * turn)) / turn;
+  double turn = 2 * M_PI / synthetic->speed, low = INFINITY, high = 0;
+  for (int i = 0; i + 1 <= synthetic->turns; i++) {
+    double speed = (way(synthetic, (i + 1) * turn) - way(synthetic, i * turn)) / turn;
     low = fmin(low, speed);
     high = fmax(high, speed);
   }
-  return high > low ? (high - low) / s->speed : 0;
+  return high > low ? (high - low) / synthetic->speed : 0;
 }
 
-double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)
+double eo_synthetic_rms(const struct eo_synthetic *synthetic, int harmonics)
 {
-  double sum = 0, speed = eo_synthetic_speed(s);
-  for (int h = 1; h <= harmonics && h <= s->orders; h++)
-    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2), 2) / 2;
+  double sum = 0, speed = eo_synthetic_speed(synthetic);
+  for (int h = 1; h <= harmonics && h <= synthetic->orders; h++)
+    sum += pow(cabs(synthetic->order[h - 1]) * pow(h * synthetic->teeth[EO_PINION] * speed, 2), 2) / 2;
   return sqrt(sum);
 }

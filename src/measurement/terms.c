@@ -6,89 +6,90 @@
 
 #include "numerics/dense.h"
 
-static bool known_order(const struct eo_terms *t, double order, double distance)
+static bool known_order(const struct eo_terms *terms, double order, double distance)
 {
-  for (int i = 0; i < t->orders; i++)
-    if (fabs(t->order[i] - order) < distance)
+  for (int i = 0; i < terms->orders; i++)
+    if (fabs(terms->order[i] - order) < distance)
       return true;
   return false;
 }
 
-static void add_order(struct eo_terms *t, double order)
+static void add_order(struct eo_terms *terms, double order)
 {
-  int at = t->orders++;
-  t->order[at] = order;
-  t->part[at][0] = -1;
+  int at = terms->orders++;
+  terms->order[at] = order;
+  terms->part[at][0] = -1;
   for (int i = 0; i < at; i++)
     for (int j = 0; j <= i; j++)
-      if (fabs(t->order[i] + t->order[j] - order) < 1e-9) {
-        t->part[at][0] = i;
-        t->part[at][1] = j;
+      if (fabs(terms->order[i] + terms->order[j] - order) < 1e-9) {
+        terms->part[at][0] = i;
+        terms->part[at][1] = j;
       }
 }
 
-void eo_terms_init(struct eo_terms *t, const int teeth[2], int harmonics, double turns, double from, double to)
+void eo_terms_init(struct eo_terms *terms, const int teeth[2], int harmonics, double turns, double from, double to)
 {
-  *t = (struct eo_terms){.drift = EO_DRIFT_TERMS, .middle = (from + to) / 2, .half = (to - from) / 2};
+  *terms = (struct eo_terms){.drift = EO_DRIFT_TERMS, .middle = (from + to) / 2, .half = (to - from) / 2};
   for (int h = 1; h <= harmonics; h++)
-    add_order(t, (double)h * teeth[EO_PINION]);
+    add_order(terms, (double)h * teeth[EO_PINION]);
   for (int member = 0; member < 2; member++)
     for (int k = 0; k < EO_SHAFT_ORDERS; k++) {
       double order = (k + 1) * (member == EO_PINION ? 1.0 : (double)teeth[EO_PINION] / teeth[EO_GEAR]);
-      bool there = known_order(t, order, 0.7 / turns);
-      t->shaft_at[member][k] = there ? -1 : t->orders;
+      bool there = known_order(terms, order, 0.7 / turns);
+      terms->shaft_at[member][k] = there ? -1 : terms->orders;
       if (!there)
-        add_order(t, order);
+        add_order(terms, order);
     }
-  t->count = t->drift + 2 * t->orders;
+  terms->count = terms->drift + 2 * terms->orders;
 }
 
-void eo_terms_at(const struct eo_terms *t, double time, double theta, double *value)
+void eo_terms_at(const struct eo_terms *terms, double time, double theta, double *value)
 {
-  double x = (time - t->middle) / t->half;
+  double x = (time - terms->middle) / terms->half;
   double complex turn[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS];
   value[0] = 1;
   value[1] = x;
   value[2] = (3 * x * x - 1) / 2;
   value[3] = (5 * x * x - 3) * x / 2;
-  for (int i = 0; i < t->orders; i++) {
-    turn[i] = t->part[i][0] >= 0 ? turn[t->part[i][0]] * turn[t->part[i][1]] : cexp(I * t->order[i] * theta);
-    value[t->drift + 2 * i] = creal(turn[i]); /* theory (M2) */
-    value[t->drift + 2 * i + 1] = cimag(turn[i]);
+  for (int i = 0; i < terms->orders; i++) {
+    turn[i] = terms->part[i][0] >= 0 ? turn[terms->part[i][0]] * turn[terms->part[i][1]]
+                                     : cexp(I * terms->order[i] * theta);
+    value[terms->drift + 2 * i] = creal(turn[i]); /* theory (M2) */
+    value[terms->drift + 2 * i + 1] = cimag(turn[i]);
   }
 }
 
-enum eo_code eo_normal_init(struct eo_normal *n, int terms, struct eo_error *error)
+enum eo_code eo_normal_init(struct eo_normal *normal, int terms, struct eo_error *error)
 {
-  *n = (struct eo_normal){.columns = terms + 1};
-  n->gram = calloc((size_t)n->columns * n->columns, sizeof *n->gram);
-  n->block = malloc(sizeof *n->block * (size_t)(EO_NORMAL_BLOCK * n->columns));
-  return n->gram && n->block ? EO_OK : eo_error_memory(error);
+  *normal = (struct eo_normal){.columns = terms + 1};
+  normal->gram = calloc((size_t)normal->columns * normal->columns, sizeof *normal->gram);
+  normal->block = malloc(sizeof *normal->block * (size_t)(EO_NORMAL_BLOCK * normal->columns));
+  return normal->gram && normal->block ? EO_OK : eo_error_memory(error);
 }
 
-void eo_normal_done(struct eo_normal *n)
+void eo_normal_done(struct eo_normal *normal)
 {
-  free(n->gram);
-  free(n->block);
-  *n = (struct eo_normal){0};
+  free(normal->gram);
+  free(normal->block);
+  *normal = (struct eo_normal){0};
 }
 
-double *eo_normal_row(struct eo_normal *n)
+double *eo_normal_row(struct eo_normal *normal)
 {
-  return n->block + (size_t)n->held * (size_t)n->columns;
+  return normal->block + (size_t)normal->held * (size_t)normal->columns;
 }
 
-static void flush(struct eo_normal *n)
+static void flush(struct eo_normal *normal)
 {
-  eo_dense_add_gram(n->held, n->columns, n->block, n->gram);
-  n->held = 0;
+  eo_dense_add_gram(normal->held, normal->columns, normal->block, normal->gram);
+  normal->held = 0;
 }
 
-void eo_normal_add(struct eo_normal *n)
+void eo_normal_add(struct eo_normal *normal)
 {
-  n->rows++;
-  if (++n->held == EO_NORMAL_BLOCK)
-    flush(n);
+  normal->rows++;
+  if (++normal->held == EO_NORMAL_BLOCK)
+    flush(normal);
 }
 
 enum eo_code eo_normal_solve(struct eo_normal *normal, double *coefficient, double *condition, struct eo_error *error)

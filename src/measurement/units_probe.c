@@ -45,11 +45,11 @@ static enum eo_code flatten(struct probe *probe, struct eo_error *error)
   return code;
 }
 
-static double power_at(const struct probe *p, double order)
+static double power_at(const struct probe *probe, double order)
 {
   double complex sum = 0;
-  for (int i = 0; i < p->rows; i++)
-    sum += p->row[i][2] * cexp(-I * order * p->row[i][1]);
+  for (int i = 0; i < probe->rows; i++)
+    sum += probe->row[i][2] * cexp(-I * order * probe->row[i][1]);
   return creal(sum) * creal(sum) + cimag(sum) * cimag(sum);
 }
 
@@ -77,22 +77,23 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
                             double *factor, struct eo_error *error)
 {
   static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
-  struct probe p = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
+  struct probe probe = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
   double seen[3];
   int best = 0;
-  p.row = malloc(sizeof *p.row * (size_t)p.rows);
-  enum eo_code code = p.row ? eo_angles_read(angles, 0, p.rows, p.row[0], error) : eo_error_memory(error);
-  for (int i = 0; i < p.rows && !code; i++)
-    p.row[i][2] = settings->base_radius[EO_GEAR] * p.row[i][2] - settings->base_radius[EO_PINION] * p.row[i][1];
+  probe.row = malloc(sizeof *probe.row * (size_t)probe.rows);
+  enum eo_code code = probe.row ? eo_angles_read(angles, 0, probe.rows, probe.row[0], error) : eo_error_memory(error);
+  for (int i = 0; i < probe.rows && !code; i++)
+    probe.row[i][2] = settings->base_radius[EO_GEAR] * probe.row[i][2] -
+                      settings->base_radius[EO_PINION] * probe.row[i][1];
   if (!code)
-    code = flatten(&p, error);
+    code = flatten(&probe, error);
   for (int i = 0; i < 3 && !code; i++) {
-    seen[i] = lines_seen(&p, settings->teeth, unit[i]);
+    seen[i] = lines_seen(&probe, settings->teeth, unit[i]);
     best = seen[i] > seen[best] ? i : best;
   }
   if (!code)
     *factor = seen[best] > 3 ? unit[best] : NAN;
-  free(p.row);
+  free(probe.row);
   return code;
 }
 

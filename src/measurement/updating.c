@@ -71,50 +71,51 @@ static bool logarithmic(enum eo_unknown unknown)
   return unknown != EO_UNKNOWN_IN_PLANE && unknown != EO_UNKNOWN_OUT_OF_PLANE;
 }
 
-double eo_fit_from_unit(const struct eo_update_range *r, double x)
+double eo_fit_from_unit(const struct eo_update_range *range, double x)
 {
-  return logarithmic(r->unknown) ? r->low * pow(r->high / r->low, x) : r->low + x * (r->high - r->low);
+  return logarithmic(range->unknown) ? range->low * pow(range->high / range->low, x)
+                                     : range->low + x * (range->high - range->low);
 }
 
-double eo_fit_to_unit(const struct eo_update_range *r, double value)
+double eo_fit_to_unit(const struct eo_update_range *range, double value)
 {
-  double x = logarithmic(r->unknown) ? log(value / r->low) / log(r->high / r->low)
-                                     : (value - r->low) / (r->high - r->low);
+  double x = logarithmic(range->unknown) ? log(value / range->low) / log(range->high / range->low)
+                                         : (value - range->low) / (range->high - range->low);
   return fmin(1, fmax(0, x));
 }
 
-void eo_fit_begin(struct eo_fit *f, const char *stage, double from, double to, int expected)
+void eo_fit_begin(struct eo_fit *fit, const char *stage, double from, double to, int expected)
 {
-  f->stage = stage;
-  f->from = from;
-  f->to = to;
-  f->begun = f->evaluations;
-  f->expected = expected > 0 ? expected : 1;
+  fit->stage = stage;
+  fit->from = from;
+  fit->to = to;
+  fit->begun = fit->evaluations;
+  fit->expected = expected > 0 ? expected : 1;
 }
 
-void eo_fit_set_trial(struct eo_fit *f, const double *x)
+void eo_fit_set_trial(struct eo_fit *fit, const double *x)
 {
-  f->trial = *f->design;
-  for (int i = 0; i < f->settings->unknowns; i++)
-    eo_unknown_set(&f->trial, f->settings->range[i].unknown, eo_fit_from_unit(&f->settings->range[i], x[i]));
-  f->pair.impact.patch = f->pair.resolution.impact_patch = f->trial.resolution.impact_patch;
+  fit->trial = *fit->design;
+  for (int i = 0; i < fit->settings->unknowns; i++)
+    eo_unknown_set(&fit->trial, fit->settings->range[i].unknown, eo_fit_from_unit(&fit->settings->range[i], x[i]));
+  fit->pair.impact.patch = fit->pair.resolution.impact_patch = fit->trial.resolution.impact_patch;
 }
 
 /* Variance of an order's acceleration from the recording alone. */
-static double noise_variance(const struct eo_measured *m, int h)
+static double noise_variance(const struct eo_measured *measured, int h)
 {
-  double noise = m->order[h].sigma * pow(m->order[h].order * m->speed, 2);
-  return noise * noise + pow(EO_RMS_SYSTEMATIC * m->order[h].acceleration, 2);
+  double noise = measured->order[h].sigma * pow(measured->order[h].order * measured->speed, 2);
+  return noise * noise + pow(EO_RMS_SYSTEMATIC * measured->order[h].acceleration, 2);
 }
 
 /* (measured - predicted) / standard deviation of each order's acceleration. */
-static void weigh(const struct eo_fit *f, double *residual)
+static void weigh(const struct eo_fit *fit, double *residual)
 {
-  for (int i = 0, at = 0; i < f->count; i++) {
-    const struct eo_measured *m = &f->measured[f->order[i]];
-    for (int h = 0; h < m->harmonics; h++, at++)
-      residual[at] = (m->order[h].acceleration - f->predicted[at]) /
-                     sqrt(noise_variance(m, h) + pow(f->model_error * m->rms, 2));
+  for (int i = 0, at = 0; i < fit->count; i++) {
+    const struct eo_measured *measured = &fit->measured[fit->order[i]];
+    for (int h = 0; h < measured->harmonics; h++, at++)
+      residual[at] = (measured->order[h].acceleration - fit->predicted[at]) /
+                     sqrt(noise_variance(measured, h) + pow(fit->model_error * measured->rms, 2));
   }
 }
 
@@ -182,14 +183,15 @@ static double sum_of_squares(int count, const double *value)
 
 /* The model error with which the squares of the best fit come out as large as they should, one for each order beyond
    the unknowns; by halving, its square grows the sum's denominators. */
-static enum eo_code find_model_error(struct eo_fit *f, const double *x, double *residual, struct eo_error *error)
+static enum eo_code find_model_error(struct eo_fit *fit, const double *x, double *residual, struct eo_error *error)
 {
   double low = LEAST_MODEL_ERROR, high = 1;
-  enum eo_code code = eo_fit_residuals(f, x, residual, error);
+  enum eo_code code = eo_fit_residuals(fit, x, residual, error);
   for (int i = 0; i < 40 && !code; i++) {
-    f->model_error = sqrt(low * high);
-    weigh(f, residual);
-    *(sum_of_squares(f->residuals, residual) > f->residuals - f->settings->unknowns ? &low : &high) = f->model_error;
+    fit->model_error = sqrt(low * high);
+    weigh(fit, residual);
+    *(sum_of_squares(fit->residuals, residual) > fit->residuals - fit->settings->unknowns ? &low
+                                                                                          : &high) = fit->model_error;
   }
   return code;
 }
@@ -204,10 +206,10 @@ static double student(int freedom)
 }
 
 /* Covariance (J'J)^-1 at the best values, with differences of a thousandth of the ranges. */
-static enum eo_code find_covariance(struct eo_fit *fit, struct eo_update *u, const double *x, double *covariance,
+static enum eo_code find_covariance(struct eo_fit *fit, struct eo_update *update, const double *x, double *covariance,
                                     double *room, struct eo_error *error)
 {
-  int n = u->unknowns, m = fit->residuals;
+  int n = update->unknowns, m = fit->residuals;
   double matrix[EO_UNKNOWNS * EO_UNKNOWNS] = {0}, values[EO_UNKNOWNS], moved[EO_UNKNOWNS], *here = room;
   enum eo_code code = eo_fit_residuals(fit, x, here, error);
   for (int j = 0; j < n && !code; j++) {
@@ -228,7 +230,7 @@ static enum eo_code find_covariance(struct eo_fit *fit, struct eo_update *u, con
   if (eo_dense_symmetric_eigen(n, matrix, values))
     return eo_error_memory(error);
   double least = fmax(values[n - 1], 1) * 1e-12;
-  u->condition = values[n - 1] / fmax(values[0], least);
+  update->condition = values[n - 1] / fmax(values[0], least);
   for (int i = 0; i < n * n; i++)
     covariance[i] = 0;
   for (int k = 0; k < n; k++)
@@ -238,32 +240,32 @@ static enum eo_code find_covariance(struct eo_fit *fit, struct eo_update *u, con
   return EO_OK;
 }
 
-static void read_twins(struct eo_update *u, const double *covariance)
+static void read_twins(struct eo_update *update, const double *covariance)
 {
-  int n = u->unknowns;
+  int n = update->unknowns;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      struct eo_updated *p = &u->unknown[i];
+      struct eo_updated *updated = &update->unknown[i];
       double size = sqrt(covariance[i * n + i] * covariance[j * n + j]);
-      u->correlation[i][j] = size > 0 ? covariance[i * n + j] / size : 0;
-      if (j != i && fabs(u->correlation[i][j]) > fmax(TWIN, fabs(p->correlation))) {
-        p->twin = j;
-        p->correlation = u->correlation[i][j];
+      update->correlation[i][j] = size > 0 ? covariance[i * n + j] / size : 0;
+      if (j != i && fabs(update->correlation[i][j]) > fmax(TWIN, fabs(updated->correlation))) {
+        updated->twin = j;
+        updated->correlation = update->correlation[i][j];
       }
     }
 }
 
 /* One minimum in the units of the inputs; within reach, with the profile of every input. */
-static enum eo_code read_minimum(struct eo_fit *fit, struct eo_update *u, const struct eo_minimum *minimum,
+static enum eo_code read_minimum(struct eo_fit *fit, struct eo_update *update, const struct eo_minimum *minimum,
                                  double limit, const double *covariance, double hull[][2], struct eo_error *error)
 {
-  struct eo_update_minimum *out = &u->minimum[u->minima++];
+  struct eo_update_minimum *out = &update->minimum[update->minima++];
   *out = (struct eo_update_minimum){.misfit = sqrt(minimum->square / fit->residuals),
                                     .within = minimum->square <= limit};
   enum eo_code code = EO_OK;
-  u->within += out->within;
-  for (int i = 0; i < u->unknowns && !code; i++) {
-    double reach[2] = {minimum->x[i], minimum->x[i]}, sigma = sqrt(covariance[i * u->unknowns + i]);
+  update->within += out->within;
+  for (int i = 0; i < update->unknowns && !code; i++) {
+    double reach[2] = {minimum->x[i], minimum->x[i]}, sigma = sqrt(covariance[i * update->unknowns + i]);
     if (out->within)
       code = eo_fit_profile(fit, minimum, i, sigma, limit, reach, error);
     out->value[i] = eo_fit_from_unit(&fit->settings->range[i], minimum->x[i]);
@@ -277,11 +279,11 @@ static enum eo_code read_minimum(struct eo_fit *fit, struct eo_update *u, const 
   return code;
 }
 
-static void read_unknowns(const struct eo_fit *fit, struct eo_update *u, const double *x, double hull[][2])
+static void read_unknowns(const struct eo_fit *fit, struct eo_update *update, const double *x, double hull[][2])
 {
-  for (int i = 0; i < u->unknowns; i++) {
+  for (int i = 0; i < update->unknowns; i++) {
     const struct eo_update_range *range = &fit->settings->range[i];
-    u->unknown[i] =
+    update->unknown[i] =
         (struct eo_updated){.unknown = range->unknown,
                             .before = eo_unknown_get(fit->design, range->unknown),
                             .value = eo_fit_from_unit(range, x[i]),
@@ -296,25 +298,26 @@ static void read_unknowns(const struct eo_fit *fit, struct eo_update *u, const d
 
 /* The sum of squares up to which values are not ruled out: the best one plus the square of Student's quantile, in units
    of what the fit leaves where that is more than the standard deviations say. */
-static enum eo_code judge(struct eo_fit *fit, struct eo_update *u, const struct eo_minima *minima, double *room,
+static enum eo_code judge(struct eo_fit *fit, struct eo_update *update, const struct eo_minima *minima, double *room,
                           struct eo_error *error)
 {
-  int freedom = fit->residuals - u->unknowns;
+  int freedom = fit->residuals - update->unknowns;
   double covariance[EO_UNKNOWNS * EO_UNKNOWNS], hull[EO_UNKNOWNS][2];
   double widen = fmax(1, minima->minimum[0].square / freedom),
          limit = minima->minimum[0].square + widen * pow(student(freedom > 2 ? freedom : 3), 2);
   const double *x = minima->minimum[0].x;
-  enum eo_code code = find_covariance(fit, u, x, covariance, room, error);
-  for (int i = 0; i < u->unknowns; i++)
+  enum eo_code code = find_covariance(fit, update, x, covariance, room, error);
+  for (int i = 0; i < update->unknowns; i++)
     hull[i][0] = hull[i][1] = x[i];
   int reachable = 0;
   for (int i = 0; i < minima->count; i++)
     reachable += minima->minimum[i].square <= limit;
-  eo_fit_begin(fit, "fit: how sure", 0.7, 1, reachable * u->unknowns * 40 * (u->unknowns > 1 ? 3 * u->unknowns : 1));
+  eo_fit_begin(fit, "fit: how sure", 0.7, 1,
+               reachable * update->unknowns * 40 * (update->unknowns > 1 ? 3 * update->unknowns : 1));
   for (int i = 0; i < minima->count && !code; i++)
-    code = read_minimum(fit, u, &minima->minimum[i], limit, covariance, hull, error);
-  read_unknowns(fit, u, x, hull);
-  read_twins(u, covariance);
+    code = read_minimum(fit, update, &minima->minimum[i], limit, covariance, hull, error);
+  read_unknowns(fit, update, x, hull);
+  read_twins(update, covariance);
   return code;
 }
 
@@ -358,12 +361,14 @@ static enum eo_code settle(struct eo_fit *fit, struct eo_minima *minima, double 
   return code;
 }
 
-static enum eo_code search(struct eo_fit *fit, struct eo_update *u, struct eo_design *updated, struct eo_error *error)
+static enum eo_code search(struct eo_fit *fit, struct eo_update *update, struct eo_design *updated,
+                           struct eo_error *error)
 {
-  int n = u->unknowns, starts = fit->settings->starts > 0 ? fit->settings->starts : usual_starts(n);
+  int n = update->unknowns, starts = fit->settings->starts > 0 ? fit->settings->starts : usual_starts(n);
   struct eo_minima *minima = malloc(sizeof *minima);
   double *room = malloc(sizeof *room * (size_t)(fit->residuals * (n + 1))), start[EO_UNKNOWNS];
-  enum eo_code code = minima && room ? eo_fit_search(fit, starts, minima, &u->before, error) : eo_error_memory(error);
+  enum eo_code code = minima && room ? eo_fit_search(fit, starts, minima, &update->before, error)
+                                     : eo_error_memory(error);
   if (!code)
     code = settle(fit, minima, room, error);
   for (int i = 0; i < n; i++)
@@ -371,16 +376,16 @@ static enum eo_code search(struct eo_fit *fit, struct eo_update *u, struct eo_de
   if (!code)
     code = eo_fit_residuals(fit, start, room, error);
   if (!code) {
-    u->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
-    u->after = sqrt(minima->minimum[0].square / fit->residuals);
-    u->model_error = fit->model_error;
-    u->converged = minima->minimum[0].converged;
-    code = judge(fit, u, minima, room, error);
+    update->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
+    update->after = sqrt(minima->minimum[0].square / fit->residuals);
+    update->model_error = fit->model_error;
+    update->converged = minima->minimum[0].converged;
+    code = judge(fit, update, minima, room, error);
   }
   if (!code) {
-    double spent = fit->settings->model_error > 0 ? u->after * fit->model_error : fit->model_error;
-    u->poor = spent > POOR;
-    u->evaluations = fit->evaluations;
+    double spent = fit->settings->model_error > 0 ? update->after * fit->model_error : fit->model_error;
+    update->poor = spent > POOR;
+    update->evaluations = fit->evaluations;
     eo_fit_set_trial(fit, minima->minimum[0].x);
     if (updated)
       *updated = fit->trial;

@@ -20,18 +20,18 @@ struct held {
   double at;
 };
 
-static void put_together(const struct held *h, const double *others, double *x)
+static void put_together(const struct held *held, const double *others, double *x)
 {
-  for (int j = 0, k = 0; j < h->n; j++)
-    x[j] = j == h->held ? h->at : others[k++];
+  for (int j = 0, k = 0; j < held->n; j++)
+    x[j] = j == held->held ? held->at : others[k++];
 }
 
 static enum eo_code residuals_of_others(void *context, const double *others, double *residual, struct eo_error *error)
 {
-  struct held *h = context;
+  struct held *held = context;
   double x[EO_UNKNOWNS];
-  put_together(h, others, x);
-  return eo_fit_residuals(h->fit, x, residual, error);
+  put_together(held, others, x);
+  return eo_fit_residuals(held->fit, x, residual, error);
 }
 
 /* The least sum of squares over the others with the unknown held at a place; others[n - 1] go along. */
@@ -89,14 +89,14 @@ static enum eo_code walk(struct held *held, const struct eo_minimum *minimum, in
 enum eo_code eo_fit_profile(struct eo_fit *fit, const struct eo_minimum *minimum, int i, double sigma, double limit,
                             double reach[2], struct eo_error *error)
 {
-  struct held h = {.fit = fit, .held = i, .n = fit->settings->unknowns};
+  struct held held = {.fit = fit, .held = i, .n = fit->settings->unknowns};
   double *residual = malloc(sizeof *residual * (size_t)fit->residuals);
   double first = fmin(fmax(FIRST * sigma, SHORTEST), LONGEST);
   if (!residual)
     return eo_error_memory(error);
-  enum eo_code code = walk(&h, minimum, -1, first, limit, residual, &reach[0], error);
+  enum eo_code code = walk(&held, minimum, -1, first, limit, residual, &reach[0], error);
   if (!code)
-    code = walk(&h, minimum, 1, first, limit, residual, &reach[1], error);
+    code = walk(&held, minimum, 1, first, limit, residual, &reach[1], error);
   free(residual);
   return code;
 }

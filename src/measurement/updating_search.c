@@ -47,9 +47,9 @@ static enum eo_code look_around(struct eo_fit *fit, int starts, struct sample *s
   eo_fit_begin(fit, "fit: looking over the ranges", 0, 0.3, starts + 1);
   for (int i = 0; i <= starts; i++) {
     for (int j = 0; j < n; j++) {
-      struct eo_random r = eo_random_at(fit->settings->seed, 1, (uint64_t)i, (uint64_t)j);
+      struct eo_random random = eo_random_at(fit->settings->seed, 1, (uint64_t)i, (uint64_t)j);
       int slice = (int)(((int64_t)i * permuting_factor(7 * j, starts) + j) % starts);
-      sample[i].x[j] = i < starts ? (slice + eo_random_unit(r, 0)) / starts
+      sample[i].x[j] = i < starts ? (slice + eo_random_unit(random, 0)) / starts
                                   : eo_fit_to_unit(&fit->settings->range[j],
                                                    eo_unknown_get(fit->design, fit->settings->range[j].unknown));
     }
@@ -92,12 +92,12 @@ static bool is_promising(const struct sample *sample, int count, int at, int n)
   return true;
 }
 
-static enum eo_code descend(struct eo_fit *f, struct eo_minimum *minimum, struct eo_error *error)
+static enum eo_code descend(struct eo_fit *fit, struct eo_minimum *minimum, struct eo_error *error)
 {
   const struct eo_least_squares_options options = {.iterations = ITERATIONS, .step = STEP, .tolerance = TOLERANCE};
   struct eo_least_squares_report report;
-  enum eo_code code = eo_least_squares(eo_fit_residuals, f, f->settings->unknowns, f->residuals, &options, minimum->x,
-                                       NULL, &report, error);
+  enum eo_code code = eo_least_squares(eo_fit_residuals, fit, fit->settings->unknowns, fit->residuals, &options,
+                                       minimum->x, NULL, &report, error);
   minimum->square = report.square;
   minimum->converged = report.converged;
   return code;

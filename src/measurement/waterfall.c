@@ -27,66 +27,67 @@ enum eo_code eo_waterfall_new(struct eo_waterfall **waterfall, const struct eo_t
   *waterfall = NULL;
   if (count < 2)
     return EO_OK;
-  struct eo_waterfall *w = calloc(1, sizeof *w);
-  if (w)
-    w->cell = calloc((size_t)count, sizeof *w->cell);
-  if (!w || !w->cell) {
-    free(w);
+  struct eo_waterfall *this_waterfall = calloc(1, sizeof *this_waterfall);
+  if (this_waterfall)
+    this_waterfall->cell = calloc((size_t)count, sizeof *this_waterfall->cell);
+  if (!this_waterfall || !this_waterfall->cell) {
+    free(this_waterfall);
     return eo_error_memory(error);
   }
-  w->teeth = teeth[EO_PINION];
-  w->harmonics = transmission->harmonics;
-  w->count = count;
-  w->from = from;
-  w->length = 2 * M_PI * each;
-  *waterfall = w;
+  this_waterfall->teeth = teeth[EO_PINION];
+  this_waterfall->harmonics = transmission->harmonics;
+  this_waterfall->count = count;
+  this_waterfall->from = from;
+  this_waterfall->length = 2 * M_PI * each;
+  *waterfall = this_waterfall;
   return EO_OK;
 }
 
-void eo_waterfall_free(struct eo_waterfall *w)
+void eo_waterfall_free(struct eo_waterfall *waterfall)
 {
-  if (w)
-    free(w->cell);
-  free(w);
+  if (waterfall)
+    free(waterfall->cell);
+  free(waterfall);
 }
 
-void eo_waterfall_add(struct eo_waterfall *w, double time, double theta, double residual)
+void eo_waterfall_add(struct eo_waterfall *waterfall, double time, double theta, double residual)
 {
-  int at = (int)((theta - w->from) / w->length);
-  if (theta < w->from || at >= w->count)
+  int at = (int)((theta - waterfall->from) / waterfall->length);
+  if (theta < waterfall->from || at >= waterfall->count)
     return;
-  struct cell *c = &w->cell[at];
-  double complex unit = cexp(-I * w->teeth * theta), power = residual;
-  for (int h = 0; h < w->harmonics; h++)
-    c->sum[h] += power *= unit;
-  if (!c->rows++) {
-    c->time[0] = time;
-    c->theta[0] = theta;
+  struct cell *cell = &waterfall->cell[at];
+  double complex unit = cexp(-I * waterfall->teeth * theta), power = residual;
+  for (int h = 0; h < waterfall->harmonics; h++)
+    cell->sum[h] += power *= unit;
+  if (!cell->rows++) {
+    cell->time[0] = time;
+    cell->theta[0] = theta;
   }
-  c->time[1] = time;
-  c->theta[1] = theta;
+  cell->time[1] = time;
+  cell->theta[1] = theta;
 }
 
-enum eo_code eo_waterfall_finish(struct eo_waterfall *w, struct eo_transmission *transmission, struct eo_error *error)
+enum eo_code eo_waterfall_finish(struct eo_waterfall *waterfall, struct eo_transmission *transmission,
+                                 struct eo_error *error)
 {
-  if (!w)
+  if (!waterfall)
     return EO_OK;
-  transmission->track = calloc((size_t)w->count, sizeof *transmission->track);
+  transmission->track = calloc((size_t)waterfall->count, sizeof *transmission->track);
   if (!transmission->track)
     return eo_error_memory(error);
-  for (int i = 0; i < w->count; i++) {
-    const struct cell *c = &w->cell[i];
+  for (int i = 0; i < waterfall->count; i++) {
+    const struct cell *cell = &waterfall->cell[i];
     struct eo_order_track *track = &transmission->track[transmission->tracks];
-    if (c->rows < 2 * w->harmonics || !(c->time[1] > c->time[0]))
+    if (cell->rows < 2 * waterfall->harmonics || !(cell->time[1] > cell->time[0]))
       continue;
     double square = 0;
-    track->from = c->time[0];
-    track->to = c->time[1];
-    track->turns = w->length / (2 * M_PI);
-    track->speed = (c->theta[1] - c->theta[0]) / (c->time[1] - c->time[0]);
-    track->rows = c->rows;
-    for (int h = 0; h < w->harmonics; h++) {
-      track->amplitude[h] = transmission->mesh[h].amplitude + 2 * c->sum[h] / (double)c->rows;
+    track->from = cell->time[0];
+    track->to = cell->time[1];
+    track->turns = waterfall->length / (2 * M_PI);
+    track->speed = (cell->theta[1] - cell->theta[0]) / (cell->time[1] - cell->time[0]);
+    track->rows = cell->rows;
+    for (int h = 0; h < waterfall->harmonics; h++) {
+      track->amplitude[h] = transmission->mesh[h].amplitude + 2 * cell->sum[h] / (double)cell->rows;
       square += pow(cabs(track->amplitude[h]) * pow(transmission->mesh[h].order * track->speed, 2), 2) / 2;
     }
     track->rms = sqrt(square);

@@ -37,18 +37,18 @@ void eo_saddle_done(struct eo_saddle *saddle)
 
 /* Multiplies b, [columns][stride], by Q or Q' of the tail's QR factorisation, from the left; or [rows][rows] from the
    right. */
-static void apply_basis(struct eo_saddle *s, char side, char transposed, double *b, int columns, int stride)
+static void apply_basis(struct eo_saddle *saddle, char side, char transposed, double *b, int columns, int stride)
 {
-  const int m = side == 'L' ? s->rows : columns, n = side == 'L' ? columns : s->rows;
-  LAPACKE_dormqr_work(LAPACK_COL_MAJOR, side, transposed, m, n, s->columns, s->basis, s->rows, s->tau, b, stride,
-                      s->work, s->work_size);
+  const int m = side == 'L' ? saddle->rows : columns, n = side == 'L' ? columns : saddle->rows;
+  LAPACKE_dormqr_work(LAPACK_COL_MAJOR, side, transposed, m, n, saddle->columns, saddle->basis, saddle->rows,
+                      saddle->tau, b, stride, saddle->work, saddle->work_size);
 }
 
-static bool basis_has_full_rank(const struct eo_saddle *s)
+static bool basis_has_full_rank(const struct eo_saddle *saddle)
 {
   double largest = 0, smallest = INFINITY;
-  for (int k = 0; k < s->columns; k++) {
-    const double r = fabs(s->basis[k * s->rows + k]);
+  for (int k = 0; k < saddle->columns; k++) {
+    const double r = fabs(saddle->basis[k * saddle->rows + k]);
     largest = fmax(largest, r);
     smallest = fmin(smallest, r);
   }

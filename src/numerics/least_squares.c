@@ -27,37 +27,37 @@ static double square(int m, const double *value)
   return sum;
 }
 
-static enum eo_code evaluate(struct search *s, const double *x, double *residual, struct eo_error *error)
+static enum eo_code evaluate(struct search *search, const double *x, double *residual, struct eo_error *error)
 {
-  s->report->evaluations++;
-  return s->function(s->context, x, residual, error);
+  search->report->evaluations++;
+  return search->function(search->context, x, residual, error);
 }
 
-static enum eo_code differentiate(struct search *s, const double *x, struct eo_error *error)
+static enum eo_code differentiate(struct search *search, const double *x, struct eo_error *error)
 {
   double moved[MOST];
-  for (int j = 0; j < s->n; j++) {
-    double step = x[j] + s->options->step <= 1 ? s->options->step : -s->options->step;
-    memcpy(moved, x, sizeof *x * (size_t)s->n);
+  for (int j = 0; j < search->n; j++) {
+    double step = x[j] + search->options->step <= 1 ? search->options->step : -search->options->step;
+    memcpy(moved, x, sizeof *x * (size_t)search->n);
     moved[j] += step;
-    enum eo_code code = evaluate(s, moved, s->trial, error);
+    enum eo_code code = evaluate(search, moved, search->trial, error);
     if (code)
       return code;
-    for (int i = 0; i < s->m; i++)
-      s->jacobian[i * s->n + j] = (s->trial[i] - s->residual[i]) / step;
+    for (int i = 0; i < search->m; i++)
+      search->jacobian[i * search->n + j] = (search->trial[i] - search->residual[i]) / step;
   }
   return EO_OK;
 }
 
 /* (J'J + damping diag) step = -J'r among the unknowns that may move. */
-static bool find_step(const struct search *s, const double *x, double damping, double *step)
+static bool find_step(const struct search *search, const double *x, double damping, double *step)
 {
   double matrix[MOST * MOST], gradient[MOST];
   int pivot[MOST], at[MOST], free_unknowns = 0;
-  for (int j = 0; j < s->n; j++) {
+  for (int j = 0; j < search->n; j++) {
     gradient[j] = 0;
-    for (int i = 0; i < s->m; i++)
-      gradient[j] += s->jacobian[i * s->n + j] * s->residual[i];
+    for (int i = 0; i < search->m; i++)
+      gradient[j] += search->jacobian[i * search->n + j] * search->residual[i];
     step[j] = 0;
     bool held = (x[j] <= 0 && gradient[j] > 0) || (x[j] >= 1 && gradient[j] < 0);
     if (!held)
@@ -68,8 +68,8 @@ static bool find_step(const struct search *s, const double *x, double damping, d
     solution[a] = -gradient[at[a]];
     for (int b = 0; b < free_unknowns; b++) {
       double sum = 0;
-      for (int i = 0; i < s->m; i++)
-        sum += s->jacobian[i * s->n + at[a]] * s->jacobian[i * s->n + at[b]];
+      for (int i = 0; i < search->m; i++)
+        sum += search->jacobian[i * search->n + at[a]] * search->jacobian[i * search->n + at[b]];
       matrix[a * free_unknowns + b] = a == b ? sum * (1 + damping) + 1e-12 : sum;
     }
   }
@@ -81,28 +81,28 @@ static bool find_step(const struct search *s, const double *x, double damping, d
 }
 
 /* Tries steps with growing damping; *moved: the largest change of an unknown, 0 when none helps. */
-static enum eo_code improve(struct search *s, double *x, double *damping, double *moved, struct eo_error *error)
+static enum eo_code improve(struct search *search, double *x, double *damping, double *moved, struct eo_error *error)
 {
   double step[MOST], next[MOST];
   *moved = 0;
   for (int attempt = 0; attempt < 12; attempt++, *damping *= 4) {
     double change = 0;
-    if (!find_step(s, x, *damping, step))
+    if (!find_step(search, x, *damping, step))
       return EO_OK;
-    for (int j = 0; j < s->n; j++) {
+    for (int j = 0; j < search->n; j++) {
       next[j] = fmin(1, fmax(0, x[j] + step[j]));
       change = fmax(change, fabs(next[j] - x[j]));
     }
-    if (change < s->options->tolerance)
+    if (change < search->options->tolerance)
       return EO_OK;
-    enum eo_code code = evaluate(s, next, s->trial, error);
+    enum eo_code code = evaluate(search, next, search->trial, error);
     if (code)
       return code;
-    double value = square(s->m, s->trial);
-    if (value < s->report->square) {
-      memcpy(x, next, sizeof *x * (size_t)s->n);
-      memcpy(s->residual, s->trial, sizeof *s->residual * (size_t)s->m);
-      s->report->square = value;
+    double value = square(search->m, search->trial);
+    if (value < search->report->square) {
+      memcpy(x, next, sizeof *x * (size_t)search->n);
+      memcpy(search->residual, search->trial, sizeof *search->residual * (size_t)search->m);
+      search->report->square = value;
       *damping = fmax(*damping / 6, 1e-9);
       *moved = change;
       return EO_OK;
@@ -121,19 +121,19 @@ enum eo_code eo_least_squares(eo_residual_function *function, void *context, int
   double *room = calloc((size_t)m * (size_t)(n + 2), sizeof *room), damping = 1e-3, moved = 1;
   if (!room)
     return eo_error_memory(error);
-  struct search s = {function, context, n, m, options, report, room, room + m, room + 2 * m};
-  enum eo_code code = evaluate(&s, x, s.residual, error);
-  report->square = code ? NAN : square(m, s.residual);
+  struct search search = {function, context, n, m, options, report, room, room + m, room + 2 * m};
+  enum eo_code code = evaluate(&search, x, search.residual, error);
+  report->square = code ? NAN : square(m, search.residual);
   while (!code && !report->converged && report->iterations < options->iterations) {
     report->iterations++;
-    code = differentiate(&s, x, error);
+    code = differentiate(&search, x, error);
     if (!code)
-      code = improve(&s, x, &damping, &moved, error);
+      code = improve(&search, x, &damping, &moved, error);
     report->converged = moved < options->tolerance;
   }
   if (!code && jacobian) {
-    code = differentiate(&s, x, error);
-    memcpy(jacobian, s.jacobian, sizeof *jacobian * (size_t)(m * n));
+    code = differentiate(&search, x, error);
+    memcpy(jacobian, search.jacobian, sizeof *jacobian * (size_t)(m * n));
   }
   free(room);
   return code;

@@ -138,38 +138,39 @@ struct line_search {
 };
 
 /* The parabola through the three places, if its bottom lies inside and it moves less than half the move before last. */
-static bool along_parabola(struct line_search *l, double tolerance, double *move)
+static bool along_parabola(struct line_search *search, double tolerance, double *move)
 {
-  double x = l->place[0], r = (x - l->place[1]) * (l->value[0] - l->value[2]),
-         q = (x - l->place[2]) * (l->value[0] - l->value[1]), p = (x - l->place[2]) * q - (x - l->place[1]) * r,
-         twice = 2 * (q - r);
-  if (fabs(l->before) <= tolerance || twice == 0)
+  double x = search->place[0], r = (x - search->place[1]) * (search->value[0] - search->value[2]),
+         q = (x - search->place[2]) * (search->value[0] - search->value[1]),
+         p = (x - search->place[2]) * q - (x - search->place[1]) * r, twice = 2 * (q - r);
+  if (fabs(search->before) <= tolerance || twice == 0)
     return false;
   *move = -p / twice;
-  if (!(fabs(*move) < fabs(l->before) / 2) || x + *move <= l->low || x + *move >= l->high)
+  if (!(fabs(*move) < fabs(search->before) / 2) || x + *move <= search->low || x + *move >= search->high)
     return false;
-  if (x + *move - l->low < 2 * tolerance || l->high - x - *move < 2 * tolerance)
-    *move = copysign(tolerance, (l->low + l->high) / 2 - x);
+  if (x + *move - search->low < 2 * tolerance || search->high - x - *move < 2 * tolerance)
+    *move = copysign(tolerance, (search->low + search->high) / 2 - x);
   return true;
 }
 
 /* Takes in a value: the interval shrinks towards the better of it and the best one. */
-static void take_value(struct line_search *l, double x, double value)
+static void take_value(struct line_search *search, double x, double value)
 {
-  int at = value < l->value[0] ? 0 : value <= l->value[1] || l->place[1] == l->place[0] ? 1 : 2;
-  double bound = at == 0 ? l->place[0] : x, inside = at == 0 ? x : l->place[0];
+  int at = value < search->value[0] ? 0 : value <= search->value[1] || search->place[1] == search->place[0] ? 1 : 2;
+  double bound = at == 0 ? search->place[0] : x, inside = at == 0 ? x : search->place[0];
   if (inside < bound)
-    l->high = bound;
+    search->high = bound;
   else
-    l->low = bound;
-  if (at == 2 && value > l->value[2] && l->place[2] != l->place[0] && l->place[2] != l->place[1])
+    search->low = bound;
+  if (at == 2 && value > search->value[2] && search->place[2] != search->place[0] &&
+      search->place[2] != search->place[1])
     return;
   for (int i = 2; i > at; i--) {
-    l->place[i] = l->place[i - 1];
-    l->value[i] = l->value[i - 1];
+    search->place[i] = search->place[i - 1];
+    search->value[i] = search->value[i - 1];
   }
-  l->place[at] = x;
-  l->value[at] = value;
+  search->place[at] = x;
+  search->value[at] = value;
 }
 
 double eo_minimise_along(eo_line_function *function, void *context, double low, double high, double tolerance,
@@ -177,21 +178,21 @@ double eo_minimise_along(eo_line_function *function, void *context, double low, 
 {
   enum { STEPS = 100 };
   static const double GOLDEN = 0.3819660112501051; /* (3 - sqrt 5) / 2 */
-  struct line_search l = {low, high, {*x, *x, *x}, {value, value, value}, 0, 0};
+  struct line_search search = {low, high, {*x, *x, *x}, {value, value, value}, 0, 0};
   for (int i = 0; i < STEPS; i++) {
-    double middle = (l.low + l.high) / 2, move = 0;
-    if (fabs(l.place[0] - middle) <= 2 * tolerance - (l.high - l.low) / 2)
+    double middle = (search.low + search.high) / 2, move = 0;
+    if (fabs(search.place[0] - middle) <= 2 * tolerance - (search.high - search.low) / 2)
       break;
-    if (along_parabola(&l, tolerance, &move)) {
-      l.before = l.move;
+    if (along_parabola(&search, tolerance, &move)) {
+      search.before = search.move;
     } else {
-      l.before = (l.place[0] < middle ? l.high : l.low) - l.place[0];
-      move = GOLDEN * l.before;
+      search.before = (search.place[0] < middle ? search.high : search.low) - search.place[0];
+      move = GOLDEN * search.before;
     }
-    l.move = move;
-    double next = l.place[0] + (fabs(move) < tolerance ? copysign(tolerance, move) : move);
-    take_value(&l, next, function(context, next));
+    search.move = move;
+    double next = search.place[0] + (fabs(move) < tolerance ? copysign(tolerance, move) : move);
+    take_value(&search, next, function(context, next));
   }
-  *x = l.place[0];
-  return l.value[0];
+  *x = search.place[0];
+  return search.value[0];
 }

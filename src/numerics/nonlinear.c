@@ -19,13 +19,14 @@ struct eo_nonlinear {
 
 static int call_residual(N_Vector x, N_Vector residual, void *user)
 {
-  struct eo_nonlinear *w = user;
-  w->evaluations++;
-  int code = w->problem->residual(w->problem->context, N_VGetArrayPointer(x), N_VGetArrayPointer(residual));
+  struct eo_nonlinear *nonlinear = user;
+  nonlinear->evaluations++;
+  int code = nonlinear->problem->residual(nonlinear->problem->context, N_VGetArrayPointer(x),
+                                          N_VGetArrayPointer(residual));
   if (code)
     return code;
   const double *r = N_VGetArrayPointer(residual);
-  for (int i = 0; i < w->n; i++)
+  for (int i = 0; i < nonlinear->n; i++)
     if (!isfinite(r[i]))
       return 1;
   return 0;
@@ -35,27 +36,29 @@ static int call_jacobian(N_Vector x, N_Vector residual, SUNMatrix matrix, void *
                          N_Vector scratch2)
 {
   (void)residual, (void)scratch1, (void)scratch2;
-  struct eo_nonlinear *w = user;
-  int code = w->problem->jacobian(w->problem->context, N_VGetArrayPointer(x), eo_dense_newton_clear(&w->newton));
+  struct eo_nonlinear *nonlinear = user;
+  int code = nonlinear->problem->jacobian(nonlinear->problem->context, N_VGetArrayPointer(x),
+                                          eo_dense_newton_clear(&nonlinear->newton));
   if (!code)
-    eo_dense_newton_put(&w->newton, matrix);
+    eo_dense_newton_put(&nonlinear->newton, matrix);
   return code;
 }
 
-static int make_parts(struct eo_nonlinear *w)
+static int make_parts(struct eo_nonlinear *nonlinear)
 {
-  struct eo_dense_newton *newton = &w->newton;
-  if (eo_dense_newton_init(newton, w->n))
+  struct eo_dense_newton *newton = &nonlinear->newton;
+  if (eo_dense_newton_init(newton, nonlinear->n))
     return -1;
-  w->x_scale = N_VNew_Serial(w->n, newton->context);
-  w->residual_scale = N_VNew_Serial(w->n, newton->context);
-  w->residual = N_VNew_Serial(w->n, newton->context);
-  w->kinsol = KINCreate(newton->context);
-  if (!w->x_scale || !w->residual_scale || !w->residual || !w->kinsol)
+  nonlinear->x_scale = N_VNew_Serial(nonlinear->n, newton->context);
+  nonlinear->residual_scale = N_VNew_Serial(nonlinear->n, newton->context);
+  nonlinear->residual = N_VNew_Serial(nonlinear->n, newton->context);
+  nonlinear->kinsol = KINCreate(newton->context);
+  if (!nonlinear->x_scale || !nonlinear->residual_scale || !nonlinear->residual || !nonlinear->kinsol)
     return -1;
-  return KINSetErrHandlerFn(w->kinsol, eo_dense_newton_quiet, NULL) || KINInit(w->kinsol, call_residual, newton->x) ||
-                 KINSetUserData(w->kinsol, w) || KINSetLinearSolver(w->kinsol, newton->solver, newton->matrix) ||
-                 KINSetMaxSetupCalls(w->kinsol, 1)
+  return KINSetErrHandlerFn(nonlinear->kinsol, eo_dense_newton_quiet, NULL) ||
+                 KINInit(nonlinear->kinsol, call_residual, newton->x) || KINSetUserData(nonlinear->kinsol, nonlinear) ||
+                 KINSetLinearSolver(nonlinear->kinsol, newton->solver, newton->matrix) ||
+                 KINSetMaxSetupCalls(nonlinear->kinsol, 1)
              ? -1
              : 0;
 }
@@ -64,30 +67,30 @@ enum eo_code eo_nonlinear_new(struct eo_nonlinear **workspace, int n, struct eo_
 {
   if (n < 1)
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "A nonlinear system needs at least one unknown, not %d.", n);
-  struct eo_nonlinear *w = calloc(1, sizeof *w);
-  if (!w)
+  struct eo_nonlinear *nonlinear = calloc(1, sizeof *nonlinear);
+  if (!nonlinear)
     return eo_error_memory(error);
-  w->n = n;
-  if (make_parts(w)) {
-    eo_nonlinear_free(w);
+  nonlinear->n = n;
+  if (make_parts(nonlinear)) {
+    eo_nonlinear_free(nonlinear);
     return eo_error_memory(error);
   }
-  *workspace = w;
+  *workspace = nonlinear;
   return EO_OK;
 }
 
-void eo_nonlinear_free(struct eo_nonlinear *w)
+void eo_nonlinear_free(struct eo_nonlinear *nonlinear)
 {
-  if (!w)
+  if (!nonlinear)
     return;
-  if (w->kinsol)
-    KINFree(&w->kinsol);
-  N_Vector vector[] = {w->x_scale, w->residual_scale, w->residual};
+  if (nonlinear->kinsol)
+    KINFree(&nonlinear->kinsol);
+  N_Vector vector[] = {nonlinear->x_scale, nonlinear->residual_scale, nonlinear->residual};
   for (size_t i = 0; i < sizeof vector / sizeof vector[0]; i++)
     if (vector[i])
       N_VDestroy(vector[i]);
-  eo_dense_newton_done(&w->newton);
-  free(w);
+  eo_dense_newton_done(&nonlinear->newton);
+  free(nonlinear);
 }
 
 static int set_scale(N_Vector vector, const double *typical, int n)
@@ -101,27 +104,32 @@ static int set_scale(N_Vector vector, const double *typical, int n)
   return 0;
 }
 
-static enum eo_code apply_options(struct eo_nonlinear *w, const struct eo_nonlinear_options *o, struct eo_error *error)
+static enum eo_code apply_options(struct eo_nonlinear *nonlinear, const struct eo_nonlinear_options *options,
+                                  struct eo_error *error)
 {
-  if (!(o->residual_tolerance > 0) || !(o->step_tolerance > 0) || o->max_iterations < 1 || !(o->max_step >= 0))
+  if (!(options->residual_tolerance > 0) || !(options->step_tolerance > 0) || options->max_iterations < 1 ||
+      !(options->max_step >= 0))
     return eo_error_set(error, EO_ERROR_NUMERIC, "",
                         "The tolerances and the iteration limit of a nonlinear solve must be positive.");
-  if (set_scale(w->x_scale, o->x_scale, w->n) || set_scale(w->residual_scale, o->residual_scale, w->n))
+  if (set_scale(nonlinear->x_scale, options->x_scale, nonlinear->n) ||
+      set_scale(nonlinear->residual_scale, options->residual_scale, nonlinear->n))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The scales of a nonlinear solve must be positive and finite.");
-  if (KINSetJacFn(w->kinsol, w->problem->jacobian ? call_jacobian : NULL) ||
-      KINSetFuncNormTol(w->kinsol, o->residual_tolerance) || KINSetScaledStepTol(w->kinsol, o->step_tolerance) ||
-      KINSetNumMaxIters(w->kinsol, o->max_iterations) || KINSetMaxNewtonStep(w->kinsol, o->max_step))
+  if (KINSetJacFn(nonlinear->kinsol, nonlinear->problem->jacobian ? call_jacobian : NULL) ||
+      KINSetFuncNormTol(nonlinear->kinsol, options->residual_tolerance) ||
+      KINSetScaledStepTol(nonlinear->kinsol, options->step_tolerance) ||
+      KINSetNumMaxIters(nonlinear->kinsol, options->max_iterations) ||
+      KINSetMaxNewtonStep(nonlinear->kinsol, options->max_step))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "KINSOL refused the options of a nonlinear solve.");
   return EO_OK;
 }
 
-static double scaled_residual(struct eo_nonlinear *w)
+static double scaled_residual(struct eo_nonlinear *nonlinear)
 {
-  if (call_residual(w->newton.x, w->residual, w))
+  if (call_residual(nonlinear->newton.x, nonlinear->residual, nonlinear))
     return INFINITY;
-  const double *r = N_VGetArrayPointer(w->residual), *scale = N_VGetArrayPointer(w->residual_scale);
+  const double *r = N_VGetArrayPointer(nonlinear->residual), *scale = N_VGetArrayPointer(nonlinear->residual_scale);
   double largest = 0;
-  for (int i = 0; i < w->n; i++)
+  for (int i = 0; i < nonlinear->n; i++)
     largest = fmax(largest, fabs(r[i] * scale[i]));
   return largest;
 }
@@ -143,28 +151,29 @@ static enum eo_nonlinear_outcome outcome_of(int flag, double residual, double to
   }
 }
 
-enum eo_code eo_nonlinear_solve(struct eo_nonlinear *w, const struct eo_nonlinear_problem *problem,
+enum eo_code eo_nonlinear_solve(struct eo_nonlinear *nonlinear, const struct eo_nonlinear_problem *problem,
                                 const struct eo_nonlinear_options *options, double *x,
                                 struct eo_nonlinear_report *report, struct eo_error *error)
 {
-  w->problem = problem;
-  w->evaluations = 0;
-  enum eo_code code = apply_options(w, options, error);
+  nonlinear->problem = problem;
+  nonlinear->evaluations = 0;
+  enum eo_code code = apply_options(nonlinear, options, error);
   if (code)
     return code;
-  memcpy(N_VGetArrayPointer(w->newton.x), x, sizeof *x * w->n);
+  memcpy(N_VGetArrayPointer(nonlinear->newton.x), x, sizeof *x * nonlinear->n);
   *report = (struct eo_nonlinear_report){0};
-  report->residual = scaled_residual(w);
+  report->residual = scaled_residual(nonlinear);
   int flag = KIN_INITIAL_GUESS_OK;
   if (!(report->residual <= options->residual_tolerance)) {
     long iterations = 0;
-    flag = KINSol(w->kinsol, w->newton.x, KIN_LINESEARCH, w->x_scale, w->residual_scale);
-    KINGetNumNonlinSolvIters(w->kinsol, &iterations);
+    flag = KINSol(nonlinear->kinsol, nonlinear->newton.x, KIN_LINESEARCH, nonlinear->x_scale,
+                  nonlinear->residual_scale);
+    KINGetNumNonlinSolvIters(nonlinear->kinsol, &iterations);
     report->iterations = (int)iterations;
-    report->residual = scaled_residual(w);
+    report->residual = scaled_residual(nonlinear);
   }
   report->outcome = outcome_of(flag, report->residual, options->residual_tolerance);
-  report->evaluations = w->evaluations;
-  memcpy(x, N_VGetArrayPointer(w->newton.x), sizeof *x * w->n);
+  report->evaluations = nonlinear->evaluations;
+  memcpy(x, N_VGetArrayPointer(nonlinear->newton.x), sizeof *x * nonlinear->n);
   return EO_OK;
 }

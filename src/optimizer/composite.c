@@ -46,51 +46,52 @@ bool eo_composite_takes(const struct eo_composite *composite, const struct eo_ar
 }
 
 /* The value of parts[1 + parts] as the composite gives it. */
-static double put_together(const struct eo_composite *c, const double *part)
+static double put_together(const struct eo_composite *composite, const double *part)
 {
-  return part[0] + eo_anatomy_sum(c->anatomy, part + 1) / c->scale;
+  return part[0] + eo_anatomy_sum(composite->anatomy, part + 1) / composite->scale;
 }
 
-static void set_right_sides(struct eo_composite *c, const struct eo_composite_rows *rows)
+static void set_right_sides(struct eo_composite *composite, const struct eo_composite_rows *rows)
 {
-  const int parts = c->anatomy->parts, count = rows->count;
+  const int parts = composite->anatomy->parts, count = rows->count;
   for (int j = 0; j < count; j++) {
     const double *part = parts ? rows->archive->part + (size_t)rows->row[j] * (size_t)parts : NULL;
-    const double rest = (rows->value[j] - rows->offset - eo_anatomy_sum(c->anatomy, part)) / rows->scale;
-    c->y[j] = parts ? fmin(rest, rows->most_rest) : rest;
+    const double rest = (rows->value[j] - rows->offset - eo_anatomy_sum(composite->anatomy, part)) / rows->scale;
+    composite->y[j] = parts ? fmin(rest, rows->most_rest) : rest;
     for (int o = 0; o < parts; o++)
-      c->y[(size_t)(1 + o) * (size_t)count + (size_t)j] = part[o];
+      composite->y[(size_t)(1 + o) * (size_t)count + (size_t)j] = part[o];
   }
 }
 
 /* What the other rows say of each, put together, against what it is. */
-static void leave_one_out(struct eo_composite *c)
+static void leave_one_out(struct eo_composite *composite)
 {
-  const struct eo_surrogate *s = &c->surrogate;
-  const int outputs = 1 + c->anatomy->parts, rows = s->rows;
+  const struct eo_surrogate *surrogate = &composite->surrogate;
+  const int outputs = 1 + composite->anatomy->parts, rows = surrogate->rows;
   for (int j = 0; j < rows; j++) {
     if (outputs == 1) {
-      c->residual[j] = s->residual[j];
+      composite->residual[j] = surrogate->residual[j];
       continue;
     }
     for (int o = 0; o < outputs; o++)
-      c->part[o] = c->y[(size_t)o * (size_t)rows + (size_t)j];
-    const double known = put_together(c, c->part);
+      composite->part[o] = composite->y[(size_t)o * (size_t)rows + (size_t)j];
+    const double known = put_together(composite, composite->part);
     for (int o = 0; o < outputs; o++)
-      c->part[o] -= s->coefficient[(size_t)o * (size_t)s->rows_max + (size_t)j] / s->diagonal[j];
-    c->residual[j] = fabs(put_together(c, c->part) - known);
+      composite->part[o] -= surrogate->coefficient[(size_t)o * (size_t)surrogate->rows_max + (size_t)j] /
+                            surrogate->diagonal[j];
+    composite->residual[j] = fabs(put_together(composite, composite->part) - known);
   }
 }
 
-static void measure_groups(struct eo_composite *c, const struct eo_composite_rows *rows)
+static void measure_groups(struct eo_composite *composite, const struct eo_composite_rows *rows)
 {
-  const struct eo_anatomy *a = c->anatomy;
-  for (int g = 0, first = 0; g < a->groups; first += a->group[g++].count) {
-    c->size[g] = 0;
+  const struct eo_anatomy *anatomy = composite->anatomy;
+  for (int g = 0, first = 0; g < anatomy->groups; first += anatomy->group[g++].count) {
+    composite->size[g] = 0;
     for (int j = 0; j < rows->count; j++) {
       int most, least;
-      const double *part = rows->archive->part + (size_t)rows->row[j] * (size_t)a->parts + first;
-      c->size[g] += fabs(eo_anatomy_reduce(&a->group[g], part, &most, &least)) / rows->count;
+      const double *part = rows->archive->part + (size_t)rows->row[j] * (size_t)anatomy->parts + first;
+      composite->size[g] += fabs(eo_anatomy_reduce(&anatomy->group[g], part, &most, &least)) / rows->count;
     }
   }
 }
@@ -110,23 +111,24 @@ bool eo_composite_fit(struct eo_composite *composite, enum eo_tail tail, double 
 }
 
 /* The weights of all outputs in the gradient at the visited point, and the value there. */
-static double weigh(struct eo_composite *c)
+static double weigh(struct eo_composite *composite)
 {
-  const struct eo_anatomy *a = c->anatomy;
-  double value = c->part[0];
-  memset(c->weight, 0, (1 + (size_t)a->parts) * sizeof(double));
-  c->weight[0] = 1;
-  for (int g = 0, first = 1; g < a->groups; first += a->group[g++].count) {
-    const double weight = a->group[g].weight / c->scale, softness = c->softness * c->size[g];
-    double *own = c->weight + first;
-    if (softness > 0 && a->group[g].count > 1) {
-      value += weight * eo_anatomy_soften(&a->group[g], c->part + first, softness, own);
-      for (int i = 0; i < a->group[g].count; i++)
+  const struct eo_anatomy *anatomy = composite->anatomy;
+  double value = composite->part[0];
+  memset(composite->weight, 0, (1 + (size_t)anatomy->parts) * sizeof(double));
+  composite->weight[0] = 1;
+  for (int g = 0, first = 1; g < anatomy->groups; first += anatomy->group[g++].count) {
+    const double weight = anatomy->group[g].weight / composite->scale,
+                 softness = composite->softness * composite->size[g];
+    double *own = composite->weight + first;
+    if (softness > 0 && anatomy->group[g].count > 1) {
+      value += weight * eo_anatomy_soften(&anatomy->group[g], composite->part + first, softness, own);
+      for (int i = 0; i < anatomy->group[g].count; i++)
         own[i] *= weight;
       continue;
     }
     int most, least;
-    value += weight * eo_anatomy_reduce(&a->group[g], c->part + first, &most, &least);
+    value += weight * eo_anatomy_reduce(&anatomy->group[g], composite->part + first, &most, &least);
     own[most] += weight;
     if (least >= 0)
       own[least] -= weight;
@@ -145,16 +147,16 @@ double eo_composite_value(struct eo_composite *composite, const double *x)
 
 void eo_composite_gradient(struct eo_composite *composite, double *gradient)
 {
-  struct eo_surrogate *s = &composite->surrogate;
+  struct eo_surrogate *surrogate = &composite->surrogate;
   if (composite->anatomy->parts == 0) {
-    eo_surrogate_gradient(s, 0, gradient);
+    eo_surrogate_gradient(surrogate, 0, gradient);
     return;
   }
-  cblas_dgemv(CblasRowMajor, CblasTrans, s->outputs, s->rows, 1, s->coefficient, s->rows_max, composite->weight, 1, 0,
-              composite->coefficient, 1);
-  cblas_dgemv(CblasRowMajor, CblasTrans, s->outputs, s->terms, 1, s->polynomial, s->terms, composite->weight, 1, 0,
-              composite->polynomial, 1);
-  eo_surrogate_slope(s, composite->coefficient, composite->polynomial, gradient);
+  cblas_dgemv(CblasRowMajor, CblasTrans, surrogate->outputs, surrogate->rows, 1, surrogate->coefficient,
+              surrogate->rows_max, composite->weight, 1, 0, composite->coefficient, 1);
+  cblas_dgemv(CblasRowMajor, CblasTrans, surrogate->outputs, surrogate->terms, 1, surrogate->polynomial,
+              surrogate->terms, composite->weight, 1, 0, composite->polynomial, 1);
+  eo_surrogate_slope(surrogate, composite->coefficient, composite->polynomial, gradient);
 }
 
 static double value_and_gradient(void *context, const double *x, double *gradient)

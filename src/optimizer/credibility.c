@@ -56,120 +56,125 @@ struct credibility {
   struct eo_global_minima global;
 };
 
-static void stop(struct eo_optimizer *o)
+static void stop(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  if (!c)
+  struct credibility *credibility = optimizer->state;
+  if (!credibility)
     return;
-  free(c->generation);
-  free(c->generation_x);
-  free(c->taboo);
-  free(c->parent);
-  free(c->latin);
-  free(c->chosen);
-  eo_credibility_model_done(&c->model);
-  eo_credibility_pool_done(&c->pool);
-  eo_local_done(&c->local);
-  eo_evolution_done(&c->evolution);
-  eo_global_minima_done(&c->global);
-  free(c);
+  free(credibility->generation);
+  free(credibility->generation_x);
+  free(credibility->taboo);
+  free(credibility->parent);
+  free(credibility->latin);
+  free(credibility->chosen);
+  eo_credibility_model_done(&credibility->model);
+  eo_credibility_pool_done(&credibility->pool);
+  eo_local_done(&credibility->local);
+  eo_evolution_done(&credibility->evolution);
+  eo_global_minima_done(&credibility->global);
+  free(credibility);
 }
 
 /* Whether the value's parts are known: a model of them leads to the bottom sooner, and says where to look next. */
-static bool is_described(const struct eo_optimizer *o)
+static bool is_described(const struct eo_optimizer *optimizer)
 {
-  return o->anatomy.parts > 0;
+  return optimizer->anatomy.parts > 0;
 }
 
-static int least_places(const struct eo_optimizer *o)
+static int least_places(const struct eo_optimizer *optimizer)
 {
-  return o->settings.batch > 1 ? 1 : 0;
+  return optimizer->settings.batch > 1 ? 1 : 0;
 }
 
-static void plan_epoch(struct eo_optimizer *o)
+static void plan_epoch(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  c->fresh = true;
-  c->search = is_described(o) ? (c->epoch % 2 == 0 ? MODEL : SAMPLE) : c->epoch % 2 == 0 ? SAMPLE : BREED;
-  c->local_places = c->search == MODEL ? o->settings.batch / 2 : least_places(o);
-  c->evolving = false;
-  c->epoch_first = c->epoch ? o->archive.count : 0; /* rows known from elsewhere belong to the first */
-  c->epoch_best = INFINITY;
-  c->stalled = 0;
-  eo_local_restart(&c->local, o->settings.local_radius);
+  struct credibility *credibility = optimizer->state;
+  credibility->fresh = true;
+  credibility->search = is_described(optimizer)       ? (credibility->epoch % 2 == 0 ? MODEL : SAMPLE)
+                        : credibility->epoch % 2 == 0 ? SAMPLE
+                                                      : BREED;
+  credibility->local_places = credibility->search == MODEL ? optimizer->settings.batch / 2 : least_places(optimizer);
+  credibility->evolving = false;
+  credibility->epoch_first = credibility->epoch ? optimizer->archive.count
+                                                : 0; /* rows known from elsewhere belong to the first */
+  credibility->epoch_best = INFINITY;
+  credibility->stalled = 0;
+  eo_local_restart(&credibility->local, optimizer->settings.local_radius);
 }
 
-static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  const struct eo_optimizer_settings *s = &o->settings;
-  const size_t n = (size_t)s->variables;
-  struct credibility *c = o->state = calloc(1, sizeof *c);
-  if (!c)
+  const struct eo_optimizer_settings *settings = &optimizer->settings;
+  const size_t n = (size_t)settings->variables;
+  struct credibility *credibility = optimizer->state = calloc(1, sizeof *credibility);
+  if (!credibility)
     return eo_error_memory(error);
-  c->refined = -1;
-  const size_t initial = (size_t)s->initial_factor * n, batch = (size_t)s->batch > initial ? (size_t)s->batch : initial;
-  c->latin = malloc(initial * sizeof(double));
-  c->chosen = malloc(batch * n * sizeof(double));
-  c->generation = malloc(batch * sizeof(int));
-  c->generation_x = malloc(batch * sizeof *c->generation_x);
-  c->parent = malloc((size_t)s->population * sizeof(int));
-  if (!c->latin || !c->chosen || !c->generation || !c->generation_x || !c->parent)
+  credibility->refined = -1;
+  const size_t initial = (size_t)settings->initial_factor * n,
+               batch = (size_t)settings->batch > initial ? (size_t)settings->batch : initial;
+  credibility->latin = malloc(initial * sizeof(double));
+  credibility->chosen = malloc(batch * n * sizeof(double));
+  credibility->generation = malloc(batch * sizeof(int));
+  credibility->generation_x = malloc(batch * sizeof *credibility->generation_x);
+  credibility->parent = malloc((size_t)settings->population * sizeof(int));
+  if (!credibility->latin || !credibility->chosen || !credibility->generation || !credibility->generation_x ||
+      !credibility->parent)
     return eo_error_memory(error);
-  enum eo_code code = eo_credibility_model_init(&c->model, s, &o->anatomy, error);
+  enum eo_code code = eo_credibility_model_init(&credibility->model, settings, &optimizer->anatomy, error);
   if (code == EO_OK)
-    code = eo_credibility_pool_init(&c->pool, s, error);
+    code = eo_credibility_pool_init(&credibility->pool, settings, error);
   if (code == EO_OK)
-    code = eo_local_init(&c->local, &o->anatomy, s->variables, error);
+    code = eo_local_init(&credibility->local, &optimizer->anatomy, settings->variables, error);
   if (code == EO_OK)
-    code = eo_evolution_init(&c->evolution, s->variables, error);
+    code = eo_evolution_init(&credibility->evolution, settings->variables, error);
   if (code == EO_OK)
-    code = eo_global_minima_init(&c->global, s->variables, error);
+    code = eo_global_minima_init(&credibility->global, settings->variables, error);
   if (code == EO_OK)
-    plan_epoch(o);
-  return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
+    plan_epoch(optimizer);
+  return code == EO_OK ? eo_optimizer_reserve_batch(optimizer, (int)batch, error) : code;
 }
 
-static const double *row_x(const struct eo_optimizer *o, int row)
+static const double *row_x(const struct eo_optimizer *optimizer, int row)
 {
-  return o->archive.x + (size_t)row * o->settings.variables;
+  return optimizer->archive.x + (size_t)row * optimizer->settings.variables;
 }
 
 /* Polishing and refining go for the best row of all; else an epoch sees its own rows only. */
-static bool sees_all(const struct credibility *c)
+static bool sees_all(const struct credibility *credibility)
 {
-  return c->polishing || c->search == REFINE;
+  return credibility->polishing || credibility->search == REFINE;
 }
 
 /* A model of parts finds the bottom of a valley from afar: what is finished is twice as large. */
-static double taboo_radius(const struct eo_optimizer *o)
+static double taboo_radius(const struct eo_optimizer *optimizer)
 {
-  return (is_described(o) ? 2 : 1) * o->settings.taboo_radius * sqrt(o->settings.variables);
+  return (is_described(optimizer) ? 2 : 1) * optimizer->settings.taboo_radius * sqrt(optimizer->settings.variables);
 }
 
-static bool is_taboo(const struct eo_optimizer *o, const double *x)
+static bool is_taboo(const struct eo_optimizer *optimizer, const double *x)
 {
-  const struct credibility *c = o->state;
-  const int n = o->settings.variables;
-  const double radius = taboo_radius(o);
-  for (int i = 0; i < c->taboo_count && !sees_all(c); i++)
-    if (eo_unit_distance(row_x(o, c->taboo[i]), x, n) < radius)
+  const struct credibility *credibility = optimizer->state;
+  const int n = optimizer->settings.variables;
+  const double radius = taboo_radius(optimizer);
+  for (int i = 0; i < credibility->taboo_count && !sees_all(credibility); i++)
+    if (eo_unit_distance(row_x(optimizer, credibility->taboo[i]), x, n) < radius)
       return true;
   return false;
 }
 
 /* The best rows that may be parents, best first, into c->parent. */
-static int gather_parents(struct eo_optimizer *o)
+static int gather_parents(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  const int most = o->settings.population;
-  int count = 0, *parent = c->parent;
-  for (int row = sees_all(c) ? 0 : c->epoch_first; row < o->archive.count; row++) {
-    const double value = o->archive.value[row];
-    if (eo_archive_failed(&o->archive, row) || is_taboo(o, row_x(o, row)) ||
-        (count == most && value >= o->archive.value[parent[count - 1]]))
+  struct credibility *credibility = optimizer->state;
+  const int most = optimizer->settings.population;
+  int count = 0, *parent = credibility->parent;
+  for (int row = sees_all(credibility) ? 0 : credibility->epoch_first; row < optimizer->archive.count; row++) {
+    const double value = optimizer->archive.value[row];
+    if (eo_archive_failed(&optimizer->archive, row) || is_taboo(optimizer, row_x(optimizer, row)) ||
+        (count == most && value >= optimizer->archive.value[parent[count - 1]]))
       continue;
     int j = count < most ? count++ : count - 1;
-    for (; j > 0 && o->archive.value[parent[j - 1]] > value; j--)
+    for (; j > 0 && optimizer->archive.value[parent[j - 1]] > value; j--)
       parent[j] = parent[j - 1];
     parent[j] = row;
   }
@@ -177,281 +182,294 @@ static int gather_parents(struct eo_optimizer *o)
 }
 
 /* Asks for c->chosen, the first `local` of which come from the trust region. */
-static void request_chosen(struct eo_optimizer *o, int count, int local)
+static void request_chosen(struct eo_optimizer *optimizer, int count, int local)
 {
-  struct credibility *c = o->state;
+  struct credibility *credibility = optimizer->state;
   bool known = false;
-  c->local_count = 0;
+  credibility->local_count = 0;
   for (int i = 0; i < count; i++) {
-    if (eo_optimizer_request(o, c->chosen + (size_t)i * o->settings.variables, c->batch, i, false, &known) < 0)
+    if (eo_optimizer_request(optimizer, credibility->chosen + (size_t)i * optimizer->settings.variables,
+                             credibility->batch, i, false, &known) < 0)
       return;
-    c->local_count += i < local && !known;
+    credibility->local_count += i < local && !known;
   }
 }
 
 /* Fills c->chosen from `first` to `count` with minima of the model, away from what is finished; `unknown` of the places
    go to what nobody knows. */
-static int choose_minima(struct eo_optimizer *o, int best, int first, int count, int unknown)
+static int choose_minima(struct eo_optimizer *optimizer, int best, int first, int count, int unknown)
 {
-  struct credibility *c = o->state;
-  const struct eo_global_bars bars = {c->taboo, c->taboo_count, taboo_radius(o)};
+  struct credibility *credibility = optimizer->state;
+  const struct eo_global_bars bars = {credibility->taboo, credibility->taboo_count, taboo_radius(optimizer)};
   const int minima = count - first > unknown ? count - first - unknown : 0;
-  eo_credibility_model_fit(&c->model, &o->archive, row_x(o, best));
-  return eo_global_minima_choose(&c->global, &c->model, &o->archive, &bars, best, c->batch, minima, c->chosen, first,
-                                 count);
+  eo_credibility_model_fit(&credibility->model, &optimizer->archive, row_x(optimizer, best));
+  return eo_global_minima_choose(&credibility->global, &credibility->model, &optimizer->archive, &bars, best,
+                                 credibility->batch, minima, credibility->chosen, first, count);
 }
 
-static void propose_epoch(struct eo_optimizer *o)
+static void propose_epoch(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  const int n = o->settings.variables, count = o->settings.initial_factor * n, best = eo_optimizer_best(o);
-  c->fresh = false;
-  if (is_described(o) && c->epoch > 0 && best >= 0) {
-    const int places = 2 * o->settings.batch < count ? 2 * o->settings.batch : count;
-    request_chosen(o, choose_minima(o, best, 0, places, places / 2), 0);
+  struct credibility *credibility = optimizer->state;
+  const int n = optimizer->settings.variables, count = optimizer->settings.initial_factor * n,
+            best = eo_optimizer_best(optimizer);
+  credibility->fresh = false;
+  if (is_described(optimizer) && credibility->epoch > 0 && best >= 0) {
+    const int places = 2 * optimizer->settings.batch < count ? 2 * optimizer->settings.batch : count;
+    request_chosen(optimizer, choose_minima(optimizer, best, 0, places, places / 2), 0);
     return;
   }
-  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->latin);
-  request_chosen(o, count, 0);
+  eo_latin_hypercube(credibility->chosen, count, n, optimizer->settings.seed, credibility->epoch, credibility->latin);
+  request_chosen(optimizer, count, 0);
 }
 
-static void begin_sampling(struct eo_optimizer *o, int from)
+static void begin_sampling(struct eo_optimizer *optimizer, int from)
 {
-  struct credibility *c = o->state;
-  c->evolving = true;
-  c->local_places = least_places(o);
-  eo_evolution_restart(&c->evolution, row_x(o, from), o->settings.sampling_step);
+  struct credibility *credibility = optimizer->state;
+  credibility->evolving = true;
+  credibility->local_places = least_places(optimizer);
+  eo_evolution_restart(&credibility->evolution, row_x(optimizer, from), optimizer->settings.sampling_step);
 }
 
 /* Both fill c->chosen from `first` to `count`; the second may leave places free. */
-static void choose_samples(struct eo_optimizer *o, int first, int count)
+static void choose_samples(struct eo_optimizer *optimizer, int first, int count)
 {
-  struct credibility *c = o->state;
-  const size_t n = (size_t)o->settings.variables;
-  eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
-  eo_credibility_pool_sample(&c->pool, &c->model, &c->evolution, o->settings.evolution_samples * (count - first),
-                             c->batch);
+  struct credibility *credibility = optimizer->state;
+  const size_t n = (size_t)optimizer->settings.variables;
+  eo_credibility_model_fit(&credibility->model, &optimizer->archive, credibility->evolution.mean);
+  eo_credibility_pool_sample(&credibility->pool, &credibility->model, &credibility->evolution,
+                             optimizer->settings.evolution_samples * (count - first), credibility->batch);
   for (int i = first; i < count; i++)
-    memcpy(c->chosen + (size_t)i * n, eo_credibility_pool_at(&c->pool, i - first), n * sizeof(double));
+    memcpy(credibility->chosen + (size_t)i * n, eo_credibility_pool_at(&credibility->pool, i - first),
+           n * sizeof(double));
 }
 
-static int choose_children(struct eo_optimizer *o, int parents, int first, int count)
+static int choose_children(struct eo_optimizer *optimizer, int parents, int first, int count)
 {
-  struct credibility *c = o->state;
-  eo_credibility_model_fit(&c->model, &o->archive, row_x(o, c->parent[0]));
-  eo_credibility_pool_breed(&c->pool, &c->model, &o->archive, c->parent, parents, c->batch);
-  for (int i = 0; i < c->pool.count; i++)
-    c->pool.barred[i] = is_taboo(o, c->pool.x + (size_t)i * o->settings.variables);
-  return eo_credibility_pool_spread(&c->pool, &o->archive, c->chosen, first, count);
+  struct credibility *credibility = optimizer->state;
+  eo_credibility_model_fit(&credibility->model, &optimizer->archive, row_x(optimizer, credibility->parent[0]));
+  eo_credibility_pool_breed(&credibility->pool, &credibility->model, &optimizer->archive, credibility->parent, parents,
+                            credibility->batch);
+  for (int i = 0; i < credibility->pool.count; i++)
+    credibility->pool.barred[i] = is_taboo(optimizer, credibility->pool.x + (size_t)i * optimizer->settings.variables);
+  return eo_credibility_pool_spread(&credibility->pool, &optimizer->archive, credibility->chosen, first, count);
 }
 
 /* Places of the trust region in the next batch. */
-static int local_share(const struct eo_optimizer *o)
+static int local_share(const struct eo_optimizer *optimizer)
 {
-  const struct credibility *c = o->state;
-  const int batch = o->settings.batch;
-  switch (c->search) {
+  const struct credibility *credibility = optimizer->state;
+  const int batch = optimizer->settings.batch;
+  switch (credibility->search) {
   case SAMPLE:
   case MODEL:
-    return c->local_places;
+    return credibility->local_places;
   case REFINE:
     return 0;
   default:
-    return c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
+    return credibility->polishing ? batch : (int)(optimizer->settings.local_share * batch + 0.5);
   }
 }
 
-static void propose_batch(struct eo_optimizer *o)
+static void propose_batch(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  const int parents = gather_parents(o), batch = o->settings.batch;
+  struct credibility *credibility = optimizer->state;
+  const int parents = gather_parents(optimizer), batch = optimizer->settings.batch;
   if (parents == 0)
     return;
-  if (c->search == SAMPLE && !c->evolving)
-    begin_sampling(o, c->parent[0]);
-  const int share = local_share(o);
-  const int local = share > 0 ? eo_local_propose(&c->local, &o->archive, c->parent[0], o->settings.seed, c->batch,
-                                                 share, c->chosen)
-                              : 0;
+  if (credibility->search == SAMPLE && !credibility->evolving)
+    begin_sampling(optimizer, credibility->parent[0]);
+  const int share = local_share(optimizer);
+  const int local = share > 0
+                        ? eo_local_propose(&credibility->local, &optimizer->archive, credibility->parent[0],
+                                           optimizer->settings.seed, credibility->batch, share, credibility->chosen)
+                        : 0;
   int chosen = local + batch - share;
-  if (c->evolving)
-    choose_samples(o, local, chosen);
-  else if (c->search == MODEL)
-    chosen = choose_minima(o, c->parent[0], local, chosen, o->settings.batch / 4);
+  if (credibility->evolving)
+    choose_samples(optimizer, local, chosen);
+  else if (credibility->search == MODEL)
+    chosen = choose_minima(optimizer, credibility->parent[0], local, chosen, optimizer->settings.batch / 4);
   else if (share < batch)
-    chosen = choose_children(o, parents, local, chosen);
-  request_chosen(o, chosen, local);
+    chosen = choose_children(optimizer, parents, local, chosen);
+  request_chosen(optimizer, chosen, local);
 }
 
-static void begin_epoch(struct eo_optimizer *o)
+static void begin_epoch(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  c->epoch++;
-  plan_epoch(o);
+  struct credibility *credibility = optimizer->state;
+  credibility->epoch++;
+  plan_epoch(optimizer);
 }
 
 /* Where the latin hypercube is known (an earlier run's rows were imported) children follow at once; nothing new to try
    ends an epoch, too. */
-static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code propose(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct credibility *c = o->state;
-  if (eo_optimizer_left(o) <= 0) {
-    o->finished = true;
+  struct credibility *credibility = optimizer->state;
+  if (eo_optimizer_left(optimizer) <= 0) {
+    optimizer->finished = true;
     return EO_OK;
   }
-  const enum eo_code code = eo_credibility_model_reserve(&c->model, o->archive.count, error);
-  while (code == EO_OK && o->batch_count == 0) {
-    if (c->fresh)
-      propose_epoch(o);
-    if (o->batch_count == 0)
-      propose_batch(o);
-    if (o->batch_count == 0)
-      begin_epoch(o);
+  const enum eo_code code = eo_credibility_model_reserve(&credibility->model, optimizer->archive.count, error);
+  while (code == EO_OK && optimizer->batch_count == 0) {
+    if (credibility->fresh)
+      propose_epoch(optimizer);
+    if (optimizer->batch_count == 0)
+      propose_batch(optimizer);
+    if (optimizer->batch_count == 0)
+      begin_epoch(optimizer);
   }
   return code;
 }
 
-static double best_row(const struct eo_optimizer *o, int *best)
+static double best_row(const struct eo_optimizer *optimizer, int *best)
 {
-  const struct credibility *c = o->state;
+  const struct credibility *credibility = optimizer->state;
   double value = INFINITY;
   *best = -1;
-  for (int row = sees_all(c) ? 0 : c->epoch_first; row < o->archive.count; row++)
-    if (o->archive.value[row] < value && !is_taboo(o, row_x(o, row))) {
-      value = o->archive.value[row];
+  for (int row = sees_all(credibility) ? 0 : credibility->epoch_first; row < optimizer->archive.count; row++)
+    if (optimizer->archive.value[row] < value && !is_taboo(optimizer, row_x(optimizer, row))) {
+      value = optimizer->archive.value[row];
       *best = row;
     }
   return value;
 }
 
-static enum eo_code avoid(struct credibility *c, int row, struct eo_error *error)
+static enum eo_code avoid(struct credibility *credibility, int row, struct eo_error *error)
 {
-  if (c->taboo_count == c->taboo_capacity) {
-    const size_t capacity = 2 * (size_t)c->taboo_capacity + 16;
-    int *larger = realloc(c->taboo, capacity * sizeof *larger);
+  if (credibility->taboo_count == credibility->taboo_capacity) {
+    const size_t capacity = 2 * (size_t)credibility->taboo_capacity + 16;
+    int *larger = realloc(credibility->taboo, capacity * sizeof *larger);
     if (!larger)
       return eo_error_memory(error);
-    c->taboo = larger;
-    c->taboo_capacity = (int)capacity;
+    credibility->taboo = larger;
+    credibility->taboo_capacity = (int)capacity;
   }
-  c->taboo[c->taboo_count++] = row;
+  credibility->taboo[credibility->taboo_count++] = row;
   return EO_OK;
 }
 
 /* Counts the batches without gain; returns the best row of the epoch. */
-static int watch_progress(struct eo_optimizer *o)
+static int watch_progress(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
+  struct credibility *credibility = optimizer->state;
   int best;
-  const double value = best_row(o, &best);
-  const bool gained = c->epoch_best == INFINITY || value < c->epoch_best - o->settings.stall_gain * fabs(c->epoch_best);
-  c->stalled = gained ? 0 : c->stalled + 1;
+  const double value = best_row(optimizer, &best);
+  const bool gained = credibility->epoch_best == INFINITY ||
+                      value < credibility->epoch_best - optimizer->settings.stall_gain * fabs(credibility->epoch_best);
+  credibility->stalled = gained ? 0 : credibility->stalled + 1;
   if (gained)
-    c->epoch_best = value;
+    credibility->epoch_best = value;
   return best;
 }
 
-static void begin_refinement(struct eo_optimizer *o)
+static void begin_refinement(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  const int best = eo_optimizer_best(o);
-  c->stalled = 0;
+  struct credibility *credibility = optimizer->state;
+  const int best = eo_optimizer_best(optimizer);
+  credibility->stalled = 0;
   if (best < 0)
     return;
-  c->search = REFINE;
-  c->evolving = true;
-  c->epoch_best = o->archive.value[best];
-  eo_evolution_restart(&c->evolution, row_x(o, best), o->settings.evolution_step);
+  credibility->search = REFINE;
+  credibility->evolving = true;
+  credibility->epoch_best = optimizer->archive.value[best];
+  eo_evolution_restart(&credibility->evolution, row_x(optimizer, best), optimizer->settings.evolution_step);
 }
 
 /* From its own samples: the best point of the trust region, led elsewhere by other means, would draw it in too soon.
    False when the strategy has come to its end. */
-static bool learn_generation(struct eo_optimizer *o)
+static bool learn_generation(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  const int count = o->batch_count - c->local_count, first = o->archive.count - count;
+  struct credibility *credibility = optimizer->state;
+  const int count = optimizer->batch_count - credibility->local_count, first = optimizer->archive.count - count;
   for (int i = 0; i < count; i++) {
-    const double value = o->archive.value[first + i];
+    const double value = optimizer->archive.value[first + i];
     int j = i;
-    for (; j > 0 && o->archive.value[c->generation[j - 1]] > value; j--)
-      c->generation[j] = c->generation[j - 1];
-    c->generation[j] = first + i;
+    for (; j > 0 && optimizer->archive.value[credibility->generation[j - 1]] > value; j--)
+      credibility->generation[j] = credibility->generation[j - 1];
+    credibility->generation[j] = first + i;
   }
   for (int i = 0; i < count; i++)
-    c->generation_x[i] = row_x(o, c->generation[i]);
-  return count < 2 || eo_evolution_learn(&c->evolution, c->generation_x, count);
+    credibility->generation_x[i] = row_x(optimizer, credibility->generation[i]);
+  return count < 2 || eo_evolution_learn(&credibility->evolution, credibility->generation_x, count);
 }
 
 /* An evolution strategy that has the best row of all is left to it. */
-static void begin_polishing(struct eo_optimizer *o)
+static void begin_polishing(struct eo_optimizer *optimizer)
 {
-  struct credibility *c = o->state;
-  c->polishing = true;
-  if (c->evolving && eo_optimizer_best(o) >= c->epoch_first)
+  struct credibility *credibility = optimizer->state;
+  credibility->polishing = true;
+  if (credibility->evolving && eo_optimizer_best(optimizer) >= credibility->epoch_first)
     return;
-  c->search = BREED;
-  c->evolving = false;
-  c->stalled = 0;
-  c->epoch_best = INFINITY;
-  eo_local_restart(&c->local, polish_radius * o->settings.local_radius);
+  credibility->search = BREED;
+  credibility->evolving = false;
+  credibility->stalled = 0;
+  credibility->epoch_best = INFINITY;
+  eo_local_restart(&credibility->local, polish_radius * optimizer->settings.local_radius);
 }
 
 /* Batches without gain that end what makes them. */
-static int patience(const struct eo_optimizer *o)
+static int patience(const struct eo_optimizer *optimizer)
 {
-  const struct credibility *c = o->state;
-  const int sampling = o->settings.sampling_stall;
-  return c->search == MODEL || c->search == SAMPLE ? (is_described(o) ? (sampling + 1) / 2 : sampling)
-         : c->search == REFINE                     ? o->settings.evolution_stall
-                                                   : o->settings.stall_batches;
+  const struct credibility *credibility = optimizer->state;
+  const int sampling = optimizer->settings.sampling_stall;
+  return credibility->search == MODEL || credibility->search == SAMPLE
+             ? (is_described(optimizer) ? (sampling + 1) / 2 : sampling)
+         : credibility->search == REFINE ? optimizer->settings.evolution_stall
+                                         : optimizer->settings.stall_batches;
 }
 
 /* What follows a batch that gained nothing for long enough: the best row of all is refined once; then a new epoch. */
-static enum eo_code go_on(struct eo_optimizer *o, int best, struct eo_error *error)
+static enum eo_code go_on(struct eo_optimizer *optimizer, int best, struct eo_error *error)
 {
-  struct credibility *c = o->state;
-  const enum eo_code code = best >= 0 ? avoid(c, best, error) : EO_OK;
-  const int best_of_all = eo_optimizer_best(o);
-  if (c->search == REFINE)
-    c->refined = best_of_all;
-  if (!is_described(o) && c->search != REFINE && best_of_all >= 0 && best_of_all != c->refined)
-    begin_refinement(o);
+  struct credibility *credibility = optimizer->state;
+  const enum eo_code code = best >= 0 ? avoid(credibility, best, error) : EO_OK;
+  const int best_of_all = eo_optimizer_best(optimizer);
+  if (credibility->search == REFINE)
+    credibility->refined = best_of_all;
+  if (!is_described(optimizer) && credibility->search != REFINE && best_of_all >= 0 &&
+      best_of_all != credibility->refined)
+    begin_refinement(optimizer);
   else
-    begin_epoch(o);
+    begin_epoch(optimizer);
   return code;
 }
 
 /* More places for the trust region when its point is the gain, fewer when not. */
-static void share_places(struct eo_optimizer *o, int best, bool gained)
+static void share_places(struct eo_optimizer *optimizer, int best, bool gained)
 {
-  struct credibility *c = o->state;
-  const int first = o->archive.count - o->batch_count, half = o->settings.batch / 2;
-  const bool local = gained && best >= first && best < first + c->local_count;
-  const int places = local ? 2 * c->local_places : c->local_places / 2;
-  c->local_places = places > half ? half : places < least_places(o) ? least_places(o) : places;
+  struct credibility *credibility = optimizer->state;
+  const int first = optimizer->archive.count - optimizer->batch_count, half = optimizer->settings.batch / 2;
+  const bool local = gained && best >= first && best < first + credibility->local_count;
+  const int places = local ? 2 * credibility->local_places : credibility->local_places / 2;
+  credibility->local_places = places > half                      ? half
+                              : places < least_places(optimizer) ? least_places(optimizer)
+                                                                 : places;
 }
 
-static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code absorb(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct credibility *c = o->state;
-  const struct eo_generation statistics = {.true_count = o->batch_count, .epoch = c->epoch};
-  const enum eo_code code = eo_optimizer_close_generation(o, &statistics, error);
+  struct credibility *credibility = optimizer->state;
+  const struct eo_generation statistics = {.true_count = optimizer->batch_count, .epoch = credibility->epoch};
+  const enum eo_code code = eo_optimizer_close_generation(optimizer, &statistics, error);
   if (code != EO_OK)
     return code;
-  if (c->local_count > 0)
-    eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count, c->local_count);
-  c->batch++;
-  const double before = c->epoch_best;
-  const int best = watch_progress(o);
-  share_places(o, best, best >= 0 && o->archive.value[best] < before);
-  const bool through = c->evolving && !learn_generation(o), stalled = c->stalled >= patience(o);
-  if (c->polishing) {
-    if (through || (stalled && c->search != REFINE))
-      begin_refinement(o);
-  } else if (eo_optimizer_left(o) <= (is_described(o) ? 0.5 : 1) * o->settings.polish_share * o->budget) {
-    begin_polishing(o);
+  if (credibility->local_count > 0)
+    eo_local_learn(&credibility->local, &optimizer->archive, optimizer->archive.count - optimizer->batch_count,
+                   credibility->local_count);
+  credibility->batch++;
+  const double before = credibility->epoch_best;
+  const int best = watch_progress(optimizer);
+  share_places(optimizer, best, best >= 0 && optimizer->archive.value[best] < before);
+  const bool through = credibility->evolving && !learn_generation(optimizer),
+             stalled = credibility->stalled >= patience(optimizer);
+  if (credibility->polishing) {
+    if (through || (stalled && credibility->search != REFINE))
+      begin_refinement(optimizer);
+  } else if (eo_optimizer_left(optimizer) <=
+             (is_described(optimizer) ? 0.5 : 1) * optimizer->settings.polish_share * optimizer->budget) {
+    begin_polishing(optimizer);
   } else if (through || stalled) {
-    return go_on(o, best, error);
+    return go_on(optimizer, best, error);
   }
   return EO_OK;
 }

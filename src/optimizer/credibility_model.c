@@ -43,8 +43,9 @@ static int compare_doubles(const void *a, const void *b)
 
 static int compare_ranked(const void *a, const void *b)
 {
-  const struct eo_ranked_row *p = a, *q = b;
-  return p->key != q->key ? (p->key > q->key) - (p->key < q->key) : p->row - q->row;
+  const struct eo_ranked_row *ranked_row = a, *this_row = b;
+  return ranked_row->key != this_row->key ? (ranked_row->key > this_row->key) - (ranked_row->key < this_row->key)
+                                          : ranked_row->row - this_row->row;
 }
 
 enum eo_code eo_credibility_model_reserve(struct eo_credibility_model *model, int rows, struct eo_error *error)
@@ -72,17 +73,17 @@ static const double *row_x(const struct eo_archive *archive, int row, int n)
 enum ranking { RANK_BY_VALUE, RANK_BY_AGE, RANK_BY_DISTANCE };
 
 /* Appends the best `share` unused rows by the given ranking. */
-static int take_rows(struct eo_credibility_model *model, const struct eo_archive *a, enum ranking ranking,
+static int take_rows(struct eo_credibility_model *model, const struct eo_archive *archive, enum ranking ranking,
                      const double *centre, int taken, int share)
 {
   const int n = model->settings->variables;
   int count = 0;
-  for (int row = 0; row < a->count; row++) {
-    if (model->used[row] || !eo_composite_takes(&model->composite, a, row))
+  for (int row = 0; row < archive->count; row++) {
+    if (model->used[row] || !eo_composite_takes(&model->composite, archive, row))
       continue;
-    const double key = ranking == RANK_BY_VALUE ? a->value[row]
+    const double key = ranking == RANK_BY_VALUE ? archive->value[row]
                        : ranking == RANK_BY_AGE ? -row
-                                                : eo_unit_distance(row_x(a, row, n), centre, n);
+                                                : eo_unit_distance(row_x(archive, row, n), centre, n);
     model->ranked[count++] = (struct eo_ranked_row){key, row};
   }
   qsort(model->ranked, (size_t)count, sizeof *model->ranked, compare_ranked);

@@ -20,99 +20,100 @@ struct rates {
   double path, step_path, rank_one, rank_many, damping, normal;
 };
 
-enum eo_code eo_evolution_init(struct eo_evolution *e, int variables, struct eo_error *error)
+enum eo_code eo_evolution_init(struct eo_evolution *evolution, int variables, struct eo_error *error)
 {
   const size_t n = (size_t)variables;
-  *e = (struct eo_evolution){.variables = variables};
-  e->mean = calloc(n, sizeof(double));
-  e->covariance = calloc(n * n, sizeof(double));
-  e->axes = calloc(n * n, sizeof(double));
-  e->length = calloc(n, sizeof(double));
-  e->path = calloc(n, sizeof(double));
-  e->step_path = calloc(n, sizeof(double));
-  e->steps = calloc(PARENTS_MAX * n, sizeof(double));
-  e->move = calloc(2 * n, sizeof(double));
-  return e->steps && e->mean && e->covariance && e->axes && e->length && e->path && e->step_path && e->move
+  *evolution = (struct eo_evolution){.variables = variables};
+  evolution->mean = calloc(n, sizeof(double));
+  evolution->covariance = calloc(n * n, sizeof(double));
+  evolution->axes = calloc(n * n, sizeof(double));
+  evolution->length = calloc(n, sizeof(double));
+  evolution->path = calloc(n, sizeof(double));
+  evolution->step_path = calloc(n, sizeof(double));
+  evolution->steps = calloc(PARENTS_MAX * n, sizeof(double));
+  evolution->move = calloc(2 * n, sizeof(double));
+  return evolution->steps && evolution->mean && evolution->covariance && evolution->axes && evolution->length &&
+                 evolution->path && evolution->step_path && evolution->move
              ? EO_OK
              : eo_error_memory(error);
 }
 
-void eo_evolution_done(struct eo_evolution *e)
+void eo_evolution_done(struct eo_evolution *evolution)
 {
-  free(e->mean);
-  free(e->covariance);
-  free(e->axes);
-  free(e->length);
-  free(e->path);
-  free(e->step_path);
-  free(e->steps);
-  free(e->move);
-  *e = (struct eo_evolution){0};
+  free(evolution->mean);
+  free(evolution->covariance);
+  free(evolution->axes);
+  free(evolution->length);
+  free(evolution->path);
+  free(evolution->step_path);
+  free(evolution->steps);
+  free(evolution->move);
+  *evolution = (struct eo_evolution){0};
 }
 
-void eo_evolution_restart(struct eo_evolution *e, const double *mean, double step)
+void eo_evolution_restart(struct eo_evolution *evolution, const double *mean, double step)
 {
-  const int n = e->variables;
-  memcpy(e->mean, mean, (size_t)n * sizeof *mean);
-  memset(e->covariance, 0, (size_t)(n * n) * sizeof *e->covariance);
-  memset(e->axes, 0, (size_t)(n * n) * sizeof *e->axes);
+  const int n = evolution->variables;
+  memcpy(evolution->mean, mean, (size_t)n * sizeof *mean);
+  memset(evolution->covariance, 0, (size_t)(n * n) * sizeof *evolution->covariance);
+  memset(evolution->axes, 0, (size_t)(n * n) * sizeof *evolution->axes);
   for (int k = 0; k < n; k++) {
-    e->covariance[k * n + k] = e->axes[k * n + k] = e->length[k] = 1;
-    e->path[k] = e->step_path[k] = 0;
+    evolution->covariance[k * n + k] = evolution->axes[k * n + k] = evolution->length[k] = 1;
+    evolution->path[k] = evolution->step_path[k] = 0;
   }
-  e->generations = 0;
-  e->step = step;
+  evolution->generations = 0;
+  evolution->step = step;
 }
 
-void eo_evolution_sample(const struct eo_evolution *e, struct eo_random random, double *x)
+void eo_evolution_sample(const struct eo_evolution *evolution, struct eo_random random, double *x)
 {
-  const int n = e->variables;
-  memcpy(x, e->mean, (size_t)n * sizeof *x);
+  const int n = evolution->variables;
+  memcpy(x, evolution->mean, (size_t)n * sizeof *x);
   for (int i = 0; i < n; i++) {
-    const double along = e->step * e->length[i] * eo_random_normal(random, (uint64_t)i);
+    const double along = evolution->step * evolution->length[i] * eo_random_normal(random, (uint64_t)i);
     for (int k = 0; k < n; k++)
-      x[k] += along * e->axes[i * n + k];
+      x[k] += along * evolution->axes[i * n + k];
   }
   for (int k = 0; k < n; k++)
     x[k] = eo_unit_clip(x[k]);
 }
 
-static void set_rates(struct rates *r, int n, int count)
+static void set_rates(struct rates *rates, int n, int count)
 {
   double sum = 0, squares = 0;
-  r->parents = count / 2 < PARENTS_MAX ? count / 2 : PARENTS_MAX;
-  for (int i = 0; i < r->parents; i++) {
-    r->weight[i] = log(0.5 * (count + 1)) - log(i + 1);
-    sum += r->weight[i];
+  rates->parents = count / 2 < PARENTS_MAX ? count / 2 : PARENTS_MAX;
+  for (int i = 0; i < rates->parents; i++) {
+    rates->weight[i] = log(0.5 * (count + 1)) - log(i + 1);
+    sum += rates->weight[i];
   }
-  for (int i = 0; i < r->parents; i++) {
-    r->weight[i] /= sum;
-    squares += r->weight[i] * r->weight[i];
+  for (int i = 0; i < rates->parents; i++) {
+    rates->weight[i] /= sum;
+    squares += rates->weight[i] * rates->weight[i];
   }
-  const double mass = r->mass = 1 / squares;
-  r->path = (4 + mass / n) / (n + 4 + 2 * mass / n);
-  r->step_path = (mass + 2) / (n + mass + 5);
-  r->rank_one = 2 / ((n + 1.3) * (n + 1.3) + mass);
-  r->rank_many = fmin(1 - r->rank_one, 2 * (mass - 2 + 1 / mass) / ((n + 2) * (n + 2) + mass));
-  r->damping = 1 + r->step_path + 2 * fmax(0, sqrt((mass - 1) / (n + 1)) - 1);
-  r->normal = sqrt(n) * (1 - 1 / (4. * n) + 1 / (21. * n * n)); /* expected length of a normal vector */
+  const double mass = rates->mass = 1 / squares;
+  rates->path = (4 + mass / n) / (n + 4 + 2 * mass / n);
+  rates->step_path = (mass + 2) / (n + mass + 5);
+  rates->rank_one = 2 / ((n + 1.3) * (n + 1.3) + mass);
+  rates->rank_many = fmin(1 - rates->rank_one, 2 * (mass - 2 + 1 / mass) / ((n + 2) * (n + 2) + mass));
+  rates->damping = 1 + rates->step_path + 2 * fmax(0, sqrt((mass - 1) / (n + 1)) - 1);
+  rates->normal = sqrt(n) * (1 - 1 / (4. * n) + 1 / (21. * n * n)); /* expected length of a normal vector */
 }
 
 /* steps[parents][n]: from the mean, in units of the step. Those of points that were not sampled here are cut to a
    length that a sample may well have (Hansen 2011, injecting external solutions). */
-static void find_steps(struct eo_evolution *e, const struct rates *r, const double *const *x)
+static void find_steps(struct eo_evolution *evolution, const struct rates *rates, const double *const *x)
 {
-  const int n = e->variables;
+  const int n = evolution->variables;
   const double longest = sqrt(n) + 2. * n / (n + 2);
-  for (int i = 0; i < r->parents; i++) {
-    double *step = e->steps + (size_t)i * n, square = 0;
+  for (int i = 0; i < rates->parents; i++) {
+    double *step = evolution->steps + (size_t)i * n, square = 0;
     for (int k = 0; k < n; k++)
-      step[k] = (x[i][k] - e->mean[k]) / e->step;
+      step[k] = (x[i][k] - evolution->mean[k]) / evolution->step;
     for (int j = 0; j < n; j++) {
       double along = 0;
       for (int k = 0; k < n; k++)
-        along += e->axes[j * n + k] * step[k];
-      square += along * along / (e->length[j] * e->length[j]);
+        along += evolution->axes[j * n + k] * step[k];
+      square += along * along / (evolution->length[j] * evolution->length[j]);
     }
     const double cut = square > longest * longest ? longest / sqrt(square) : 1;
     for (int k = 0; k < n; k++)
@@ -121,73 +122,76 @@ static void find_steps(struct eo_evolution *e, const struct rates *r, const doub
 }
 
 /* move = the weighted mean of the steps; whitened = C^-1/2 move. */
-static void find_move(const struct eo_evolution *e, const struct rates *r, double *move, double *whitened)
+static void find_move(const struct eo_evolution *evolution, const struct rates *rates, double *move, double *whitened)
 {
-  const int n = e->variables;
+  const int n = evolution->variables;
   for (int k = 0; k < n; k++) {
     move[k] = whitened[k] = 0;
-    for (int i = 0; i < r->parents; i++)
-      move[k] += r->weight[i] * e->steps[i * n + k];
+    for (int i = 0; i < rates->parents; i++)
+      move[k] += rates->weight[i] * evolution->steps[i * n + k];
   }
   for (int j = 0; j < n; j++) {
     double along = 0;
     for (int k = 0; k < n; k++)
-      along += e->axes[j * n + k] * move[k];
+      along += evolution->axes[j * n + k] * move[k];
     for (int k = 0; k < n; k++)
-      whitened[k] += e->axes[j * n + k] * along / e->length[j];
+      whitened[k] += evolution->axes[j * n + k] * along / evolution->length[j];
   }
 }
 
 /* Rank one from the path, rank mu from the steps. */
-static void learn_covariance(struct eo_evolution *e, const struct rates *r, bool steady)
+static void learn_covariance(struct eo_evolution *evolution, const struct rates *rates, bool steady)
 {
-  const int n = e->variables;
-  const double lost = steady ? 0 : r->rank_one * r->path * (2 - r->path);
+  const int n = evolution->variables;
+  const double lost = steady ? 0 : rates->rank_one * rates->path * (2 - rates->path);
   for (int k = 0; k < n; k++)
     for (int l = 0; l < n; l++) {
       double many = 0;
-      for (int i = 0; i < r->parents; i++)
-        many += r->weight[i] * e->steps[i * n + k] * e->steps[i * n + l];
-      double *c = e->covariance + k * n + l;
-      *c = (1 - r->rank_one - r->rank_many + lost) * *c + r->rank_one * e->path[k] * e->path[l] + r->rank_many * many;
+      for (int i = 0; i < rates->parents; i++)
+        many += rates->weight[i] * evolution->steps[i * n + k] * evolution->steps[i * n + l];
+      double *c = evolution->covariance + k * n + l;
+      *c = (1 - rates->rank_one - rates->rank_many + lost) * *c +
+           rates->rank_one * evolution->path[k] * evolution->path[l] + rates->rank_many * many;
     }
 }
 
-static bool find_axes(struct eo_evolution *e)
+static bool find_axes(struct eo_evolution *evolution)
 {
-  const int n = e->variables;
-  memcpy(e->axes, e->covariance, (size_t)(n * n) * sizeof *e->axes);
-  if (eo_dense_symmetric_eigen(n, e->axes, e->length))
+  const int n = evolution->variables;
+  memcpy(evolution->axes, evolution->covariance, (size_t)(n * n) * sizeof *evolution->axes);
+  if (eo_dense_symmetric_eigen(n, evolution->axes, evolution->length))
     return false;
   for (int i = 0; i < n; i++) {
-    if (!(e->length[i] > 0) || !isfinite(e->length[i]))
+    if (!(evolution->length[i] > 0) || !isfinite(evolution->length[i]))
       return false;
-    e->length[i] = sqrt(e->length[i]);
+    evolution->length[i] = sqrt(evolution->length[i]);
   }
   return true;
 }
 
-bool eo_evolution_learn(struct eo_evolution *e, const double *const *x, int count)
+bool eo_evolution_learn(struct eo_evolution *evolution, const double *const *x, int count)
 {
-  const int n = e->variables;
-  double *move = e->move, *whitened = e->move + n, square = 0;
-  struct rates r;
-  set_rates(&r, n, count);
-  find_steps(e, &r, x);
-  find_move(e, &r, move, whitened);
-  e->generations++;
+  const int n = evolution->variables;
+  double *move = evolution->move, *whitened = evolution->move + n, square = 0;
+  struct rates rates;
+  set_rates(&rates, n, count);
+  find_steps(evolution, &rates, x);
+  find_move(evolution, &rates, move, whitened);
+  evolution->generations++;
   for (int k = 0; k < n; k++) {
-    e->step_path[k] = (1 - r.step_path) * e->step_path[k] +
-                      sqrt(r.step_path * (2 - r.step_path) * r.mass) * whitened[k];
-    square += e->step_path[k] * e->step_path[k];
+    evolution->step_path[k] = (1 - rates.step_path) * evolution->step_path[k] +
+                              sqrt(rates.step_path * (2 - rates.step_path) * rates.mass) * whitened[k];
+    square += evolution->step_path[k] * evolution->step_path[k];
   }
-  const double length = sqrt(square), settled = sqrt(1 - pow(1 - r.step_path, 2 * e->generations));
-  const bool steady = length / settled < (1.4 + 2. / (n + 1)) * r.normal;
+  const double length = sqrt(square), settled = sqrt(1 - pow(1 - rates.step_path, 2 * evolution->generations));
+  const bool steady = length / settled < (1.4 + 2. / (n + 1)) * rates.normal;
   for (int k = 0; k < n; k++)
-    e->path[k] = (1 - r.path) * e->path[k] + (steady ? sqrt(r.path * (2 - r.path) * r.mass) * move[k] : 0);
-  learn_covariance(e, &r, steady);
+    evolution->path[k] = (1 - rates.path) * evolution->path[k] +
+                         (steady ? sqrt(rates.path * (2 - rates.path) * rates.mass) * move[k] : 0);
+  learn_covariance(evolution, &rates, steady);
   for (int k = 0; k < n; k++)
-    e->mean[k] += e->step * move[k];
-  e->step = fmin(e->step * exp(r.step_path / r.damping * (length / r.normal - 1)), largest_step);
-  return find_axes(e) && e->step > smallest_step;
+    evolution->mean[k] += evolution->step * move[k];
+  evolution->step = fmin(evolution->step * exp(rates.step_path / rates.damping * (length / rates.normal - 1)),
+                         largest_step);
+  return find_axes(evolution) && evolution->step > smallest_step;
 }

@@ -31,185 +31,190 @@ struct genetic {
   struct eo_history_law law;
 };
 
-static void stop(struct eo_optimizer *o)
+static void stop(struct eo_optimizer *optimizer)
 {
-  struct genetic *g = o->state;
-  if (!g)
+  struct genetic *genetic = optimizer->state;
+  if (!genetic)
     return;
-  free(g->x);
-  free(g->parents);
-  free(g->fitness);
-  free(g->parent_fitness);
-  free(g->credibility);
-  free(g->row);
-  free(g->kind);
-  free(g->order);
-  eo_history_done(&g->history);
-  free(g);
+  free(genetic->x);
+  free(genetic->parents);
+  free(genetic->fitness);
+  free(genetic->parent_fitness);
+  free(genetic->credibility);
+  free(genetic->row);
+  free(genetic->kind);
+  free(genetic->order);
+  eo_history_done(&genetic->history);
+  free(genetic);
 }
 
-static struct eo_history_law history_law(const struct eo_optimizer_settings *s)
+static struct eo_history_law history_law(const struct eo_optimizer_settings *settings)
 {
   return (struct eo_history_law){
-      .share_radius = eo_optimizer_share_radius(s),
-      .weight_decay = s->weight_decay,
-      .credibility_loss = s->credibility_loss,
-      .removal_threshold = s->removal_threshold,
-      .redundancy_threshold = s->redundancy_threshold,
-      .rms = s->distance_norm == EO_NORM_RMS,
-      .weights_over_all = s->weight_sum == EO_WEIGHTS_ALL,
-      .literal_redundancy = s->literal_redundancy,
+      .share_radius = eo_optimizer_share_radius(settings),
+      .weight_decay = settings->weight_decay,
+      .credibility_loss = settings->credibility_loss,
+      .removal_threshold = settings->removal_threshold,
+      .redundancy_threshold = settings->redundancy_threshold,
+      .rms = settings->distance_norm == EO_NORM_RMS,
+      .weights_over_all = settings->weight_sum == EO_WEIGHTS_ALL,
+      .literal_redundancy = settings->literal_redundancy,
   };
 }
 
-static double fitness_of_row(const struct eo_optimizer *o, int row)
+static double fitness_of_row(const struct eo_optimizer *optimizer, int row)
 {
-  const double value = o->archive.value[row];
-  if (o->settings.fitness_form == EO_FITNESS_NEGATIVE)
+  const double value = optimizer->archive.value[row];
+  if (optimizer->settings.fitness_form == EO_FITNESS_NEGATIVE)
     return -value;
   return value > 0 && isfinite(value) ? 1 / value : -INFINITY;
 }
 
-static enum eo_code remember_true(struct eo_optimizer *o, int row, struct eo_error *error)
+static enum eo_code remember_true(struct eo_optimizer *optimizer, int row, struct eo_error *error)
 {
-  struct genetic *g = o->state;
-  const double fitness = fitness_of_row(o, row);
-  if (!g->predicts || !isfinite(fitness))
+  struct genetic *genetic = optimizer->state;
+  const double fitness = fitness_of_row(optimizer, row);
+  if (!genetic->predicts || !isfinite(fitness))
     return EO_OK;
-  return eo_history_add(&g->history, o->archive.x + (size_t)row * o->settings.variables, fitness, 1, false, error);
+  return eo_history_add(&genetic->history, optimizer->archive.x + (size_t)row * optimizer->settings.variables, fitness,
+                        1, false, error);
 }
 
-static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  const size_t n = (size_t)o->settings.variables, population = (size_t)o->settings.population;
-  struct genetic *g = o->state = calloc(1, sizeof *g);
-  if (!g)
+  const size_t n = (size_t)optimizer->settings.variables, population = (size_t)optimizer->settings.population;
+  struct genetic *genetic = optimizer->state = calloc(1, sizeof *genetic);
+  if (!genetic)
     return eo_error_memory(error);
-  g->predicts = o->settings.algorithm == EO_FPGA;
-  g->law = history_law(&o->settings);
-  g->x = malloc(population * n * sizeof(double));
-  g->parents = malloc(population * n * sizeof(double));
-  g->fitness = malloc(population * sizeof(double));
-  g->parent_fitness = malloc(population * sizeof(double));
-  g->credibility = malloc(population * sizeof(double));
-  g->row = malloc(population * sizeof(int));
-  g->kind = malloc(population * sizeof(enum kind));
-  g->order = malloc(population * sizeof(int));
-  if (!g->x || !g->parents || !g->fitness || !g->parent_fitness || !g->credibility || !g->row || !g->kind || !g->order)
+  genetic->predicts = optimizer->settings.algorithm == EO_FPGA;
+  genetic->law = history_law(&optimizer->settings);
+  genetic->x = malloc(population * n * sizeof(double));
+  genetic->parents = malloc(population * n * sizeof(double));
+  genetic->fitness = malloc(population * sizeof(double));
+  genetic->parent_fitness = malloc(population * sizeof(double));
+  genetic->credibility = malloc(population * sizeof(double));
+  genetic->row = malloc(population * sizeof(int));
+  genetic->kind = malloc(population * sizeof(enum kind));
+  genetic->order = malloc(population * sizeof(int));
+  if (!genetic->x || !genetic->parents || !genetic->fitness || !genetic->parent_fitness || !genetic->credibility ||
+      !genetic->row || !genetic->kind || !genetic->order)
     return eo_error_memory(error);
-  enum eo_code code = eo_optimizer_reserve_batch(o, o->settings.population + 1, error);
+  enum eo_code code = eo_optimizer_reserve_batch(optimizer, optimizer->settings.population + 1, error);
   if (code == EO_OK)
-    code = eo_history_init(&g->history, o->settings.variables, 1024, error);
-  for (int row = 0; row < o->archive.count && code == EO_OK; row++)
-    code = remember_true(o, row, error);
+    code = eo_history_init(&genetic->history, optimizer->settings.variables, 1024, error);
+  for (int row = 0; row < optimizer->archive.count && code == EO_OK; row++)
+    code = remember_true(optimizer, row, error);
   if (code == EO_OK)
-    eo_random_points(g->x, o->settings.population, o->settings.variables, o->settings.seed);
+    eo_random_points(genetic->x, optimizer->settings.population, optimizer->settings.variables,
+                     optimizer->settings.seed);
   return code;
 }
 
 /* Asks for individual i, if the budget allows. */
-static void decide_true(struct eo_optimizer *o, int i, bool repeat)
+static void decide_true(struct eo_optimizer *optimizer, int i, bool repeat)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   bool known;
-  g->row[i] = eo_optimizer_request(o, g->x + (size_t)i * o->settings.variables, g->generation, i, repeat, &known);
-  g->kind[i] = known ? KIND_REUSED : KIND_TRUE;
-  g->credibility[i] = 1;
-  g->cut |= g->row[i] < 0;
+  genetic->row[i] = eo_optimizer_request(optimizer, genetic->x + (size_t)i * optimizer->settings.variables,
+                                         genetic->generation, i, repeat, &known);
+  genetic->kind[i] = known ? KIND_REUSED : KIND_TRUE;
+  genetic->credibility[i] = 1;
+  genetic->cut |= genetic->row[i] < 0;
 }
 
 /* Predicts an individual by (H3) where its region is trusted, else asks for its evaluation. */
-static enum eo_code decide(struct eo_optimizer *o, int i, struct eo_error *error)
+static enum eo_code decide(struct eo_optimizer *optimizer, int i, struct eo_error *error)
 {
-  struct genetic *g = o->state;
-  const double *x = g->x + (size_t)i * o->settings.variables;
-  const bool reuse = o->settings.reuse;
-  if (!g->predicts || (reuse && eo_archive_find(&o->archive, x) >= 0)) {
-    decide_true(o, i, !reuse);
+  struct genetic *genetic = optimizer->state;
+  const double *x = genetic->x + (size_t)i * optimizer->settings.variables;
+  const bool reuse = optimizer->settings.reuse;
+  if (!genetic->predicts || (reuse && eo_archive_find(&optimizer->archive, x) >= 0)) {
+    decide_true(optimizer, i, !reuse);
     return EO_OK;
   }
-  const struct eo_history_estimate estimate = eo_history_predict(&g->history, &g->law, x);
-  if (!eo_history_trusts(&estimate, o->settings.trust_threshold)) {
-    decide_true(o, i, !reuse);
+  const struct eo_history_estimate estimate = eo_history_predict(&genetic->history, &genetic->law, x);
+  if (!eo_history_trusts(&estimate, optimizer->settings.trust_threshold)) {
+    decide_true(optimizer, i, !reuse);
     return EO_OK;
   }
-  g->kind[i] = KIND_PREDICTED;
-  g->row[i] = -1;
-  g->fitness[i] = estimate.fitness;
-  g->credibility[i] = estimate.credibility;
-  const struct eo_predicted prediction = {x, g->generation, i, estimate.fitness, estimate.credibility};
-  return eo_optimizer_note_prediction(o, &prediction, error);
+  genetic->kind[i] = KIND_PREDICTED;
+  genetic->row[i] = -1;
+  genetic->fitness[i] = estimate.fitness;
+  genetic->credibility[i] = estimate.credibility;
+  const struct eo_predicted prediction = {x, genetic->generation, i, estimate.fitness, estimate.credibility};
+  return eo_optimizer_note_prediction(optimizer, &prediction, error);
 }
 
 /* Individual i, whose fitness is known by now, enters the history. Reused rows stand in it already. */
-static enum eo_code remember(struct eo_optimizer *o, int i, struct eo_error *error)
+static enum eo_code remember(struct eo_optimizer *optimizer, int i, struct eo_error *error)
 {
-  struct genetic *g = o->state;
-  if (g->kind[i] == KIND_TRUE)
-    return remember_true(o, g->row[i], error);
-  if (g->kind[i] == KIND_REUSED || !o->settings.store_predicted)
+  struct genetic *genetic = optimizer->state;
+  if (genetic->kind[i] == KIND_TRUE)
+    return remember_true(optimizer, genetic->row[i], error);
+  if (genetic->kind[i] == KIND_REUSED || !optimizer->settings.store_predicted)
     return EO_OK;
-  return eo_history_add(&g->history, g->x + (size_t)i * o->settings.variables, g->fitness[i], g->credibility[i], true,
-                        error);
+  return eo_history_add(&genetic->history, genetic->x + (size_t)i * optimizer->settings.variables, genetic->fitness[i],
+                        genetic->credibility[i], true, error);
 }
 
-static void verify_best_prediction(struct eo_optimizer *o)
+static void verify_best_prediction(struct eo_optimizer *optimizer)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   int best = -1;
-  for (int i = 0; i < g->cursor; i++)
-    if (g->kind[i] == KIND_PREDICTED && (best < 0 || g->fitness[i] > g->fitness[best]))
+  for (int i = 0; i < genetic->cursor; i++)
+    if (genetic->kind[i] == KIND_PREDICTED && (best < 0 || genetic->fitness[i] > genetic->fitness[best]))
       best = i;
-  if (best < 0 || eo_optimizer_left(o) <= 0)
+  if (best < 0 || eo_optimizer_left(optimizer) <= 0)
     return;
-  decide_true(o, best, false);
-  if (g->row[best] < o->archive.count)
-    g->fitness[best] = fitness_of_row(o, g->row[best]);
+  decide_true(optimizer, best, false);
+  if (genetic->row[best] < optimizer->archive.count)
+    genetic->fitness[best] = fitness_of_row(optimizer, genetic->row[best]);
 }
 
-static enum eo_code decide_batch(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code decide_batch(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   enum eo_code code = EO_OK;
-  for (; g->cursor < o->settings.population && code == EO_OK && !g->cut; g->cursor++)
-    code = decide(o, g->cursor, error);
-  if (g->cut)
-    g->cursor--;
-  if (code == EO_OK && g->predicts && o->settings.verify)
-    verify_best_prediction(o);
+  for (; genetic->cursor < optimizer->settings.population && code == EO_OK && !genetic->cut; genetic->cursor++)
+    code = decide(optimizer, genetic->cursor, error);
+  if (genetic->cut)
+    genetic->cursor--;
+  if (code == EO_OK && genetic->predicts && optimizer->settings.verify)
+    verify_best_prediction(optimizer);
   return code;
 }
 
 /* Until a true evaluation is needed or the generation is through. */
-static enum eo_code decide_in_sequence(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code decide_in_sequence(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   enum eo_code code = EO_OK;
-  while (g->cursor < o->settings.population && o->batch_count == 0 && code == EO_OK && !g->cut) {
-    code = decide(o, g->cursor, error);
-    if (g->cut)
+  while (genetic->cursor < optimizer->settings.population && optimizer->batch_count == 0 && code == EO_OK &&
+         !genetic->cut) {
+    code = decide(optimizer, genetic->cursor, error);
+    if (genetic->cut)
       break;
-    if (code == EO_OK && o->batch_count == 0) {
-      if (g->row[g->cursor] >= 0)
-        g->fitness[g->cursor] = fitness_of_row(o, g->row[g->cursor]);
-      code = remember(o, g->cursor, error);
+    if (code == EO_OK && optimizer->batch_count == 0) {
+      if (genetic->row[genetic->cursor] >= 0)
+        genetic->fitness[genetic->cursor] = fitness_of_row(optimizer, genetic->row[genetic->cursor]);
+      code = remember(optimizer, genetic->cursor, error);
     }
-    g->cursor++;
+    genetic->cursor++;
   }
-  if (code == EO_OK && o->batch_count == 0 && g->predicts && o->settings.verify) {
-    verify_best_prediction(o);
-    g->verifying = o->batch_count > 0;
+  if (code == EO_OK && optimizer->batch_count == 0 && genetic->predicts && optimizer->settings.verify) {
+    verify_best_prediction(optimizer);
+    genetic->verifying = optimizer->batch_count > 0;
   }
   return code;
 }
 
 /* (H4), then (H5). */
-static void clean_history(struct genetic *g, struct eo_generation *statistics)
+static void clean_history(struct genetic *genetic, struct eo_generation *statistics)
 {
-  statistics->removed_redundant = eo_history_mark_redundant(&g->history, &g->law);
-  statistics->removed_decayed = eo_history_decay(&g->history, &g->law);
-  eo_history_compact(&g->history);
-  statistics->history_rows = g->history.count;
+  statistics->removed_redundant = eo_history_mark_redundant(&genetic->history, &genetic->law);
+  statistics->removed_decayed = eo_history_decay(&genetic->history, &genetic->law);
+  eo_history_compact(&genetic->history);
+  statistics->history_rows = genetic->history.count;
 }
 
 static int best_of(const double *fitness, const int *excluded, int excluded_count, int size, double sign)
@@ -226,102 +231,102 @@ static int best_of(const double *fitness, const int *excluded, int excluded_coun
 }
 
 /* The best parents that no child equals replace the worst children. */
-static void keep_elite(struct eo_optimizer *o)
+static void keep_elite(struct eo_optimizer *optimizer)
 {
-  struct genetic *g = o->state;
-  const int size = o->settings.population, n = o->settings.variables;
-  const double best = g->fitness[best_of(g->fitness, NULL, 0, size, 1)];
-  int *chosen = g->order;
-  for (int kept = 0; kept < o->settings.elite; kept++) {
-    const int parent = best_of(g->parent_fitness, chosen, kept, size, 1);
-    if (!(g->parent_fitness[parent] > best))
+  struct genetic *genetic = optimizer->state;
+  const int size = optimizer->settings.population, n = optimizer->settings.variables;
+  const double best = genetic->fitness[best_of(genetic->fitness, NULL, 0, size, 1)];
+  int *chosen = genetic->order;
+  for (int kept = 0; kept < optimizer->settings.elite; kept++) {
+    const int parent = best_of(genetic->parent_fitness, chosen, kept, size, 1);
+    if (!(genetic->parent_fitness[parent] > best))
       return;
-    const int worst = best_of(g->fitness, NULL, 0, size, -1);
-    memcpy(g->x + (size_t)worst * n, g->parents + (size_t)parent * n, (size_t)n * sizeof(double));
-    g->fitness[worst] = g->parent_fitness[parent];
+    const int worst = best_of(genetic->fitness, NULL, 0, size, -1);
+    memcpy(genetic->x + (size_t)worst * n, genetic->parents + (size_t)parent * n, (size_t)n * sizeof(double));
+    genetic->fitness[worst] = genetic->parent_fitness[parent];
     chosen[kept] = parent;
   }
 }
 
-static void breed_next(struct eo_optimizer *o)
+static void breed_next(struct eo_optimizer *optimizer)
 {
-  struct genetic *g = o->state;
-  double *x = g->parents, *fitness = g->parent_fitness;
-  g->parents = g->x;
-  g->parent_fitness = g->fitness;
-  g->x = x;
-  g->fitness = fitness;
-  g->generation++;
-  g->cursor = 0;
-  eo_breed(&o->settings, g->parents, g->parent_fitness, o->settings.population, g->generation, 0, g->x,
-           o->settings.population);
+  struct genetic *genetic = optimizer->state;
+  double *x = genetic->parents, *fitness = genetic->parent_fitness;
+  genetic->parents = genetic->x;
+  genetic->parent_fitness = genetic->fitness;
+  genetic->x = x;
+  genetic->fitness = fitness;
+  genetic->generation++;
+  genetic->cursor = 0;
+  eo_breed(&optimizer->settings, genetic->parents, genetic->parent_fitness, optimizer->settings.population,
+           genetic->generation, 0, genetic->x, optimizer->settings.population);
 }
 
-static enum eo_code close_generation(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code close_generation(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   struct eo_generation statistics = {0};
-  for (int i = 0; i < g->cursor; i++) {
-    statistics.true_count += g->kind[i] == KIND_TRUE;
-    statistics.predicted_count += g->kind[i] == KIND_PREDICTED;
-    statistics.reused_count += g->kind[i] == KIND_REUSED;
+  for (int i = 0; i < genetic->cursor; i++) {
+    statistics.true_count += genetic->kind[i] == KIND_TRUE;
+    statistics.predicted_count += genetic->kind[i] == KIND_PREDICTED;
+    statistics.reused_count += genetic->kind[i] == KIND_REUSED;
   }
-  if (g->predicts)
-    clean_history(g, &statistics);
-  const enum eo_code code = eo_optimizer_close_generation(o, &statistics, error);
-  g->verifying = false;
-  o->finished = g->cut || g->generation + 1 >= o->settings.generations;
-  if (code != EO_OK || o->finished)
+  if (genetic->predicts)
+    clean_history(genetic, &statistics);
+  const enum eo_code code = eo_optimizer_close_generation(optimizer, &statistics, error);
+  genetic->verifying = false;
+  optimizer->finished = genetic->cut || genetic->generation + 1 >= optimizer->settings.generations;
+  if (code != EO_OK || optimizer->finished)
     return code;
-  if (g->generation > 0)
-    keep_elite(o);
-  breed_next(o);
+  if (genetic->generation > 0)
+    keep_elite(optimizer);
+  breed_next(optimizer);
   return EO_OK;
 }
 
-static enum eo_code finish_batch_order(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code finish_batch_order(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct genetic *g = o->state;
+  struct genetic *genetic = optimizer->state;
   enum eo_code code = EO_OK;
-  for (int i = 0; i < g->cursor && code == EO_OK; i++) {
-    if (g->row[i] >= 0)
-      g->fitness[i] = fitness_of_row(o, g->row[i]);
-    code = remember(o, i, error);
+  for (int i = 0; i < genetic->cursor && code == EO_OK; i++) {
+    if (genetic->row[i] >= 0)
+      genetic->fitness[i] = fitness_of_row(optimizer, genetic->row[i]);
+    code = remember(optimizer, i, error);
   }
-  return code == EO_OK ? close_generation(o, error) : code;
+  return code == EO_OK ? close_generation(optimizer, error) : code;
 }
 
-static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code propose(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  const struct genetic *g = o->state;
-  const bool sequential = g->predicts && o->settings.decision_order == EO_ORDER_SEQUENTIAL;
+  const struct genetic *genetic = optimizer->state;
+  const bool sequential = genetic->predicts && optimizer->settings.decision_order == EO_ORDER_SEQUENTIAL;
   enum eo_code code = EO_OK;
-  while (!o->finished && o->batch_count == 0 && code == EO_OK) {
-    code = sequential ? decide_in_sequence(o, error) : decide_batch(o, error);
-    if (code == EO_OK && o->batch_count == 0)
-      code = sequential ? close_generation(o, error) : finish_batch_order(o, error);
+  while (!optimizer->finished && optimizer->batch_count == 0 && code == EO_OK) {
+    code = sequential ? decide_in_sequence(optimizer, error) : decide_batch(optimizer, error);
+    if (code == EO_OK && optimizer->batch_count == 0)
+      code = sequential ? close_generation(optimizer, error) : finish_batch_order(optimizer, error);
   }
   return code;
 }
 
-static enum eo_code absorb_in_sequence(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code absorb_in_sequence(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct genetic *g = o->state;
-  int last = g->cursor - 1;
-  if (g->verifying) /* it entered the history as a prediction; the true row joins it */
-    for (int i = 0; i < g->cursor; i++)
-      if (g->row[i] == o->archive.count - 1)
+  struct genetic *genetic = optimizer->state;
+  int last = genetic->cursor - 1;
+  if (genetic->verifying) /* it entered the history as a prediction; the true row joins it */
+    for (int i = 0; i < genetic->cursor; i++)
+      if (genetic->row[i] == optimizer->archive.count - 1)
         last = i;
-  g->fitness[last] = fitness_of_row(o, g->row[last]);
-  const enum eo_code code = remember(o, last, error);
-  return code == EO_OK && g->verifying ? close_generation(o, error) : code;
+  genetic->fitness[last] = fitness_of_row(optimizer, genetic->row[last]);
+  const enum eo_code code = remember(optimizer, last, error);
+  return code == EO_OK && genetic->verifying ? close_generation(optimizer, error) : code;
 }
 
-static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code absorb(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  const struct genetic *g = o->state;
-  const bool sequential = g->predicts && o->settings.decision_order == EO_ORDER_SEQUENTIAL;
-  return sequential ? absorb_in_sequence(o, error) : finish_batch_order(o, error);
+  const struct genetic *genetic = optimizer->state;
+  const bool sequential = genetic->predicts && optimizer->settings.decision_order == EO_ORDER_SEQUENTIAL;
+  return sequential ? absorb_in_sequence(optimizer, error) : finish_batch_order(optimizer, error);
 }
 
 const struct eo_algorithm_functions eo_genetic_algorithm = {start, propose, absorb, stop};

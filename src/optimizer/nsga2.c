@@ -35,101 +35,104 @@ struct nsga2 {
   double *reach;                  /* [2 size] distance to the true front and to what is chosen */
 };
 
-static void stop(struct eo_optimizer *o)
+static void stop(struct eo_optimizer *optimizer)
 {
-  struct nsga2 *g = o->state;
-  if (!g)
+  struct nsga2 *nsga2 = optimizer->state;
+  if (!nsga2)
     return;
-  free(g->x);
-  free(g->objective);
-  free(g->violation);
-  free(g->crowding);
-  free(g->fitness);
-  free(g->kept);
-  free(g->rank);
-  free(g->order);
-  free(g->scratch);
-  free(g->row_x);
-  free(g->row_y);
-  free(g->sorted);
-  free(g->chosen);
-  free(g->reach);
-  eo_surrogate_done(&g->surrogate);
-  free(g);
+  free(nsga2->x);
+  free(nsga2->objective);
+  free(nsga2->violation);
+  free(nsga2->crowding);
+  free(nsga2->fitness);
+  free(nsga2->kept);
+  free(nsga2->rank);
+  free(nsga2->order);
+  free(nsga2->scratch);
+  free(nsga2->row_x);
+  free(nsga2->row_y);
+  free(nsga2->sorted);
+  free(nsga2->chosen);
+  free(nsga2->reach);
+  eo_surrogate_done(&nsga2->surrogate);
+  free(nsga2);
 }
 
 /* Rank and crowding are taken over the population and over the archive, which grows. */
-static enum eo_code reserve(struct nsga2 *g, int capacity, struct eo_error *error)
+static enum eo_code reserve(struct nsga2 *nsga2, int capacity, struct eo_error *error)
 {
-  if (capacity <= g->capacity)
+  if (capacity <= nsga2->capacity)
     return EO_OK;
   const size_t c = 2 * (size_t)capacity;
-  double *crowding = realloc(g->crowding, c * sizeof *crowding);
+  double *crowding = realloc(nsga2->crowding, c * sizeof *crowding);
   if (crowding)
-    g->crowding = crowding;
-  int *rank = realloc(g->rank, c * sizeof *rank);
+    nsga2->crowding = crowding;
+  int *rank = realloc(nsga2->rank, c * sizeof *rank);
   if (rank)
-    g->rank = rank;
-  int *order = realloc(g->order, c * sizeof *order);
+    nsga2->rank = rank;
+  int *order = realloc(nsga2->order, c * sizeof *order);
   if (order)
-    g->order = order;
-  int *scratch = realloc(g->scratch, 2 * c * sizeof *scratch);
+    nsga2->order = order;
+  int *scratch = realloc(nsga2->scratch, 2 * c * sizeof *scratch);
   if (scratch)
-    g->scratch = scratch;
+    nsga2->scratch = scratch;
   if (!crowding || !rank || !order || !scratch)
     return eo_error_memory(error);
-  g->capacity = 2 * capacity;
+  nsga2->capacity = 2 * capacity;
   return EO_OK;
 }
 
-static int initial_count(const struct eo_optimizer_settings *s)
+static int initial_count(const struct eo_optimizer_settings *settings)
 {
-  return 4 * s->variables > s->front_population ? 4 * s->variables : s->front_population;
+  return 4 * settings->variables > settings->front_population ? 4 * settings->variables : settings->front_population;
 }
 
-static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  const struct eo_optimizer_settings *s = &o->settings;
-  struct nsga2 *g = o->state = calloc(1, sizeof *g);
-  if (!g)
+  const struct eo_optimizer_settings *settings = &optimizer->settings;
+  struct nsga2 *nsga2 = optimizer->state = calloc(1, sizeof *nsga2);
+  if (!nsga2)
     return eo_error_memory(error);
-  g->size = s->front_population;
-  g->outputs = s->objectives + 1;
-  const size_t n = (size_t)s->variables, m = (size_t)s->objectives, size = (size_t)g->size,
-               rows = (size_t)s->model_rows;
-  const size_t initial = (size_t)initial_count(s);
-  const size_t batch = (size_t)s->front_verified > initial ? (size_t)s->front_verified : initial;
-  g->x = malloc(2 * size * n * sizeof(double));
-  g->objective = malloc(2 * size * m * sizeof(double));
-  g->violation = malloc(2 * size * sizeof(double));
-  g->fitness = malloc(size * sizeof(double));
-  g->kept = malloc(size * (n + m + 1) * sizeof(double));
-  g->row_x = malloc(rows * n * sizeof(double));
-  g->row_y = malloc(rows * (m + 1) * sizeof(double));
-  g->sorted = malloc((rows + batch) * sizeof(double));
-  g->chosen = malloc(batch * n * sizeof(double));
-  g->reach = malloc(2 * size * sizeof(double));
-  if (!g->x || !g->objective || !g->violation || !g->fitness || !g->kept || !g->row_x || !g->row_y || !g->sorted ||
-      !g->chosen || !g->reach)
+  nsga2->size = settings->front_population;
+  nsga2->outputs = settings->objectives + 1;
+  const size_t n = (size_t)settings->variables, m = (size_t)settings->objectives, size = (size_t)nsga2->size,
+               rows = (size_t)settings->model_rows;
+  const size_t initial = (size_t)initial_count(settings);
+  const size_t batch = (size_t)settings->front_verified > initial ? (size_t)settings->front_verified : initial;
+  nsga2->x = malloc(2 * size * n * sizeof(double));
+  nsga2->objective = malloc(2 * size * m * sizeof(double));
+  nsga2->violation = malloc(2 * size * sizeof(double));
+  nsga2->fitness = malloc(size * sizeof(double));
+  nsga2->kept = malloc(size * (n + m + 1) * sizeof(double));
+  nsga2->row_x = malloc(rows * n * sizeof(double));
+  nsga2->row_y = malloc(rows * (m + 1) * sizeof(double));
+  nsga2->sorted = malloc((rows + batch) * sizeof(double));
+  nsga2->chosen = malloc(batch * n * sizeof(double));
+  nsga2->reach = malloc(2 * size * sizeof(double));
+  if (!nsga2->x || !nsga2->objective || !nsga2->violation || !nsga2->fitness || !nsga2->kept || !nsga2->row_x ||
+      !nsga2->row_y || !nsga2->sorted || !nsga2->chosen || !nsga2->reach)
     return eo_error_memory(error);
-  enum eo_code code = reserve(g, 2 * g->size, error);
+  enum eo_code code = reserve(nsga2, 2 * nsga2->size, error);
   if (code == EO_OK)
-    code = eo_surrogate_init(&g->surrogate, s->variables, s->model_rows, g->outputs, EO_TAIL_LINEAR, error);
-  return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
+    code = eo_surrogate_init(&nsga2->surrogate, settings->variables, settings->model_rows, nsga2->outputs,
+                             EO_TAIL_LINEAR, error);
+  return code == EO_OK ? eo_optimizer_reserve_batch(optimizer, (int)batch, error) : code;
 }
 
 /* The true rows by rank and crowding into g->order; failed ones, infinitely violating, come last. Returns how many
    have not failed. */
-static int order_archive(struct eo_optimizer *o)
+static int order_archive(struct eo_optimizer *optimizer)
 {
-  struct nsga2 *g = o->state;
-  const struct eo_archive *a = &o->archive;
+  struct nsga2 *nsga2 = optimizer->state;
+  const struct eo_archive *archive = &optimizer->archive;
   int usable = 0;
-  for (int row = 0; row < a->count; row++)
-    usable += !eo_archive_failed(a, row);
-  eo_pareto_rank(a->objective, a->violation, a->count, a->objectives, g->rank, g->scratch);
-  eo_pareto_crowding(a->objective, g->rank, a->count, a->objectives, g->crowding, g->scratch);
-  eo_pareto_order(g->rank, g->crowding, a->count, g->order);
+  for (int row = 0; row < archive->count; row++)
+    usable += !eo_archive_failed(archive, row);
+  eo_pareto_rank(archive->objective, archive->violation, archive->count, archive->objectives, nsga2->rank,
+                 nsga2->scratch);
+  eo_pareto_crowding(archive->objective, nsga2->rank, archive->count, archive->objectives, nsga2->crowding,
+                     nsga2->scratch);
+  eo_pareto_order(nsga2->rank, nsga2->crowding, archive->count, nsga2->order);
   return usable;
 }
 
@@ -139,95 +142,97 @@ static int compare_doubles(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
-static void clip(struct nsga2 *g, double *y, int rows)
+static void clip(struct nsga2 *nsga2, double *y, int rows)
 {
-  memcpy(g->sorted, y, (size_t)rows * sizeof *y);
-  qsort(g->sorted, (size_t)rows, sizeof *y, compare_doubles);
-  const double limit = g->sorted[(int)(clip_quantile * (rows - 1))];
+  memcpy(nsga2->sorted, y, (size_t)rows * sizeof *y);
+  qsort(nsga2->sorted, (size_t)rows, sizeof *y, compare_doubles);
+  const double limit = nsga2->sorted[(int)(clip_quantile * (rows - 1))];
   for (int j = 0; j < rows; j++)
     y[j] = fmin(y[j], limit);
 }
 
 /* One surrogate per objective and one of the violation on the best rows. */
-static void fit(struct eo_optimizer *o, int usable)
+static void fit(struct eo_optimizer *optimizer, int usable)
 {
-  struct nsga2 *g = o->state;
-  const struct eo_archive *a = &o->archive;
-  const int n = a->variables, m = a->objectives;
-  const int rows = usable < o->settings.model_rows ? usable : o->settings.model_rows;
+  struct nsga2 *nsga2 = optimizer->state;
+  const struct eo_archive *archive = &optimizer->archive;
+  const int n = archive->variables, m = archive->objectives;
+  const int rows = usable < optimizer->settings.model_rows ? usable : optimizer->settings.model_rows;
   for (int j = 0; j < rows; j++) {
-    const size_t row = (size_t)g->order[j];
-    memcpy(g->row_x + (size_t)j * n, a->x + row * n, (size_t)n * sizeof(double));
+    const size_t row = (size_t)nsga2->order[j];
+    memcpy(nsga2->row_x + (size_t)j * n, archive->x + row * n, (size_t)n * sizeof(double));
     for (int k = 0; k < m; k++)
-      g->row_y[k * rows + j] = a->objective[row * m + k];
-    g->row_y[m * rows + j] = a->violation[row];
+      nsga2->row_y[k * rows + j] = archive->objective[row * m + k];
+    nsga2->row_y[m * rows + j] = archive->violation[row];
   }
-  for (int k = 0; k < g->outputs && rows > 0; k++)
-    clip(g, g->row_y + (size_t)k * rows, rows);
-  g->modelled = eo_surrogate_fit(&g->surrogate, EO_TAIL_LINEAR, ridge, g->row_x, g->row_y, rows, g->outputs);
+  for (int k = 0; k < nsga2->outputs && rows > 0; k++)
+    clip(nsga2, nsga2->row_y + (size_t)k * rows, rows);
+  nsga2->modelled = eo_surrogate_fit(&nsga2->surrogate, EO_TAIL_LINEAR, ridge, nsga2->row_x, nsga2->row_y, rows,
+                                     nsga2->outputs);
 }
 
-static void load_parents(struct eo_optimizer *o, int usable)
+static void load_parents(struct eo_optimizer *optimizer, int usable)
 {
-  struct nsga2 *g = o->state;
-  const struct eo_archive *a = &o->archive;
-  const int n = a->variables, m = a->objectives;
-  g->count = usable < g->size ? usable : g->size;
-  for (int i = 0; i < g->count; i++) {
-    const size_t row = (size_t)g->order[i];
-    memcpy(g->x + (size_t)i * n, a->x + row * n, (size_t)n * sizeof(double));
-    memcpy(g->objective + (size_t)i * m, a->objective + row * m, (size_t)m * sizeof(double));
-    g->violation[i] = a->violation[row];
-    g->fitness[i] = -i;
+  struct nsga2 *nsga2 = optimizer->state;
+  const struct eo_archive *archive = &optimizer->archive;
+  const int n = archive->variables, m = archive->objectives;
+  nsga2->count = usable < nsga2->size ? usable : nsga2->size;
+  for (int i = 0; i < nsga2->count; i++) {
+    const size_t row = (size_t)nsga2->order[i];
+    memcpy(nsga2->x + (size_t)i * n, archive->x + row * n, (size_t)n * sizeof(double));
+    memcpy(nsga2->objective + (size_t)i * m, archive->objective + row * m, (size_t)m * sizeof(double));
+    nsga2->violation[i] = archive->violation[row];
+    nsga2->fitness[i] = -i;
   }
 }
 
-static void predict(struct eo_optimizer *o, int i)
+static void predict(struct eo_optimizer *optimizer, int i)
 {
-  struct nsga2 *g = o->state;
-  const int m = o->settings.objectives;
-  eo_surrogate_visit(&g->surrogate, g->x + (size_t)i * o->settings.variables);
+  struct nsga2 *nsga2 = optimizer->state;
+  const int m = optimizer->settings.objectives;
+  eo_surrogate_visit(&nsga2->surrogate, nsga2->x + (size_t)i * optimizer->settings.variables);
   for (int k = 0; k < m; k++)
-    g->objective[(size_t)i * m + k] = eo_surrogate_value(&g->surrogate, k);
-  g->violation[i] = fmax(0, eo_surrogate_value(&g->surrogate, m));
+    nsga2->objective[(size_t)i * m + k] = eo_surrogate_value(&nsga2->surrogate, k);
+  nsga2->violation[i] = fmax(0, eo_surrogate_value(&nsga2->surrogate, m));
 }
 
 /* Orders all g->count individuals and keeps the best g->size of them, best first. */
-static void select_best(struct eo_optimizer *o)
+static void select_best(struct eo_optimizer *optimizer)
 {
-  struct nsga2 *g = o->state;
-  const int n = o->settings.variables, m = o->settings.objectives, kept = g->count < g->size ? g->count : g->size;
-  double *x = g->kept, *objective = x + (size_t)g->size * n, *violation = objective + (size_t)g->size * m;
-  eo_pareto_rank(g->objective, g->violation, g->count, m, g->rank, g->scratch);
-  eo_pareto_crowding(g->objective, g->rank, g->count, m, g->crowding, g->scratch);
-  eo_pareto_order(g->rank, g->crowding, g->count, g->order);
+  struct nsga2 *nsga2 = optimizer->state;
+  const int n = optimizer->settings.variables, m = optimizer->settings.objectives,
+            kept = nsga2->count < nsga2->size ? nsga2->count : nsga2->size;
+  double *x = nsga2->kept, *objective = x + (size_t)nsga2->size * n, *violation = objective + (size_t)nsga2->size * m;
+  eo_pareto_rank(nsga2->objective, nsga2->violation, nsga2->count, m, nsga2->rank, nsga2->scratch);
+  eo_pareto_crowding(nsga2->objective, nsga2->rank, nsga2->count, m, nsga2->crowding, nsga2->scratch);
+  eo_pareto_order(nsga2->rank, nsga2->crowding, nsga2->count, nsga2->order);
   for (int i = 0; i < kept; i++) {
-    const size_t from = (size_t)g->order[i];
-    memcpy(x + (size_t)i * n, g->x + from * n, (size_t)n * sizeof *x);
-    memcpy(objective + (size_t)i * m, g->objective + from * m, (size_t)m * sizeof *x);
-    violation[i] = g->violation[from];
-    g->fitness[i] = -i;
+    const size_t from = (size_t)nsga2->order[i];
+    memcpy(x + (size_t)i * n, nsga2->x + from * n, (size_t)n * sizeof *x);
+    memcpy(objective + (size_t)i * m, nsga2->objective + from * m, (size_t)m * sizeof *x);
+    violation[i] = nsga2->violation[from];
+    nsga2->fitness[i] = -i;
   }
-  memcpy(g->x, x, (size_t)kept * (size_t)n * sizeof *x);
-  memcpy(g->objective, objective, (size_t)kept * (size_t)m * sizeof *x);
-  memcpy(g->violation, violation, (size_t)kept * sizeof *x);
-  g->count = kept;
+  memcpy(nsga2->x, x, (size_t)kept * (size_t)n * sizeof *x);
+  memcpy(nsga2->objective, objective, (size_t)kept * (size_t)m * sizeof *x);
+  memcpy(nsga2->violation, violation, (size_t)kept * sizeof *x);
+  nsga2->count = kept;
 }
 
-static void evolve(struct eo_optimizer *o)
+static void evolve(struct eo_optimizer *optimizer)
 {
-  struct nsga2 *g = o->state;
-  const int n = o->settings.variables, rounds = g->modelled ? o->settings.front_rounds : 1;
+  struct nsga2 *nsga2 = optimizer->state;
+  const int n = optimizer->settings.variables, rounds = nsga2->modelled ? optimizer->settings.front_rounds : 1;
   for (int round = 0; round < rounds; round++) {
-    const int parents = g->count;
-    eo_breed(&o->settings, g->x, g->fitness, parents, g->cycle * o->settings.front_rounds + round, 0,
-             g->x + (size_t)parents * n, g->size);
-    g->count += g->size;
-    if (!g->modelled)
+    const int parents = nsga2->count;
+    eo_breed(&optimizer->settings, nsga2->x, nsga2->fitness, parents,
+             nsga2->cycle * optimizer->settings.front_rounds + round, 0, nsga2->x + (size_t)parents * n, nsga2->size);
+    nsga2->count += nsga2->size;
+    if (!nsga2->modelled)
       return;
-    for (int i = parents; i < g->count; i++)
-      predict(o, i);
-    select_best(o);
+    for (int i = parents; i < nsga2->count; i++)
+      predict(optimizer, i);
+    select_best(optimizer);
   }
 }
 
@@ -244,139 +249,142 @@ static bool is_near(const double *points, int count, const double *x, int n, dou
 }
 
 /* Range of every objective over the individuals, for distances between them. */
-static void measure_ranges(const struct nsga2 *g, int m, double *range)
+static void measure_ranges(const struct nsga2 *nsga2, int m, double *range)
 {
   for (int k = 0; k < m; k++) {
     double low = INFINITY, high = -INFINITY;
-    for (int i = 0; i < g->count; i++) {
-      low = fmin(low, g->objective[(size_t)i * m + k]);
-      high = fmax(high, g->objective[(size_t)i * m + k]);
+    for (int i = 0; i < nsga2->count; i++) {
+      low = fmin(low, nsga2->objective[(size_t)i * m + k]);
+      high = fmax(high, nsga2->objective[(size_t)i * m + k]);
     }
     range[k] = high > low ? high - low : 1;
   }
 }
 
-static void shorten_reach(struct nsga2 *g, int m, const double *range, const double *objective)
+static void shorten_reach(struct nsga2 *nsga2, int m, const double *range, const double *objective)
 {
-  for (int i = 0; i < g->count; i++) {
+  for (int i = 0; i < nsga2->count; i++) {
     double sum = 0;
     for (int k = 0; k < m; k++) {
-      const double d = (g->objective[(size_t)i * m + k] - objective[k]) / range[k];
+      const double d = (nsga2->objective[(size_t)i * m + k] - objective[k]) / range[k];
       sum += d * d;
     }
-    g->reach[i] = fmin(g->reach[i], sum);
+    nsga2->reach[i] = fmin(nsga2->reach[i], sum);
   }
 }
 
 /* Distance of every individual to the true front; true rows themselves and their close neighbours are ruled out. */
-static void start_reach(struct eo_optimizer *o, const int *front, int front_count, const double *range)
+static void start_reach(struct eo_optimizer *optimizer, const int *front, int front_count, const double *range)
 {
-  struct nsga2 *g = o->state;
-  const int n = o->settings.variables, m = o->settings.objectives;
-  for (int i = 0; i < g->count; i++)
-    g->reach[i] = INFINITY;
+  struct nsga2 *nsga2 = optimizer->state;
+  const int n = optimizer->settings.variables, m = optimizer->settings.objectives;
+  for (int i = 0; i < nsga2->count; i++)
+    nsga2->reach[i] = INFINITY;
   for (int f = 0; f < front_count; f++)
-    shorten_reach(g, m, range, o->archive.objective + (size_t)front[f] * m);
-  for (int i = 0; i < g->count; i++)
-    if (is_near(o->archive.x, o->archive.count, g->x + (size_t)i * n, n, apart * sqrt(n)))
-      g->reach[i] = -1;
+    shorten_reach(nsga2, m, range, optimizer->archive.objective + (size_t)front[f] * m);
+  for (int i = 0; i < nsga2->count; i++)
+    if (is_near(optimizer->archive.x, optimizer->archive.count, nsga2->x + (size_t)i * n, n, apart * sqrt(n)))
+      nsga2->reach[i] = -1;
 }
 
 /* Of the individuals whose prediction nothing dominates, those farthest from the true front and from each other; then
    of the next rank. Without surrogates the children as they come. */
-static int choose(struct eo_optimizer *o, const int *front, int front_count, int parents)
+static int choose(struct eo_optimizer *optimizer, const int *front, int front_count, int parents)
 {
-  struct nsga2 *g = o->state;
-  const int n = o->settings.variables, m = o->settings.objectives, limit = o->settings.front_verified;
+  struct nsga2 *nsga2 = optimizer->state;
+  const int n = optimizer->settings.variables, m = optimizer->settings.objectives,
+            limit = optimizer->settings.front_verified;
   int chosen = 0;
-  if (!g->modelled) {
-    for (int i = parents; i < g->count && chosen < limit; i++)
-      memcpy(g->chosen + (size_t)chosen++ * n, g->x + (size_t)i * n, (size_t)n * sizeof(double));
+  if (!nsga2->modelled) {
+    for (int i = parents; i < nsga2->count && chosen < limit; i++)
+      memcpy(nsga2->chosen + (size_t)chosen++ * n, nsga2->x + (size_t)i * n, (size_t)n * sizeof(double));
     return chosen;
   }
   double range[EO_MAX_OBJECTIVES];
-  measure_ranges(g, m, range);
-  start_reach(o, front, front_count, range);
-  eo_pareto_rank(g->objective, g->violation, g->count, m, g->rank, g->scratch);
+  measure_ranges(nsga2, m, range);
+  start_reach(optimizer, front, front_count, range);
+  eo_pareto_rank(nsga2->objective, nsga2->violation, nsga2->count, m, nsga2->rank, nsga2->scratch);
   while (chosen < limit) {
     int best = -1;
-    for (int i = 0; i < g->count; i++)
-      if (g->reach[i] >= 0 &&
-          (best < 0 || g->rank[i] < g->rank[best] || (g->rank[i] == g->rank[best] && g->reach[i] > g->reach[best])))
+    for (int i = 0; i < nsga2->count; i++)
+      if (nsga2->reach[i] >= 0 && (best < 0 || nsga2->rank[i] < nsga2->rank[best] ||
+                                   (nsga2->rank[i] == nsga2->rank[best] && nsga2->reach[i] > nsga2->reach[best])))
         best = i;
     if (best < 0)
       break;
-    memcpy(g->chosen + (size_t)chosen++ * n, g->x + (size_t)best * n, (size_t)n * sizeof(double));
-    shorten_reach(g, m, range, g->objective + (size_t)best * m);
-    g->reach[best] = -1;
-    for (int i = 0; i < g->count; i++)
-      if (is_near(g->chosen, chosen, g->x + (size_t)i * n, n, apart * sqrt(n)))
-        g->reach[i] = -1;
+    memcpy(nsga2->chosen + (size_t)chosen++ * n, nsga2->x + (size_t)best * n, (size_t)n * sizeof(double));
+    shorten_reach(nsga2, m, range, nsga2->objective + (size_t)best * m);
+    nsga2->reach[best] = -1;
+    for (int i = 0; i < nsga2->count; i++)
+      if (is_near(nsga2->chosen, chosen, nsga2->x + (size_t)i * n, n, apart * sqrt(n)))
+        nsga2->reach[i] = -1;
   }
   return chosen;
 }
 
-static int propose_cycle(struct eo_optimizer *o, int *front)
+static int propose_cycle(struct eo_optimizer *optimizer, int *front)
 {
-  struct nsga2 *g = o->state;
-  const int usable = order_archive(o);
+  struct nsga2 *nsga2 = optimizer->state;
+  const int usable = order_archive(optimizer);
   if (usable == 0)
     return 0;
   int front_count = 0;
-  for (int i = 0; i < usable && g->rank[g->order[i]] == 0; i++)
-    front[front_count++] = g->order[i];
-  load_parents(o, usable);
-  fit(o, usable);
-  const int parents = g->count;
-  evolve(o);
-  return choose(o, front, front_count, parents);
+  for (int i = 0; i < usable && nsga2->rank[nsga2->order[i]] == 0; i++)
+    front[front_count++] = nsga2->order[i];
+  load_parents(optimizer, usable);
+  fit(optimizer, usable);
+  const int parents = nsga2->count;
+  evolve(optimizer);
+  return choose(optimizer, front, front_count, parents);
 }
 
-static void request(struct eo_optimizer *o, int count)
+static void request(struct eo_optimizer *optimizer, int count)
 {
-  struct nsga2 *g = o->state;
+  struct nsga2 *nsga2 = optimizer->state;
   bool known;
   for (int i = 0; i < count; i++)
-    if (eo_optimizer_request(o, g->chosen + (size_t)i * o->settings.variables, g->cycle, i, false, &known) < 0)
+    if (eo_optimizer_request(optimizer, nsga2->chosen + (size_t)i * optimizer->settings.variables, nsga2->cycle, i,
+                             false, &known) < 0)
       return;
 }
 
 /* A new latin hypercube: at the start, and whenever the population has nothing new to offer. */
-static void request_latin(struct eo_optimizer *o)
+static void request_latin(struct eo_optimizer *optimizer)
 {
-  struct nsga2 *g = o->state;
-  const int count = g->cycle == 0 ? initial_count(&o->settings) : o->settings.front_verified;
-  eo_latin_hypercube(g->chosen, count, o->settings.variables, o->settings.seed, g->cycle, g->sorted);
-  request(o, count);
+  struct nsga2 *nsga2 = optimizer->state;
+  const int count = nsga2->cycle == 0 ? initial_count(&optimizer->settings) : optimizer->settings.front_verified;
+  eo_latin_hypercube(nsga2->chosen, count, optimizer->settings.variables, optimizer->settings.seed, nsga2->cycle,
+                     nsga2->sorted);
+  request(optimizer, count);
 }
 
-static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code propose(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct nsga2 *g = o->state;
-  if (eo_optimizer_left(o) <= 0) {
-    o->finished = true;
+  struct nsga2 *nsga2 = optimizer->state;
+  if (eo_optimizer_left(optimizer) <= 0) {
+    optimizer->finished = true;
     return EO_OK;
   }
-  if (g->cycle > 0) {
-    const enum eo_code code = reserve(g, o->archive.count, error);
-    int *front = code == EO_OK ? malloc((size_t)o->archive.count * sizeof *front) : NULL;
+  if (nsga2->cycle > 0) {
+    const enum eo_code code = reserve(nsga2, optimizer->archive.count, error);
+    int *front = code == EO_OK ? malloc((size_t)optimizer->archive.count * sizeof *front) : NULL;
     if (!front)
       return code == EO_OK ? eo_error_memory(error) : code;
-    request(o, propose_cycle(o, front));
+    request(optimizer, propose_cycle(optimizer, front));
     free(front);
   }
-  if (o->batch_count == 0)
-    request_latin(o);
-  o->finished = o->batch_count == 0;
+  if (optimizer->batch_count == 0)
+    request_latin(optimizer);
+  optimizer->finished = optimizer->batch_count == 0;
   return EO_OK;
 }
 
-static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code absorb(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  struct nsga2 *g = o->state;
-  const struct eo_generation statistics = {.true_count = o->batch_count};
-  g->cycle++;
-  return eo_optimizer_close_generation(o, &statistics, error);
+  struct nsga2 *nsga2 = optimizer->state;
+  const struct eo_generation statistics = {.true_count = optimizer->batch_count};
+  nsga2->cycle++;
+  return eo_optimizer_close_generation(optimizer, &statistics, error);
 }
 
 const struct eo_algorithm_functions eo_nsga2_algorithm = {start, propose, absorb, stop};

@@ -25,15 +25,15 @@ static double crossover_spread(double u, double index)
 }
 
 /* a and b, [n], become the two children. */
-static void cross(const struct eo_optimizer_settings *s, struct eo_random random, double *a, double *b)
+static void cross(const struct eo_optimizer_settings *settings, struct eo_random random, double *a, double *b)
 {
-  if (eo_random_unit(random, 0) >= s->crossover)
+  if (eo_random_unit(random, 0) >= settings->crossover)
     return;
-  for (int k = 0; k < s->variables; k++) {
+  for (int k = 0; k < settings->variables; k++) {
     const uint64_t draw = 1 + 2 * (uint64_t)k;
     if (eo_random_unit(random, draw) >= 0.5)
       continue;
-    const double spread = crossover_spread(eo_random_unit(random, draw + 1), s->crossover_index);
+    const double spread = crossover_spread(eo_random_unit(random, draw + 1), settings->crossover_index);
     const double first = 0.5 * ((1 + spread) * a[k] + (1 - spread) * b[k]);
     const double second = 0.5 * ((1 - spread) * a[k] + (1 + spread) * b[k]);
     a[k] = eo_unit_clip(first);
@@ -46,18 +46,18 @@ static double mutation_step(double u, double index)
   return u < 0.5 ? pow(2 * u, 1 / (index + 1)) - 1 : 1 - pow(2 * (1 - u), 1 / (index + 1));
 }
 
-static void mutate(const struct eo_optimizer_settings *s, struct eo_random random, double *x)
+static void mutate(const struct eo_optimizer_settings *settings, struct eo_random random, double *x)
 {
-  double rate = s->mutation;
-  if (s->mutation_mode == EO_MUTATE_INDIVIDUAL) {
-    if (eo_random_unit(random, 0) >= s->mutation)
+  double rate = settings->mutation;
+  if (settings->mutation_mode == EO_MUTATE_INDIVIDUAL) {
+    if (eo_random_unit(random, 0) >= settings->mutation)
       return;
-    rate = 1.0 / s->variables;
+    rate = 1.0 / settings->variables;
   }
-  for (int k = 0; k < s->variables; k++) {
+  for (int k = 0; k < settings->variables; k++) {
     const uint64_t draw = 1 + 2 * (uint64_t)k;
     if (eo_random_unit(random, draw) < rate)
-      x[k] = eo_unit_clip(x[k] + mutation_step(eo_random_unit(random, draw + 1), s->mutation_index));
+      x[k] = eo_unit_clip(x[k] + mutation_step(eo_random_unit(random, draw + 1), settings->mutation_index));
   }
 }
 

@@ -21,19 +21,19 @@ enum eo_code eo_optimizer_new(const struct eo_optimizer_settings *settings, stru
   enum eo_code code = eo_optimizer_settings_check(settings, error);
   if (code != EO_OK)
     return code;
-  struct eo_optimizer *o = calloc(1, sizeof *o);
-  if (!o)
+  struct eo_optimizer *this_optimizer = calloc(1, sizeof *this_optimizer);
+  if (!this_optimizer)
     return eo_error_memory(error);
-  o->settings = *settings;
-  o->algorithm = algorithms[settings->algorithm];
-  o->budget = eo_optimizer_budget(settings);
-  code = eo_archive_init(&o->archive, settings->variables, settings->algorithm == EO_NSGA2 ? settings->objectives : 0,
-                         error);
+  this_optimizer->settings = *settings;
+  this_optimizer->algorithm = algorithms[settings->algorithm];
+  this_optimizer->budget = eo_optimizer_budget(settings);
+  code = eo_archive_init(&this_optimizer->archive, settings->variables,
+                         settings->algorithm == EO_NSGA2 ? settings->objectives : 0, error);
   if (code != EO_OK) {
-    eo_optimizer_free(o);
+    eo_optimizer_free(this_optimizer);
     return code;
   }
-  *optimizer = o;
+  *optimizer = this_optimizer;
   return EO_OK;
 }
 
@@ -56,19 +56,19 @@ void eo_optimizer_free(struct eo_optimizer *optimizer)
   free(optimizer);
 }
 
-static bool has_failed(const struct eo_optimizer *o, const struct eo_outcome *outcome)
+static bool has_failed(const struct eo_optimizer *optimizer, const struct eo_outcome *outcome)
 {
   bool failed = outcome->failed || !isfinite(outcome->value) || !(outcome->violation >= 0);
-  for (int k = 0; k < o->archive.objectives && !failed; k++)
+  for (int k = 0; k < optimizer->archive.objectives && !failed; k++)
     failed = !outcome->objectives || !isfinite(outcome->objectives[k]);
   return failed;
 }
 
-static void store(struct eo_optimizer *o, const double *x, const struct eo_outcome *outcome, int generation,
+static void store(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome, int generation,
                   int individual)
 {
-  const bool failed = has_failed(o, outcome);
-  eo_archive_add(&o->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
+  const bool failed = has_failed(optimizer, outcome);
+  eo_archive_add(&optimizer->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
                  failed ? NULL : outcome->objectives, failed ? NULL : outcome->parts, generation, individual);
 }
 
@@ -134,11 +134,12 @@ enum eo_code eo_optimizer_ask(struct eo_optimizer *optimizer, struct eo_batch *b
   return EO_OK;
 }
 
-static void apply_batch(struct eo_optimizer *o)
+static void apply_batch(struct eo_optimizer *optimizer)
 {
-  for (int i = 0; i < o->batch_count; i++)
-    store(o, o->candidate[i].x, &o->outcome[i], o->candidate[i].generation, o->candidate[i].individual);
-  o->true_evaluations += o->batch_count;
+  for (int i = 0; i < optimizer->batch_count; i++)
+    store(optimizer, optimizer->candidate[i].x, &optimizer->outcome[i], optimizer->candidate[i].generation,
+          optimizer->candidate[i].individual);
+  optimizer->true_evaluations += optimizer->batch_count;
 }
 
 enum eo_code eo_optimizer_tell(struct eo_optimizer *optimizer, int candidate, const struct eo_outcome *outcome,
@@ -171,12 +172,12 @@ int eo_optimizer_left(const struct eo_optimizer *optimizer)
   return optimizer->budget - optimizer->true_evaluations - pending;
 }
 
-static int find_pending(const struct eo_optimizer *o, const double *x)
+static int find_pending(const struct eo_optimizer *optimizer, const double *x)
 {
-  const size_t bytes = (size_t)o->settings.variables * sizeof *x;
-  for (int i = 0; i < o->batch_count; i++)
-    if (memcmp(o->candidate[i].x, x, bytes) == 0)
-      return o->archive.count + i;
+  const size_t bytes = (size_t)optimizer->settings.variables * sizeof *x;
+  for (int i = 0; i < optimizer->batch_count; i++)
+    if (memcmp(optimizer->candidate[i].x, x, bytes) == 0)
+      return optimizer->archive.count + i;
   return -1;
 }
 
@@ -199,36 +200,37 @@ int eo_optimizer_request(struct eo_optimizer *optimizer, const double *x, int ge
   return optimizer->archive.count + i;
 }
 
-enum eo_code eo_optimizer_reserve_batch(struct eo_optimizer *o, int count, struct eo_error *error)
+enum eo_code eo_optimizer_reserve_batch(struct eo_optimizer *optimizer, int count, struct eo_error *error)
 {
-  const size_t c = (size_t)count, n = (size_t)o->settings.variables, m = (size_t)o->archive.objectives;
-  o->batch_capacity = count;
-  o->batch_x = malloc(c * n * sizeof(double));
-  o->candidate = malloc(c * sizeof *o->candidate);
-  o->outcome = malloc(c * sizeof *o->outcome);
-  o->batch_objective = malloc((c * m + 1) * sizeof(double));
-  o->batch_part = malloc((c * (size_t)o->anatomy.parts + 1) * sizeof(double));
-  o->told = malloc(c * sizeof *o->told);
-  return o->batch_x && o->batch_part && o->candidate && o->outcome && o->batch_objective && o->told
+  const size_t c = (size_t)count, n = (size_t)optimizer->settings.variables, m = (size_t)optimizer->archive.objectives;
+  optimizer->batch_capacity = count;
+  optimizer->batch_x = malloc(c * n * sizeof(double));
+  optimizer->candidate = malloc(c * sizeof *optimizer->candidate);
+  optimizer->outcome = malloc(c * sizeof *optimizer->outcome);
+  optimizer->batch_objective = malloc((c * m + 1) * sizeof(double));
+  optimizer->batch_part = malloc((c * (size_t)optimizer->anatomy.parts + 1) * sizeof(double));
+  optimizer->told = malloc(c * sizeof *optimizer->told);
+  return optimizer->batch_x && optimizer->batch_part && optimizer->candidate && optimizer->outcome &&
+                 optimizer->batch_objective && optimizer->told
              ? EO_OK
              : eo_error_memory(error);
 }
 
-static enum eo_code reserve_prediction(struct eo_optimizer *o, struct eo_error *error)
+static enum eo_code reserve_prediction(struct eo_optimizer *optimizer, struct eo_error *error)
 {
-  if (o->prediction_count < o->prediction_capacity)
+  if (optimizer->prediction_count < optimizer->prediction_capacity)
     return EO_OK;
-  const size_t n = (size_t)o->settings.variables, capacity = 2 * (size_t)o->prediction_capacity + 256;
-  double *x = realloc(o->prediction_x, capacity * n * sizeof *x);
+  const size_t n = (size_t)optimizer->settings.variables, capacity = 2 * (size_t)optimizer->prediction_capacity + 256;
+  double *x = realloc(optimizer->prediction_x, capacity * n * sizeof *x);
   if (x)
-    o->prediction_x = x;
-  struct eo_predicted *prediction = realloc(o->prediction, capacity * sizeof *prediction);
+    optimizer->prediction_x = x;
+  struct eo_predicted *prediction = realloc(optimizer->prediction, capacity * sizeof *prediction);
   if (prediction)
-    o->prediction = prediction;
+    optimizer->prediction = prediction;
   if (!x || !prediction)
     return eo_error_memory(error);
-  o->prediction_capacity = (int)capacity;
-  for (int i = 0; i < o->prediction_count; i++)
+  optimizer->prediction_capacity = (int)capacity;
+  for (int i = 0; i < optimizer->prediction_count; i++)
     prediction[i].x = x + (size_t)i * n;
   return EO_OK;
 }
@@ -273,16 +275,16 @@ int eo_optimizer_rows(const struct eo_optimizer *optimizer)
 
 struct eo_row eo_optimizer_row(const struct eo_optimizer *optimizer, int index)
 {
-  const struct eo_archive *a = &optimizer->archive;
+  const struct eo_archive *archive = &optimizer->archive;
   return (struct eo_row){
-      .x = a->x + (size_t)index * a->variables,
-      .objectives = a->objectives ? a->objective + (size_t)index * a->objectives : NULL,
-      .value = a->value[index],
-      .violation = a->violation[index],
-      .failed = eo_archive_failed(a, index),
-      .imported = a->generation[index] < 0,
-      .generation = a->generation[index],
-      .individual = a->individual[index],
+      .x = archive->x + (size_t)index * archive->variables,
+      .objectives = archive->objectives ? archive->objective + (size_t)index * archive->objectives : NULL,
+      .value = archive->value[index],
+      .violation = archive->violation[index],
+      .failed = eo_archive_failed(archive, index),
+      .imported = archive->generation[index] < 0,
+      .generation = archive->generation[index],
+      .individual = archive->individual[index],
   };
 }
 

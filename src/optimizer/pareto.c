@@ -109,33 +109,33 @@ void eo_pareto_order(const int *rank, const double *crowding, int count, int *or
   }
 }
 
-static bool is_dominated(const struct eo_archive *a, int row)
+static bool is_dominated(const struct eo_archive *archive, int row)
 {
-  const int m = a->objectives;
-  for (int j = 0; j < a->count; j++)
-    if (eo_pareto_dominates(a->objective + (size_t)j * m, a->violation[j], a->objective + (size_t)row * m,
-                            a->violation[row], m))
+  const int m = archive->objectives;
+  for (int j = 0; j < archive->count; j++)
+    if (eo_pareto_dominates(archive->objective + (size_t)j * m, archive->violation[j],
+                            archive->objective + (size_t)row * m, archive->violation[row], m))
       return true;
   return false;
 }
 
-static int find_knee(const struct eo_archive *a, const int *front, int count)
+static int find_knee(const struct eo_archive *archive, const int *front, int count)
 {
-  const int m = a->objectives;
+  const int m = archive->objectives;
   double low[EO_MAX_OBJECTIVES], high[EO_MAX_OBJECTIVES], least = INFINITY;
   int knee = -1;
   for (int k = 0; k < m; k++) {
     low[k] = INFINITY;
     high[k] = -INFINITY;
     for (int f = 0; f < count; f++) {
-      low[k] = fmin(low[k], a->objective[(size_t)front[f] * m + k]);
-      high[k] = fmax(high[k], a->objective[(size_t)front[f] * m + k]);
+      low[k] = fmin(low[k], archive->objective[(size_t)front[f] * m + k]);
+      high[k] = fmax(high[k], archive->objective[(size_t)front[f] * m + k]);
     }
   }
   for (int f = 0; f < count; f++) {
     double sum = 0;
     for (int k = 0; k < m; k++)
-      sum += high[k] > low[k] ? (a->objective[(size_t)front[f] * m + k] - low[k]) / (high[k] - low[k]) : 0;
+      sum += high[k] > low[k] ? (archive->objective[(size_t)front[f] * m + k] - low[k]) / (high[k] - low[k]) : 0;
     if (sum < least) {
       least = sum;
       knee = front[f];

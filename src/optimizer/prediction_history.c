@@ -138,8 +138,10 @@ bool eo_history_trusts(const struct eo_history_estimate *estimate, double trust_
 
 static int compare_projections(const void *a, const void *b)
 {
-  const struct projection *p = a, *q = b;
-  return p->value != q->value ? (p->value > q->value) - (p->value < q->value) : p->row - q->row;
+  const struct projection *projection = a, *this_projection = b;
+  return projection->value != this_projection->value
+             ? (projection->value > this_projection->value) - (projection->value < this_projection->value)
+             : projection->row - this_projection->row;
 }
 
 void eo_history_measure_redundancy(struct eo_history *history)

@@ -83,16 +83,16 @@ static enum eo_code check_ranges(const struct eo_optimizer_settings *settings, s
   return code;
 }
 
-static enum eo_code check_problem(const struct eo_optimizer_settings *s, struct eo_error *error)
+static enum eo_code check_problem(const struct eo_optimizer_settings *settings, struct eo_error *error)
 {
-  if (s->algorithm < 0 || s->algorithm >= EO_ALGORITHMS)
+  if (settings->algorithm < 0 || settings->algorithm >= EO_ALGORITHMS)
     return fault(error, "algorithm", "There is no such algorithm.");
-  if (s->variables < 1 || s->variables > EO_MAX_VARIABLES)
+  if (settings->variables < 1 || settings->variables > EO_MAX_VARIABLES)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variables",
-                        "There are %d variables, but must be 1 to %d.", s->variables, EO_MAX_VARIABLES);
-  if (s->objectives < 1 || s->objectives > EO_MAX_OBJECTIVES)
+                        "There are %d variables, but must be 1 to %d.", settings->variables, EO_MAX_VARIABLES);
+  if (settings->objectives < 1 || settings->objectives > EO_MAX_OBJECTIVES)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/objectives",
-                        "There are %d objectives, but must be 1 to %d.", s->objectives, EO_MAX_OBJECTIVES);
+                        "There are %d objectives, but must be 1 to %d.", settings->objectives, EO_MAX_OBJECTIVES);
   return EO_OK;
 }
 

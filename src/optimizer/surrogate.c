@@ -71,24 +71,24 @@ static void fill_terms(enum eo_tail tail, int n, const double *z, double *term, 
       term[stride * t++] = z[k] * z[l];
 }
 
-static void copy_rows(struct eo_surrogate *s, const double *x, int rows)
+static void copy_rows(struct eo_surrogate *surrogate, const double *x, int rows)
 {
-  const int n = s->variables;
+  const int n = surrogate->variables;
   for (int k = 0; k < n; k++) {
     double sum = 0;
     for (int j = 0; j < rows; j++)
       sum += x[(size_t)j * n + k];
-    s->mean[k] = sum / rows;
+    surrogate->mean[k] = sum / rows;
     for (int j = 0; j < rows; j++)
-      s->x[(size_t)k * s->rows_max + j] = x[(size_t)j * n + k] - s->mean[k];
+      surrogate->x[(size_t)k * surrogate->rows_max + j] = x[(size_t)j * n + k] - surrogate->mean[k];
   }
 }
 
-static void measure(const struct eo_surrogate *s, const double *z, int rows, double *distance)
+static void measure(const struct eo_surrogate *surrogate, const double *z, int rows, double *distance)
 {
   memset(distance, 0, (size_t)rows * sizeof *distance);
-  for (int k = 0; k < s->variables; k++) {
-    const double *column = s->x + (size_t)k * s->rows_max, zk = z[k];
+  for (int k = 0; k < surrogate->variables; k++) {
+    const double *column = surrogate->x + (size_t)k * surrogate->rows_max, zk = z[k];
     for (int j = 0; j < rows; j++)
       distance[j] += (column[j] - zk) * (column[j] - zk);
   }
@@ -96,42 +96,44 @@ static void measure(const struct eo_surrogate *s, const double *z, int rows, dou
     distance[j] = sqrt(distance[j]);
 }
 
-static void fill_matrices(struct eo_surrogate *s, double ridge)
+static void fill_matrices(struct eo_surrogate *surrogate, double ridge)
 {
-  const int m = s->rows;
+  const int m = surrogate->rows;
   for (int i = 0; i < m; i++) {
-    double *row = s->matrix + (size_t)i * m;
-    for (int k = 0; k < s->variables; k++)
-      s->point[k] = s->x[(size_t)k * s->rows_max + i];
-    measure(s, s->point, i, row);
+    double *row = surrogate->matrix + (size_t)i * m;
+    for (int k = 0; k < surrogate->variables; k++)
+      surrogate->point[k] = surrogate->x[(size_t)k * surrogate->rows_max + i];
+    measure(surrogate, surrogate->point, i, row);
     for (int j = 0; j < i; j++)
-      row[j] = s->matrix[(size_t)j * m + i] = row[j] * row[j] * row[j];
+      row[j] = surrogate->matrix[(size_t)j * m + i] = row[j] * row[j] * row[j];
     row[i] = ridge;
-    fill_terms(s->tail, s->variables, s->point, s->columns + i, m);
+    fill_terms(surrogate->tail, surrogate->variables, surrogate->point, surrogate->columns + i, m);
   }
 }
 
 bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double ridge, const double *x, const double *y,
                       int rows, int outputs)
 {
-  struct eo_surrogate *s = surrogate;
-  s->tail = tail;
-  s->rows = rows;
-  s->terms = eo_surrogate_terms(tail, s->variables);
-  s->outputs = outputs;
-  if (rows <= s->terms || rows > s->rows_max)
+  struct eo_surrogate *this_surrogate = surrogate;
+  this_surrogate->tail = tail;
+  this_surrogate->rows = rows;
+  this_surrogate->terms = eo_surrogate_terms(tail, this_surrogate->variables);
+  this_surrogate->outputs = outputs;
+  if (rows <= this_surrogate->terms || rows > this_surrogate->rows_max)
     return false;
-  copy_rows(s, x, rows);
-  fill_matrices(s, ridge);
-  if (!eo_saddle_factor(&s->saddle, rows, s->terms, s->matrix, s->columns))
+  copy_rows(this_surrogate, x, rows);
+  fill_matrices(this_surrogate, ridge);
+  if (!eo_saddle_factor(&this_surrogate->saddle, rows, this_surrogate->terms, this_surrogate->matrix,
+                        this_surrogate->columns))
     return false;
-  eo_saddle_inverse_diagonal(&s->saddle, s->diagonal);
-  eo_saddle_solve(&s->saddle, outputs, y, s->coefficient, s->rows_max, s->polynomial);
+  eo_saddle_inverse_diagonal(&this_surrogate->saddle, this_surrogate->diagonal);
+  eo_saddle_solve(&this_surrogate->saddle, outputs, y, this_surrogate->coefficient, this_surrogate->rows_max,
+                  this_surrogate->polynomial);
   for (int o = 0; o < outputs; o++) {
-    const double *c = s->coefficient + (size_t)o * s->rows_max;
-    double *e = s->residual + (size_t)o * s->rows_max;
+    const double *c = this_surrogate->coefficient + (size_t)o * this_surrogate->rows_max;
+    double *e = this_surrogate->residual + (size_t)o * this_surrogate->rows_max;
     for (int j = 0; j < rows; j++)
-      e[j] = fabs(c[j] / s->diagonal[j]);
+      e[j] = fabs(c[j] / this_surrogate->diagonal[j]);
   }
   return true;
 }
@@ -167,26 +169,27 @@ double eo_surrogate_value(const struct eo_surrogate *surrogate, int output)
 
 void eo_surrogate_values(struct eo_surrogate *surrogate, double *value)
 {
-  const struct eo_surrogate *s = surrogate;
-  for (int j = 0; j < s->rows; j++)
-    s->cube[j] = s->distance[j] * s->distance[j] * s->distance[j];
-  cblas_dgemv(CblasRowMajor, CblasNoTrans, s->outputs, s->rows, 1, s->coefficient, s->rows_max, s->cube, 1, 0, value,
-              1);
-  cblas_dgemv(CblasRowMajor, CblasNoTrans, s->outputs, s->terms, 1, s->polynomial, s->terms, s->term, 1, 1, value, 1);
+  const struct eo_surrogate *this_surrogate = surrogate;
+  for (int j = 0; j < this_surrogate->rows; j++)
+    this_surrogate->cube[j] = this_surrogate->distance[j] * this_surrogate->distance[j] * this_surrogate->distance[j];
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, this_surrogate->outputs, this_surrogate->rows, 1,
+              this_surrogate->coefficient, this_surrogate->rows_max, this_surrogate->cube, 1, 0, value, 1);
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, this_surrogate->outputs, this_surrogate->terms, 1,
+              this_surrogate->polynomial, this_surrogate->terms, this_surrogate->term, 1, 1, value, 1);
 }
 
-static void add_tail_gradient(const struct eo_surrogate *s, const double *b, double *gradient)
+static void add_tail_gradient(const struct eo_surrogate *surrogate, const double *b, double *gradient)
 {
-  const int n = s->variables;
+  const int n = surrogate->variables;
   int t = 1;
   for (int k = 0; k < n; k++)
     gradient[k] += b[t++];
-  for (int k = 0; k < n && s->tail != EO_TAIL_LINEAR; k++)
-    gradient[k] += 2 * b[t++] * s->point[k];
-  for (int k = 0; k < n && s->tail == EO_TAIL_QUADRATIC; k++)
+  for (int k = 0; k < n && surrogate->tail != EO_TAIL_LINEAR; k++)
+    gradient[k] += 2 * b[t++] * surrogate->point[k];
+  for (int k = 0; k < n && surrogate->tail == EO_TAIL_QUADRATIC; k++)
     for (int l = k + 1; l < n; l++, t++) {
-      gradient[k] += b[t] * s->point[l];
-      gradient[l] += b[t] * s->point[k];
+      gradient[k] += b[t] * surrogate->point[l];
+      gradient[l] += b[t] * surrogate->point[k];
     }
 }
 

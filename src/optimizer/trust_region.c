@@ -220,59 +220,61 @@ struct proposals {
   double *u;
 };
 
-static bool is_new(const struct eo_local *local, const struct proposals *p, const double *u)
+static bool is_new(const struct eo_local *local, const struct proposals *proposals, const double *u)
 {
   const int n = local->variables;
-  return fmin(nearest_square(local->u, p->rows, n, u), nearest_square(p->u, p->count, n, u)) > same;
+  return fmin(nearest_square(local->u, proposals->rows, n, u), nearest_square(proposals->u, proposals->count, n, u)) >
+         same;
 }
 
 /* The next proposal: the minimum within each reach first, then points that promise a gain. False when it would teach
    nothing new. */
-static bool propose_next(struct eo_local *local, struct proposals *p, struct eo_random random)
+static bool propose_next(struct eo_local *local, struct proposals *proposals, struct eo_random random)
 {
-  const int n = local->variables, attempt = p->attempts++;
-  double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES], *u = p->u + (size_t)p->count * n;
+  const int n = local->variables, attempt = proposals->attempts++;
+  double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES], *u = proposals->u + (size_t)proposals->count * n;
   if (attempt < REACHES) {
-    box(local, p->centre, reaches[attempt], low, high);
+    box(local, proposals->centre, reaches[attempt], low, high);
     memset(u, 0, (size_t)n * sizeof *u);
     eo_composite_minimise(&local->composite, low, high, MINIMISE_STEPS, 1e-6, u);
     if (attempt == 0)
-      memcpy(p->minimum, u, (size_t)n * sizeof *u);
+      memcpy(proposals->minimum, u, (size_t)n * sizeof *u);
   } else {
-    box(local, p->centre, 1, low, high);
-    memcpy(u, p->minimum, (size_t)n * sizeof *u);
-    wander(local, low, high, p->level, random, u);
+    box(local, proposals->centre, 1, low, high);
+    memcpy(u, proposals->minimum, (size_t)n * sizeof *u);
+    wander(local, low, high, proposals->level, random, u);
   }
-  return is_new(local, p, u);
+  return is_new(local, proposals, u);
 }
 
 int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed,
                      int generation, int count, double *x)
 {
   const int n = local->variables;
-  struct proposals p = {.centre = archive->x + (size_t)centre * n, .u = x};
+  struct proposals proposals = {.centre = archive->x + (size_t)centre * n, .u = x};
   local->centre_value = archive->value[centre];
-  p.rows = gather(local, archive, p.centre);
-  scale_rows(local, archive, p.centre, p.rows);
-  if (fit_best(local, archive, p.rows)) {
-    p.level = eo_composite_value(&local->composite, p.minimum); /* the centre is the origin */
-    while (p.attempts < count) {
-      p.count += propose_next(local, &p,
-                              eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)p.attempts));
-      if (p.attempts == REACHES)
-        local->reaching = p.count;
+  proposals.rows = gather(local, archive, proposals.centre);
+  scale_rows(local, archive, proposals.centre, proposals.rows);
+  if (fit_best(local, archive, proposals.rows)) {
+    proposals.level = eo_composite_value(&local->composite, proposals.minimum); /* the centre is the origin */
+    while (proposals.attempts < count) {
+      proposals.count += propose_next(
+          local, &proposals, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)proposals.attempts));
+      if (proposals.attempts == REACHES)
+        local->reaching = proposals.count;
     }
   }
-  if (p.count == 0 && count > 0) {
+  if (proposals.count == 0 && count > 0) {
     double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES];
-    box(local, p.centre, 0.5, low, high);
-    fill_gap(local, low, high, p.rows, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)count), x);
-    p.count = 1;
+    box(local, proposals.centre, 0.5, low, high);
+    fill_gap(local, low, high, proposals.rows,
+             eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)count), x);
+    proposals.count = 1;
   }
-  for (int i = 0; i < p.count; i++)
+  for (int i = 0; i < proposals.count; i++)
     for (int k = 0; k < n; k++)
-      x[(size_t)i * n + k] = eo_unit_clip(p.centre[k] + local->radius * x[(size_t)i * n + k]);
-  return p.count;
+      x[(size_t)i * n + k] = eo_unit_clip(proposals.centre[k] + local->radius * x[(size_t)i * n + k]);
+  return proposals.count;
 }
 
 void eo_local_learn(struct eo_local *local, const struct eo_archive *archive, int first, int count)

@@ -20,7 +20,7 @@ static double tight_involute(const struct eo_backlash_input *in, double transver
          (2 * tan(in->normal_pressure_angle) * shift + allowance / in->normal_module) / (in->teeth[0] + in->teeth[1]);
 }
 
-enum eo_code eo_backlash(struct eo_backlash *j, const struct eo_backlash_input *in, struct eo_error *error)
+enum eo_code eo_backlash(struct eo_backlash *backlash, const struct eo_backlash_input *in, struct eo_error *error)
 {
   double transverse = atan(tan(in->normal_pressure_angle) / cos(in->helix_angle));
   double base_helix = asin(sin(in->helix_angle) * cos(in->normal_pressure_angle));
@@ -36,12 +36,12 @@ enum eo_code eo_backlash(struct eo_backlash *j, const struct eo_backlash_input *
                         "Profile shifts and allowances are so negative that both flanks never touch.");
   double working = acos(base / in->centre_distance);
   double beyond = 2 * base * cos(base_helix) * (eo_geometry_involute_function(working) - unthinned);
-  j->normal = -allowance * cos(in->normal_pressure_angle) +
-              2 * in->centre_distance_allowance * sin(working) * cos(base_helix) + beyond; /* DIN 3967 */
-  j->circumferential = j->normal / (cos(working) * cos(base_helix));
-  j->of_reference = j->circumferential * cos(in->normal_pressure_angle) * cos(in->helix_angle);
-  j->of_distance = 2 * in->centre_distance_allowance * tan(working);
-  j->tight_distance = base / cos(eo_geometry_involute_inverse(thinned));
-  j->radial = in->centre_distance + in->centre_distance_allowance - j->tight_distance;
+  backlash->normal = -allowance * cos(in->normal_pressure_angle) +
+                     2 * in->centre_distance_allowance * sin(working) * cos(base_helix) + beyond; /* DIN 3967 */
+  backlash->circumferential = backlash->normal / (cos(working) * cos(base_helix));
+  backlash->of_reference = backlash->circumferential * cos(in->normal_pressure_angle) * cos(in->helix_angle);
+  backlash->of_distance = 2 * in->centre_distance_allowance * tan(working);
+  backlash->tight_distance = base / cos(eo_geometry_involute_inverse(thinned));
+  backlash->radial = in->centre_distance + in->centre_distance_allowance - backlash->tight_distance;
   return EO_OK;
 }

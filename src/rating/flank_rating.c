@@ -4,18 +4,19 @@
 #include <math.h>
 
 /* ISO 6336-2 6.2: Z_H = sqrt(2 cos beta_b cos alpha_wt/(cos^2 alpha_t sin alpha_wt)). */
-double eo_zone_factor(const struct eo_rating_geometry *g)
+double eo_zone_factor(const struct eo_rating_geometry *geometry)
 {
-  double transverse = cos(g->transverse_pressure_angle), working = g->working_pressure_angle;
-  return sqrt(2 * cos(g->base_helix_angle) * cos(working) / (transverse * transverse * sin(working))); /* theory (W4) */
+  double transverse = cos(geometry->transverse_pressure_angle), working = geometry->working_pressure_angle;
+  return sqrt(2 * cos(geometry->base_helix_angle) * cos(working) /
+              (transverse * transverse * sin(working))); /* theory (W4) */
 }
 
 /* ISO 6336-2 7: Z_E = sqrt(1/(pi sum (1 - nu^2)/E)). */
-double eo_elasticity_factor(const struct eo_elastic *e)
+double eo_elasticity_factor(const struct eo_elastic *elastic)
 {
   double compliance = 0;
   for (int i = 0; i < 2; i++)
-    compliance += (1 - e->poissons_ratio[i] * e->poissons_ratio[i]) / e->youngs_modulus[i];
+    compliance += (1 - elastic->poissons_ratio[i] * elastic->poissons_ratio[i]) / elastic->youngs_modulus[i];
   return sqrt(1 / (M_PI * compliance)); /* theory (W5) */
 }
 
@@ -40,12 +41,13 @@ static double helical_single_contact(const struct eo_contact_input *in)
 }
 
 /* 6.3: M_1 = tan alpha_wt/sqrt((t_1 - 2 pi/z_1)(t_2 - (eps_alpha - 1) 2 pi/z_2)), t = sqrt(d_a^2/d_b^2 - 1). */
-static double inner_point(const struct eo_rating_pair *p, const struct eo_rating_geometry *g, int i)
+static double inner_point(const struct eo_rating_pair *rating_pair, const struct eo_rating_geometry *geometry, int i)
 {
   int other = 1 - i;
-  double own = g->tip_roll[i] - 2 * M_PI / p->teeth[i];
-  double mate = g->tip_roll[other] - (g->transverse_contact_ratio - 1) * 2 * M_PI / p->teeth[other];
-  return own > 0 && mate > 0 ? tan(g->working_pressure_angle) / sqrt(own * mate) : NAN;
+  double own = geometry->tip_roll[i] - 2 * M_PI / rating_pair->teeth[i];
+  double mate = geometry->tip_roll[other] -
+                (geometry->transverse_contact_ratio - 1) * 2 * M_PI / rating_pair->teeth[other];
+  return own > 0 && mate > 0 ? tan(geometry->working_pressure_angle) / sqrt(own * mate) : NAN;
 }
 
 /* Spur: max(1, M). 0 < eps_beta < 1: between that of the spur pair and that of the helical one. */
@@ -57,30 +59,31 @@ static double single_contact(double inner, double overlap, double helical)
   return fmax(1, inner - beta * (inner - helical));
 }
 
-enum eo_code eo_contact_stress(struct eo_contact_stress *c, const struct eo_rating_pair *p,
-                               const struct eo_rating_geometry *g, const struct eo_contact_input *in,
+enum eo_code eo_contact_stress(struct eo_contact_stress *stress, const struct eo_rating_pair *rating_pair,
+                               const struct eo_rating_geometry *geometry, const struct eo_contact_input *in,
                                struct eo_error *error)
 {
-  double u = (double)p->teeth[1] / p->teeth[0];
-  if (g->transverse_contact_ratio > 2)
+  double u = (double)rating_pair->teeth[1] / rating_pair->teeth[0];
+  if (geometry->transverse_contact_ratio > 2)
     return eo_error_set(error, EO_ERROR_INPUT, "/tip_diameter_mm",
                         "The contact ratio %.4g is above 2, where ISO 6336-2 6.3 takes other points: not rated here.",
-                        g->transverse_contact_ratio);
-  c->zone = eo_zone_factor(g);
-  c->elasticity = eo_elasticity_factor(&in->elastic);
-  c->contact_ratio = eo_contact_ratio_factor(g->transverse_contact_ratio, g->overlap_ratio);
-  c->helix = helix_factor(in->edition, p->helix_angle);
+                        geometry->transverse_contact_ratio);
+  stress->zone = eo_zone_factor(geometry);
+  stress->elasticity = eo_elasticity_factor(&in->elastic);
+  stress->contact_ratio = eo_contact_ratio_factor(geometry->transverse_contact_ratio, geometry->overlap_ratio);
+  stress->helix = helix_factor(in->edition, rating_pair->helix_angle);
   /* theory (W3) */
-  c->nominal = c->zone * c->elasticity * c->contact_ratio * c->helix *
-               sqrt(in->tangential_force * (u + 1) / (g->reference_diameter[0] * p->face_width * u)); /* 6.1 */
-  c->pitch_point = c->nominal * sqrt(in->load_factor);
+  stress->nominal =
+      stress->zone * stress->elasticity * stress->contact_ratio * stress->helix *
+      sqrt(in->tangential_force * (u + 1) / (geometry->reference_diameter[0] * rating_pair->face_width * u)); /* 6.1 */
+  stress->pitch_point = stress->nominal * sqrt(in->load_factor);
   for (int i = 0; i < 2; i++) {
-    double inner = inner_point(p, g, i);
+    double inner = inner_point(rating_pair, geometry, i);
     if (isnan(inner))
       return eo_error_set(error, EO_ERROR_INPUT, "/tip_diameter_mm",
                           "Single pair contact of gear %d would begin below its base circle.", i + 1);
-    c->single_contact[i] = single_contact(inner, g->overlap_ratio, helical_single_contact(in));
-    c->stress[i] = c->single_contact[i] * c->pitch_point;
+    stress->single_contact[i] = single_contact(inner, geometry->overlap_ratio, helical_single_contact(in));
+    stress->stress[i] = stress->single_contact[i] * stress->pitch_point;
   }
   return EO_OK;
 }
@@ -144,8 +147,10 @@ double eo_work_hardening_soft_pair(double pinion_brinell, double wheel_brinell, 
   return fmax(1, 1 + (0.00898 * ratio - 0.00829) * (fmin(gear_ratio, 20) - 1));
 }
 
-double eo_flank_strength(double flank_limit, double life_factor, double share, const struct eo_flank_influence *z)
+double eo_flank_strength(double flank_limit, double life_factor, double share,
+                         const struct eo_flank_influence *influence)
 {
-  return flank_limit * life_factor * pow(z->lubricant * z->velocity * z->roughness * z->work_hardening, share) *
-         z->size;
+  return flank_limit * life_factor *
+         pow(influence->lubricant * influence->velocity * influence->roughness * influence->work_hardening, share) *
+         influence->size;
 }

@@ -63,6 +63,7 @@ struct eo_flank_influence {
 };
 
 /* sigma_HG = sigma_Hlim Z_NT (Z_L Z_v Z_R Z_W)^share Z_X; share: eo_life_share(). */
-double eo_flank_strength(double flank_limit, double life_factor, double share, const struct eo_flank_influence *z);
+double eo_flank_strength(double flank_limit, double life_factor, double share,
+                         const struct eo_flank_influence *influence);
 
 #endif

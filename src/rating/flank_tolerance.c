@@ -59,64 +59,61 @@ static enum eo_code check_input(enum eo_tolerance_edition edition, const struct 
                                 struct eo_error *error)
 {
   bool new = edition == EO_ISO1328_2013;
-  enum eo_code code = check_range(1e3 * in->reference_diameter, 5, new ? 15000 : 10000, "/reference_diameter_mm", " mm",
-                                  error);
-  if (!code)
-    code = check_range(1e3 * in->normal_module, 0.5, 70, "/normal_module_mm", " mm", error);
-  if (!code)
-    code = check_range(1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error);
-  if (!code)
-    code = new ? check_range(in->grade, 1, 11, "/tolerance_class", "", error)
-               : check_range(in->grade, 0, 12, "/grade", "", error);
-  if (!code && in->teeth)
-    code = check_range(in->teeth, 5, new ? 1000 : INFINITY, "/teeth", "", error);
-  return code;
+  EO_TRY(check_range(1e3 * in->reference_diameter, 5, new ? 15000 : 10000, "/reference_diameter_mm", " mm", error));
+  EO_TRY(check_range(1e3 * in->normal_module, 0.5, 70, "/normal_module_mm", " mm", error));
+  EO_TRY(check_range(1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error));
+  EO_TRY(new ? check_range(in->grade, 1, 11, "/tolerance_class", "", error)
+             : check_range(in->grade, 0, 12, "/grade", "", error));
+  if (in->teeth)
+    EO_TRY(check_range(in->teeth, 5, new ? 1000 : INFINITY, "/teeth", "", error));
+  return EO_OK;
 }
 
 /* ISO 1328-1:1995, 6 and annexes A (composite) and B (form and slope): grade 5, um, before the step of the grade;
    F_r by ISO 1328-2:1997. D, M, B in mm. */
 static struct eo_flank_tolerance grade_five(double D, double M, double B, int teeth, double eps_gamma)
 {
-  struct eo_flank_tolerance t;
+  struct eo_flank_tolerance tolerance;
   int k = teeth / 8;
-  t.single_pitch = 0.3 * (M + 0.4 * sqrt(D)) + 4;                               /* 6: f_pt */
-  t.cumulative_pitch = k >= 1 ? t.single_pitch + 1.6 * sqrt((k - 1) * M) : NAN; /* 6: F_pk */
-  t.total_pitch = 0.3 * M + 1.25 * sqrt(D) + 7;                                 /* 6: F_p */
-  t.profile_total = 3.2 * sqrt(M) + 0.22 * sqrt(D) + 0.7;                       /* 6: F_alpha */
-  t.profile_form = 2.5 * sqrt(M) + 0.17 * sqrt(D) + 0.5;                        /* B: f_falpha */
-  t.profile_slope = 2 * sqrt(M) + 0.14 * sqrt(D) + 0.5;                         /* B: f_Halpha */
-  t.helix_total = 0.1 * sqrt(D) + 0.63 * sqrt(B) + 4.2;                         /* 6: F_beta */
-  t.helix_form = t.helix_slope = 0.07 * sqrt(D) + 0.45 * sqrt(B) + 3;           /* B: f_fbeta = f_Hbeta */
-  t.runout = 0.24 * M + sqrt(D) + 5.6;                                          /* ISO 1328-2: F_r = 0.8 F_p */
-  double K = eps_gamma < 4 ? 0.2 * (eps_gamma + 4) / eps_gamma : 0.4;           /* A: K */
-  t.tooth_composite = isnan(eps_gamma) ? NAN : K * (9 + 0.3 * M + 3.2 * sqrt(M) + 0.34 * sqrt(D)); /* A: f_i' */
-  t.total_composite = t.total_pitch + t.tooth_composite; /* A: F_i' = F_p + f_i' */
-  return t;
+  tolerance.single_pitch = 0.3 * (M + 0.4 * sqrt(D)) + 4;                                       /* 6: f_pt */
+  tolerance.cumulative_pitch = k >= 1 ? tolerance.single_pitch + 1.6 * sqrt((k - 1) * M) : NAN; /* 6: F_pk */
+  tolerance.total_pitch = 0.3 * M + 1.25 * sqrt(D) + 7;                                         /* 6: F_p */
+  tolerance.profile_total = 3.2 * sqrt(M) + 0.22 * sqrt(D) + 0.7;                               /* 6: F_alpha */
+  tolerance.profile_form = 2.5 * sqrt(M) + 0.17 * sqrt(D) + 0.5;                                /* B: f_falpha */
+  tolerance.profile_slope = 2 * sqrt(M) + 0.14 * sqrt(D) + 0.5;                                 /* B: f_Halpha */
+  tolerance.helix_total = 0.1 * sqrt(D) + 0.63 * sqrt(B) + 4.2;                                 /* 6: F_beta */
+  tolerance.helix_form = tolerance.helix_slope = 0.07 * sqrt(D) + 0.45 * sqrt(B) + 3; /* B: f_fbeta = f_Hbeta */
+  tolerance.runout = 0.24 * M + sqrt(D) + 5.6;                                        /* ISO 1328-2: F_r = 0.8 F_p */
+  double K = eps_gamma < 4 ? 0.2 * (eps_gamma + 4) / eps_gamma : 0.4;                 /* A: K */
+  tolerance.tooth_composite = isnan(eps_gamma) ? NAN : K * (9 + 0.3 * M + 3.2 * sqrt(M) + 0.34 * sqrt(D)); /* A: f_i' */
+  tolerance.total_composite = tolerance.total_pitch + tolerance.tooth_composite; /* A: F_i' = F_p + f_i' */
+  return tolerance;
 }
 
 /* ISO 1328-1:2013, 5.3: class 5, um, before the step of the class; d, m, b in mm. Totals are roots of squares of the
    unrounded parts. */
 static struct eo_flank_tolerance class_five(double d, double m, double b)
 {
-  struct eo_flank_tolerance t;
-  t.single_pitch = 0.001 * d + 0.4 * m + 5;                  /* 5.3: f_pT */
-  t.total_pitch = 0.002 * d + 0.55 * sqrt(d) + 0.7 * m + 12; /* 5.3: F_pT */
-  t.profile_slope = 0.4 * m + 0.001 * d + 4;                 /* 5.3: f_HalphaT */
-  t.profile_form = 0.55 * m + 5;                             /* 5.3: f_falphaT */
-  t.profile_total = hypot(t.profile_slope, t.profile_form);  /* 5.3: F_alphaT */
-  t.helix_slope = 0.05 * sqrt(d) + 0.35 * sqrt(b) + 4;       /* 5.3: f_HbetaT */
-  t.helix_form = 0.07 * sqrt(d) + 0.45 * sqrt(b) + 4;        /* 5.3: f_fbetaT */
-  t.helix_total = hypot(t.helix_slope, t.helix_form);        /* 5.3: F_betaT */
-  t.cumulative_pitch = t.runout = t.tooth_composite = t.total_composite = NAN;
-  return t;
+  struct eo_flank_tolerance tolerance;
+  tolerance.single_pitch = 0.001 * d + 0.4 * m + 5;                                 /* 5.3: f_pT */
+  tolerance.total_pitch = 0.002 * d + 0.55 * sqrt(d) + 0.7 * m + 12;                /* 5.3: F_pT */
+  tolerance.profile_slope = 0.4 * m + 0.001 * d + 4;                                /* 5.3: f_HalphaT */
+  tolerance.profile_form = 0.55 * m + 5;                                            /* 5.3: f_falphaT */
+  tolerance.profile_total = hypot(tolerance.profile_slope, tolerance.profile_form); /* 5.3: F_alphaT */
+  tolerance.helix_slope = 0.05 * sqrt(d) + 0.35 * sqrt(b) + 4;                      /* 5.3: f_HbetaT */
+  tolerance.helix_form = 0.07 * sqrt(d) + 0.45 * sqrt(b) + 4;                       /* 5.3: f_fbetaT */
+  tolerance.helix_total = hypot(tolerance.helix_slope, tolerance.helix_form);       /* 5.3: F_betaT */
+  tolerance.cumulative_pitch = tolerance.runout = tolerance.tooth_composite = tolerance.total_composite = NAN;
+  return tolerance;
 }
 
 /* Step between grades and classes: sqrt 2, before rounding. */
-static void step_and_round(struct eo_flank_tolerance *t, int grade)
+static void step_and_round(struct eo_flank_tolerance *tolerance, int grade)
 {
-  double *const all[] = {&t->single_pitch, &t->cumulative_pitch, &t->total_pitch,     &t->profile_total,
-                         &t->profile_form, &t->profile_slope,    &t->helix_total,     &t->helix_form,
-                         &t->helix_slope,  &t->runout,           &t->tooth_composite, &t->total_composite};
+  double *const all[] = {&tolerance->single_pitch,  &tolerance->cumulative_pitch, &tolerance->total_pitch,
+                         &tolerance->profile_total, &tolerance->profile_form,     &tolerance->profile_slope,
+                         &tolerance->helix_total,   &tolerance->helix_form,       &tolerance->helix_slope,
+                         &tolerance->runout,        &tolerance->tooth_composite,  &tolerance->total_composite};
   double step = exp2((grade - 5) / 2.0);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     *all[i] = eo_tolerance_round(1e-6 * step * *all[i]);

@@ -37,16 +37,16 @@ struct influences {
 
 static struct influences influences_of(double eps)
 {
-  struct influences c = {
+  struct influences influences = {
       .pitch = 0.32, .profile = 0.34, .relief = 0.23, .resonance = 0.90, .fast_pitch = 0.47, .fast_profile = 0.47};
   if (eps > 2) {
-    c.profile = 0.57 / (eps - 0.3);
-    c.relief = 0.096 / (eps - 1.56);
-    c.resonance = (0.57 - 0.05 * eps) / (eps - 1.44);
-    c.fast_profile = 0.12 / (eps - 1.74);
+    influences.profile = 0.57 / (eps - 0.3);
+    influences.relief = 0.096 / (eps - 1.56);
+    influences.resonance = (0.57 - 0.05 * eps) / (eps - 1.44);
+    influences.fast_profile = 0.12 / (eps - 1.74);
   }
-  c.fast = eps <= 1.5 ? 0.75 : eps <= 2.5 ? 0.125 * sin(M_PI * (eps - 2)) + 0.875 : 1;
-  return c;
+  influences.fast = eps <= 1.5 ? 0.75 : eps <= 2.5 ? 0.125 * sin(M_PI * (eps - 2)) + 0.875 : 1;
+  return influences;
 }
 
 /* Where the speed range begins and ends: N_S .. 1.15 main resonance, from 1.5 supercritical (6.5.3). */
@@ -59,23 +59,25 @@ static double subcritical_end(double line_load)
 }
 
 /* 6.5.4 to 6.5.7. */
-static void set_factor(struct eo_dynamic_factor *d, const struct influences *c, double ratio, double lowest)
+static void set_factor(struct eo_dynamic_factor *factor, const struct influences *influences, double ratio,
+                       double lowest)
 {
-  double bp = d->pitch_share, bf = d->profile_share, bk = d->relief_share;
-  double resonant = 1 + c->pitch * bp + c->profile * bf + c->resonance * bk; /* 6.5.5 */
-  double fast = c->fast_pitch * bp + c->fast_profile * bf + c->fast;         /* 6.5.6 */
+  double bp = factor->pitch_share, bf = factor->profile_share, bk = factor->relief_share;
+  double resonant = 1 + influences->pitch * bp + influences->profile * bf + influences->resonance * bk; /* 6.5.5 */
+  double fast = influences->fast_pitch * bp + influences->fast_profile * bf + influences->fast;         /* 6.5.6 */
   if (ratio <= lowest) {
-    d->range = EO_SUBCRITICAL;
-    d->factor = 1 + ratio * (c->pitch * bp + c->profile * bf + c->relief * bk); /* 6.5.4 */
+    factor->range = EO_SUBCRITICAL;
+    factor->factor = 1 +
+                     ratio * (influences->pitch * bp + influences->profile * bf + influences->relief * bk); /* 6.5.4 */
   } else if (ratio <= resonance_end) {
-    d->range = EO_MAIN_RESONANCE;
-    d->factor = resonant;
+    factor->range = EO_MAIN_RESONANCE;
+    factor->factor = resonant;
   } else if (ratio < fast_begin) {
-    d->range = EO_BETWEEN_RANGES;
-    d->factor = fast + (resonant - fast) * (fast_begin - ratio) / (fast_begin - resonance_end); /* 6.5.7 */
+    factor->range = EO_BETWEEN_RANGES;
+    factor->factor = fast + (resonant - fast) * (fast_begin - ratio) / (fast_begin - resonance_end); /* 6.5.7 */
   } else {
-    d->range = EO_SUPERCRITICAL;
-    d->factor = fast;
+    factor->range = EO_SUPERCRITICAL;
+    factor->factor = fast;
   }
 }
 
@@ -90,11 +92,11 @@ enum eo_code eo_dynamic_factor(struct eo_dynamic_factor *dynamic, const struct e
     return eo_error_set(error, EO_ERROR_INPUT, "/load_N_per_mm",
                         "K_V of method B needs a load above 0 and a speed from 0.");
   double unit = in->single_stiffness / in->line_load; /* c'/w */
-  struct influences c = influences_of(in->total_contact_ratio);
+  struct influences influences = influences_of(in->total_contact_ratio);
   dynamic->pitch_share = unit * (in->pitch_deviation - in->pitch_running_in);                    /* (15) */
   dynamic->profile_share = unit * (in->profile_deviation - in->profile_running_in);              /* (16) */
   dynamic->relief_share = in->grade >= RELIEF_HELPS_BELOW ? 1 : fabs(1 - unit * in->tip_relief); /* (17) */
-  set_factor(dynamic, &c, in->resonance_ratio, subcritical_end(per_mm(in->line_load)));
+  set_factor(dynamic, &influences, in->resonance_ratio, subcritical_end(per_mm(in->line_load)));
   return EO_OK;
 }
 

@@ -149,14 +149,15 @@ static bool looks_ahead(const struct eo_pitch_meeting *meeting, int member)
 /* theory (P5): what an eccentric toothing displaces tooth i towards the mate, along the line of action over
    cos(alpha_t); and what an axial displacement does, z tan(beta) on the reference circle, on the drive flank of a right
    pinion away from the mate. */
-static double displaced(const struct eo_pitch_member *own, const struct eo_geometry *g,
+static double displaced(const struct eo_pitch_member *own, const struct eo_geometry *geometry,
                         const struct eo_pitch_meeting *meeting, int member, int end, int i)
 {
-  double turn = 2 * M_PI * i / g->teeth[member], away = turn - own->eccentricity_angle,
-         along = own->eccentricity * sin(g->working_pressure_angle + (looks_ahead(meeting, member) ? away : -away)),
+  double turn = 2 * M_PI * i / geometry->teeth[member], away = turn - own->eccentricity_angle,
+         along = own->eccentricity *
+                 sin(geometry->working_pressure_angle + (looks_ahead(meeting, member) ? away : -away)),
          axial = own->wobble * cos(turn - own->wobble_angle),
          sense = ((end == EO_RIGHT) == (member == EO_PINION) ? -1 : 1) * (meeting->inwards ? -1 : 1);
-  return along / cos(g->transverse_pressure_angle) + sense * axial * tan(g->helix_angle);
+  return along / cos(geometry->transverse_pressure_angle) + sense * axial * tan(geometry->helix_angle);
 }
 
 enum eo_code eo_pitch_compose(const struct eo_pitch *pitch, const struct eo_geometry *geometry,

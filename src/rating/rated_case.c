@@ -24,9 +24,10 @@ static double running_in(const struct eo_rating_basis *basis, double velocity, d
 }
 
 /* F_t K_A K_gamma/b. */
-static double line_load(const struct eo_rating_basis *basis, const struct eo_rated_case *c)
+static double line_load(const struct eo_rating_basis *basis, const struct eo_rated_case *rated_case)
 {
-  return c->tangential_force * basis->input.rating->application_factor * c->load.sharing / basis->pair.face_width;
+  return rated_case->tangential_force * basis->input.rating->application_factor * rated_case->load.sharing /
+         basis->pair.face_width;
 }
 
 static double profile_deviation(const struct eo_rating_basis *basis)
@@ -35,31 +36,32 @@ static double profile_deviation(const struct eo_rating_basis *basis)
 }
 
 /* K_V, method B. */
-static enum eo_code find_dynamic(struct eo_rated_case *c, const struct eo_rating_basis *basis, struct eo_error *error)
+static enum eo_code find_dynamic(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
+                                 struct eo_error *error)
 {
   double relief = basis->input.tip_relief, pitch = larger(basis->base_pitch_tolerance);
   if (!(relief > 0))
     relief = (eo_running_in_relief(basis->strength[0].flank) + eo_running_in_relief(basis->strength[1].flank)) / 2;
-  c->resonance_ratio = c->load.speed / (2 * M_PI) / basis->resonance_speed;
-  const struct eo_dynamic_input in = {.resonance_ratio = c->resonance_ratio,
-                                      .total_contact_ratio = basis->geometry.transverse_contact_ratio +
-                                                             basis->geometry.overlap_ratio,
-                                      .single_stiffness = basis->stiffness.single,
-                                      .line_load = line_load(basis, c),
-                                      .pitch_deviation = pitch,
-                                      .profile_deviation = profile_deviation(basis),
-                                      .pitch_running_in = running_in(basis, c->velocity, pitch),
-                                      .profile_running_in = running_in(basis, c->velocity, profile_deviation(basis)),
-                                      .tip_relief = relief,
-                                      .grade = basis->input.rating->accuracy_grade};
-  EO_TRY(eo_dynamic_factor(&c->dynamic, &in, error));
-  c->method_c.dynamic = c->dynamic.factor;
+  rated_case->resonance_ratio = rated_case->load.speed / (2 * M_PI) / basis->resonance_speed;
+  const struct eo_dynamic_input in = {
+      .resonance_ratio = rated_case->resonance_ratio,
+      .total_contact_ratio = basis->geometry.transverse_contact_ratio + basis->geometry.overlap_ratio,
+      .single_stiffness = basis->stiffness.single,
+      .line_load = line_load(basis, rated_case),
+      .pitch_deviation = pitch,
+      .profile_deviation = profile_deviation(basis),
+      .pitch_running_in = running_in(basis, rated_case->velocity, pitch),
+      .profile_running_in = running_in(basis, rated_case->velocity, profile_deviation(basis)),
+      .tip_relief = relief,
+      .grade = basis->input.rating->accuracy_grade};
+  EO_TRY(eo_dynamic_factor(&rated_case->dynamic, &in, error));
+  rated_case->method_c.dynamic = rated_case->dynamic.factor;
   return EO_OK;
 }
 
 /* f_sh from the pinion's bearings (7.6.2); the crossing of a pinion with two helices is that of the standard. */
-static enum eo_code find_shaft_deviation(struct eo_rated_case *c, const struct eo_rating_basis *basis, double mean_load,
-                                         struct eo_error *error)
+static enum eo_code find_shaft_deviation(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
+                                         double mean_load, struct eo_error *error)
 {
   const struct eo_rating_input *in = &basis->input;
   const double stiffens = 1.15; /* d_1/d_sh */
@@ -74,88 +76,93 @@ static enum eo_code find_shaft_deviation(struct eo_rated_case *c, const struct e
                                        .face_width = basis->pair.face_width,
                                        .mean_load = mean_load,
                                        .power_share = 1};
-  return eo_shaft_deviation(&c->shaft_deviation, &shaft, error);
+  return eo_shaft_deviation(&rated_case->shaft_deviation, &shaft, error);
 }
 
 /* K_Hbeta, method C (7.6). */
-static enum eo_code find_face(struct eo_rated_case *c, const struct eo_rating_basis *basis, struct eo_error *error)
+static enum eo_code find_face(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
+                              struct eo_error *error)
 {
-  const struct eo_rating_settings *r = basis->input.rating;
-  double b1, b2, load = line_load(basis, c) * c->method_c.dynamic, running = 0;
-  EO_TRY(find_shaft_deviation(c, basis, load, error));
-  eo_helix_measure_factors(r->helix_measure, &b1, &b2);
+  const struct eo_rating_settings *settings = basis->input.rating;
+  double b1, b2, load = line_load(basis, rated_case) * rated_case->method_c.dynamic, running = 0;
+  EO_TRY(find_shaft_deviation(rated_case, basis, load, error));
+  eo_helix_measure_factors(settings->helix_measure, &b1, &b2);
   double least = eo_least_deviation(load, fmax(basis->tolerance[0].helix_slope, basis->tolerance[1].helix_slope));
-  c->helix_deviation = eo_helix_deviation(c->shaft_deviation, basis->mesh_deviation, b1, b2, least);
+  rated_case->helix_deviation = eo_helix_deviation(rated_case->shaft_deviation, basis->mesh_deviation, b1, b2, least);
   for (int i = 0; i < 2; i++)
-    running += eo_helix_running_in(r->member[i].material, basis->strength[i].flank, c->velocity, c->helix_deviation);
-  c->helix_running_in = running / 2;
-  c->method_c.face = eo_face_load_factor(c->helix_deviation - c->helix_running_in, basis->stiffness.mesh_beta, load);
+    running += eo_helix_running_in(settings->member[i].material, basis->strength[i].flank, rated_case->velocity,
+                                   rated_case->helix_deviation);
+  rated_case->helix_running_in = running / 2;
+  rated_case->method_c.face = eo_face_load_factor(rated_case->helix_deviation - rated_case->helix_running_in,
+                                                  basis->stiffness.mesh_beta, load);
   return EO_OK;
 }
 
 /* K_Halpha, K_Falpha (method B) and K_Fbeta that belong to the K_V and K_Hbeta of f. */
-static void complete_factors(struct eo_rated_factors *f, const struct eo_rating_basis *basis,
-                             const struct eo_rated_case *c)
+static void complete_factors(struct eo_rated_factors *factors, const struct eo_rating_basis *basis,
+                             const struct eo_rated_case *rated_case)
 {
-  const struct eo_rating_geometry *g = &basis->geometry;
+  const struct eo_rating_geometry *geometry = &basis->geometry;
   double pitch = larger(basis->base_pitch_tolerance);
   const struct eo_transverse_input in = {
-      .transverse_contact_ratio = g->transverse_contact_ratio,
-      .total_contact_ratio = g->transverse_contact_ratio + g->overlap_ratio,
-      .contact_ratio_factor = eo_contact_ratio_factor(g->transverse_contact_ratio, g->overlap_ratio),
+      .transverse_contact_ratio = geometry->transverse_contact_ratio,
+      .total_contact_ratio = geometry->transverse_contact_ratio + geometry->overlap_ratio,
+      .contact_ratio_factor = eo_contact_ratio_factor(geometry->transverse_contact_ratio, geometry->overlap_ratio),
       .mesh_stiffness = basis->stiffness.mesh_alpha,
       .pitch_deviation = pitch,
       .profile_deviation = profile_deviation(basis),
-      .running_in = running_in(basis, c->velocity, pitch),
-      .line_load = line_load(basis, c) * f->dynamic * f->face};
+      .running_in = running_in(basis, rated_case->velocity, pitch),
+      .line_load = line_load(basis, rated_case) * factors->dynamic * factors->face};
   struct eo_transverse_factor share = eo_transverse_factor(&in);
-  f->share = share.flank;
-  f->root_share = share.root;
-  f->root_face = eo_root_face_factor(f->face, basis->width_over_depth);
+  factors->share = share.flank;
+  factors->root_share = share.root;
+  factors->root_face = eo_root_face_factor(factors->face, basis->width_over_depth);
 }
 
 /* What the contact analysis gives, where it gives more than the deviations that only the formulae hold: pitch and
    profile deviations are in K_V and K_Halpha of method B alone, so the larger of both counts. */
-static void choose_factors(struct eo_rated_case *c, const struct eo_rating_basis *basis)
+static void choose_factors(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis)
 {
-  c->used = c->method_c;
+  rated_case->used = rated_case->method_c;
   if (basis->input.rating->load_factors == EO_FACTORS_STANDARD)
     return;
-  if (c->load.dynamic > c->used.dynamic)
-    c->used.dynamic = c->load.dynamic;
-  if (!isnan(c->load.face))
-    c->used.face = c->load.face;
-  complete_factors(&c->used, basis, c);
-  if (c->load.share > c->used.share)
-    c->used.share = c->load.share;
-  if (c->load.share > c->used.root_share)
-    c->used.root_share = c->load.share;
+  if (rated_case->load.dynamic > rated_case->used.dynamic)
+    rated_case->used.dynamic = rated_case->load.dynamic;
+  if (!isnan(rated_case->load.face))
+    rated_case->used.face = rated_case->load.face;
+  complete_factors(&rated_case->used, basis, rated_case);
+  if (rated_case->load.share > rated_case->used.share)
+    rated_case->used.share = rated_case->load.share;
+  if (rated_case->load.share > rated_case->used.root_share)
+    rated_case->used.root_share = rated_case->load.share;
 }
 
-static enum eo_code find_factors(struct eo_rated_case *c, const struct eo_rating_basis *basis, struct eo_error *error)
+static enum eo_code find_factors(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
+                                 struct eo_error *error)
 {
-  EO_TRY(find_dynamic(c, basis, error));
-  enum eo_code code = find_face(c, basis, error);
-  if (code && (basis->input.rating->load_factors == EO_FACTORS_STANDARD || isnan(c->load.face)))
+  EO_TRY(find_dynamic(rated_case, basis, error));
+  enum eo_code code = find_face(rated_case, basis, error);
+  if (code && (basis->input.rating->load_factors == EO_FACTORS_STANDARD || isnan(rated_case->load.face)))
     return code;
   if (code) /* the bearings are beyond method C; the contact analysis does not need it */
-    c->shaft_deviation = c->helix_deviation = c->helix_running_in = c->method_c.face = NAN;
-  complete_factors(&c->method_c, basis, c);
-  choose_factors(c, basis);
+    rated_case->shaft_deviation = rated_case->helix_deviation = rated_case->helix_running_in =
+        rated_case->method_c.face = NAN;
+  complete_factors(&rated_case->method_c, basis, rated_case);
+  choose_factors(rated_case, basis);
   return EO_OK;
 }
 
 /* Z_W of a member: harder and smooth teeth work-harden soft ones. Brinell is taken as the Vickers number. */
 static double work_hardening(const struct eo_rating_basis *basis, int i, double velocity)
 {
-  const struct eo_rating_member *m = basis->input.rating->member;
-  bool soft = is_soft(m[i].material), mate_soft = is_soft(m[1 - i].material);
+  const struct eo_rating_member *member = basis->input.rating->member;
+  bool soft = is_soft(member[i].material), mate_soft = is_soft(member[1 - i].material);
   double viscosity = 1e6 * basis->input.rating->lubricant.viscosity_40;
   if (soft && !mate_soft)
     return eo_work_hardening(basis->hardness[i],
-                             eo_equivalent_roughness(m[1 - i].flank_roughness, m[i].flank_roughness,
+                             eo_equivalent_roughness(member[1 - i].flank_roughness, member[i].flank_roughness,
                                                      basis->relative_curvature, velocity, viscosity));
-  if (i == EO_GEAR && soft && mate_soft && m[0].material != EO_STRUCTURAL && m[1].material != EO_STRUCTURAL)
+  if (i == EO_GEAR && soft && mate_soft && member[0].material != EO_STRUCTURAL && member[1].material != EO_STRUCTURAL)
     return eo_work_hardening_soft_pair(basis->hardness[0], basis->hardness[1],
                                        (double)basis->pair.teeth[1] / basis->pair.teeth[0]);
   return 1;
@@ -171,75 +178,81 @@ static struct eo_life_line faded(const struct eo_life_line *line, double influen
   return result;
 }
 
-static void find_flank_strength(struct eo_rated_case *c, const struct eo_rating_basis *basis, int i)
+static void find_flank_strength(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis, int i)
 {
-  const struct eo_rating_settings *r = basis->input.rating;
+  const struct eo_rating_settings *settings = basis->input.rating;
   double softer = fmin(basis->strength[0].flank, basis->strength[1].flank);
-  const double roughness[2] = {r->member[0].flank_roughness, r->member[1].flank_roughness};
-  struct eo_flank_influence *z = &c->influence[i];
-  *z = (struct eo_flank_influence){.lubricant = eo_lubricant_factor(softer, 1e6 * r->lubricant.viscosity_40),
-                                   .velocity = eo_velocity_factor(softer, c->velocity),
-                                   .roughness = eo_roughness_factor(softer, roughness, basis->relative_curvature),
-                                   .work_hardening = work_hardening(basis, i, c->velocity),
-                                   .size = 1};
-  c->flank_endurance[i] = eo_flank_strength(basis->strength[i].flank, 1, 1, z);
-  c->flank_line[i] = faded(&basis->flank_life[i], z->lubricant * z->velocity * z->roughness * z->work_hardening);
-  c->flank_life_factor[i] = eo_life_factor(&basis->flank_life[i], c->cycles[i]);
-  c->flank_permissible[i] = c->flank_endurance[i] * eo_life_factor(&c->flank_line[i], c->cycles[i]);
-  c->flank_safety[i] = c->flank_permissible[i] / c->contact.stress[i];
-  c->flank_static[i] = c->flank_endurance[i] * c->flank_line[i].factor[0] / c->contact.stress[i];
+  const double roughness[2] = {settings->member[0].flank_roughness, settings->member[1].flank_roughness};
+  struct eo_flank_influence *influence = &rated_case->influence[i];
+  *influence =
+      (struct eo_flank_influence){.lubricant = eo_lubricant_factor(softer, 1e6 * settings->lubricant.viscosity_40),
+                                  .velocity = eo_velocity_factor(softer, rated_case->velocity),
+                                  .roughness = eo_roughness_factor(softer, roughness, basis->relative_curvature),
+                                  .work_hardening = work_hardening(basis, i, rated_case->velocity),
+                                  .size = 1};
+  rated_case->flank_endurance[i] = eo_flank_strength(basis->strength[i].flank, 1, 1, influence);
+  rated_case->flank_line[i] = faded(&basis->flank_life[i], influence->lubricant * influence->velocity *
+                                                               influence->roughness * influence->work_hardening);
+  rated_case->flank_life_factor[i] = eo_life_factor(&basis->flank_life[i], rated_case->cycles[i]);
+  rated_case->flank_permissible[i] = rated_case->flank_endurance[i] *
+                                     eo_life_factor(&rated_case->flank_line[i], rated_case->cycles[i]);
+  rated_case->flank_safety[i] = rated_case->flank_permissible[i] / rated_case->contact.stress[i];
+  rated_case->flank_static[i] = rated_case->flank_endurance[i] * rated_case->flank_line[i].factor[0] /
+                                rated_case->contact.stress[i];
 }
 
-static void find_root_strength(struct eo_rated_case *c, const struct eo_rating_basis *basis, int i)
+static void find_root_strength(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis, int i)
 {
   const double doubled = 2; /* Y_ST */
-  const struct eo_rated_factors *k = &c->used;
-  c->root_nominal[i] = basis->root[i].nominal * basis->rim_factor[i] * c->tangential_force;
-  c->root_stress[i] = c->root_nominal[i] * basis->input.rating->application_factor * c->load.sharing * k->dynamic *
-                      k->root_face * k->root_share;
-  c->root_endurance[i] = eo_root_strength(doubled * basis->strength[i].root, &basis->endurance[i]);
-  c->root_life_factor[i] = eo_life_factor(&basis->root_life[i], c->cycles[i]);
-  c->root_permissible[i] = c->root_endurance[i] * c->root_life_factor[i];
-  c->root_safety[i] = c->root_permissible[i] / c->root_stress[i];
-  c->root_static[i] = c->root_endurance[i] * basis->root_life[i].factor[0] / c->root_stress[i];
+  const struct eo_rated_factors *factors = &rated_case->used;
+  rated_case->root_nominal[i] = basis->root[i].nominal * basis->rim_factor[i] * rated_case->tangential_force;
+  rated_case->root_stress[i] = rated_case->root_nominal[i] * basis->input.rating->application_factor *
+                               rated_case->load.sharing * factors->dynamic * factors->root_face * factors->root_share;
+  rated_case->root_endurance[i] = eo_root_strength(doubled * basis->strength[i].root, &basis->endurance[i]);
+  rated_case->root_life_factor[i] = eo_life_factor(&basis->root_life[i], rated_case->cycles[i]);
+  rated_case->root_permissible[i] = rated_case->root_endurance[i] * rated_case->root_life_factor[i];
+  rated_case->root_safety[i] = rated_case->root_permissible[i] / rated_case->root_stress[i];
+  rated_case->root_static[i] = rated_case->root_endurance[i] * basis->root_life[i].factor[0] /
+                               rated_case->root_stress[i];
 }
 
 /* Local stresses of the analysis against the same limits. */
-static void find_local(struct eo_rated_case *c, const struct eo_rating_basis *basis)
+static void find_local(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis)
 {
-  double load = basis->input.rating->application_factor * c->used.dynamic;
-  c->local_flank = c->load.pressure * sqrt(load);
+  double load = basis->input.rating->application_factor * rated_case->used.dynamic;
+  rated_case->local_flank = rated_case->load.pressure * sqrt(load);
   for (int i = 0; i < 2; i++) {
-    c->local_root[i] = c->load.root[i] * load;
-    c->local_flank_safety[i] = c->flank_permissible[i] / c->local_flank;
-    c->local_root_safety[i] = c->root_permissible[i] / c->local_root[i];
+    rated_case->local_root[i] = rated_case->load.root[i] * load;
+    rated_case->local_flank_safety[i] = rated_case->flank_permissible[i] / rated_case->local_flank;
+    rated_case->local_root_safety[i] = rated_case->root_permissible[i] / rated_case->local_root[i];
   }
 }
 
-enum eo_code eo_rated_case_find(struct eo_rated_case *c, const struct eo_rating_basis *basis,
+enum eo_code eo_rated_case_find(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
                                 const struct eo_rating_load *load, struct eo_error *error)
 {
-  const struct eo_rating_settings *r = basis->input.rating;
+  const struct eo_rating_settings *settings = basis->input.rating;
   const struct eo_material pinion = eo_material_of(basis->input.material, EO_PINION),
                            gear = eo_material_of(basis->input.material, EO_GEAR);
-  *c = (struct eo_rated_case){.load = *load};
-  c->tangential_force = 2 * load->torque / basis->geometry.reference_diameter[0];
-  c->velocity = load->speed * basis->geometry.reference_diameter[0] / 2;
-  EO_TRY(find_factors(c, basis, error));
+  *rated_case = (struct eo_rated_case){.load = *load};
+  rated_case->tangential_force = 2 * load->torque / basis->geometry.reference_diameter[0];
+  rated_case->velocity = load->speed * basis->geometry.reference_diameter[0] / 2;
+  EO_TRY(find_factors(rated_case, basis, error));
   const struct eo_contact_input contact = {
-      .edition = r->edition,
+      .edition = settings->edition,
       .proof = EO_PROOF_ANALYSIS,
-      .tangential_force = c->tangential_force,
-      .load_factor = r->application_factor * load->sharing * c->used.dynamic * c->used.face * c->used.share,
+      .tangential_force = rated_case->tangential_force,
+      .load_factor = settings->application_factor * load->sharing * rated_case->used.dynamic * rated_case->used.face *
+                     rated_case->used.share,
       .elastic = {{pinion.youngs_modulus, gear.youngs_modulus}, {pinion.poissons_ratio, gear.poissons_ratio}}};
-  EO_TRY(eo_contact_stress(&c->contact, &basis->pair, &basis->geometry, &contact, error));
+  EO_TRY(eo_contact_stress(&rated_case->contact, &basis->pair, &basis->geometry, &contact, error));
   for (int i = 0; i < 2; i++) {
     double turns = load->speed / (2 * M_PI) * load->time * basis->pair.teeth[0] / basis->pair.teeth[i];
-    c->cycles[i] = turns * r->member[i].meshes_per_turn;
-    find_flank_strength(c, basis, i);
-    find_root_strength(c, basis, i);
+    rated_case->cycles[i] = turns * settings->member[i].meshes_per_turn;
+    find_flank_strength(rated_case, basis, i);
+    find_root_strength(rated_case, basis, i);
   }
-  find_local(c, basis);
+  find_local(rated_case, basis);
   return EO_OK;
 }
 
@@ -250,17 +263,21 @@ struct load_class {
 };
 typedef struct load_class class_of(const struct eo_rating_basis *basis, const struct eo_rated_case *c, int member);
 
-static struct load_class flank_class(const struct eo_rating_basis *basis, const struct eo_rated_case *c, int member)
+static struct load_class flank_class(const struct eo_rating_basis *basis, const struct eo_rated_case *rated_case,
+                                     int member)
 {
   (void)basis;
-  return (struct load_class){&c->flank_line[member], c->contact.stress[member] / c->flank_endurance[member],
-                             c->cycles[member]};
+  return (struct load_class){&rated_case->flank_line[member],
+                             rated_case->contact.stress[member] / rated_case->flank_endurance[member],
+                             rated_case->cycles[member]};
 }
 
-static struct load_class root_class(const struct eo_rating_basis *basis, const struct eo_rated_case *c, int member)
+static struct load_class root_class(const struct eo_rating_basis *basis, const struct eo_rated_case *rated_case,
+                                    int member)
 {
-  return (struct load_class){&basis->root_life[member], c->root_stress[member] / c->root_endurance[member],
-                             c->cycles[member]};
+  return (struct load_class){&basis->root_life[member],
+                             rated_case->root_stress[member] / rated_case->root_endurance[member],
+                             rated_case->cycles[member]};
 }
 
 /* The classes of one side of a member's teeth: damage of one side is none of the other. */
@@ -273,27 +290,27 @@ struct spectrum {
 };
 
 /* Miner's sum with all stresses times a safety. */
-static double damage(const struct spectrum *s, double safety)
+static double damage(const struct spectrum *spectrum, double safety)
 {
   double sum = 0;
-  for (int k = 0; k < s->cases; k++) {
-    struct load_class class = s->find(s->basis, &s->rated[k], s->member);
-    if (s->rated[k].load.side == s->side && class.ratio > 0 && class.cycles > 0)
+  for (int k = 0; k < spectrum->cases; k++) {
+    struct load_class class = spectrum->find(spectrum->basis, &spectrum->rated[k], spectrum->member);
+    if (spectrum->rated[k].load.side == spectrum->side && class.ratio > 0 && class.cycles > 0)
       sum += class.cycles / eo_life_cycles(class.line, safety * class.ratio);
   }
   return sum;
 }
 
 /* Bisection on the logarithm, as eo_life_safety() does for one line. */
-static double spectrum_safety(const struct spectrum *s)
+static double spectrum_safety(const struct spectrum *spectrum)
 {
   enum { HALVINGS = 60 };
   double low = log(1e-6), high = log(1e6);
-  if (!(damage(s, exp(high)) > 1))
+  if (!(damage(spectrum, exp(high)) > 1))
     return INFINITY;
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (low + high) / 2;
-    if (damage(s, exp(middle)) > 1)
+    if (damage(spectrum, exp(middle)) > 1)
       high = middle;
     else
       low = middle;
@@ -301,30 +318,30 @@ static double spectrum_safety(const struct spectrum *s)
   return exp((low + high) / 2);
 }
 
-static double static_safety(const struct spectrum *s)
+static double static_safety(const struct spectrum *spectrum)
 {
   double least = INFINITY;
-  for (int k = 0; k < s->cases; k++) {
-    struct load_class class = s->find(s->basis, &s->rated[k], s->member);
+  for (int k = 0; k < spectrum->cases; k++) {
+    struct load_class class = spectrum->find(spectrum->basis, &spectrum->rated[k], spectrum->member);
     least = fmin(least, class.line->factor[0] / class.ratio);
   }
   return least;
 }
 
 /* The worse of both sides. least: S_min. */
-static struct eo_rated_side side_of(struct spectrum s, double least)
+static struct eo_rated_side side_of(struct spectrum spectrum, double least)
 {
   double time = 0;
-  for (int k = 0; k < s.cases; k++)
-    time += s.rated[k].load.time;
+  for (int k = 0; k < spectrum.cases; k++)
+    time += spectrum.rated[k].load.time;
   struct eo_rated_side worse = {.safety = INFINITY, .life = INFINITY, .life_at_least = INFINITY};
-  worse.static_safety = static_safety(&s);
-  for (s.side = 0; s.side < 2; s.side++) {
-    double sum = damage(&s, 1);
-    worse.safety = fmin(worse.safety, spectrum_safety(&s));
+  worse.static_safety = static_safety(&spectrum);
+  for (spectrum.side = 0; spectrum.side < 2; spectrum.side++) {
+    double sum = damage(&spectrum, 1);
+    worse.safety = fmin(worse.safety, spectrum_safety(&spectrum));
     worse.damage = fmax(worse.damage, sum);
     worse.life = fmin(worse.life, time / sum);
-    worse.life_at_least = fmin(worse.life_at_least, time / damage(&s, least));
+    worse.life_at_least = fmin(worse.life_at_least, time / damage(&spectrum, least));
   }
   return worse;
 }
@@ -332,12 +349,12 @@ static struct eo_rated_side side_of(struct spectrum s, double least)
 void eo_rated_spectrum_find(struct eo_rated_spectrum *spectrum, const struct eo_rating_basis *basis, int cases,
                             const struct eo_rated_case *rated)
 {
-  const struct eo_rating_settings *r = basis->input.rating;
-  struct spectrum s = {.basis = basis, .cases = cases, .rated = rated};
-  for (s.member = 0; s.member < 2; s.member++) {
-    s.find = flank_class;
-    spectrum->flank[s.member] = side_of(s, r->flank_safety);
-    s.find = root_class;
-    spectrum->root[s.member] = side_of(s, r->root_safety);
+  const struct eo_rating_settings *settings = basis->input.rating;
+  struct spectrum this_spectrum = {.basis = basis, .cases = cases, .rated = rated};
+  for (this_spectrum.member = 0; this_spectrum.member < 2; this_spectrum.member++) {
+    this_spectrum.find = flank_class;
+    spectrum->flank[this_spectrum.member] = side_of(this_spectrum, settings->flank_safety);
+    this_spectrum.find = root_class;
+    spectrum->root[this_spectrum.member] = side_of(this_spectrum, settings->root_safety);
   }
 }

@@ -6,11 +6,13 @@
 #include "contact/iso6336.h"
 
 /* Outer point of single pair contact of the virtual spur gear, d_en (ISO 6336-3 (26), with eps_alpha_n), over m_n. */
-static double load_diameter(const struct eo_rating_pair *p, const struct eo_rating_geometry *g, int member)
+static double load_diameter(const struct eo_rating_pair *rating_pair, const struct eo_rating_geometry *geometry,
+                            int member)
 {
-  double alpha = p->normal_pressure_angle, zn = g->virtual_teeth[member], base = zn * cos(alpha) / 2;
-  double tip = zn / 2 + (p->tip_diameter[member] - g->reference_diameter[member]) / 2 / p->normal_module;
-  double roll = sqrt(tip * tip - base * base) - M_PI * cos(alpha) * (g->virtual_contact_ratio - 1);
+  double alpha = rating_pair->normal_pressure_angle, zn = geometry->virtual_teeth[member], base = zn * cos(alpha) / 2;
+  double tip = zn / 2 + (rating_pair->tip_diameter[member] - geometry->reference_diameter[member]) / 2 /
+                            rating_pair->normal_module;
+  double roll = sqrt(tip * tip - base * base) - M_PI * cos(alpha) * (geometry->virtual_contact_ratio - 1);
   return 2 * hypot(base, roll);
 }
 
@@ -42,14 +44,14 @@ static double deep_tooth(int grade, double eps_alpha_n)
   return eps_alpha_n > 2.5 ? 0.7 : 2.366 - 0.666 * eps_alpha_n;
 }
 
-enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pair *p,
-                           const struct eo_rating_geometry *g, int member, const struct eo_tooth_root_input *in,
+enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pair *rating_pair,
+                           const struct eo_rating_geometry *geometry, int member, const struct eo_tooth_root_input *in,
                            struct eo_error *error)
 {
   struct eo_iso_section section;
-  double load = load_diameter(p, g, member);
-  struct eo_iso_section_input shape = {.virtual_teeth = g->virtual_teeth[member],
-                                       .normal_pressure_angle = p->normal_pressure_angle,
+  double load = load_diameter(rating_pair, geometry, member);
+  struct eo_iso_section_input shape = {.virtual_teeth = geometry->virtual_teeth[member],
+                                       .normal_pressure_angle = rating_pair->normal_pressure_angle,
                                        .profile_shift = in->generating_shift,
                                        .dedendum_coefficient = in->dedendum_coefficient,
                                        .fillet_radius_coefficient = in->fillet_radius_coefficient,
@@ -63,16 +65,16 @@ enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pa
   root->arm = section.arm;
   root->fillet_radius = section.fillet_radius;
   root->load_angle = section.load_angle;
-  root->load_diameter = load * p->normal_module;
+  root->load_diameter = load * rating_pair->normal_module;
   root->notch = section.chord / (2 * section.fillet_radius);
-  root->load_share = load_share(in->edition, g->virtual_contact_ratio, g->overlap_ratio);
+  root->load_share = load_share(in->edition, geometry->virtual_contact_ratio, geometry->overlap_ratio);
   root->form_factor = section.form_factor * root->load_share;
   root->stress_correction = section.stress_correction;
-  root->helix_factor = helix_factor(in->edition, g->overlap_ratio, p->helix_angle);
-  root->deep_tooth = deep_tooth(in->grade, g->virtual_contact_ratio);
-  double width = in->face_width > 0 ? in->face_width : p->face_width;
-  root->nominal = in->tangential_force / (width * p->normal_module) * root->form_factor * root->stress_correction *
-                  root->helix_factor * root->deep_tooth;
+  root->helix_factor = helix_factor(in->edition, geometry->overlap_ratio, rating_pair->helix_angle);
+  root->deep_tooth = deep_tooth(in->grade, geometry->virtual_contact_ratio);
+  double width = in->face_width > 0 ? in->face_width : rating_pair->face_width;
+  root->nominal = in->tangential_force / (width * rating_pair->normal_module) * root->form_factor *
+                  root->stress_correction * root->helix_factor * root->deep_tooth;
   return EO_OK;
 }
 
@@ -190,7 +192,7 @@ double eo_mean_stress_factor(enum eo_rating_material material, double stress_cor
   return 1 / (1 - load_ratio * (1 - sensitivity) / (1 + sensitivity));
 }
 
-double eo_root_strength(double allowable, const struct eo_root_influence *y)
+double eo_root_strength(double allowable, const struct eo_root_influence *influence)
 {
-  return allowable * y->life * y->notch * y->surface * y->size * y->mean;
+  return allowable * influence->life * influence->notch * influence->surface * influence->size * influence->mean;
 }

@@ -57,6 +57,6 @@ struct eo_root_influence {
 };
 
 /* sigma_FG = sigma_FE Y_NT Y_drelT Y_RrelT Y_X Y_M, sigma_FE = sigma_Flim Y_ST, Y_ST = 2. */
-double eo_root_strength(double allowable, const struct eo_root_influence *y);
+double eo_root_strength(double allowable, const struct eo_root_influence *influence);
 
 #endif

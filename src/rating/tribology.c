@@ -25,7 +25,7 @@ void eo_tribology_state_init(struct eo_tribology_state *state, const struct eo_g
                              double pinion_speed)
 {
   const struct eo_lubricant *oil = &rating->lubricant;
-  const struct eo_rating_member *m = rating->member;
+  const struct eo_rating_member *member = rating->member;
   *state = (struct eo_tribology_state){
       .geometry = geometry,
       .speed = {pinion_speed, pinion_speed * geometry->teeth[0] / geometry->teeth[1]},
@@ -39,52 +39,55 @@ void eo_tribology_state_init(struct eo_tribology_state *state, const struct eo_g
                              ? sqrt(rating->thermal_conductivity * material->density * rating->specific_heat)
                              : (sqrt(material->density) + sqrt(eo_material_of(material, EO_GEAR).density)) / 2 *
                                    sqrt(rating->thermal_conductivity * rating->specific_heat),
-      .roughness = hypot(height_of(m[0].flank_roughness), height_of(m[1].flank_roughness))};
+      .roughness = hypot(height_of(member[0].flank_roughness), height_of(member[1].flank_roughness))};
 }
 
 /* Blok: 1.11 mu q |v_1 - v_2|/(B_M (sqrt v_1 + sqrt v_2) sqrt(2 b_H)). */
-static double flash_of(const struct eo_tribology_state *t, const double velocity[2], double line_load, double radius)
+static double flash_of(const struct eo_tribology_state *state, const double velocity[2], double line_load,
+                       double radius)
 {
   const double semi_elliptic = 1.11;
-  double half = eo_hertz_half_width(line_load, radius, t->youngs_modulus, t->poissons_ratio);
-  double carried = t->thermal_contact * (sqrt(fmax(velocity[0], 0)) + sqrt(fmax(velocity[1], 0)));
+  double half = eo_hertz_half_width(line_load, radius, state->youngs_modulus, state->poissons_ratio);
+  double carried = state->thermal_contact * (sqrt(fmax(velocity[0], 0)) + sqrt(fmax(velocity[1], 0)));
   /* theory (T1) */
-  return semi_elliptic * t->friction * line_load * fabs(velocity[0] - velocity[1]) / (carried * sqrt(2 * half));
+  return semi_elliptic * state->friction * line_load * fabs(velocity[0] - velocity[1]) / (carried * sqrt(2 * half));
 }
 
 /* Dowson and Higginson: h_min/R = 2.65 G^0.54 U^0.7/W^0.13, G = alpha E', U = eta u/(E' R), W = q/(E' R),
    u = (v_1 + v_2)/2, E' = E/(1 - nu^2). */
-static double film_of(const struct eo_tribology_state *t, const double velocity[2], double line_load, double radius)
+static double film_of(const struct eo_tribology_state *state, const double velocity[2], double line_load, double radius)
 {
-  double modulus = t->youngs_modulus / (1 - t->poissons_ratio * t->poissons_ratio), scale = modulus * radius;
+  double modulus = state->youngs_modulus / (1 - state->poissons_ratio * state->poissons_ratio),
+         scale = modulus * radius;
   double rolling = (velocity[0] + velocity[1]) / 2;
   /* theory (T2) */
-  return radius * 2.65 * pow(t->pressure_viscosity * modulus, 0.54) * pow(t->viscosity * rolling / scale, 0.7) /
+  return radius * 2.65 * pow(state->pressure_viscosity * modulus, 0.54) * pow(state->viscosity * rolling / scale, 0.7) /
          pow(line_load / scale, 0.13);
 }
 
-struct eo_tribology_point eo_tribology_at(const struct eo_tribology_state *t, double s, double line_load)
+struct eo_tribology_point eo_tribology_at(const struct eo_tribology_state *state, double s, double line_load)
 {
-  const struct eo_geometry *g = t->geometry;
-  const double velocity[2] = {t->speed[0] * (g->tangent_length[0] + s), t->speed[1] * (g->tangent_length[1] - s)};
-  double radius = eo_geometry_relative_radius(g, s);
+  const struct eo_geometry *geometry = state->geometry;
+  const double velocity[2] = {state->speed[0] * (geometry->tangent_length[0] + s),
+                              state->speed[1] * (geometry->tangent_length[1] - s)};
+  double radius = eo_geometry_relative_radius(geometry, s);
   struct eo_tribology_point point = {.sliding = velocity[0] - velocity[1],
-                                     .flash = flash_of(t, velocity, line_load, radius),
-                                     .film = film_of(t, velocity, line_load, radius)};
-  point.film_ratio = point.film / t->roughness;
+                                     .flash = flash_of(state, velocity, line_load, radius),
+                                     .film = film_of(state, velocity, line_load, radius)};
+  point.film_ratio = point.film / state->roughness;
   return point;
 }
 
-static void add_position(struct eo_tribology *sum, const struct eo_tribology_state *t,
-                         const struct eo_contact_position *p, const double *line_load)
+static void add_position(struct eo_tribology *sum, const struct eo_tribology_state *state,
+                         const struct eo_contact_position *position, const double *line_load)
 {
-  for (int i = 0; i < p->points; i++) {
+  for (int i = 0; i < position->points; i++) {
     double q = line_load[i];
     if (!(q > 0))
       continue;
-    struct eo_tribology_point at = eo_tribology_at(t, p->path[i], q);
-    sum->power_loss += t->friction * q * p->length[i] * fabs(at.sliding);
-    if (p->kind[i] != EO_POINT_LINE)
+    struct eo_tribology_point at = eo_tribology_at(state, position->path[i], q);
+    sum->power_loss += state->friction * q * position->length[i] * fabs(at.sliding);
+    if (position->kind[i] != EO_POINT_LINE)
       continue;
     sum->sliding = fmax(sum->sliding, fabs(at.sliding));
     sum->flash = fmax(sum->flash, at.flash);

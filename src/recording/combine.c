@@ -97,23 +97,23 @@ static enum eo_code copy_rows(const struct pair *pair, struct eo_recording *out,
   return code;
 }
 
-static int64_t epoch_of(const struct pair *p, int side)
+static int64_t epoch_of(const struct pair *pair, int side)
 {
-  return eo_recording_clock(p->side[side], p->time[side] >= 0 ? p->time[side] : 0).epoch;
+  return eo_recording_clock(pair->side[side], pair->time[side] >= 0 ? pair->time[side] : 0).epoch;
 }
 
-static bool is_pulses(const struct pair *p)
+static bool is_pulses(const struct pair *pair)
 {
-  return p->columns[0] == 1 && p->columns[1] == 1 && !(eo_recording_clock(p->side[0], 0).interval > 0);
+  return pair->columns[0] == 1 && pair->columns[1] == 1 && !(eo_recording_clock(pair->side[0], 0).interval > 0);
 }
 
 /* What the clocks of the two files have to do with each other. */
-static void note_clocks(const struct pair *p, struct eo_notes *notes)
+static void note_clocks(const struct pair *pair, struct eo_notes *notes)
 {
-  bool stated = epoch_of(p, 0) != EO_CLOCK_NO_EPOCH && epoch_of(p, 1) != EO_CLOCK_NO_EPOCH;
+  bool stated = epoch_of(pair, 0) != EO_CLOCK_NO_EPOCH && epoch_of(pair, 1) != EO_CLOCK_NO_EPOCH;
   if (stated)
     eo_notes_add(notes, "The gear's file began %.9g s after the pinion's, as the files state.",
-                 (double)(epoch_of(p, 1) - epoch_of(p, 0)) * 1e-9);
+                 (double)(epoch_of(pair, 1) - epoch_of(pair, 0)) * 1e-9);
   else
     eo_notes_add(
         notes, "The two files do not both state when they began: their times are taken for those of one clock. If each "
@@ -124,27 +124,27 @@ enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct e
                                const struct eo_layout_choice *choice, const char *spool_directory,
                                struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error)
 {
-  struct pair p = {.side = {pinion, gear}};
+  struct pair pair = {.side = {pinion, gear}};
   struct eo_recording *out = NULL;
   enum eo_code code = EO_OK;
   for (int s = 0; s < 2 && !code; s++) {
     const char *chosen = !choice ? NULL : s && choice->gear_time ? choice->gear_time : choice->time;
-    p.columns[s] = eo_recording_columns(p.side[s]);
-    p.rows[s] = eo_recording_rows(p.side[s]);
-    code = find_time(p.side[s], choice, chosen, &p.time[s], error);
+    pair.columns[s] = eo_recording_columns(pair.side[s]);
+    pair.rows[s] = eo_recording_rows(pair.side[s]);
+    code = find_time(pair.side[s], choice, chosen, &pair.time[s], error);
   }
   if (!code)
-    code = eo_recording_new(&out, p.columns[0] + p.columns[1], spool_directory, error);
+    code = eo_recording_new(&out, pair.columns[0] + pair.columns[1], spool_directory, error);
   if (!code)
-    code = copy_rows(&p, out, error);
+    code = copy_rows(&pair, out, error);
   if (code) {
     eo_recording_free(out);
     return code;
   }
-  describe(&p, 0, out);
-  describe(&p, 1, out);
-  if (!is_pulses(&p))
-    note_clocks(&p, notes);
+  describe(&pair, 0, out);
+  describe(&pair, 1, out);
+  if (!is_pulses(&pair))
+    note_clocks(&pair, notes);
   *combined = out;
   return EO_OK;
 }

@@ -25,27 +25,27 @@ double eo_decimal_scale(const struct eo_decimal *decimal, const char *text, cons
    must have a digit after it. The text must end with a byte that belongs to no number. */
 static inline const char *eo_decimal_read(const char *text, char point, double *value)
 {
-  struct eo_decimal d = {0};
+  struct eo_decimal decimal = {0};
   const char *p = text;
-  d.negative = *p == '-';
+  decimal.negative = *p == '-';
   p += *p == '-' || *p == '+';
   const char *first = p;
   unsigned digit;
   while ((digit = (unsigned)(*p - '0')) < 10) {
-    d.mantissa = d.mantissa * 10 + digit;
-    d.digits += d.mantissa != 0;
+    decimal.mantissa = decimal.mantissa * 10 + digit;
+    decimal.digits += decimal.mantissa != 0;
     p++;
   }
   long written = p - first;
   if (*p == point && (point == '.' || (unsigned)(p[1] - '0') < 10)) {
     const char *fraction = ++p;
     while ((digit = (unsigned)(*p - '0')) < 10) {
-      d.mantissa = d.mantissa * 10 + digit;
-      d.digits += d.mantissa != 0;
+      decimal.mantissa = decimal.mantissa * 10 + digit;
+      decimal.digits += decimal.mantissa != 0;
       p++;
     }
     written += p - fraction;
-    d.exponent = (int)(fraction - p);
+    decimal.exponent = (int)(fraction - p);
   }
   if (!written)
     return NULL;
@@ -56,16 +56,17 @@ static inline const char *eo_decimal_read(const char *text, char point, double *
     if ((unsigned)(*e - '0') < 10) {
       for (; (digit = (unsigned)(*e - '0')) < 10; e++)
         exponent = exponent < 100000 ? exponent * 10 + (int)digit : exponent;
-      d.exponent += sign * exponent;
+      decimal.exponent += sign * exponent;
       p = e;
     }
   }
-  if (d.digits <= 19 && d.mantissa < (uint64_t)1 << 53 && d.exponent >= -22 && d.exponent <= 22) {
-    double m = (double)d.mantissa;
-    m = d.exponent < 0 ? m / eo_decimal_power[-d.exponent] : m * eo_decimal_power[d.exponent];
-    *value = d.negative ? -m : m;
+  if (decimal.digits <= 19 && decimal.mantissa < (uint64_t)1 << 53 && decimal.exponent >= -22 &&
+      decimal.exponent <= 22) {
+    double m = (double)decimal.mantissa;
+    m = decimal.exponent < 0 ? m / eo_decimal_power[-decimal.exponent] : m * eo_decimal_power[decimal.exponent];
+    *value = decimal.negative ? -m : m;
   } else
-    *value = eo_decimal_scale(&d, text, p, point);
+    *value = eo_decimal_scale(&decimal, text, p, point);
   return p;
 }
 

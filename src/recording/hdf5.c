@@ -61,12 +61,12 @@ static bool read_texts(hid_t object, bool set, hid_t type, hid_t space, char *li
   return done;
 }
 
-static void add_texts(struct eo_hdf5 *h, const char *path, const char *list)
+static void add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list)
 {
   if (strchr(list, '\n'))
-    eo_tree_add_list(h->tree, path, list);
+    eo_tree_add_list(hdf5->tree, path, list);
   else if (*list)
-    eo_tree_add_text(h->tree, path, list);
+    eo_tree_add_text(hdf5->tree, path, list);
 }
 
 struct attributes {
@@ -96,10 +96,10 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
   return 0;
 }
 
-static void add_attributes(struct eo_hdf5 *h, hid_t object, const char *path)
+static void add_attributes(struct eo_hdf5 *hdf5, hid_t object, const char *path)
 {
-  struct attributes a = {h, path};
-  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &a);
+  struct attributes attributes = {hdf5, path};
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &attributes);
 }
 
 /* Data of other files are not ours to read, whatever the file says. */
@@ -126,7 +126,7 @@ static void matlab_class(hid_t set, char *class, size_t size)
 }
 
 /* MATLAB's texts are numbers of two bytes. */
-static void add_characters(struct eo_hdf5 *h, hid_t set, hsize_t count, const char *path)
+static void add_characters(struct eo_hdf5 *hdf5, hid_t set, hsize_t count, const char *path)
 {
   uint16_t wide[128];
   char text[129];
@@ -135,21 +135,21 @@ static void add_characters(struct eo_hdf5 *h, hid_t set, hsize_t count, const ch
   for (hsize_t i = 0; i < count; i++)
     text[i] = (char)(wide[i] < 256 ? wide[i] : '?');
   text[count] = '\0';
-  eo_tree_add_text(h->tree, path, text);
+  eo_tree_add_text(hdf5->tree, path, text);
 }
 
-static void add_number(struct eo_hdf5 *h, hid_t set, const char *path)
+static void add_number(struct eo_hdf5 *hdf5, hid_t set, const char *path)
 {
   double value = 0;
   if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0)
-    eo_tree_add_number(h->tree, path, value);
+    eo_tree_add_number(hdf5->tree, path, value);
 }
 
-static void keep_channel(struct eo_hdf5 *h, int number, struct eo_hdf5_channel channel)
+static void keep_channel(struct eo_hdf5 *hdf5, int number, struct eo_hdf5_channel channel)
 {
-  channel.large = h->large;
-  h->larges += h->large;
-  h->channel[number] = channel;
+  channel.large = hdf5->large;
+  hdf5->larges += hdf5->large;
+  hdf5->channel[number] = channel;
 }
 
 /* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
@@ -177,13 +177,14 @@ static hid_t field_type(const char *name, hid_t field)
 }
 
 /* A field that is an array: one channel per element. */
-static bool add_array(struct eo_hdf5 *h, hid_t set, hid_t memory, int width, bool whole, const char *path,
+static bool add_array(struct eo_hdf5 *hdf5, hid_t set, hid_t memory, int width, bool whole, const char *path,
                       hsize_t length)
 {
-  int base = width > WIDE || length > INT64_MAX / 16 ? -1
-                                                     : eo_tree_add_series(h->tree, path, width, (int64_t)length, whole);
+  int base = width > WIDE || length > INT64_MAX / 16
+                 ? -1
+                 : eo_tree_add_series(hdf5->tree, path, width, (int64_t)length, whole);
   for (int k = 0; base >= 0 && k < width; k++)
-    keep_channel(h, base + k,
+    keep_channel(hdf5, base + k,
                  (struct eo_hdf5_channel){.set = set, .type = memory, .width = width, .place = k, .rank = 1});
   return base >= 0;
 }
@@ -205,7 +206,7 @@ static hid_t nested_type(const struct nest *nest, hid_t inner)
   return memory;
 }
 
-static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+static bool add_records(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const struct nest *outer, const char *path,
                         hsize_t length, int depth);
 
 /* A field that is a number, an array of numbers, or a record. */
@@ -253,7 +254,7 @@ static bool add_records(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const struc
   return any;
 }
 
-static void add_object(struct eo_hdf5 *h, hid_t object, const char *path, int depth);
+static void add_object(struct eo_hdf5 *hdf5, hid_t object, const char *path, int depth);
 
 /* What MATLAB refers to: the elements of a cell, or one field of all elements of an array of structs, "ch(2)/y". */
 static void add_references(struct eo_hdf5 *hdf5, hid_t set, hsize_t count, bool cell, const char *path, int depth)
@@ -302,11 +303,11 @@ static hid_t open_cached(struct eo_hdf5 *hdf5, hid_t set)
   return set;
 }
 
-static bool keep_set(struct eo_hdf5 *h, hid_t set)
+static bool keep_set(struct eo_hdf5 *hdf5, hid_t set)
 {
-  if (h->sets < EO_HDF5_CHANNELS)
-    h->set[h->sets++] = set;
-  return h->sets <= EO_HDF5_CHANNELS;
+  if (hdf5->sets < EO_HDF5_CHANNELS)
+    hdf5->set[hdf5->sets++] = set;
+  return hdf5->sets <= EO_HDF5_CHANNELS;
 }
 
 /* A data set with numbers, texts or references; it is closed unless channels read it. */
@@ -364,13 +365,13 @@ struct group {
 
 static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
-  const struct group *g = context;
+  const struct group *this_group = context;
   char path[PATH];
-  if (info->type == H5L_TYPE_EXTERNAL || !join(path, g->path, name))
+  if (info->type == H5L_TYPE_EXTERNAL || !join(path, this_group->path, name))
     return 0;
   hid_t object = H5Oopen(group, name, H5P_DEFAULT);
   if (object >= 0)
-    add_object(g->h, object, path, g->depth + 1);
+    add_object(this_group->h, object, path, this_group->depth + 1);
   return 0;
 }
 

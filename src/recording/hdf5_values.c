@@ -53,9 +53,10 @@ enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t co
                             struct eo_error *error)
 {
   struct eo_hdf5 *hdf5 = context;
-  struct eo_hdf5_channel *c = &hdf5->channel[series];
-  bool good = c->large ? read_ahead(hdf5, c, first, count, eo_tree_series(hdf5->tree)[series].length, values)
-                       : read_stored(c, first, count, values);
+  struct eo_hdf5_channel *channel = &hdf5->channel[series];
+  bool good = channel->large
+                  ? read_ahead(hdf5, channel, first, count, eo_tree_series(hdf5->tree)[series].length, values)
+                  : read_stored(channel, first, count, values);
   if (!good)
     return eo_error_set(
         error, EO_ERROR_INPUT, "",

@@ -155,18 +155,18 @@ struct parent {
 enum { RECEIVED, ENDED, CANCELLED };
 
 /* Receives exactly size bytes. */
-static int receive(const struct parent *p, void *bytes, size_t size)
+static int receive(const struct parent *parent, void *bytes, size_t size)
 {
   char *to = bytes;
   while (size > 0) {
-    struct pollfd ready = {.fd = p->pipe, .events = POLLIN};
+    struct pollfd ready = {.fd = parent->pipe, .events = POLLIN};
     int events = poll(&ready, 1, WAIT_MS);
     if (events <= 0) {
-      if (p->columns == 0 && eo_progress_report(p->progress, "rig file", 0))
+      if (parent->columns == 0 && eo_progress_report(parent->progress, "rig file", 0))
         return CANCELLED;
       continue;
     }
-    ssize_t n = read(p->pipe, to, size);
+    ssize_t n = read(parent->pipe, to, size);
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
@@ -193,63 +193,64 @@ static void end_series(struct eo_series *series, int columns)
     series->clock.column = -1;
 }
 
-static enum eo_code receive_columns(struct parent *p, int count, struct eo_error *error)
+static enum eo_code receive_columns(struct parent *parent, int count, struct eo_error *error)
 {
-  if (p->columns || count < 1 || count > EO_RECORDING_COLUMNS)
+  if (parent->columns || count < 1 || count > EO_RECORDING_COLUMNS)
     return no_answer(ENDED, error);
   struct eo_series *column = calloc((size_t)count, sizeof *column);
-  p->rows = malloc((size_t)count * BLOCK * sizeof *p->rows);
-  enum eo_code code = column && p->rows ? EO_OK : eo_error_memory(error);
-  int state = code ? RECEIVED : receive(p, column, (size_t)count * sizeof *column);
+  parent->rows = malloc((size_t)count * BLOCK * sizeof *parent->rows);
+  enum eo_code code = column && parent->rows ? EO_OK : eo_error_memory(error);
+  int state = code ? RECEIVED : receive(parent, column, (size_t)count * sizeof *column);
   if (state != RECEIVED)
     code = no_answer(state, error);
   for (int c = 0; !code && c < count; c++)
     end_series(&column[c], count);
   if (!code) {
-    p->columns = count;
-    code = p->sink->begin(p->sink->context, column, count, error);
+    parent->columns = count;
+    code = parent->sink->begin(parent->sink->context, column, count, error);
   }
   free(column);
   return code;
 }
 
-static enum eo_code receive_rows(struct parent *p, int count, struct eo_error *error)
+static enum eo_code receive_rows(struct parent *parent, int count, struct eo_error *error)
 {
-  if (!p->columns || count < 1 || count > BLOCK)
+  if (!parent->columns || count < 1 || count > BLOCK)
     return no_answer(ENDED, error);
-  int state = receive(p, p->rows, (size_t)count * (size_t)p->columns * sizeof *p->rows);
-  return state == RECEIVED ? p->sink->rows(p->sink->context, p->rows, count, error) : no_answer(state, error);
+  int state = receive(parent, parent->rows, (size_t)count * (size_t)parent->columns * sizeof *parent->rows);
+  return state == RECEIVED ? parent->sink->rows(parent->sink->context, parent->rows, count, error)
+                           : no_answer(state, error);
 }
 
 /* The process's own verdict and what it noted. */
-static enum eo_code receive_end(const struct parent *p, struct eo_notes *notes, struct eo_error *error)
+static enum eo_code receive_end(const struct parent *parent, struct eo_notes *notes, struct eo_error *error)
 {
   struct eo_error verdict;
   struct eo_notes noted;
-  int state = receive(p, &verdict, sizeof verdict);
+  int state = receive(parent, &verdict, sizeof verdict);
   if (state == RECEIVED)
-    state = receive(p, &noted, sizeof noted);
+    state = receive(parent, &noted, sizeof noted);
   if (state != RECEIVED)
     return no_answer(state, error);
   verdict.text[sizeof verdict.text - 1] = '\0';
   for (int i = 0; i < noted.count && i < EO_NOTES; i++)
     eo_notes_add(notes, "%.*s", EO_NOTE_LENGTH - 1, noted.text[i]);
   if (verdict.code == EO_OK)
-    return p->columns ? EO_OK : no_answer(ENDED, error);
+    return parent->columns ? EO_OK : no_answer(ENDED, error);
   return eo_error_set(error, verdict.code <= EO_ERROR_LAST ? verdict.code : EO_ERROR_INPUT, "", "%s", verdict.text);
 }
 
-static enum eo_code receive_all(struct parent *p, struct eo_notes *notes, struct eo_error *error)
+static enum eo_code receive_all(struct parent *parent, struct eo_notes *notes, struct eo_error *error)
 {
   for (;;) {
     struct message message;
-    int state = receive(p, &message, sizeof message);
+    int state = receive(parent, &message, sizeof message);
     enum eo_code code = state == RECEIVED ? EO_OK : no_answer(state, error);
     if (!code && message.kind == MESSAGE_DONE)
-      return receive_end(p, notes, error);
+      return receive_end(parent, notes, error);
     if (!code)
-      code = message.kind == MESSAGE_COLUMNS ? receive_columns(p, message.count, error)
-                                             : receive_rows(p, message.count, error);
+      code = message.kind == MESSAGE_COLUMNS ? receive_columns(parent, message.count, error)
+                                             : receive_rows(parent, message.count, error);
     if (code)
       return code;
   }

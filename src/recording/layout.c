@@ -23,9 +23,9 @@
 
 static const char *const member_names[2] = {"pinion", "gear"};
 
-const char *eo_layout_label(const struct eo_guess *g, int column, char *text, size_t size)
+const char *eo_layout_label(const struct eo_guess *guess, int column, char *text, size_t size)
 {
-  const char *name = eo_recording_name(g->recording, column);
+  const char *name = eo_recording_name(guess->recording, column);
   if (*name)
     snprintf(text, size, "\"%s\"", name);
   else
@@ -147,12 +147,12 @@ static int sine_or_cosine(const char *name)
 }
 
 /* Numbers tell encoders apart only where one name has a 1 and another a 2: "data 2" and "data 3" are columns. */
-static int number_fit(const struct eo_guess *g, int column, int member)
+static int number_fit(const struct eo_guess *guess, int column, int member)
 {
-  const char *name = eo_recording_name(g->recording, column);
+  const char *name = eo_recording_name(guess->recording, column);
   bool one = false, two = false;
-  for (int i = 0; i < g->candidates; i++) {
-    const char *other = eo_recording_name(g->recording, g->candidate[i]);
+  for (int i = 0; i < guess->candidates; i++) {
+    const char *other = eo_recording_name(guess->recording, guess->candidate[i]);
     one = one || (eo_column_named(other, NUMBERED_PINION) && !eo_column_named(other, NUMBERED_GEAR));
     two = two || (eo_column_named(other, NUMBERED_GEAR) && !eo_column_named(other, NUMBERED_PINION));
   }
@@ -162,50 +162,50 @@ static int number_fit(const struct eo_guess *g, int column, int member)
 }
 
 /* How well a column's name fits a member and a track (0: sine or the only one, 1: cosine). */
-static int fit_of(const struct eo_guess *g, int column, int member, int track)
+static int fit_of(const struct eo_guess *guess, int column, int member, int track)
 {
-  const char *name = eo_recording_name(g->recording, column);
+  const char *name = eo_recording_name(guess->recording, column);
   int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) -
-            eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS) + number_fit(g, column, member);
-  if (g->kind == EO_LAYOUT_SINE_COSINE)
+            eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS) + number_fit(guess, column, member);
+  if (guess->kind == EO_LAYOUT_SINE_COSINE)
     fit += 2 * (track ? -1 : 1) * sine_or_cosine(name);
-  if (g->kind == EO_LAYOUT_ANGLES && !g->square &&
-      (g->look[column].quantity == EO_QUANTITY_ANGLE || g->look[column].quantity == EO_QUANTITY_COUNT))
+  if (guess->kind == EO_LAYOUT_ANGLES && !guess->square &&
+      (guess->look[column].quantity == EO_QUANTITY_ANGLE || guess->look[column].quantity == EO_QUANTITY_COUNT))
     fit += 4;
   return fit;
 }
 
 /* Columns that the caller named come first; each other place then takes the best fitting column, the earlier one of
    equals. */
-static enum eo_code assign(struct eo_guess *g, struct eo_error *error)
+static enum eo_code assign(struct eo_guess *guess, struct eo_error *error)
 {
-  int tracks = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+  int tracks = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
   bool taken[EO_RECORDING_COLUMNS] = {false};
   for (int member = 0; member < 2; member++)
     for (int track = 0; track < tracks; track++) {
-      int *column = &g->tracks->channel[member].column[track];
+      int *column = &guess->tracks->channel[member].column[track];
       *column = -1;
-      if (!g->choice->column[member][track])
+      if (!guess->choice->column[member][track])
         continue;
-      enum eo_code code = eo_layout_chosen(g, g->choice->column[member][track], "/columns", column, error);
+      enum eo_code code = eo_layout_chosen(guess, guess->choice->column[member][track], "/columns", column, error);
       if (code)
         return code;
       taken[*column] = true;
     }
   for (int place = 0; place < 2 * tracks; place++) {
     int member = place / tracks, track = place % tracks, best = -1, most = -1000;
-    int *column = &g->tracks->channel[member].column[track];
-    for (int i = 0; *column < 0 && i < g->candidates; i++) {
-      int fit = fit_of(g, g->candidate[i], member, track);
-      if (!taken[g->candidate[i]] && fit > most) {
+    int *column = &guess->tracks->channel[member].column[track];
+    for (int i = 0; *column < 0 && i < guess->candidates; i++) {
+      int fit = fit_of(guess, guess->candidate[i], member, track);
+      if (!taken[guess->candidate[i]] && fit > most) {
         most = fit;
-        best = g->candidate[i];
+        best = guess->candidate[i];
       }
     }
     if (*column < 0 && best < 0)
       return eo_error_set(error, EO_ERROR_INPUT, "/columns",
                           "The recording has %d column%s that may hold an encoder's values; %d are needed.",
-                          g->candidates, g->candidates == 1 ? "" : "s", 2 * tracks);
+                          guess->candidates, guess->candidates == 1 ? "" : "s", 2 * tracks);
     if (*column < 0)
       *column = best;
     taken[*column] = true;
@@ -214,9 +214,10 @@ static enum eo_code assign(struct eo_guess *g, struct eo_error *error)
 }
 
 /* Without a unit and without turns: degrees unless the shaft would then crawl. */
-static double scale_by_speed(const struct eo_guess *g, int member)
+static double scale_by_speed(const struct eo_guess *guess, int member)
 {
-  double rpm = fabs(eo_layout_rate(g, g->tracks->channel[member].column[0], &g->clock[member])) / 6; /* as degrees */
+  double rpm = fabs(eo_layout_rate(guess, guess->tracks->channel[member].column[0], &guess->clock[member])) /
+               6; /* as degrees */
   return rpm < 60 && rpm * 180 / M_PI < 30000 ? 1 : TURN / 360;
 }
 
@@ -226,14 +227,14 @@ static const char *scale_name(double scale)
 }
 
 /* Counts per turn: as chosen, as the file states, or by where they start again; 0: not known. */
-static double counts_per_turn(const struct eo_guess *g, int member)
+static double counts_per_turn(const struct eo_guess *guess, int member)
 {
-  int column = g->tracks->channel[member].column[0];
-  if (g->choice->lines[member] > 0)
-    return g->choice->lines[member];
-  if (eo_recording_turn(g->recording, column) > 0)
-    return eo_recording_turn(g->recording, column);
-  return eo_column_turn(&g->look[column]);
+  int column = guess->tracks->channel[member].column[0];
+  if (guess->choice->lines[member] > 0)
+    return guess->choice->lines[member];
+  if (eo_recording_turn(guess->recording, column) > 0)
+    return eo_recording_turn(guess->recording, column);
+  return eo_column_turn(&guess->look[column]);
 }
 
 /* A unit that the file states must be known: a guess in its place would be a wrong speed. */
@@ -290,28 +291,28 @@ static enum eo_code find_scale(struct eo_guess *guess, int member, struct eo_err
 
 /* Counts since the row before go up as often as down, and stay on one side of 0. (Where they have two values, every
    step looks like a reset.) */
-static bool are_increments(const struct eo_guess *g, int member)
+static bool are_increments(const struct eo_guess *guess, int member)
 {
-  int column = g->tracks->channel[member].column[0];
-  const struct eo_column *look = &g->look[column];
-  bool named = eo_column_named(eo_recording_name(g->recording, column), INCREMENT_WORDS);
-  bool counts = g->choice->unit == EO_LAYOUT_COUNT || look->quantity == EO_QUANTITY_COUNT;
+  int column = guess->tracks->channel[member].column[0];
+  const struct eo_column *look = &guess->look[column];
+  bool named = eo_column_named(eo_recording_name(guess->recording, column), INCREMENT_WORDS);
+  bool counts = guess->choice->unit == EO_LAYOUT_COUNT || look->quantity == EO_QUANTITY_COUNT;
   double middle = fabs(look->low + look->high) / 2;
   int less = look->rises < look->falls ? look->rises : look->falls, all = look->rises + look->falls;
-  return g->kind == EO_LAYOUT_ANGLES && !g->square && (named || (counts && look->whole)) && 4 * less > all &&
+  return guess->kind == EO_LAYOUT_ANGLES && !guess->square && (named || (counts && look->whole)) && 4 * less > all &&
          all > 20 && look->high - look->low < middle;
 }
 
-static void note_angle(const struct eo_guess *g, int member)
+static void note_angle(const struct eo_guess *guess, int member)
 {
-  const struct eo_track_channel *channel = &g->tracks->channel[member];
-  const struct eo_column *look = &g->look[channel->column[0]];
+  const struct eo_track_channel *channel = &guess->tracks->channel[member];
+  const struct eo_column *look = &guess->look[channel->column[0]];
   char text[80], turns[48] = "not starting again";
   if (look->resets)
     snprintf(turns, sizeof turns, "starting again after %.6g",
              eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
-  eo_notes_add(g->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
-               eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member],
+  eo_notes_add(guess->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
+               eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member],
                scale_name(channel->scale), channel->scale, turns);
 }
 
@@ -345,13 +346,13 @@ static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_e
 }
 
 /* Where the channels are in the file, before anything takes their place. */
-static void note_source(struct eo_guess *g)
+static void note_source(struct eo_guess *guess)
 {
   for (int member = 0; member < 2; member++) {
-    struct eo_track_source *source = &g->tracks->source[member];
-    source->time = g->clock[member].column;
-    source->time_scale = g->clock[member].scale;
-    memcpy(source->column, g->tracks->channel[member].column, sizeof source->column);
+    struct eo_track_source *source = &guess->tracks->source[member];
+    source->time = guess->clock[member].column;
+    source->time_scale = guess->clock[member].scale;
+    memcpy(source->column, guess->tracks->channel[member].column, sizeof source->column);
   }
 }
 

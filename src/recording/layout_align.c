@@ -77,162 +77,163 @@ enum eo_code eo_layout_compare(struct eo_guess *guess, struct eo_error *error)
   return code;
 }
 
-bool eo_layout_needs_align(const struct eo_guess *g)
+bool eo_layout_needs_align(const struct eo_guess *guess)
 {
-  bool columns = g->clock[0].column >= 0 && g->clock[1].column >= 0;
-  bool same = same_clock(&g->clock[0], &g->clock[1]) || (columns && g->equal);
-  return g->kind != EO_LAYOUT_PULSES && (!same || !g->together || g->increments[0] || g->increments[1]);
+  bool columns = guess->clock[0].column >= 0 && guess->clock[1].column >= 0;
+  bool same = same_clock(&guess->clock[0], &guess->clock[1]) || (columns && guess->equal);
+  return guess->kind != EO_LAYOUT_PULSES && (!same || !guess->together || guess->increments[0] || guess->increments[1]);
 }
 
-static enum eo_code open_side(struct side *s, const struct eo_guess *guess, int member, struct eo_error *error)
+static enum eo_code open_side(struct side *side, const struct eo_guess *guess, int member, struct eo_error *error)
 {
   const struct eo_track_channel *channel = &guess->tracks->channel[member];
-  s->recording = guess->recording;
-  s->clock = guess->clock[member];
-  s->sum = guess->increments[member];
-  s->keys = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
-  for (int k = 0; k < s->keys; k++)
-    s->column[s->columns++] = channel->column[k];
-  s->rows = eo_recording_length(guess->recording, channel->column[0]);
-  s->points = s->clock.column < 0 || guess->look[s->clock.column].spread < EVEN ? EO_INTERPOLATION_EVEN
-                                                                                : EO_INTERPOLATION_UNEVEN;
-  if (guess->kind == EO_LAYOUT_ANGLES && !s->sum && guess->look[channel->column[0]].resets) {
+  side->recording = guess->recording;
+  side->clock = guess->clock[member];
+  side->sum = guess->increments[member];
+  side->keys = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+  for (int k = 0; k < side->keys; k++)
+    side->column[side->columns++] = channel->column[k];
+  side->rows = eo_recording_length(guess->recording, channel->column[0]);
+  side->points = side->clock.column < 0 || guess->look[side->clock.column].spread < EVEN ? EO_INTERPOLATION_EVEN
+                                                                                         : EO_INTERPOLATION_UNEVEN;
+  if (guess->kind == EO_LAYOUT_ANGLES && !side->sum && guess->look[channel->column[0]].resets) {
     double turn = eo_column_turn(&guess->look[channel->column[0]]);
-    s->period[0] = turn > 0 ? turn : EO_TURN / channel->scale;
+    side->period[0] = turn > 0 ? turn : EO_TURN / channel->scale;
   }
-  s->block = malloc(BLOCK * (size_t)guess->columns * sizeof *s->block);
-  s->time = malloc(HELD * sizeof *s->time);
-  s->value = malloc(HELD * CARRIED * sizeof *s->value);
-  return s->block && s->time && s->value ? EO_OK : eo_error_memory(error);
+  side->block = malloc(BLOCK * (size_t)guess->columns * sizeof *side->block);
+  side->time = malloc(HELD * sizeof *side->time);
+  side->value = malloc(HELD * CARRIED * sizeof *side->value);
+  return side->block && side->time && side->value ? EO_OK : eo_error_memory(error);
 }
 
-static void close_side(struct side *s)
+static void close_side(struct side *side)
 {
-  free(s->block);
-  free(s->time);
-  free(s->value);
+  free(side->block);
+  free(side->time);
+  free(side->value);
 }
 
-static double time_of(const struct side *s, const double *row, int64_t number)
+static double time_of(const struct side *side, const double *row, int64_t number)
 {
-  double time = s->clock.column >= 0 ? row[s->clock.column] * s->clock.scale
-                                     : s->clock.start + (double)number * s->clock.interval;
-  return time + s->clock.shift;
+  double time = side->clock.column >= 0 ? row[side->clock.column] * side->clock.scale
+                                        : side->clock.start + (double)number * side->clock.interval;
+  return time + side->clock.shift;
 }
 
 /* Takes one row of the recording as the next sample. Rows without a value or with a time that does not go on are passed
    over. */
-static void take_row(struct side *s, const double *row, int64_t number)
+static void take_row(struct side *side, const double *row, int64_t number)
 {
-  double time = time_of(s, row, number), *value = s->value + s->held * CARRIED;
-  bool good = isfinite(time) && (!s->held || time > s->time[s->held - 1]);
-  for (int k = 0; k < s->columns; k++) {
-    value[k] = row[s->column[k]];
-    good = good && (k >= s->keys || isfinite(value[k]));
+  double time = time_of(side, row, number), *value = side->value + side->held * CARRIED;
+  bool good = isfinite(time) && (!side->held || time > side->time[side->held - 1]);
+  for (int k = 0; k < side->columns; k++) {
+    value[k] = row[side->column[k]];
+    good = good && (k >= side->keys || isfinite(value[k]));
   }
   if (!good)
     return;
-  if (s->sum) {
-    s->shift[0] += value[0];
-    value[0] = s->shift[0];
+  if (side->sum) {
+    side->shift[0] += value[0];
+    value[0] = side->shift[0];
   }
-  for (int k = 0; k < s->keys; k++)
-    if (s->period[k] > 0) {
-      value[k] += s->shift[k];
-      double turns = s->held ? round((value[k] - value[k - CARRIED]) / s->period[k]) : 0;
-      value[k] -= turns * s->period[k];
-      s->shift[k] -= turns * s->period[k];
+  for (int k = 0; k < side->keys; k++)
+    if (side->period[k] > 0) {
+      value[k] += side->shift[k];
+      double turns = side->held ? round((value[k] - value[k - CARRIED]) / side->period[k]) : 0;
+      value[k] -= turns * side->period[k];
+      side->shift[k] -= turns * side->period[k];
     }
-  if (!s->first && !s->held)
-    s->begin = time;
-  s->time[s->held++] = time;
+  if (!side->first && !side->held)
+    side->begin = time;
+  side->time[side->held++] = time;
 }
 
 /* Forgets samples before `keep` and reads until there is no room for another block. */
-static enum eo_code fill(struct side *s, int64_t keep, struct eo_error *error)
+static enum eo_code fill(struct side *side, int64_t keep, struct eo_error *error)
 {
-  int64_t drop = keep - s->first;
+  int64_t drop = keep - side->first;
   enum eo_code code = EO_OK;
-  if (drop > s->held)
-    drop = s->held;
+  if (drop > side->held)
+    drop = side->held;
   if (drop > 0) {
-    memmove(s->time, s->time + drop, (size_t)(s->held - drop) * sizeof *s->time);
-    memmove(s->value, s->value + drop * CARRIED, (size_t)(s->held - drop) * CARRIED * sizeof *s->value);
-    s->first += drop;
-    s->held -= drop;
+    memmove(side->time, side->time + drop, (size_t)(side->held - drop) * sizeof *side->time);
+    memmove(side->value, side->value + drop * CARRIED, (size_t)(side->held - drop) * CARRIED * sizeof *side->value);
+    side->first += drop;
+    side->held -= drop;
   }
-  while (!code && !s->ended && s->held + BLOCK <= HELD) {
-    int64_t n = s->rows - s->next < BLOCK ? s->rows - s->next : BLOCK;
-    int columns = eo_recording_columns(s->recording);
-    code = eo_recording_read(s->recording, s->next, n, s->block, error);
+  while (!code && !side->ended && side->held + BLOCK <= HELD) {
+    int64_t n = side->rows - side->next < BLOCK ? side->rows - side->next : BLOCK;
+    int columns = eo_recording_columns(side->recording);
+    code = eo_recording_read(side->recording, side->next, n, side->block, error);
     for (int64_t i = 0; !code && i < n; i++)
-      take_row(s, s->block + i * columns, s->next + i);
-    s->next += n;
-    s->ended = s->next >= s->rows;
+      take_row(side, side->block + i * columns, side->next + i);
+    side->next += n;
+    side->ended = side->next >= side->rows;
   }
   return code;
 }
 
 /* Values of all columns at a time inside samples from .. from + points - 1, by the polynomial through them. */
-static void interpolate(const struct side *s, int64_t from, double t, double *values)
+static void interpolate(const struct side *side, int64_t from, double t, double *values)
 {
   double weight[EO_INTERPOLATION_EVEN];
-  eo_interpolation_weights(s->points, s->time + from, t, weight);
-  for (int c = 0; c < s->columns; c++) {
-    const double *column = s->value + from * CARRIED + c;
-    double base = column[(long)s->points / 2 * CARRIED], sum = 0;
-    for (int i = 0; i < s->points; i++)
+  eo_interpolation_weights(side->points, side->time + from, t, weight);
+  for (int c = 0; c < side->columns; c++) {
+    const double *column = side->value + from * CARRIED + c;
+    double base = column[(long)side->points / 2 * CARRIED], sum = 0;
+    for (int i = 0; i < side->points; i++)
       sum += weight[i] * (column[(long)i * CARRIED] - base);
     values[c] = base + sum;
   }
 }
 
 /* No two neighbours of the samples are far from each other. */
-static bool is_dense(const struct side *s, int64_t from)
+static bool is_dense(const struct side *side, int64_t from)
 {
-  double usual = (s->time[from + s->points - 1] - s->time[from]) / (s->points - 1), widest = 0, least = INFINITY;
-  for (int i = 1; i < s->points; i++) {
-    widest = fmax(widest, s->time[from + i] - s->time[from + i - 1]);
-    least = fmin(least, s->time[from + i] - s->time[from + i - 1]);
+  double usual = (side->time[from + side->points - 1] - side->time[from]) / (side->points - 1), widest = 0,
+         least = INFINITY;
+  for (int i = 1; i < side->points; i++) {
+    widest = fmax(widest, side->time[from + i] - side->time[from + i - 1]);
+    least = fmin(least, side->time[from + i] - side->time[from + i - 1]);
   }
   return widest < WIDEST * usual && least > 0.2 * usual;
 }
 
-static enum eo_code flush(struct aligner *a, struct eo_error *error)
+static enum eo_code flush(struct aligner *aligner, struct eo_error *error)
 {
-  enum eo_code code = eo_recording_append(a->out, a->rows, a->filled, error);
-  a->kept += a->filled;
-  a->filled = 0;
+  enum eo_code code = eo_recording_append(aligner->out, aligner->rows, aligner->filled, error);
+  aligner->kept += aligner->filled;
+  aligner->filled = 0;
   return code;
 }
 
-static enum eo_code put_row(struct aligner *a, double t, const double *first, const double *second,
+static enum eo_code put_row(struct aligner *aligner, double t, const double *first, const double *second,
                             struct eo_error *error)
 {
-  double *to = a->rows + a->filled * a->columns;
+  double *to = aligner->rows + aligner->filled * aligner->columns;
   *to++ = t;
-  for (int c = 0; c < a->side[0].columns; c++)
+  for (int c = 0; c < aligner->side[0].columns; c++)
     *to++ = first[c];
-  for (int c = 0; c < a->side[1].columns; c++)
+  for (int c = 0; c < aligner->side[1].columns; c++)
     *to++ = second[c];
-  return ++a->filled == BLOCK ? flush(a, error) : EO_OK;
+  return ++aligner->filled == BLOCK ? flush(aligner, error) : EO_OK;
 }
 
 /* The gear's values at a time: those of a sample that stands there, else between samples; NULL where it has none. at:
    number of the last sample not after t. */
 static const double *values_at(struct aligner *aligner, int64_t at, double t, double *values)
 {
-  const struct side *b = &aligner->side[1];
-  int64_t i = at - b->first, from = i - b->points / 2 + 1;
-  double before = b->time[i], step = i + 1 < b->held ? b->time[i + 1] - before : before - b->time[i - 1];
-  bool here = fabs(t - before) <= SAME * step, next = i + 1 < b->held && fabs(t - before - step) <= SAME * step;
+  const struct side *side = &aligner->side[1];
+  int64_t i = at - side->first, from = i - side->points / 2 + 1;
+  double before = side->time[i], step = i + 1 < side->held ? side->time[i + 1] - before : before - side->time[i - 1];
+  bool here = fabs(t - before) <= SAME * step, next = i + 1 < side->held && fabs(t - before - step) <= SAME * step;
   if (here || next) {
     aligner->places[EO_INTERPOLATION_PLACES]++;
-    return b->value + (here ? i : i + 1) * CARRIED;
+    return side->value + (here ? i : i + 1) * CARRIED;
   }
-  if (t < before || from < 0 || from + b->points > b->held || !is_dense(b, from))
+  if (t < before || from < 0 || from + side->points > side->held || !is_dense(side, from))
     return NULL; /* at the ends a polynomial swings: only its middle is used */
-  interpolate(b, from, t, values);
+  interpolate(side, from, t, values);
   aligner->places[(int)((t - before) / step * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
   return values;
 }

@@ -20,22 +20,22 @@ bool eo_layout_turns(const struct eo_column *look)
 }
 
 /* Values that count up from row to row by the same number and never turn back tell nothing of a shaft. */
-static bool may_turn(const struct eo_guess *g, int column)
+static bool may_turn(const struct eo_guess *guess, int column)
 {
-  enum eo_quantity q = g->look[column].quantity;
-  return eo_layout_turns(&g->look[column]) && q != EO_QUANTITY_OTHER && q != EO_QUANTITY_TORQUE &&
-         q != EO_QUANTITY_SPEED && q != EO_QUANTITY_FREQUENCY && q != EO_QUANTITY_TIME && !g->number[column];
+  enum eo_quantity q = guess->look[column].quantity;
+  return eo_layout_turns(&guess->look[column]) && q != EO_QUANTITY_OTHER && q != EO_QUANTITY_TORQUE &&
+         q != EO_QUANTITY_SPEED && q != EO_QUANTITY_FREQUENCY && q != EO_QUANTITY_TIME && !guess->number[column];
 }
 
 /* rad per unit of the column where its unit or its turn tells; 0: not known. */
-static double factor_of(const struct eo_guess *g, int column)
+static double factor_of(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
+  const struct eo_column *look = &guess->look[column];
   double turn = eo_column_turn(look);
   if (look->quantity == EO_QUANTITY_ANGLE)
     return look->factor;
-  if (eo_recording_turn(g->recording, column) > 0 && look->whole)
-    return EO_TURN / eo_recording_turn(g->recording, column);
+  if (eo_recording_turn(guess->recording, column) > 0 && look->whole)
+    return EO_TURN / eo_recording_turn(guess->recording, column);
   return turn > 0 ? EO_TURN / turn : 0;
 }
 
@@ -56,23 +56,23 @@ static double speed_of(const struct eo_guess *guess, int column)
 }
 
 /* True when two columns turn in the ratio of the teeth, the first faster or the second. */
-static bool fits_teeth(const struct eo_guess *g, int a, int b)
+static bool fits_teeth(const struct eo_guess *guess, int a, int b)
 {
-  double fa = factor_of(g, a), fb = factor_of(g, b);
+  double fa = factor_of(guess, a), fb = factor_of(guess, b);
   if (!(fa > 0) || !(fb > 0))
     fa = fb = 1;
-  double ratio = fabs(speed_of(g, a) * fa / (speed_of(g, b) * fb)),
-         teeth = (double)g->pair->teeth[1] / g->pair->teeth[0];
+  double ratio = fabs(speed_of(guess, a) * fa / (speed_of(guess, b) * fb)),
+         teeth = (double)guess->pair->teeth[1] / guess->pair->teeth[0];
   return fabs(ratio / teeth - 1) < CLOSE || fabs(ratio * teeth - 1) < CLOSE;
 }
 
-static int unit_points(const struct eo_guess *g, int column)
+static int unit_points(const struct eo_guess *guess, int column)
 {
-  enum eo_quantity q = g->look[column].quantity;
+  enum eo_quantity q = guess->look[column].quantity;
   return (q == EO_QUANTITY_ANGLE   ? 4
           : q == EO_QUANTITY_COUNT ? 3
                                    : 0) +
-         2 * eo_column_named(eo_recording_name(g->recording, column),
+         2 * eo_column_named(eo_recording_name(guess->recording, column),
                              "phi|angle|winkel|encoder|enc|pos|position|theta");
 }
 
@@ -106,11 +106,11 @@ bool eo_layout_find_pair(struct eo_guess *guess)
 }
 
 /* A column beside the encoders by its unit, else by its name. */
-static void take_beside(struct eo_guess *g, int column, enum eo_quantity quantity, const char *words, double usual,
+static void take_beside(struct eo_guess *guess, int column, enum eo_quantity quantity, const char *words, double usual,
                         struct eo_track_beside beside[2])
 {
-  const struct eo_column *look = &g->look[column];
-  const char *name = eo_recording_name(g->recording, column);
+  const struct eo_column *look = &guess->look[column];
+  const char *name = eo_recording_name(guess->recording, column);
   bool stated = look->quantity == quantity, named = eo_column_named(name, words) && look->quantity == EO_QUANTITY_NONE;
   bool one = eo_column_named(name, PINION_WORDS),
        two = eo_column_named(name, "2|gear|wheel|rad|output|abtrieb|out|ausgang");

@@ -39,44 +39,44 @@ struct eo_guess {
 };
 
 /* For people: the name of a column, or its number. */
-const char *eo_layout_label(const struct eo_guess *g, int column, char *text, size_t size);
+const char *eo_layout_label(const struct eo_guess *guess, int column, char *text, size_t size);
 
 /* A column by its name, else by its number. */
-enum eo_code eo_layout_chosen(const struct eo_guess *g, const char *chosen, const char *pointer, int *column,
+enum eo_code eo_layout_chosen(const struct eo_guess *guess, const char *chosen, const char *pointer, int *column,
                               struct eo_error *error);
 
 /* Values go one way, but for resets, and do go. */
 bool eo_layout_turns(const struct eo_column *look);
 
 /* Fills time[] and number[]. */
-void eo_layout_mark_times(struct eo_guess *g);
+void eo_layout_mark_times(struct eo_guess *guess);
 /* Of several columns of time the one whose name shares most words with the channel's; of equals the nearest before it,
    else the first. -1: there is none. */
-int eo_layout_pick_time(const struct eo_guess *g, int channel);
+int eo_layout_pick_time(const struct eo_guess *guess, int channel);
 /* The clock of each member's channel, whose column is known: chosen, stated, by name, by place. */
-enum eo_code eo_layout_find_clocks(struct eo_guess *g, struct eo_error *error);
+enum eo_code eo_layout_find_clocks(struct eo_guess *guess, struct eo_error *error);
 /* Settles units of time that nothing states and asks where the speed is far from every load case; the channels' scales
    are known. */
-enum eo_code eo_layout_judge_speed(struct eo_guess *g, struct eo_error *error);
+enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error);
 /* Columns of times that are coarser than their rows are even give way to the count of the rows. */
-enum eo_code eo_layout_make_even(struct eo_guess *g, struct eo_error *error);
+enum eo_code eo_layout_make_even(struct eo_guess *guess, struct eo_error *error);
 /* Values per second of a column by its clock, without the resets, in the column's unit. */
-double eo_layout_rate(const struct eo_guess *g, int column, const struct eo_layout_clock *clock);
+double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_layout_clock *clock);
 
 /* Of many candidates the two that turn in the ratio of the teeth; true when there are such. */
-bool eo_layout_find_pair(struct eo_guess *g);
+bool eo_layout_find_pair(struct eo_guess *guess);
 /* Columns of torque and speed beside the channels. */
-void eo_layout_find_beside(struct eo_guess *g);
+void eo_layout_find_beside(struct eo_guess *guess);
 
 /* Fills equal and together. */
-enum eo_code eo_layout_compare(struct eo_guess *g, struct eo_error *error);
+enum eo_code eo_layout_compare(struct eo_guess *guess, struct eo_error *error);
 /* True when the channels must be brought to one clock, or their increments summed up. */
-bool eo_layout_needs_align(const struct eo_guess *g);
+bool eo_layout_needs_align(const struct eo_guess *guess);
 /* A new recording with the time in s, the channels and what is beside them; the tracks then speak of it. */
-enum eo_code eo_layout_align(struct eo_guess *g, const char *spool_directory, struct eo_recording **aligned,
+enum eo_code eo_layout_align(struct eo_guess *guess, const char *spool_directory, struct eo_recording **aligned,
                              struct eo_error *error);
 /* Square waves become the times of their edges, in two columns. */
-enum eo_code eo_layout_decode_squares(struct eo_guess *g, const char *spool_directory, struct eo_recording **pulses,
+enum eo_code eo_layout_decode_squares(struct eo_guess *guess, const char *spool_directory, struct eo_recording **pulses,
                                       struct eo_error *error);
 
 #endif

@@ -25,38 +25,38 @@ static double time_of(const struct eo_layout_clock *clock, const double *row, in
 }
 
 /* The time between two rows at which a track passes the middle, by a straight line. */
-static enum eo_code keep_edge(struct encoder *e, int track, double value, double time, struct eo_error *error)
+static enum eo_code keep_edge(struct encoder *encoder, int track, double value, double time, struct eo_error *error)
 {
-  double share = (e->middle[track] - e->before[track]) / (value - e->before[track]);
-  double at = e->time + share * (time - e->time);
-  return eo_recording_append(e->pulses, &at, 1, error);
+  double share = (encoder->middle[track] - encoder->before[track]) / (value - encoder->before[track]);
+  double at = encoder->time + share * (time - encoder->time);
+  return eo_recording_append(encoder->pulses, &at, 1, error);
 }
 
 /* Direction of an edge of two tracks in quadrature: A rises while B is low, and so on. */
-static bool goes_forward(const struct encoder *e, int track, bool high)
+static bool goes_forward(const struct encoder *encoder, int track, bool high)
 {
-  return track == 0 ? high != e->high[1] : high == e->high[0];
+  return track == 0 ? high != encoder->high[1] : high == encoder->high[0];
 }
 
-static enum eo_code take_row(struct encoder *e, const double *row, double time, struct eo_error *error)
+static enum eo_code take_row(struct encoder *encoder, const double *row, double time, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  for (int k = 0; k < e->tracks; k++)
-    if (isnan(row[e->column[k]]))
+  for (int k = 0; k < encoder->tracks; k++)
+    if (isnan(row[encoder->column[k]]))
       return EO_OK;
-  for (int k = 0; k < e->tracks && !code; k++) {
-    double value = row[e->column[k]];
-    bool high = value > e->middle[k];
-    if (e->begun && high != e->high[k] && (e->tracks == 2 || high)) {
-      e->edges++;
-      e->forward += e->tracks == 2 && goes_forward(e, k, high);
-      code = keep_edge(e, k, value, time, error);
+  for (int k = 0; k < encoder->tracks && !code; k++) {
+    double value = row[encoder->column[k]];
+    bool high = value > encoder->middle[k];
+    if (encoder->begun && high != encoder->high[k] && (encoder->tracks == 2 || high)) {
+      encoder->edges++;
+      encoder->forward += encoder->tracks == 2 && goes_forward(encoder, k, high);
+      code = keep_edge(encoder, k, value, time, error);
     }
-    e->high[k] = high;
-    e->before[k] = value;
+    encoder->high[k] = high;
+    encoder->before[k] = value;
   }
-  e->time = time;
-  e->begun = true;
+  encoder->time = time;
+  encoder->begun = true;
   return code;
 }
 
@@ -78,11 +78,13 @@ static enum eo_code find_edges(const struct eo_guess *guess, struct encoder enco
   return code;
 }
 
-static enum eo_code check(const struct eo_guess *guess, const struct encoder *e, int member, struct eo_error *error)
+static enum eo_code check(const struct eo_guess *guess, const struct encoder *encoder, int member,
+                          struct eo_error *error)
 {
   const char *whose = member ? "gear" : "pinion";
-  double lines = (double)e->edges / (e->tracks == 2 ? 4 : 1), rows = (double)eo_recording_rows(guess->recording);
-  if (!(guess->choice->lines[member] > 0) && !(eo_recording_turn(guess->recording, e->column[0]) > 0))
+  double lines = (double)encoder->edges / (encoder->tracks == 2 ? 4 : 1),
+         rows = (double)eo_recording_rows(guess->recording);
+  if (!(guess->choice->lines[member] > 0) && !(eo_recording_turn(guess->recording, encoder->column[0]) > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines",
                         "The %s's encoder was recorded as a square wave; give its lines per turn.", whose);
   if (lines < 3 || rows / lines < ROWS_PER_LINE)
@@ -91,11 +93,13 @@ static enum eo_code check(const struct eo_guess *guess, const struct encoder *e,
         "The %s's encoder was recorded as a square wave with %.3g rows per line: the times of its edges "
         "cannot be told from that. Record at %d rows per line or more, or the counts of a counter.",
         whose, rows / lines, ROWS_PER_LINE);
-  if (e->tracks == 2 && fabs((double)e->forward / (double)e->edges - 0.5) < 0.48)
+  if (encoder->tracks == 2 && fabs((double)encoder->forward / (double)encoder->edges - 0.5) < 0.48)
     return eo_error_set(error, EO_ERROR_INPUT, "/columns",
                         "The square waves of the %s change direction in %.3g %% of their edges: they are no two tracks "
                         "of one encoder, or the shaft swings.",
-                        whose, 100 * fmin((double)e->forward, (double)(e->edges - e->forward)) / (double)e->edges);
+                        whose,
+                        100 * fmin((double)encoder->forward, (double)(encoder->edges - encoder->forward)) /
+                            (double)encoder->edges);
   return EO_OK;
 }
 

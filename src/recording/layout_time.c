@@ -55,79 +55,79 @@ static bool rises(const struct eo_column *look)
   return rises_but(look, 0);
 }
 
-static bool is_referred(const struct eo_guess *g, int column)
+static bool is_referred(const struct eo_guess *guess, int column)
 {
-  for (int c = 0; c < g->columns; c++)
-    if (c != column && eo_recording_clock(g->recording, c).column == column)
+  for (int c = 0; c < guess->columns; c++)
+    if (c != column && eo_recording_clock(guess->recording, c).column == column)
       return true;
   return false;
 }
 
-static bool counts_rows(const struct eo_guess *g, int column)
+static bool counts_rows(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
+  const struct eo_column *look = &guess->look[column];
   bool counting = look->whole && look->step == 1 && look->spread < 1e-12 && !look->resets;
-  bool named = eo_column_named(eo_recording_name(g->recording, column), EO_TIME_WORDS);
+  bool named = eo_column_named(eo_recording_name(guess->recording, column), EO_TIME_WORDS);
   return counting && look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_ANGLE &&
-         (!named || eo_recording_clock(g->recording, column).interval > 0);
+         (!named || eo_recording_clock(guess->recording, column).interval > 0);
 }
 
 /* The first column without a unit that rises more evenly than what follows it. */
-static bool leads_evenly(const struct eo_guess *g, int column)
+static bool leads_evenly(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
+  const struct eo_column *look = &guess->look[column];
   int behind = 0;
   for (int c = 0; c < column; c++)
-    if (!g->number[c])
+    if (!guess->number[c])
       return false;
-  for (int c = column + 1; c < g->columns; c++)
-    behind += g->look[c].count > 1 && g->look[c].step != 0 &&
-              (g->look[c].spread > 5 * look->spread || look->spread < 1e-9);
+  for (int c = column + 1; c < guess->columns; c++)
+    behind += guess->look[c].count > 1 && guess->look[c].step != 0 &&
+              (guess->look[c].spread > 5 * look->spread || look->spread < 1e-9);
   return look->spread < 1e-3 && look->step < 0.1 && !look->whole && behind >= 2;
 }
 
 /* By its unit or its name. */
-static bool is_called_time(const struct eo_guess *g, int column)
+static bool is_called_time(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
+  const struct eo_column *look = &guess->look[column];
   bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
   return look->quantity == EO_QUANTITY_TIME ||
-         (free_of_unit && eo_column_named(eo_recording_name(g->recording, column), STRONG_WORDS));
+         (free_of_unit && eo_column_named(eo_recording_name(guess->recording, column), STRONG_WORDS));
 }
 
 /* A column of time goes up by nearly equal steps and never starts again; a unit, a name, its size or another column
    that refers to it says so. */
-static bool is_time(const struct eo_guess *g, int column)
+static bool is_time(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
-  if (g->number[column])
+  const struct eo_column *look = &guess->look[column];
+  if (guess->number[column])
     return false;
-  if (is_called_time(g, column)) /* a row that was cut off, or one out of order, does not make it something else */
+  if (is_called_time(guess, column)) /* a row that was cut off, or one out of order, does not make it something else */
     return rises_but(look, ODD_ROWS);
-  return rises(look) && (is_referred(g, column) ||
+  return rises(look) && (is_referred(guess, column) ||
                          (look->quantity == EO_QUANTITY_NONE && scale_by_size(look) > 0 && look->spread < 0.5));
 }
 
 /* An abscissa without a name of time, where nothing better is there. */
-static bool is_abscissa(const struct eo_guess *g, int column)
+static bool is_abscissa(const struct eo_guess *guess, int column)
 {
-  const struct eo_column *look = &g->look[column];
-  bool named = eo_column_named(eo_recording_name(g->recording, column), WEAK_WORDS) && look->spread < 0.05;
-  return rises(look) && !g->number[column] && look->quantity == EO_QUANTITY_NONE &&
-         !(eo_recording_clock(g->recording, column).interval > 0) && (named || leads_evenly(g, column));
+  const struct eo_column *look = &guess->look[column];
+  bool named = eo_column_named(eo_recording_name(guess->recording, column), WEAK_WORDS) && look->spread < 0.05;
+  return rises(look) && !guess->number[column] && look->quantity == EO_QUANTITY_NONE &&
+         !(eo_recording_clock(guess->recording, column).interval > 0) && (named || leads_evenly(guess, column));
 }
 
-void eo_layout_mark_times(struct eo_guess *g)
+void eo_layout_mark_times(struct eo_guess *guess)
 {
-  for (int c = 0; c < g->columns; c++)
-    g->number[c] = counts_rows(g, c);
+  for (int c = 0; c < guess->columns; c++)
+    guess->number[c] = counts_rows(guess, c);
   bool any = false;
-  for (int c = 0; c < g->columns; c++) {
-    g->time[c] = is_time(g, c);
-    any = any || g->time[c];
+  for (int c = 0; c < guess->columns; c++) {
+    guess->time[c] = is_time(guess, c);
+    any = any || guess->time[c];
   }
-  for (int c = 0; c < g->columns && !any; c++)
-    any = g->time[c] = is_abscissa(g, c);
+  for (int c = 0; c < guess->columns && !any; c++)
+    any = guess->time[c] = is_abscissa(guess, c);
 }
 
 int eo_layout_pick_time(const struct eo_guess *guess, int channel)
@@ -177,12 +177,13 @@ static enum eo_code refuse_times(const struct eo_guess *guess, struct eo_error *
                       "No column holds the time and the file states no sampling rate; give one.");
 }
 
-static enum eo_code even_clock(struct eo_guess *g, int channel, struct eo_layout_clock *clock, struct eo_error *error)
+static enum eo_code even_clock(struct eo_guess *guess, int channel, struct eo_layout_clock *clock,
+                               struct eo_error *error)
 {
-  struct eo_clock stated = eo_recording_clock(g->recording, channel);
-  clock->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate : stated.interval;
+  struct eo_clock stated = eo_recording_clock(guess->recording, channel);
+  clock->interval = guess->choice->sample_rate > 0 ? 1 / guess->choice->sample_rate : stated.interval;
   clock->start = stated.start;
-  return clock->interval > 0 ? EO_OK : refuse_times(g, error);
+  return clock->interval > 0 ? EO_OK : refuse_times(guess, error);
 }
 
 static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_error *error)
@@ -216,76 +217,77 @@ static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_err
   return EO_OK;
 }
 
-static int64_t epoch_of(const struct eo_guess *g, int member)
+static int64_t epoch_of(const struct eo_guess *guess, int member)
 {
-  int column = g->clock[member].column >= 0 ? g->clock[member].column : g->tracks->channel[member].column[0];
-  return eo_recording_clock(g->recording, column).epoch;
+  int column = guess->clock[member].column >= 0 ? guess->clock[member].column
+                                                : guess->tracks->channel[member].column[0];
+  return eo_recording_clock(guess->recording, column).epoch;
 }
 
-enum eo_code eo_layout_find_clocks(struct eo_guess *g, struct eo_error *error)
+enum eo_code eo_layout_find_clocks(struct eo_guess *guess, struct eo_error *error)
 {
   for (int member = 0; member < 2; member++) {
-    enum eo_code code = find_clock(g, member, error);
+    enum eo_code code = find_clock(guess, member, error);
     if (code)
       return code;
   }
-  int64_t epoch[2] = {epoch_of(g, 0), epoch_of(g, 1)};
-  if (epoch[0] != EO_CLOCK_NO_EPOCH && epoch[1] != EO_CLOCK_NO_EPOCH && !(g->choice->sample_rate > 0))
-    g->clock[1].shift = (double)(epoch[1] - epoch[0]) * 1e-9;
+  int64_t epoch[2] = {epoch_of(guess, 0), epoch_of(guess, 1)};
+  if (epoch[0] != EO_CLOCK_NO_EPOCH && epoch[1] != EO_CLOCK_NO_EPOCH && !(guess->choice->sample_rate > 0))
+    guess->clock[1].shift = (double)(epoch[1] - epoch[0]) * 1e-9;
   return EO_OK;
 }
 
-static double time_at(const struct eo_guess *g, const struct eo_layout_clock *clock, int64_t row)
+static double time_at(const struct eo_guess *guess, const struct eo_layout_clock *clock, int64_t row)
 {
   double values[EO_RECORDING_COLUMNS];
   struct eo_error error;
   if (clock->column < 0)
     return clock->start + (double)row * clock->interval;
-  return eo_recording_read(g->recording, row, 1, values, &error) ? NAN : values[clock->column] * clock->scale;
+  return eo_recording_read(guess->recording, row, 1, values, &error) ? NAN : values[clock->column] * clock->scale;
 }
 
-double eo_layout_rate(const struct eo_guess *g, int column, const struct eo_layout_clock *clock)
+double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_layout_clock *clock)
 {
-  const struct eo_column *look = &g->look[column];
-  double seconds = time_at(g, clock, look->last) - time_at(g, clock, look->first);
+  const struct eo_column *look = &guess->look[column];
+  double seconds = time_at(guess, clock, look->last) - time_at(guess, clock, look->first);
   return look->step * (double)(look->count - 1) / seconds;
 }
 
-static bool is_open(const struct eo_guess *g, int member)
+static bool is_open(const struct eo_guess *guess, int member)
 {
-  int column = g->clock[member].column;
-  return column >= 0 && !(g->choice->time_scale > 0) && g->look[column].quantity != EO_QUANTITY_TIME &&
-         g->clock[member].scale == 1;
+  int column = guess->clock[member].column;
+  return column >= 0 && !(guess->choice->time_scale > 0) && guess->look[column].quantity != EO_QUANTITY_TIME &&
+         guess->clock[member].scale == 1;
 }
 
-static void set_scale(struct eo_guess *g, int member, double scale)
+static void set_scale(struct eo_guess *guess, int member, double scale)
 {
-  struct eo_layout_clock *clock = &g->clock[member];
+  struct eo_layout_clock *clock = &guess->clock[member];
   clock->interval *= scale / clock->scale;
   clock->scale = scale;
 }
 
 /* Pinion's speed in rad/s; NaN where values do not tell it. */
-static double pinion_speed(const struct eo_guess *g)
+static double pinion_speed(const struct eo_guess *guess)
 {
-  const struct eo_track_channel *channel = &g->tracks->channel[0];
-  const struct eo_column *look = &g->look[channel->column[0]];
-  if (g->kind == EO_LAYOUT_PULSES)
-    return EO_TURN / channel->lines / (look->step * g->clock[0].scale);
-  if (g->kind != EO_LAYOUT_ANGLES)
+  const struct eo_track_channel *channel = &guess->tracks->channel[0];
+  const struct eo_column *look = &guess->look[channel->column[0]];
+  if (guess->kind == EO_LAYOUT_PULSES)
+    return EO_TURN / channel->lines / (look->step * guess->clock[0].scale);
+  if (guess->kind != EO_LAYOUT_ANGLES)
     return NAN;
-  if (g->increments[0])
-    return fabs((look->low + look->high) / 2 * channel->scale / g->clock[0].interval);
-  return fabs(eo_layout_rate(g, channel->column[0], &g->clock[0]) * channel->scale);
+  if (guess->increments[0])
+    return fabs((look->low + look->high) / 2 * channel->scale / guess->clock[0].interval);
+  return fabs(eo_layout_rate(guess, channel->column[0], &guess->clock[0]) * channel->scale);
 }
 
 /* The one unit of time that makes a speed near the load cases; 0: none or several do. */
-static double scale_by_speed(const struct eo_guess *g, double speed)
+static double scale_by_speed(const struct eo_guess *guess, double speed)
 {
   static const double scales[] = {1e-3, 1e-6, 1e-9, 86400};
   double found = 0;
   for (size_t i = 0; i < sizeof scales / sizeof *scales; i++)
-    if (speed / scales[i] > g->pair->speed[0] / NEAR && speed / scales[i] < g->pair->speed[1] * NEAR)
+    if (speed / scales[i] > guess->pair->speed[0] / NEAR && speed / scales[i] < guess->pair->speed[1] * NEAR)
       found = found > 0 ? -1 : scales[i];
   return found > 0 ? found : 0;
 }
@@ -331,17 +333,17 @@ struct line {
   double slope, most; /* per row; largest distance */
 };
 
-static void add_time(struct line *l, double row, double time)
+static void add_time(struct line *line, double row, double time)
 {
-  double before = row - l->row;
-  l->count++;
-  l->row += before / (double)l->count;
-  l->time += (time - l->time) / (double)l->count;
-  l->square += before * (row - l->row);
-  l->product += before * (time - l->time);
+  double before = row - line->row;
+  line->count++;
+  line->row += before / (double)line->count;
+  line->time += (time - line->time) / (double)line->count;
+  line->square += before * (row - line->row);
+  line->product += before * (time - line->time);
 }
 
-static enum eo_code pass(const struct eo_guess *guess, int column, struct line *l, bool fit, struct eo_error *error)
+static enum eo_code pass(const struct eo_guess *guess, int column, struct line *line, bool fit, struct eo_error *error)
 {
   int64_t rows = eo_recording_length(guess->recording, column);
   double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
@@ -354,13 +356,13 @@ static enum eo_code pass(const struct eo_guess *guess, int column, struct line *
       if (isnan(time))
         continue;
       if (fit)
-        add_time(l, (double)(first + i), time);
+        add_time(line, (double)(first + i), time);
       else
-        l->most = fmax(l->most, fabs(time - l->time - l->slope * ((double)(first + i) - l->row)));
+        line->most = fmax(line->most, fabs(time - line->time - line->slope * ((double)(first + i) - line->row)));
     }
   }
   free(block);
-  l->slope = l->product / l->square;
+  line->slope = line->product / line->square;
   return code;
 }
 

@@ -85,25 +85,25 @@ struct table {
   int64_t length, channels, along, across; /* steps in the variable from value to value and from channel to channel */
 };
 
-static bool find_table(const matvar_t *v, struct table *t)
+static bool find_table(const matvar_t *this_t, struct table *table)
 {
-  if (v->rank != 2 || !v->dims || v->isComplex || !class_size(v->class_type))
+  if (this_t->rank != 2 || !this_t->dims || this_t->isComplex || !class_size(this_t->class_type))
     return false;
-  int64_t rows = (int64_t)v->dims[0], columns = (int64_t)v->dims[1];
+  int64_t rows = (int64_t)this_t->dims[0], columns = (int64_t)this_t->dims[1];
   if (rows < 1 || columns < 1 || rows > INT32_MAX || columns > INT32_MAX || rows * columns > INT32_MAX)
     return false;
-  *t = rows >= columns ? (struct table){rows, columns, 1, rows} : (struct table){columns, rows, rows, 1};
-  return t->channels <= WIDE;
+  *table = rows >= columns ? (struct table){rows, columns, 1, rows} : (struct table){columns, rows, rows, 1};
+  return table->channels <= WIDE;
 }
 
 /* The values first .. first + count - 1 of the variable as they are stored, column by column. */
-static enum eo_code read_values(struct matlab *m, matvar_t *v, int64_t first, int64_t count, void *data,
+static enum eo_code read_values(struct matlab *matlab, matvar_t *this_t, int64_t first, int64_t count, void *data,
                                 struct eo_error *error)
 {
-  if (!Mat_VarReadDataLinear(m->file, v, data, (int)first, 1, (int)count))
+  if (!Mat_VarReadDataLinear(matlab->file, this_t, data, (int)first, 1, (int)count))
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, "",
-                      "MATLAB: the values of \"%.60s\" cannot be read; the file is damaged or cut off.", v->name);
+                      "MATLAB: the values of \"%.60s\" cannot be read; the file is damaged or cut off.", this_t->name);
 }
 
 /* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here
@@ -128,25 +128,25 @@ static enum eo_code keep_values(struct matlab *matlab, const struct table *table
 }
 
 /* Compressed variables can only be read at once; their size is bounded by that of the file. */
-static enum eo_code copy_values(struct matlab *matlab, matvar_t *v, const struct table *table, int base,
+static enum eo_code copy_values(struct matlab *matlab, matvar_t *this_t, const struct table *table, int base,
                                 struct eo_error *error)
 {
-  int64_t total = table->length * table->channels, size = class_size(v->class_type);
-  int64_t piece = v->compression == MAT_COMPRESSION_NONE ? PIECE / table->channels * table->channels : total;
+  int64_t total = table->length * table->channels, size = class_size(this_t->class_type);
+  int64_t piece = this_t->compression == MAT_COMPRESSION_NONE ? PIECE / table->channels * table->channels : total;
   if (piece > total)
     piece = total;
   if (total * size > EO_SOURCE_FREE && total * size / EO_SOURCE_EXPANSION > matlab->bytes)
     return eo_error_set(error, EO_ERROR_INPUT, "",
-                        "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", v->name,
+                        "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", this_t->name,
                         (long long)total, (long long)matlab->bytes);
   void *data = calloc((size_t)piece, (size_t)size);
   double *values = malloc((size_t)piece * sizeof *values);
   enum eo_code code = data && values ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < total; first += piece) {
     int64_t n = total - first < piece ? total - first : piece;
-    code = read_values(matlab, v, first, n, data, error);
+    code = read_values(matlab, this_t, first, n, data, error);
     if (!code)
-      code = keep_values(matlab, table, base, first, n, data, v->class_type, values, error);
+      code = keep_values(matlab, table, base, first, n, data, this_t->class_type, values, error);
   }
   free(values);
   free(data);
@@ -159,75 +159,78 @@ static bool is_whole(enum matio_classes class)
 }
 
 /* A text of one row; characters of two bytes beyond ASCII become '?'. */
-static bool text_of(struct matlab *matlab, matvar_t *v, char *text, size_t size)
+static bool text_of(struct matlab *matlab, matvar_t *this_t, char *text, size_t size)
 {
   *text = '\0';
-  if (!v || v->class_type != MAT_C_CHAR || v->rank != 2 || !v->dims || v->dims[0] > 1 || v->dims[1] >= size)
+  if (!this_t || this_t->class_type != MAT_C_CHAR || this_t->rank != 2 || !this_t->dims || this_t->dims[0] > 1 ||
+      this_t->dims[1] >= size)
     return false;
-  if (!v->data && Mat_VarReadDataAll(matlab->file, v))
+  if (!this_t->data && Mat_VarReadDataAll(matlab->file, this_t))
     return false;
-  size_t n = v->dims[1];
-  if (!v->data || v->nbytes < n * (size_t)v->data_size)
+  size_t n = this_t->dims[1];
+  if (!this_t->data || this_t->nbytes < n * (size_t)this_t->data_size)
     return false;
-  bool wide = v->data_type == MAT_T_UINT16 || v->data_type == MAT_T_UTF16;
-  const unsigned char *bytes = v->data;
-  const uint16_t *words = v->data;
+  bool wide = this_t->data_type == MAT_T_UINT16 || this_t->data_type == MAT_T_UTF16;
+  const unsigned char *bytes = this_t->data;
+  const uint16_t *words = this_t->data;
   for (size_t i = 0; i < n; i++)
     text[i] = (char)(wide ? words[i] < 256 ? words[i] : '?' : bytes[i]);
   text[n] = '\0';
   return true;
 }
 
-static void add_number(struct matlab *m, matvar_t *v, const char *path)
+static void add_number(struct matlab *matlab, matvar_t *this_t, const char *path)
 {
   char data[8] = "";
   struct eo_error error;
-  if (!read_values(m, v, 0, 1, data, &error))
-    eo_tree_add_number(m->tree, path, value_at(data, v->class_type, 0));
+  if (!read_values(matlab, this_t, 0, 1, data, &error))
+    eo_tree_add_number(matlab->tree, path, value_at(data, this_t->class_type, 0));
 }
 
-static enum eo_code add_channels(struct matlab *matlab, matvar_t *v, const char *path, struct eo_error *error)
+static enum eo_code add_channels(struct matlab *matlab, matvar_t *this_t, const char *path, struct eo_error *error)
 {
-  struct table t;
-  if (!find_table(v, &t)) {
+  struct table table;
+  if (!find_table(this_t, &table)) {
     matlab->left_out++;
     return EO_OK;
   }
-  if (t.length == 1) {
-    add_number(matlab, v, path);
+  if (table.length == 1) {
+    add_number(matlab, this_t, path);
     return EO_OK;
   }
-  int base = eo_tree_add_series(matlab->tree, path, (int)t.channels, t.length, is_whole(v->class_type));
+  int base = eo_tree_add_series(matlab->tree, path, (int)table.channels, table.length, is_whole(this_t->class_type));
   if (base < 0) {
     matlab->left_out++;
     return EO_OK;
   }
   enum eo_code code = EO_OK;
-  for (int c = 0; !code && c < t.channels; c++) {
+  for (int c = 0; !code && c < table.channels; c++) {
     code = eo_recording_new(&matlab->column[base + c], 1, matlab->spool_directory, error);
     if (!code && matlab->spool_directory)
       eo_recording_set_memory(matlab->column[base + c], MEMORY);
   }
-  return code ? code : copy_values(matlab, v, &t, base, error);
+  return code ? code : copy_values(matlab, this_t, &table, base, error);
 }
 
-static enum eo_code add_variable(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error);
+static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const char *path, int depth,
+                                 struct eo_error *error);
 
 /* Structs: "name/field", arrays of them "name(2)/field". */
-static enum eo_code add_struct(struct matlab *matlab, matvar_t *v, const char *path, int depth, struct eo_error *error)
+static enum eo_code add_struct(struct matlab *matlab, matvar_t *this_t, const char *path, int depth,
+                               struct eo_error *error)
 {
-  char *const *names = Mat_VarGetStructFieldnames(v);
-  unsigned fields = Mat_VarGetNumberOfFields(v);
+  char *const *names = Mat_VarGetStructFieldnames(this_t);
+  unsigned fields = Mat_VarGetNumberOfFields(this_t);
   size_t elements = 1;
-  for (int i = 0; v->dims && i < v->rank; i++)
-    elements = v->dims[i] < ELEMENTS && elements < ELEMENTS ? elements * v->dims[i] : ELEMENTS;
+  for (int i = 0; this_t->dims && i < this_t->rank; i++)
+    elements = this_t->dims[i] < ELEMENTS && elements < ELEMENTS ? elements * this_t->dims[i] : ELEMENTS;
   enum eo_code code = EO_OK;
   for (size_t e = 0; !code && names && e < elements && e < ELEMENTS; e++)
     for (unsigned i = 0; !code && i < fields; i++) {
       char below[EO_TREE_PATH];
       int n = elements > 1 ? snprintf(below, sizeof below, "%s(%zu)/%s", path, e + 1, names[i])
                            : snprintf(below, sizeof below, "%s/%s", path, names[i]);
-      matvar_t *field = Mat_VarGetStructFieldByName(v, names[i], e);
+      matvar_t *field = Mat_VarGetStructFieldByName(this_t, names[i], e);
       if (field && n < (int)sizeof below)
         code = add_variable(matlab, field, below, depth + 1, error);
     }
@@ -235,10 +238,11 @@ static enum eo_code add_struct(struct matlab *matlab, matvar_t *v, const char *p
 }
 
 /* A cell of texts is a list; other cells are channels "name 1", "name 2". */
-static enum eo_code add_cell(struct matlab *matlab, matvar_t *v, const char *path, int depth, struct eo_error *error)
+static enum eo_code add_cell(struct matlab *matlab, matvar_t *this_t, const char *path, int depth,
+                             struct eo_error *error)
 {
-  size_t elements = v->data_size ? v->nbytes / (size_t)v->data_size : 0, used = 0;
-  matvar_t **cell = v->data;
+  size_t elements = this_t->data_size ? this_t->nbytes / (size_t)this_t->data_size : 0, used = 0;
+  matvar_t **cell = this_t->data;
   char list[4096] = "", text[EO_RECORDING_NAME];
   bool texts = elements > 0 && cell;
   for (size_t i = 0; texts && i < elements; i++) {
@@ -259,19 +263,19 @@ static enum eo_code add_cell(struct matlab *matlab, matvar_t *v, const char *pat
   return code;
 }
 
-static enum eo_code add_variable(struct matlab *matlab, matvar_t *v, const char *path, int depth,
+static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const char *path, int depth,
                                  struct eo_error *error)
 {
   char text[256];
-  if (!v || depth > DEPTH)
+  if (!this_t || depth > DEPTH)
     return EO_OK;
-  switch (v->class_type) {
+  switch (this_t->class_type) {
   case MAT_C_STRUCT:
-    return add_struct(matlab, v, path, depth, error);
+    return add_struct(matlab, this_t, path, depth, error);
   case MAT_C_CELL:
-    return add_cell(matlab, v, path, depth, error);
+    return add_cell(matlab, this_t, path, depth, error);
   case MAT_C_CHAR:
-    if (text_of(matlab, v, text, sizeof text))
+    if (text_of(matlab, this_t, text, sizeof text))
       eo_tree_add_text(matlab->tree, path, text);
     return EO_OK;
   case MAT_C_OBJECT:
@@ -283,7 +287,7 @@ static enum eo_code add_variable(struct matlab *matlab, matvar_t *v, const char 
                  path);
     return EO_OK;
   default:
-    return add_channels(matlab, v, path, error);
+    return add_channels(matlab, this_t, path, error);
   }
 }
 
@@ -341,10 +345,10 @@ static enum eo_code check_elements(const char *path, int64_t *bytes_of_file, str
 static enum eo_code read_column(void *context, int series, int64_t first, int64_t count, double *values,
                                 struct eo_error *error)
 {
-  const struct matlab *m = context;
-  enum eo_code code = eo_recording_read(m->column[series], first, count, values, error);
+  const struct matlab *matlab = context;
+  enum eo_code code = eo_recording_read(matlab->column[series], first, count, values, error);
   for (int64_t i = 0; !code && i < count; i++)
-    values[i] = eo_tree_value(m->tree, series, values[i]);
+    values[i] = eo_tree_value(matlab->tree, series, values[i]);
   return code;
 }
 

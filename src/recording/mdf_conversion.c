@@ -18,8 +18,8 @@ void eo_mdf_conversion_free(struct eo_mdf_conversion *conversion)
   free(conversion);
 }
 
-static enum eo_code read_terms(struct eo_mdf *mdf, const struct eo_mdf_block *block, struct eo_mdf_conversion *c,
-                               struct eo_error *error)
+static enum eo_code read_terms(struct eo_mdf *mdf, const struct eo_mdf_block *block,
+                               struct eo_mdf_conversion *conversion, struct eo_error *error)
 {
   enum { TERMS_AT = 24 }; /* kind, precision, flags, counts, range of values */
   int count = eo_bytes_16(block->data + 6, false);
@@ -28,13 +28,13 @@ static enum eo_code read_terms(struct eo_mdf *mdf, const struct eo_mdf_block *bl
                         "MDF: the conversion at byte %lld states %d numbers, more than its block holds.",
                         (long long)block->at, count);
   unsigned char *bytes = malloc(8 * (size_t)count + 1);
-  c->term = calloc((size_t)count + 1, sizeof *c->term);
-  enum eo_code code = bytes && c->term ? EO_OK : eo_error_memory(error);
+  conversion->term = calloc((size_t)count + 1, sizeof *conversion->term);
+  enum eo_code code = bytes && conversion->term ? EO_OK : eo_error_memory(error);
   if (!code)
     code = eo_bytes_read(mdf->file, block->data_at + TERMS_AT, bytes, 8 * (size_t)count, error);
   for (int i = 0; !code && i < count; i++)
-    c->term[i] = eo_bytes_double(bytes + 8 * i, false);
-  c->terms = code ? 0 : count;
+    conversion->term[i] = eo_bytes_double(bytes + 8 * i, false);
+  conversion->terms = code ? 0 : count;
   free(bytes);
   return code;
 }
@@ -44,46 +44,46 @@ static enum eo_code read_nested(struct eo_mdf *mdf, int64_t at, int depth, struc
 
 /* Where values become texts, each of them is a link: to a text, or to another conversion. */
 static enum eo_code read_branches(struct eo_mdf *mdf, const struct eo_mdf_block *block, int depth,
-                                  struct eo_mdf_conversion *c, struct eo_error *error)
+                                  struct eo_mdf_conversion *conversion, struct eo_error *error)
 {
   int64_t count = block->links - CONVERSION_LINKS;
   if (count < 1 || count > EO_MDF_TERMS)
     return EO_OK;
   unsigned char *links = malloc(8 * (size_t)count);
-  c->branch = calloc((size_t)count, sizeof(struct eo_mdf_conversion *));
-  c->branches = c->branch ? (int)count : 0;
-  enum eo_code code = links && c->branch ? EO_OK : eo_error_memory(error);
+  conversion->branch = calloc((size_t)count, sizeof(struct eo_mdf_conversion *));
+  conversion->branches = conversion->branch ? (int)count : 0;
+  enum eo_code code = links && conversion->branch ? EO_OK : eo_error_memory(error);
   if (!code)
     code = eo_bytes_read(mdf->file, block->data_at - 8 * count, links, 8 * (size_t)count, error);
-  for (int i = 0; !code && i < c->branches; i++) {
+  for (int i = 0; !code && i < conversion->branches; i++) {
     struct eo_mdf_block branch;
     int64_t at = (int64_t)eo_bytes_64(links + 8 * i, false);
     if (at)
       code = eo_mdf_open(mdf, at, NULL, &branch, error);
     if (!code && at && !strcmp(branch.id, "CC"))
-      code = read_nested(mdf, at, depth + 1, &c->branch[i], error);
+      code = read_nested(mdf, at, depth + 1, &conversion->branch[i], error);
   }
   free(links);
   return code;
 }
 
 /* Tables hold at least one row; their terms come in rows of two or three and one default. */
-static bool is_complete(const struct eo_mdf_conversion *c)
+static bool is_complete(const struct eo_mdf_conversion *conversion)
 {
-  switch (c->kind) {
+  switch (conversion->kind) {
   case EO_MDF_LINEAR:
-    return c->terms >= 2;
+    return conversion->terms >= 2;
   case EO_MDF_RATIONAL:
-    return c->terms >= 6;
+    return conversion->terms >= 6;
   case EO_MDF_INTERPOLATED:
   case EO_MDF_TABLE:
-    return c->terms >= 2 && c->terms % 2 == 0;
+    return conversion->terms >= 2 && conversion->terms % 2 == 0;
   case EO_MDF_RANGES:
-    return c->terms >= 4 && c->terms % 3 == 1;
+    return conversion->terms >= 4 && conversion->terms % 3 == 1;
   case EO_MDF_TEXTS:
-    return c->branches >= c->terms;
+    return conversion->branches >= conversion->terms;
   case EO_MDF_TEXT_RANGES:
-    return c->terms % 2 == 0 && c->branches >= c->terms / 2;
+    return conversion->terms % 2 == 0 && conversion->branches >= conversion->terms / 2;
   default:
     return true;
   }
@@ -99,19 +99,20 @@ static enum eo_code read_nested(struct eo_mdf *mdf, int64_t at, int depth, struc
   enum eo_code code = eo_mdf_open(mdf, at, "CC", &block, error);
   if (code)
     return code;
-  struct eo_mdf_conversion *c = calloc(1, sizeof *c);
-  if (!c)
+  struct eo_mdf_conversion *mdf_conversion = calloc(1, sizeof *mdf_conversion);
+  if (!mdf_conversion)
     return eo_error_memory(error);
-  *conversion = c;
-  c->kind = block.data[0] > EO_MDF_TEXT_RANGES ? EO_MDF_FORMULA : (enum eo_mdf_conversion_kind)block.data[0];
+  *conversion = mdf_conversion;
+  mdf_conversion->kind = block.data[0] > EO_MDF_TEXT_RANGES ? EO_MDF_FORMULA
+                                                            : (enum eo_mdf_conversion_kind)block.data[0];
   if (depth >= EO_MDF_NESTED)
-    c->kind = EO_MDF_FORMULA;
-  if (c->kind == EO_MDF_EQUAL || c->kind == EO_MDF_FORMULA)
+    mdf_conversion->kind = EO_MDF_FORMULA;
+  if (mdf_conversion->kind == EO_MDF_EQUAL || mdf_conversion->kind == EO_MDF_FORMULA)
     return EO_OK;
-  code = read_terms(mdf, &block, c, error);
-  if (!code && (c->kind == EO_MDF_TEXTS || c->kind == EO_MDF_TEXT_RANGES))
-    code = read_branches(mdf, &block, depth, c, error);
-  if (!code && !is_complete(c))
+  code = read_terms(mdf, &block, mdf_conversion, error);
+  if (!code && (mdf_conversion->kind == EO_MDF_TEXTS || mdf_conversion->kind == EO_MDF_TEXT_RANGES))
+    code = read_branches(mdf, &block, depth, mdf_conversion, error);
+  if (!code && !is_complete(mdf_conversion))
     code = eo_error_set(error, EO_ERROR_INPUT, "", "MDF: the conversion at byte %lld has too few numbers.",
                         (long long)at);
   return code;
@@ -143,18 +144,19 @@ bool eo_mdf_is_numeric(const struct eo_mdf_conversion *conversion)
 
 /* Pairs of key and value with rising keys: straight lines between them, the ends' values beyond; without lines the
    value of the nearest key, of two equally near ones the lower. */
-static double table_value(const struct eo_mdf_conversion *c, double x)
+static double table_value(const struct eo_mdf_conversion *conversion, double x)
 {
-  int n = c->terms / 2, i = 0;
-  if (isnan(x) || x <= c->term[0])
-    return isnan(x) ? x : c->term[1];
-  while (i + 1 < n && c->term[2 * (i + 1)] < x)
+  int n = conversion->terms / 2, i = 0;
+  if (isnan(x) || x <= conversion->term[0])
+    return isnan(x) ? x : conversion->term[1];
+  while (i + 1 < n && conversion->term[2 * (i + 1)] < x)
     i++;
   if (i + 1 == n)
-    return c->term[2 * i + 1];
-  double low = c->term[2 * i], high = c->term[2 * i + 2], from = c->term[2 * i + 1], to = c->term[2 * i + 3];
+    return conversion->term[2 * i + 1];
+  double low = conversion->term[2 * i], high = conversion->term[2 * i + 2], from = conversion->term[2 * i + 1],
+         to = conversion->term[2 * i + 3];
   double part = (x - low) / (high - low);
-  if (c->kind == EO_MDF_TABLE)
+  if (conversion->kind == EO_MDF_TABLE)
     return part <= 0.5 ? from : to;
   return from + part * (to - from);
 }
@@ -166,44 +168,45 @@ static bool lies_in(double x, double low, double high, bool whole)
 }
 
 /* Triples low, high, value, then the value of all that lies in no range. */
-static double range_value(const struct eo_mdf_conversion *c, double x, bool whole)
+static double range_value(const struct eo_mdf_conversion *conversion, double x, bool whole)
 {
-  for (int i = 0; i + 3 < c->terms; i += 3)
-    if (lies_in(x, c->term[i], c->term[i + 1], whole))
-      return c->term[i + 2];
-  return c->term[c->terms - 1];
+  for (int i = 0; i + 3 < conversion->terms; i += 3)
+    if (lies_in(x, conversion->term[i], conversion->term[i + 1], whole))
+      return conversion->term[i + 2];
+  return conversion->term[conversion->terms - 1];
 }
 
 /* One branch for each key or range, then, where there is one more, that of all other values. */
-static double branch_value(const struct eo_mdf_conversion *c, double x, bool whole)
+static double branch_value(const struct eo_mdf_conversion *conversion, double x, bool whole)
 {
-  int keys = c->kind == EO_MDF_TEXTS ? c->terms : c->terms / 2, i = 0;
-  if (c->kind == EO_MDF_TEXTS)
-    while (i < keys && c->term[i] != x)
+  int keys = conversion->kind == EO_MDF_TEXTS ? conversion->terms : conversion->terms / 2, i = 0;
+  if (conversion->kind == EO_MDF_TEXTS)
+    while (i < keys && conversion->term[i] != x)
       i++;
   else
-    while (i < keys && !lies_in(x, c->term[2 * i], c->term[2 * i + 1], whole))
+    while (i < keys && !lies_in(x, conversion->term[2 * i], conversion->term[2 * i + 1], whole))
       i++;
-  return i < c->branches && c->branch[i] ? eo_mdf_convert(c->branch[i], x, whole) : NAN;
+  return i < conversion->branches && conversion->branch[i] ? eo_mdf_convert(conversion->branch[i], x, whole) : NAN;
 }
 
-double eo_mdf_convert(const struct eo_mdf_conversion *c, double x, bool whole)
+double eo_mdf_convert(const struct eo_mdf_conversion *conversion, double x, bool whole)
 {
-  if (!c)
+  if (!conversion)
     return x;
-  switch (c->kind) {
+  switch (conversion->kind) {
   case EO_MDF_LINEAR:
-    return c->term[0] + c->term[1] * x;
+    return conversion->term[0] + conversion->term[1] * x;
   case EO_MDF_RATIONAL:
-    return ((c->term[0] * x + c->term[1]) * x + c->term[2]) / ((c->term[3] * x + c->term[4]) * x + c->term[5]);
+    return ((conversion->term[0] * x + conversion->term[1]) * x + conversion->term[2]) /
+           ((conversion->term[3] * x + conversion->term[4]) * x + conversion->term[5]);
   case EO_MDF_INTERPOLATED:
   case EO_MDF_TABLE:
-    return table_value(c, x);
+    return table_value(conversion, x);
   case EO_MDF_RANGES:
-    return range_value(c, x, whole);
+    return range_value(conversion, x, whole);
   case EO_MDF_TEXTS:
   case EO_MDF_TEXT_RANGES:
-    return branch_value(c, x, whole);
+    return branch_value(conversion, x, whole);
   case EO_MDF_EQUAL:
   case EO_MDF_FORMULA:
     break;

@@ -155,66 +155,66 @@ static void turn_back(const unsigned char *from, size_t length, size_t width, un
   memcpy(to + rows * width, from + rows * width, length - rows * width);
 }
 
-static enum eo_code inflate_block(struct stream *s, const struct block *block, struct eo_error *error)
+static enum eo_code inflate_block(struct stream *stream, const struct block *block, struct eo_error *error)
 {
   size_t length = (size_t)block->length, size = (size_t)block->size;
   bool turned = block->packing == TRANSPOSED && block->width > 1;
-  if (!make_room(&s->packed, &s->packed_room, size + (turned ? length : 0) + 1) ||
-      !make_room(&s->bytes, &s->room, length + 1))
+  if (!make_room(&stream->packed, &stream->packed_room, size + (turned ? length : 0) + 1) ||
+      !make_room(&stream->bytes, &stream->room, length + 1))
     return eo_error_memory(error);
-  enum eo_code code = eo_bytes_read(s->mdf->file, block->at, s->packed, size, error);
+  enum eo_code code = eo_bytes_read(stream->mdf->file, block->at, stream->packed, size, error);
   if (code)
     return code;
   uLongf got = (uLongf)length;
-  unsigned char *to = turned ? s->packed + size : s->bytes;
-  if (uncompress(to, &got, s->packed, (uLong)size) != Z_OK || got != length)
+  unsigned char *to = turned ? stream->packed + size : stream->bytes;
+  if (uncompress(to, &got, stream->packed, (uLong)size) != Z_OK || got != length)
     return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: the compressed data at byte %lld are damaged.",
                         (long long)block->at);
   if (turned)
-    turn_back(to, length, (size_t)block->width, s->bytes);
-  s->filled = length;
+    turn_back(to, length, (size_t)block->width, stream->bytes);
+  stream->filled = length;
   return EO_OK;
 }
 
-static enum eo_code refill(struct stream *s, struct eo_error *error)
+static enum eo_code refill(struct stream *stream, struct eo_error *error)
 {
-  s->at = s->filled = 0;
-  while (s->next < s->blocks->count && !s->filled) {
-    const struct block *block = &s->blocks->block[s->next];
+  stream->at = stream->filled = 0;
+  while (stream->next < stream->blocks->count && !stream->filled) {
+    const struct block *block = &stream->blocks->block[stream->next];
     enum eo_code code = EO_OK;
     if (block->packing == PLAIN) {
-      int64_t left = block->size - s->in_next, size = left < PIECE ? left : PIECE;
-      if (!make_room(&s->bytes, &s->room, PIECE))
+      int64_t left = block->size - stream->in_next, size = left < PIECE ? left : PIECE;
+      if (!make_room(&stream->bytes, &stream->room, PIECE))
         return eo_error_memory(error);
-      code = eo_bytes_read(s->mdf->file, block->at + s->in_next, s->bytes, (size_t)size, error);
-      s->filled = (size_t)size;
-      s->in_next += size;
-      if (s->in_next < block->size)
+      code = eo_bytes_read(stream->mdf->file, block->at + stream->in_next, stream->bytes, (size_t)size, error);
+      stream->filled = (size_t)size;
+      stream->in_next += size;
+      if (stream->in_next < block->size)
         return code;
     } else
-      code = inflate_block(s, block, error);
+      code = inflate_block(stream, block, error);
     if (code)
       return code;
-    s->next++;
-    s->in_next = 0;
+    stream->next++;
+    stream->in_next = 0;
   }
   return EO_OK;
 }
 
 /* Takes size bytes, to nowhere when bytes is NULL. *got is smaller at the end only. */
-static enum eo_code take(struct stream *s, unsigned char *bytes, size_t size, size_t *got, struct eo_error *error)
+static enum eo_code take(struct stream *stream, unsigned char *bytes, size_t size, size_t *got, struct eo_error *error)
 {
   *got = 0;
   while (*got < size) {
-    if (s->at == s->filled) {
-      enum eo_code code = refill(s, error);
-      if (code || s->at == s->filled)
+    if (stream->at == stream->filled) {
+      enum eo_code code = refill(stream, error);
+      if (code || stream->at == stream->filled)
         return code;
     }
-    size_t n = s->filled - s->at < size - *got ? s->filled - s->at : size - *got;
+    size_t n = stream->filled - stream->at < size - *got ? stream->filled - stream->at : size - *got;
     if (bytes)
-      memcpy(bytes + *got, s->bytes + s->at, n);
-    s->at += n;
+      memcpy(bytes + *got, stream->bytes + stream->at, n);
+    stream->at += n;
     *got += n;
   }
   return EO_OK;
@@ -237,9 +237,9 @@ struct sorter {
   unsigned char *record; /* [EO_MDF_RECORD] */
 };
 
-static enum eo_code flush(const struct sorter *s, struct region *region, struct eo_error *error)
+static enum eo_code flush(const struct sorter *sorter, struct region *region, struct eo_error *error)
 {
-  enum eo_code code = eo_bytes_write(s->mdf->spool, region->at, region->buffer, region->waiting, error);
+  enum eo_code code = eo_bytes_write(sorter->mdf->spool, region->at, region->buffer, region->waiting, error);
   region->at += (int64_t)region->waiting;
   region->waiting = 0;
   return code;
@@ -357,18 +357,18 @@ static enum eo_code sort_records(struct eo_mdf *mdf, const struct blocks *blocks
 {
   if (count > MIXED)
     return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: %d kinds of records are mixed, more than %d.", count, MIXED);
-  struct sorter s = {.mdf = mdf, .stream = {.mdf = mdf, .blocks = blocks}, .number = number, .count = count};
-  s.region = calloc((size_t)count, sizeof *s.region);
-  s.record = malloc(EO_MDF_RECORD);
-  enum eo_code code = s.region && s.record ? EO_OK : eo_error_memory(error);
+  struct sorter sorter = {.mdf = mdf, .stream = {.mdf = mdf, .blocks = blocks}, .number = number, .count = count};
+  sorter.region = calloc((size_t)count, sizeof *sorter.region);
+  sorter.record = malloc(EO_MDF_RECORD);
+  enum eo_code code = sorter.region && sorter.record ? EO_OK : eo_error_memory(error);
   for (int i = 0; !code && i < count; i++)
-    s.region[i].group = &mdf->group[first + i];
+    sorter.region[i].group = &mdf->group[first + i];
   if (!code)
-    code = sort(&s, blocks, error);
-  free(s.region);
-  free(s.record);
-  free(s.stream.bytes);
-  free(s.stream.packed);
+    code = sort(&sorter, blocks, error);
+  free(sorter.region);
+  free(sorter.record);
+  free(sorter.stream.bytes);
+  free(sorter.stream.packed);
   return code;
 }
 

@@ -123,23 +123,25 @@ static bool is_number(const struct numbers *numbers, const struct eo_mdf_group *
          numbers->byte + (numbers->bit + (int64_t)numbers->bits + 7) / 8 <= group->data;
 }
 
-static void name_unit(struct eo_mdf *mdf, const struct eo_mdf_block *block, const struct numbers *n,
+static void name_unit(struct eo_mdf *mdf, const struct eo_mdf_block *block, const struct numbers *numbers,
                       struct eo_series *series)
 {
   struct eo_mdf_block conversion;
   struct eo_error error;
-  bool master = n->kind == EO_MDF_MASTER || n->kind == EO_MDF_VIRTUAL_MASTER;
+  bool master = numbers->kind == EO_MDF_MASTER || numbers->kind == EO_MDF_VIRTUAL_MASTER;
   eo_mdf_text(mdf, block->link[6], series->unit, sizeof series->unit);
   if (!*series->unit && block->link[4] && !eo_mdf_open(mdf, block->link[4], "CC", &conversion, &error))
     eo_mdf_text(mdf, conversion.link[1], series->unit, sizeof series->unit);
-  if (!*series->unit && master && (n->sync == SYNC_TIME || n->sync == SYNC_ANGLE)) /* the format's own units */
-    snprintf(series->unit, sizeof series->unit, "%s", n->sync == SYNC_TIME ? "s" : "rad");
+  if (!*series->unit && master &&
+      (numbers->sync == SYNC_TIME || numbers->sync == SYNC_ANGLE)) /* the format's own units */
+    snprintf(series->unit, sizeof series->unit, "%s", numbers->sync == SYNC_TIME ? "s" : "rad");
 }
 
 /* Times that follow from the number of the record are a clock and no column. */
-static bool take_clock(struct eo_mdf_group *group, const struct numbers *n, const struct eo_mdf_conversion *conversion)
+static bool take_clock(struct eo_mdf_group *group, const struct numbers *numbers,
+                       const struct eo_mdf_conversion *conversion)
 {
-  if (n->kind != EO_MDF_VIRTUAL_MASTER || n->sync != SYNC_TIME ||
+  if (numbers->kind != EO_MDF_VIRTUAL_MASTER || numbers->sync != SYNC_TIME ||
       (conversion && conversion->kind != EO_MDF_LINEAR && conversion->kind != EO_MDF_EQUAL))
     return false;
   group->start = eo_mdf_convert(conversion, 0, true);
@@ -147,8 +149,8 @@ static bool take_clock(struct eo_mdf_group *group, const struct numbers *n, cons
   return true;
 }
 
-static enum eo_code add_channel(struct eo_mdf *mdf, int g, const struct eo_mdf_block *block, const struct numbers *n,
-                                struct eo_error *error)
+static enum eo_code add_channel(struct eo_mdf *mdf, int g, const struct eo_mdf_block *block,
+                                const struct numbers *numbers, struct eo_error *error)
 {
   if (mdf->channels == EO_SERIES) {
     mdf->left_out++;
@@ -158,7 +160,7 @@ static enum eo_code add_channel(struct eo_mdf *mdf, int g, const struct eo_mdf_b
   enum eo_code code = eo_mdf_conversion_read(mdf, block->link[4], &conversion, error);
   if (code)
     return code;
-  bool clock = take_clock(&mdf->group[g], n, conversion);
+  bool clock = take_clock(&mdf->group[g], numbers, conversion);
   if (clock || !eo_mdf_is_numeric(conversion)) {
     mdf->formulas += !clock && conversion->kind == EO_MDF_FORMULA;
     mdf->texts += !clock && conversion->kind != EO_MDF_FORMULA;
@@ -168,20 +170,21 @@ static enum eo_code add_channel(struct eo_mdf *mdf, int g, const struct eo_mdf_b
   int c = mdf->channels++;
   struct eo_series *series = &mdf->series[c];
   mdf->channel[c] = (struct eo_mdf_channel){.group = g,
-                                            .virtual = n->kind == EO_MDF_VIRTUAL_MASTER || n->kind == EO_MDF_VIRTUAL,
-                                            .type = n->type,
-                                            .bit = n->bit,
-                                            .bits = (int)n->bits,
-                                            .byte = n->byte,
-                                            .invalid = n->flags & HAS_INVALID ? (int64_t)n->invalid : -1,
+                                            .virtual = numbers->kind == EO_MDF_VIRTUAL_MASTER ||
+                                                       numbers->kind == EO_MDF_VIRTUAL,
+                                            .type = numbers->type,
+                                            .bit = numbers->bit,
+                                            .bits = (int)numbers->bits,
+                                            .byte = numbers->byte,
+                                            .invalid = numbers->flags & HAS_INVALID ? (int64_t)numbers->invalid : -1,
                                             .conversion = conversion};
   eo_series_init(series, "", 0);
   eo_mdf_text(mdf, block->link[2], series->name, sizeof series->name);
-  name_unit(mdf, block, n, series);
+  name_unit(mdf, block, numbers, series);
   eo_mdf_facts(mdf, mdf->comment, series); /* the nearest text counts, so it comes last */
   eo_mdf_facts(mdf, mdf->group[g].comment, series);
   eo_mdf_facts(mdf, block->link[7], series);
-  if ((n->kind == EO_MDF_MASTER || n->kind == EO_MDF_VIRTUAL_MASTER) && n->sync == SYNC_TIME)
+  if ((numbers->kind == EO_MDF_MASTER || numbers->kind == EO_MDF_VIRTUAL_MASTER) && numbers->sync == SYNC_TIME)
     mdf->group[g].master = c;
   return EO_OK;
 }
@@ -197,14 +200,14 @@ static enum eo_code read_channels(struct eo_mdf *mdf, int g, int64_t at, int dep
       code = eo_mdf_open(mdf, block.link[1], NULL, &parts, error);
     if (code)
       return code;
-    struct numbers n = numbers_of(&block);
+    struct numbers numbers = numbers_of(&block);
     if (!strcmp(parts.id, "CN")) {
       if (depth < DEPTH)
         code = read_channels(mdf, g, parts.at, depth + 1, error);
-    } else if (*parts.id || !is_number(&n, &mdf->group[g]))
+    } else if (*parts.id || !is_number(&numbers, &mdf->group[g]))
       mdf->texts++;
     else
-      code = add_channel(mdf, g, &block, &n, error);
+      code = add_channel(mdf, g, &block, &numbers, error);
     if (code)
       return code;
     at = block.link[0];

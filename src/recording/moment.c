@@ -25,44 +25,44 @@ int64_t eo_moment_epoch(const struct eo_moment *moment)
   return moment->day * 86400000000000LL + llround(moment->seconds * 1e9);
 }
 
-static void skip_blanks(struct rest *r)
+static void skip_blanks(struct rest *rest)
 {
-  while (r->at < r->end && *r->at == ' ')
-    r->at++;
+  while (rest->at < rest->end && *rest->at == ' ')
+    rest->at++;
 }
 
-static bool take(struct rest *r, char c)
+static bool take(struct rest *rest, char c)
 {
-  bool there = r->at < r->end && *r->at == c;
-  r->at += there;
+  bool there = rest->at < rest->end && *rest->at == c;
+  rest->at += there;
   return there;
 }
 
 /* Up to `most` digits; returns how many there were. */
-static int take_number(struct rest *r, int most, int *number)
+static int take_number(struct rest *rest, int most, int *number)
 {
   int digits = 0;
   *number = 0;
-  while (digits < most && r->at < r->end && isdigit((unsigned char)*r->at)) {
-    *number = *number * 10 + (*r->at++ - '0');
+  while (digits < most && rest->at < rest->end && isdigit((unsigned char)*rest->at)) {
+    *number = *number * 10 + (*rest->at++ - '0');
     digits++;
   }
   return digits;
 }
 
 /* An English or German name of a month, by its first three letters. */
-static bool take_month(struct rest *r, int *month)
+static bool take_month(struct rest *rest, int *month)
 {
   static const char names[][4] = {"jan", "feb", "mar", "apr", "may", "jun", "jul", "aug",
                                   "sep", "oct", "nov", "dec", "mrz", "mai", "okt", "dez"};
   static const int number[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 3, 5, 10, 12};
-  if (r->end - r->at < 3)
+  if (rest->end - rest->at < 3)
     return false;
   for (size_t i = 0; i < sizeof number / sizeof *number; i++)
-    if (!strncasecmp(r->at, names[i], 3)) {
+    if (!strncasecmp(rest->at, names[i], 3)) {
       *month = number[i];
-      while (r->at < r->end && isalpha((unsigned char)*r->at))
-        r->at++;
+      while (rest->at < rest->end && isalpha((unsigned char)*rest->at))
+        rest->at++;
       return true;
     }
   return false;
@@ -81,20 +81,20 @@ static int whole_year(int year, int digits)
 }
 
 /* Year, month, day; or day and month in the order that the separator is used with. */
-static bool take_date(struct rest *r, struct eo_moment *m)
+static bool take_date(struct rest *rest, struct eo_moment *moment)
 {
-  struct rest start = *r;
+  struct rest start = *rest;
   int part[3], digits[3];
-  digits[0] = take_number(r, 4, &part[0]);
-  char separator = r->at < r->end ? *r->at : '\0';
+  digits[0] = take_number(rest, 4, &part[0]);
+  char separator = rest->at < rest->end ? *rest->at : '\0';
   if (!digits[0] || !separator || !strchr("-./ ", separator))
     goto none;
-  r->at++;
-  bool named = take_month(r, &part[1]);
-  digits[1] = named ? 2 : take_number(r, 2, &part[1]);
-  if (!digits[1] || (separator == ' ' && !named) || !take(r, separator))
+  rest->at++;
+  bool named = take_month(rest, &part[1]);
+  digits[1] = named ? 2 : take_number(rest, 2, &part[1]);
+  if (!digits[1] || (separator == ' ' && !named) || !take(rest, separator))
     goto none;
-  digits[2] = take_number(r, 4, &part[2]);
+  digits[2] = take_number(rest, 4, &part[2]);
   int year, month, day;
   if (digits[0] == 4) {
     year = part[0], month = part[1], day = part[2];
@@ -106,28 +106,28 @@ static bool take_date(struct rest *r, struct eo_moment *m)
   }
   if (digits[0] == 3 || digits[2] < (digits[0] == 4 ? 1 : 2) || digits[2] == 3 || !is_date(year, month, day))
     goto none;
-  m->has_day = true;
-  m->day = eo_moment_day(year, month, day);
+  moment->has_day = true;
+  moment->day = eo_moment_day(year, month, day);
   return true;
 none:
-  *r = start;
+  *rest = start;
   return false;
 }
 
 /* ".5" or ",5"; a colon before thousandths is also in use. */
-static double take_fraction(struct rest *r, bool *there)
+static double take_fraction(struct rest *rest, bool *there)
 {
-  struct rest start = *r;
-  if (!take(r, '.') && !take(r, ',') && !take(r, ':'))
+  struct rest start = *rest;
+  if (!take(rest, '.') && !take(rest, ',') && !take(rest, ':'))
     return 0;
-  if (r->at >= r->end || !isdigit((unsigned char)*r->at)) {
-    *r = start;
+  if (rest->at >= rest->end || !isdigit((unsigned char)*rest->at)) {
+    *rest = start;
     return 0;
   }
   int64_t digits = 0, number = 0;
-  for (; r->at < r->end && isdigit((unsigned char)*r->at); r->at++)
+  for (; rest->at < rest->end && isdigit((unsigned char)*rest->at); rest->at++)
     if (digits < 15) {
-      number = number * 10 + (*r->at - '0');
+      number = number * 10 + (*rest->at - '0');
       digits++;
     }
   *there = true;
@@ -135,94 +135,97 @@ static double take_fraction(struct rest *r, bool *there)
 }
 
 /* AM and PM; 12 AM is midnight. */
-static bool take_half(struct rest *r, int *hour)
+static bool take_half(struct rest *rest, int *hour)
 {
-  skip_blanks(r);
-  if (r->end - r->at < 2 || (r->at[1] | 0x20) != 'm' || !strchr("aApP", r->at[0]))
+  skip_blanks(rest);
+  if (rest->end - rest->at < 2 || (rest->at[1] | 0x20) != 'm' || !strchr("aApP", rest->at[0]))
     return true;
   if (*hour < 1 || *hour > 12)
     return false;
-  *hour = *hour % 12 + ((r->at[0] | 0x20) == 'p' ? 12 : 0);
-  r->at += 2;
+  *hour = *hour % 12 + ((rest->at[0] | 0x20) == 'p' ? 12 : 0);
+  rest->at += 2;
   return true;
 }
 
 /* "Z" or "+01:00": the time is brought to that of Greenwich. */
-static bool take_zone(struct rest *r, struct eo_moment *m)
+static bool take_zone(struct rest *rest, struct eo_moment *moment)
 {
   int hours, minutes = 0;
-  skip_blanks(r);
-  if (take(r, 'Z') || take(r, 'z'))
+  skip_blanks(rest);
+  if (take(rest, 'Z') || take(rest, 'z'))
     return true;
-  if (r->end - r->at >= 3 && (!strncmp(r->at, "UTC", 3) || !strncmp(r->at, "GMT", 3)))
-    r->at += 3;
-  if (r->at >= r->end || (*r->at != '+' && *r->at != '-'))
+  if (rest->end - rest->at >= 3 && (!strncmp(rest->at, "UTC", 3) || !strncmp(rest->at, "GMT", 3)))
+    rest->at += 3;
+  if (rest->at >= rest->end || (*rest->at != '+' && *rest->at != '-'))
     return true;
-  double sign = *r->at++ == '-' ? 1 : -1;
-  if (take_number(r, 2, &hours) != 2)
+  double sign = *rest->at++ == '-' ? 1 : -1;
+  if (take_number(rest, 2, &hours) != 2)
     return false;
-  take(r, ':');
-  take_number(r, 2, &minutes);
-  m->seconds += sign * (hours * 3600.0 + minutes * 60.0);
+  take(rest, ':');
+  take_number(rest, 2, &minutes);
+  moment->seconds += sign * (hours * 3600.0 + minutes * 60.0);
   return true;
 }
 
-static bool take_time(struct rest *r, struct eo_moment *m)
+static bool take_time(struct rest *this_rest, struct eo_moment *moment)
 {
-  struct rest start = *r;
+  struct rest start = *this_rest;
   int part[3] = {0}, parts = 0, digits = 0;
   bool fraction = false;
   do {
-    digits = take_number(r, 3, &part[parts]);
+    digits = take_number(this_rest, 3, &part[parts]);
     if (!digits)
       break;
     parts++;
-  } while (parts < 3 && take(r, ':'));
-  double rest = parts == 3 || (parts == 2 && r->at < r->end && *r->at != ':') ? take_fraction(r, &fraction) : 0;
+  } while (parts < 3 && take(this_rest, ':'));
+  double rest = parts == 3 || (parts == 2 && this_rest->at < this_rest->end && *this_rest->at != ':')
+                    ? take_fraction(this_rest, &fraction)
+                    : 0;
   bool minutes = parts == 2 && fraction;
   int hour = minutes ? 0 : part[0], minute = minutes ? part[0] : part[1], second = minutes ? part[1] : part[2];
-  if (parts < 2 || !digits || minute > 59 || second > 60 || !take_half(r, &hour) || (hour > 23 && m->has_day)) {
-    *r = start;
+  if (parts < 2 || !digits || minute > 59 || second > 60 || !take_half(this_rest, &hour) ||
+      (hour > 23 && moment->has_day)) {
+    *this_rest = start;
     return false;
   }
-  m->has_time = true;
-  m->minutes = minutes;
-  m->seconds += hour * 3600.0 + minute * 60.0 + second + rest;
-  return take_zone(r, m);
+  moment->has_time = true;
+  moment->minutes = minutes;
+  moment->seconds += hour * 3600.0 + minute * 60.0 + second + rest;
+  return take_zone(this_rest, moment);
 }
 
 /* "0 days 00:00:00.00025", as tables of time differences are written. */
-static void take_days(struct rest *r, struct eo_moment *m)
+static void take_days(struct rest *rest, struct eo_moment *moment)
 {
-  struct rest start = *r;
+  struct rest start = *rest;
   int days;
-  bool counted = take_number(r, 4, &days) > 0;
-  skip_blanks(r);
-  if (!counted || r->end - r->at < 4 || strncasecmp(r->at, "day", 3)) {
-    *r = start;
+  bool counted = take_number(rest, 4, &days) > 0;
+  skip_blanks(rest);
+  if (!counted || rest->end - rest->at < 4 || strncasecmp(rest->at, "day", 3)) {
+    *rest = start;
     return;
   }
-  r->at += 3;
-  take(r, 's');
-  m->seconds = days * EO_MOMENT_DAY;
-  skip_blanks(r);
+  rest->at += 3;
+  take(rest, 's');
+  moment->seconds = days * EO_MOMENT_DAY;
+  skip_blanks(rest);
 }
 
 bool eo_moment_read(const char *text, size_t length, struct eo_moment *moment)
 {
-  struct rest r = {text, text + length};
+  struct rest rest = {text, text + length};
   *moment = (struct eo_moment){0};
-  skip_blanks(&r);
-  take_days(&r, moment);
-  if (take_date(&r, moment)) {
-    skip_blanks(&r);
-    if (r.at < r.end && (*r.at == 'T' || *r.at == 't' || *r.at == ','))
-      r.at++;
-    skip_blanks(&r);
-    if (r.at < r.end && !take_time(&r, moment))
+  skip_blanks(&rest);
+  take_days(&rest, moment);
+  if (take_date(&rest, moment)) {
+    skip_blanks(&rest);
+    if (rest.at < rest.end && (*rest.at == 'T' || *rest.at == 't' || *rest.at == ','))
+      rest.at++;
+    skip_blanks(&rest);
+    if (rest.at < rest.end && !take_time(&rest, moment))
       return false;
-  } else if (!take_time(&r, moment))
+  } else if (!take_time(&rest, moment))
     return false;
-  skip_blanks(&r);
-  return r.at == r.end;
+  skip_blanks(&rest);
+  return rest.at == rest.end;
 }

@@ -33,19 +33,19 @@ static const char *attribute(const char **attributes, const char *name)
 
 static void XMLCALL take_characters(void *context, const char *text, int length)
 {
-  struct document *d = context;
-  if (!d->in_cell || !d->in_paragraph)
+  struct document *document = context;
+  if (!document->in_cell || !document->in_paragraph)
     return;
-  size_t n = (size_t)length < VALUE - 1 - d->length ? (size_t)length : VALUE - 1 - d->length;
-  memcpy(d->value + d->length, text, n);
-  d->length += n;
-  d->value[d->length] = '\0';
+  size_t n = (size_t)length < VALUE - 1 - document->length ? (size_t)length : VALUE - 1 - document->length;
+  memcpy(document->value + document->length, text, n);
+  document->length += n;
+  document->value[document->length] = '\0';
 }
 
-static void set_value(struct document *d, const char *text)
+static void set_value(struct document *document, const char *text)
 {
-  snprintf(d->value, sizeof d->value, "%s", text);
-  d->length = strlen(d->value);
+  snprintf(document->value, sizeof document->value, "%s", text);
+  document->length = strlen(document->value);
 }
 
 /* "PT08H59M59.5S" as seconds. */
@@ -104,15 +104,15 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
   }
 }
 
-static void end_cell(struct document *d)
+static void end_cell(struct document *document)
 {
-  bool number = !strcmp(d->type, "float") || !strcmp(d->type, "percentage");
-  d->in_cell = false;
-  d->numbers += number;
-  for (int i = 0; i < d->repeat && i < EO_SHEET_COLUMNS && d->length; i++)
-    if (d->writing && d->table == d->best)
-      eo_sheet_text_cell(&d->out, d->column + i, d->value);
-  d->column = d->column + d->repeat < 1 << 20 ? d->column + d->repeat : 1 << 20;
+  bool number = !strcmp(document->type, "float") || !strcmp(document->type, "percentage");
+  document->in_cell = false;
+  document->numbers += number;
+  for (int i = 0; i < document->repeat && i < EO_SHEET_COLUMNS && document->length; i++)
+    if (document->writing && document->table == document->best)
+      eo_sheet_text_cell(&document->out, document->column + i, document->value);
+  document->column = document->column + document->repeat < 1 << 20 ? document->column + document->repeat : 1 << 20;
 }
 
 static void XMLCALL end(void *context, const char *name)

@@ -45,24 +45,24 @@ enum eo_code eo_recording_new(struct eo_recording **recording, int columns, cons
   if (columns < 1 || columns > EO_RECORDING_COLUMNS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "A recording has 1 to %d columns, not %d.", EO_RECORDING_COLUMNS,
                         columns);
-  struct eo_recording *r = calloc(1, sizeof *r);
-  if (!r)
+  struct eo_recording *this_recording = calloc(1, sizeof *this_recording);
+  if (!this_recording)
     return eo_error_memory(error);
-  r->file = -1;
-  r->columns = columns;
-  r->limit = (int64_t)(EO_RECORDING_MEMORY / sizeof(double)) / columns;
-  r->known_rows = INT64_MAX;
-  r->column = calloc((size_t)columns, sizeof *r->column);
-  r->directory = spool_directory ? strdup(spool_directory) : NULL;
-  if (!r->column || (spool_directory && !r->directory)) {
-    eo_recording_free(r);
+  this_recording->file = -1;
+  this_recording->columns = columns;
+  this_recording->limit = (int64_t)(EO_RECORDING_MEMORY / sizeof(double)) / columns;
+  this_recording->known_rows = INT64_MAX;
+  this_recording->column = calloc((size_t)columns, sizeof *this_recording->column);
+  this_recording->directory = spool_directory ? strdup(spool_directory) : NULL;
+  if (!this_recording->column || (spool_directory && !this_recording->directory)) {
+    eo_recording_free(this_recording);
     return eo_error_memory(error);
   }
   for (int c = 0; c < columns; c++) {
-    r->column[c].length = -1;
-    r->column[c].clock = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
+    this_recording->column[c].length = -1;
+    this_recording->column[c].clock = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
   }
-  *recording = r;
+  *recording = this_recording;
   return EO_OK;
 }
 
@@ -199,43 +199,44 @@ double eo_recording_tick(const struct eo_recording *recording)
 }
 
 /* Creates the temporary file; it has no name, so that it ends with the process. */
-static enum eo_code open_spool(struct eo_recording *r, struct eo_error *error)
+static enum eo_code open_spool(struct eo_recording *recording, struct eo_error *error)
 {
-  if (!r->directory)
+  if (!recording->directory)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "The recording is larger than the %lld MB that may be held in memory.",
-                        (long long)(r->limit * r->columns * (int64_t)sizeof(double) >> 20));
-  return eo_bytes_spool(r->directory, &r->file, error);
+                        (long long)(recording->limit * recording->columns * (int64_t)sizeof(double) >> 20));
+  return eo_bytes_spool(recording->directory, &recording->file, error);
 }
 
 /* Moves the full buffer to the temporary file. */
-static enum eo_code spill(struct eo_recording *r, struct eo_error *error)
+static enum eo_code spill(struct eo_recording *recording, struct eo_error *error)
 {
-  enum eo_code code = r->file < 0 ? open_spool(r, error) : EO_OK;
+  enum eo_code code = recording->file < 0 ? open_spool(recording, error) : EO_OK;
   if (code)
     return code;
-  size_t row_size = (size_t)r->columns * sizeof(double);
-  code = eo_bytes_write(r->file, r->file_rows * (int64_t)row_size, r->buffer, (size_t)r->buffer_rows * row_size, error);
+  size_t row_size = (size_t)recording->columns * sizeof(double);
+  code = eo_bytes_write(recording->file, recording->file_rows * (int64_t)row_size, recording->buffer,
+                        (size_t)recording->buffer_rows * row_size, error);
   if (code)
     return code;
-  r->file_rows += r->buffer_rows;
-  r->buffer_rows = 0;
+  recording->file_rows += recording->buffer_rows;
+  recording->buffer_rows = 0;
   return EO_OK;
 }
 
 /* Makes room for at least one more row. */
-static enum eo_code make_room(struct eo_recording *r, struct eo_error *error)
+static enum eo_code make_room(struct eo_recording *recording, struct eo_error *error)
 {
-  if (r->capacity == r->limit)
-    return spill(r, error);
-  int64_t capacity = r->capacity ? 2 * r->capacity : 1024;
-  if (capacity > r->limit)
-    capacity = r->limit;
-  double *buffer = realloc(r->buffer, (size_t)capacity * (size_t)r->columns * sizeof *buffer);
+  if (recording->capacity == recording->limit)
+    return spill(recording, error);
+  int64_t capacity = recording->capacity ? 2 * recording->capacity : 1024;
+  if (capacity > recording->limit)
+    capacity = recording->limit;
+  double *buffer = realloc(recording->buffer, (size_t)capacity * (size_t)recording->columns * sizeof *buffer);
   if (!buffer)
     return eo_error_memory(error);
-  r->buffer = buffer;
-  r->capacity = capacity;
+  recording->buffer = buffer;
+  recording->capacity = capacity;
   return EO_OK;
 }
 
@@ -261,16 +262,16 @@ enum eo_code eo_recording_append(struct eo_recording *recording, const double *r
   return EO_OK;
 }
 
-static bool grow_marks(struct eo_recording *r)
+static bool grow_marks(struct eo_recording *recording)
 {
-  if (r->marks < r->mark_capacity)
+  if (recording->marks < recording->mark_capacity)
     return true;
-  int capacity = r->mark_capacity ? 2 * r->mark_capacity : 16;
-  struct mark *mark = capacity <= MARKS ? realloc(r->mark, (size_t)capacity * sizeof *mark) : NULL;
+  int capacity = recording->mark_capacity ? 2 * recording->mark_capacity : 16;
+  struct mark *mark = capacity <= MARKS ? realloc(recording->mark, (size_t)capacity * sizeof *mark) : NULL;
   if (!mark)
     return false;
-  r->mark = mark;
-  r->mark_capacity = capacity;
+  recording->mark = mark;
+  recording->mark_capacity = capacity;
   return true;
 }
 

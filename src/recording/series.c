@@ -45,11 +45,11 @@ static const struct eo_series *find_group(const struct eo_series_file *file)
   int most = 1;
   int64_t length = longest(file);
   for (int i = 0; i < file->count; i++) {
-    const struct eo_series *s = &file->series[i];
-    int count = s->length > 1 && s->length >= length / 2 ? count_like(file, s) : 0;
-    if (count > most || (count == most && best && s->length > best->length)) {
+    const struct eo_series *series = &file->series[i];
+    int count = series->length > 1 && series->length >= length / 2 ? count_like(file, series) : 0;
+    if (count > most || (count == most && best && series->length > best->length)) {
       most = count;
-      best = s;
+      best = series;
     }
   }
   return best;
@@ -68,14 +68,14 @@ static int choose(const struct eo_series_file *file, int *chosen, struct eo_note
   int count = 0, left_out = 0;
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < file->count; i++) {
-      const struct eo_series *s = &file->series[i];
-      bool first = group && sampled_together(s, group);
-      if (first != (pass == 0) || s->length <= 1)
+      const struct eo_series *series = &file->series[i];
+      bool first = group && sampled_together(series, group);
+      if (first != (pass == 0) || series->length <= 1)
         continue;
-      if (count < EO_RECORDING_COLUMNS && s->length >= least)
+      if (count < EO_RECORDING_COLUMNS && series->length >= least)
         chosen[count++] = i;
       else
-        left_out++, other = s;
+        left_out++, other = series;
     }
   qsort(chosen, (size_t)count, sizeof *chosen, ascending);
   if (left_out)
@@ -202,10 +202,11 @@ static enum eo_code begin_recording(void *context, const struct eo_series *colum
 
 static enum eo_code record_rows(void *context, const double *rows, int64_t count, struct eo_error *error)
 {
-  struct eo_series_recorder *r = context;
-  if (eo_progress_report(r->progress, "rig file", (double)eo_recording_rows(r->recording) / (double)r->total))
+  struct eo_series_recorder *recorder = context;
+  if (eo_progress_report(recorder->progress, "rig file",
+                         (double)eo_recording_rows(recorder->recording) / (double)recorder->total))
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
-  return eo_recording_append(r->recording, rows, count, error);
+  return eo_recording_append(recorder->recording, rows, count, error);
 }
 
 struct eo_series_sink eo_series_recorder_sink(struct eo_series_recorder *recorder)

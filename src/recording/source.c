@@ -34,12 +34,12 @@ struct eo_source {
 };
 
 /* Reads up to size bytes of the file itself. */
-static enum eo_code read_file(struct eo_source *s, void *bytes, size_t size, size_t *got, struct eo_error *error)
+static enum eo_code read_file(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
 {
   char *to = bytes;
   *got = 0;
   while (*got < size) {
-    ssize_t n = read(s->file, to + *got, size - *got);
+    ssize_t n = read(source->file, to + *got, size - *got);
     if (n < 0 && errno == EINTR)
       continue;
     if (n < 0)
@@ -48,43 +48,44 @@ static enum eo_code read_file(struct eo_source *s, void *bytes, size_t size, siz
       break;
     *got += (size_t)n;
   }
-  s->taken += (int64_t)*got;
+  source->taken += (int64_t)*got;
   return EO_OK;
 }
 
-static enum eo_code refill(struct eo_source *s, struct eo_error *error)
+static enum eo_code refill(struct eo_source *source, struct eo_error *error)
 {
-  s->at = s->chunk;
-  return read_file(s, s->chunk, CHUNK, &s->waiting, error);
+  source->at = source->chunk;
+  return read_file(source, source->chunk, CHUNK, &source->waiting, error);
 }
 
 enum eo_code eo_source_open(struct eo_source **source, const char *path, int64_t limit, struct eo_error *error)
 {
-  struct eo_source *s = calloc(1, sizeof *s);
-  if (!s)
+  struct eo_source *this_source = calloc(1, sizeof *this_source);
+  if (!this_source)
     return eo_error_memory(error);
-  s->limit = limit;
-  s->file = open(path, O_RDONLY | O_CLOEXEC);
+  this_source->limit = limit;
+  this_source->file = open(path, O_RDONLY | O_CLOEXEC);
   struct stat state;
   enum eo_code code = EO_OK;
-  if (s->file < 0 || fstat(s->file, &state))
+  if (this_source->file < 0 || fstat(this_source->file, &state))
     code = eo_error_set(error, EO_ERROR_FILE, "", "The file %s could not be opened: %s.", path, strerror(errno));
   else if (!S_ISREG(state.st_mode))
     code = eo_error_set(error, EO_ERROR_FILE, "", "%s is not a file.", path);
   if (!code) {
-    s->size = state.st_size;
-    code = refill(s, error);
+    this_source->size = state.st_size;
+    code = refill(this_source, error);
   }
-  s->gzip = !code && s->waiting >= 3 && s->chunk[0] == 0x1f && s->chunk[1] == 0x8b && s->chunk[2] == 8;
-  if (s->gzip && inflateInit2(&s->stream, 15 + 16) != Z_OK) {
-    s->gzip = false;
+  this_source->gzip = !code && this_source->waiting >= 3 && this_source->chunk[0] == 0x1f &&
+                      this_source->chunk[1] == 0x8b && this_source->chunk[2] == 8;
+  if (this_source->gzip && inflateInit2(&this_source->stream, 15 + 16) != Z_OK) {
+    this_source->gzip = false;
     code = eo_error_memory(error);
   }
   if (code) {
-    eo_source_close(s);
+    eo_source_close(this_source);
     return code;
   }
-  *source = s;
+  *source = this_source;
   return EO_OK;
 }
 
@@ -99,79 +100,79 @@ void eo_source_close(struct eo_source *source)
   free(source);
 }
 
-static enum eo_code read_plain(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+static enum eo_code read_plain(struct eo_source *source, unsigned char *bytes, size_t size, size_t *got,
                                struct eo_error *error)
 {
-  size_t kept = s->waiting < size ? s->waiting : size;
-  memcpy(bytes, s->at, kept);
-  s->at += kept;
-  s->waiting -= kept;
+  size_t kept = source->waiting < size ? source->waiting : size;
+  memcpy(bytes, source->at, kept);
+  source->at += kept;
+  source->waiting -= kept;
   size_t more = 0;
-  enum eo_code code = kept < size ? read_file(s, bytes + kept, size - kept, &more, error) : EO_OK;
+  enum eo_code code = kept < size ? read_file(source, bytes + kept, size - kept, &more, error) : EO_OK;
   *got = kept + more;
   return code;
 }
 
 /* One call of inflate with what is waiting; *ended at the end of the last member. */
-static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size_t room, size_t *got,
+static enum eo_code inflate_some(struct eo_source *source, unsigned char *bytes, size_t room, size_t *got,
                                  struct eo_error *error)
 {
   *got = 0;
-  if (!s->waiting) {
-    enum eo_code code = refill(s, error);
+  if (!source->waiting) {
+    enum eo_code code = refill(source, error);
     if (code)
       return code;
-    if (!s->waiting && !s->between)
+    if (!source->waiting && !source->between)
       return eo_error_set(error, EO_ERROR_INPUT, "",
                           "The gzip file is cut off: it ends at byte %lld in the middle of its data.",
-                          (long long)s->taken);
-    s->ended = !s->waiting;
-    if (s->ended)
+                          (long long)source->taken);
+    source->ended = !source->waiting;
+    if (source->ended)
       return EO_OK;
   }
-  if (s->between && s->at[0] != 0x1f) { /* padding after the last member, as tapes and some copiers add it */
-    s->ended = true;
+  if (source->between && source->at[0] != 0x1f) { /* padding after the last member, as tapes and some copiers add it */
+    source->ended = true;
     return EO_OK;
   }
-  s->between = false;
-  s->stream.next_in = s->at;
-  s->stream.avail_in = (uInt)s->waiting;
-  s->stream.next_out = bytes;
-  s->stream.avail_out = (uInt)room;
-  int status = inflate(&s->stream, Z_NO_FLUSH);
-  s->at = s->stream.next_in;
-  s->waiting = s->stream.avail_in;
-  *got = room - s->stream.avail_out;
+  source->between = false;
+  source->stream.next_in = source->at;
+  source->stream.avail_in = (uInt)source->waiting;
+  source->stream.next_out = bytes;
+  source->stream.avail_out = (uInt)room;
+  int status = inflate(&source->stream, Z_NO_FLUSH);
+  source->at = source->stream.next_in;
+  source->waiting = source->stream.avail_in;
+  *got = room - source->stream.avail_out;
   if (status == Z_STREAM_END) {
-    s->between = true;
-    status = inflateReset(&s->stream);
+    source->between = true;
+    status = inflateReset(&source->stream);
   }
   if (status == Z_MEM_ERROR)
     return eo_error_memory(error);
   if (status != Z_OK && status != Z_BUF_ERROR)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file is damaged near byte %lld.",
-                        (long long)(s->taken - (int64_t)s->waiting));
+                        (long long)(source->taken - (int64_t)source->waiting));
   return EO_OK;
 }
 
-static enum eo_code check_growth(const struct eo_source *s, struct eo_error *error)
+static enum eo_code check_growth(const struct eo_source *source, struct eo_error *error)
 {
-  if (s->gzip && s->given > EO_SOURCE_FREE && s->given / EO_SOURCE_EXPANSION > s->taken)
+  if (source->gzip && source->given > EO_SOURCE_FREE && source->given / EO_SOURCE_EXPANSION > source->taken)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "The gzip file grows more than %d times by byte %lld; that is no measurement.",
-                        EO_SOURCE_EXPANSION, (long long)s->taken);
-  if (s->given > s->limit)
+                        EO_SOURCE_EXPANSION, (long long)source->taken);
+  if (source->given > source->limit)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The file holds more than the %lld MB that are read at most.",
-                        (long long)(s->limit >> 20));
+                        (long long)(source->limit >> 20));
   return EO_OK;
 }
 
-static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+static enum eo_code read_gzip(struct eo_source *source, unsigned char *bytes, size_t size, size_t *got,
                               struct eo_error *error)
 {
-  while (*got < size && !s->ended) {
+  while (*got < size && !source->ended) {
     size_t n, room = size - *got < CHUNK * 8 ? size - *got : CHUNK * 8;
-    enum eo_code code = inflate_some(s, bytes + *got, room, &n, error);
+    enum eo_code code = inflate_some(source, bytes + *got, room, &n, error);
     if (code)
       return code;
     *got += n;
@@ -189,18 +190,18 @@ static enum eo_code read_bytes(struct eo_source *source, void *bytes, size_t siz
 }
 
 /* One character as UTF-8; byte order marks go away, halves of pairs wait for the other half. */
-static void put_character(struct wide *w, uint32_t c)
+static void put_character(struct wide *wide, uint32_t c)
 {
   if (c >= 0xd800 && c < 0xdc00) {
-    w->high = c;
+    wide->high = c;
     return;
   }
   if (c >= 0xdc00 && c < 0xe000)
-    c = w->high ? 0x10000 + ((w->high - 0xd800) << 10) + (c - 0xdc00) : '?';
-  w->high = 0;
+    c = wide->high ? 0x10000 + ((wide->high - 0xd800) << 10) + (c - 0xdc00) : '?';
+  wide->high = 0;
   if (c == 0xfeff)
     return;
-  char *to = w->text + w->filled;
+  char *to = wide->text + wide->filled;
   if (c < 0x80) {
     *to++ = (char)c;
   } else if (c < 0x800) {
@@ -216,27 +217,27 @@ static void put_character(struct wide *w, uint32_t c)
     *to++ = (char)(0x80 | (c >> 6 & 0x3f));
     *to++ = (char)(0x80 | (c & 0x3f));
   }
-  w->filled = (size_t)(to - w->text);
+  wide->filled = (size_t)(to - wide->text);
 }
 
 static enum eo_code read_wide(struct eo_source *source, char *bytes, size_t size, size_t *got, struct eo_error *error)
 {
-  struct wide *w = &source->wide;
+  struct wide *wide = &source->wide;
   unsigned char raw[4096];
   *got = 0;
   while (*got < size) {
-    if (w->at == w->filled) {
+    if (wide->at == wide->filled) {
       size_t n;
       enum eo_code code = read_bytes(source, raw, sizeof raw, &n, error);
       if (code || n < 2)
         return code;
-      w->at = w->filled = 0;
+      wide->at = wide->filled = 0;
       for (size_t i = 0; i + 1 < n; i += 2)
-        put_character(w, w->big ? (uint32_t)(raw[i] << 8 | raw[i + 1]) : (uint32_t)(raw[i + 1] << 8 | raw[i]));
+        put_character(wide, wide->big ? (uint32_t)(raw[i] << 8 | raw[i + 1]) : (uint32_t)(raw[i + 1] << 8 | raw[i]));
     }
-    size_t n = w->filled - w->at < size - *got ? w->filled - w->at : size - *got;
-    memcpy(bytes + *got, w->text + w->at, n);
-    w->at += n;
+    size_t n = wide->filled - wide->at < size - *got ? wide->filled - wide->at : size - *got;
+    memcpy(bytes + *got, wide->text + wide->at, n);
+    wide->at += n;
     *got += n;
   }
   return EO_OK;

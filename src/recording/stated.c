@@ -283,9 +283,9 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
 {
   char name[KEY], own[32], folded[KEY];
   double factor = 1;
-  struct eo_stated s = nothing();
+  struct eo_stated stated = nothing();
   if (!isfinite(number))
-    return s;
+    return stated;
   eo_unit_split(key, name, (int)sizeof name, own, (int)sizeof own);
   enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
@@ -294,14 +294,14 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   if (!*unit && (word || !sampling)) /* "Samples/s" is a word of its own; other units are none of a sampling */
     quantity = EO_QUANTITY_NONE, factor = 1;
   const char *bare = !*unit && sampling && !word ? name : key;
-  s.member = eo_stated_member(name);
+  stated.member = eo_stated_member(name);
   fold(bare, folded);
-  judge_key(folded, number, quantity, factor, is_turn_unit(unit), &s);
-  if (!s.kind) {
+  judge_key(folded, number, quantity, factor, is_turn_unit(unit), &stated);
+  if (!stated.kind) {
     char rest[KEY];
     strip_owner(bare, rest, sizeof rest);
     fold(rest, folded);
-    judge_key(folded, number, quantity, factor, false, &s);
+    judge_key(folded, number, quantity, factor, false, &stated);
   }
-  return s;
+  return stated;
 }

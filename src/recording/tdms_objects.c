@@ -234,45 +234,45 @@ static void list_channel(struct eo_tdms *tdms, int channel, bool data)
 }
 
 /* Every path begins with "/". One with a NUL in it would be another, shorter one for whoever takes it as a C string. */
-static bool take_path(struct eo_tdms_reader *r, const char **path, uint32_t *length)
+static bool take_path(struct eo_tdms_reader *reader, const char **path, uint32_t *length)
 {
-  if (!eo_tdms_take_string(r, path, length))
+  if (!eo_tdms_take_string(reader, path, length))
     return false;
   if (*length && **path == '/' && !memchr(*path, '\0', *length))
     return true;
-  eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the object's path before byte %lld %s; the file is damaged.",
-               (long long)r->at, *length && **path == '/' ? "holds a NUL" : "does not begin with \"/\"");
+  eo_error_set(reader->error, EO_ERROR_INPUT, "", "TDMS: the object's path before byte %lld %s; the file is damaged.",
+               (long long)reader->at, *length && **path == '/' ? "holds a NUL" : "does not begin with \"/\"");
   return false;
 }
 
-static bool take_object(struct eo_tdms *tdms, struct eo_tdms_reader *r, int hint)
+static bool take_object(struct eo_tdms *tdms, struct eo_tdms_reader *reader, int hint)
 {
   const char *path;
   uint32_t length;
   bool data;
-  if (!take_path(r, &path, &length))
+  if (!take_path(reader, &path, &length))
     return false;
   if (!is_channel(path, length))
-    return take_index(r, NULL, -1, &data) && eo_tdms_take_properties(r, NULL, find_group(tdms, path, length));
-  int c = find_channel(tdms, path, length, hint, r->error);
-  if (c < 0 || !take_index(r, &tdms->channel[c], c, &data))
+    return take_index(reader, NULL, -1, &data) && eo_tdms_take_properties(reader, NULL, find_group(tdms, path, length));
+  int c = find_channel(tdms, path, length, hint, reader->error);
+  if (c < 0 || !take_index(reader, &tdms->channel[c], c, &data))
     return false;
   list_channel(tdms, c, data);
-  return eo_tdms_take_properties(r, &tdms->channel[c], &tdms->series[c]);
+  return eo_tdms_take_properties(reader, &tdms->channel[c], &tdms->series[c]);
 }
 
 enum eo_code eo_tdms_read_objects(struct eo_tdms *tdms, const unsigned char *bytes, size_t size, int64_t at, bool big,
                                   bool fresh, struct eo_error *error)
 {
   struct eo_error own;
-  struct eo_tdms_reader r = {bytes, size, at, big, error ? error : &own};
+  struct eo_tdms_reader reader = {bytes, size, at, big, error ? error : &own};
   uint32_t count;
   if (fresh)
     tdms->listed = 0;
-  if (!eo_tdms_take_32(&r, &count))
-    return r.error->code;
+  if (!eo_tdms_take_32(&reader, &count))
+    return reader.error->code;
   for (uint32_t i = 0; i < count; i++)
-    if (!take_object(tdms, &r, (int)(i % EO_SERIES)))
-      return r.error->code;
+    if (!take_object(tdms, &reader, (int)(i % EO_SERIES)))
+      return reader.error->code;
   return EO_OK;
 }

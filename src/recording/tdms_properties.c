@@ -24,19 +24,19 @@ const unsigned char *eo_tdms_take(struct eo_tdms_reader *reader, size_t size)
   return bytes;
 }
 
-bool eo_tdms_take_32(struct eo_tdms_reader *r, uint32_t *value)
+bool eo_tdms_take_32(struct eo_tdms_reader *reader, uint32_t *value)
 {
-  const unsigned char *p = eo_tdms_take(r, 4);
+  const unsigned char *p = eo_tdms_take(reader, 4);
   if (p)
-    *value = eo_bytes_32(p, r->big);
+    *value = eo_bytes_32(p, reader->big);
   return p;
 }
 
-bool eo_tdms_take_string(struct eo_tdms_reader *r, const char **text, uint32_t *length)
+bool eo_tdms_take_string(struct eo_tdms_reader *reader, const char **text, uint32_t *length)
 {
-  if (!eo_tdms_take_32(r, length))
+  if (!eo_tdms_take_32(reader, length))
     return false;
-  *text = (const char *)eo_tdms_take(r, *length);
+  *text = (const char *)eo_tdms_take(reader, *length);
   return *text;
 }
 

@@ -60,11 +60,11 @@ static bool can_use(const struct eo_tdms_channel *channel, int64_t number, int d
 {
   if (number < 0 || number >= EO_TDMS_SCALES || channel->scale[number].kind == EO_TDMS_NO_SCALE)
     return true;
-  const struct eo_tdms_scale *s = &channel->scale[number];
-  bool two = s->kind == EO_TDMS_ADD || s->kind == EO_TDMS_SUBTRACT;
-  bool terms = two || (s->kind == EO_TDMS_TABLE ? s->terms[0] > 1 && s->terms[1] > 1 : s->terms[0] > 0);
-  return depth && s->kind != EO_TDMS_OTHER_SCALE && terms && can_use(channel, s->source[0], depth - 1) &&
-         (!two || can_use(channel, s->source[1], depth - 1));
+  const struct eo_tdms_scale *scale = &channel->scale[number];
+  bool two = scale->kind == EO_TDMS_ADD || scale->kind == EO_TDMS_SUBTRACT;
+  bool terms = two || (scale->kind == EO_TDMS_TABLE ? scale->terms[0] > 1 && scale->terms[1] > 1 : scale->terms[0] > 0);
+  return depth && scale->kind != EO_TDMS_OTHER_SCALE && terms && can_use(channel, scale->source[0], depth - 1) &&
+         (!two || can_use(channel, scale->source[1], depth - 1));
 }
 
 bool eo_tdms_can_scale(const struct eo_tdms_channel *channel)

@@ -151,22 +151,22 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
     tdms->segment = segment;
     tdms->segment_room = room;
   }
-  struct eo_tdms_segment s = {
+  struct eo_tdms_segment tdms_segment = {
       .layout = layout, .at = lead->data, .interleaved = lead->toc & TOC_INTERLEAVED, .big = lead->toc & TOC_BIG};
-  s.interleaved = s.interleaved && !(lead->toc & TOC_DAQMX);
+  tdms_segment.interleaved = tdms_segment.interleaved && !(lead->toc & TOC_DAQMX);
   for (int i = 0; (lead->toc & TOC_DAQMX) && i < layout->parts; i++)
     if (!layout->part[i].width)
       return damaged(at, "holds raw DAQmx data without saying where; save the channels converted (as double)", error);
-  if (s.interleaved && !may_interleave(layout))
+  if (tdms_segment.interleaved && !may_interleave(layout))
     return damaged(at, "interleaves channels of different lengths", error);
   int64_t bytes = lead->next - lead->data;
-  s.chunks = bytes / layout->chunk;
-  s.rest = bytes % layout->chunk;
-  tdms->cut = tdms->cut || s.rest;
+  tdms_segment.chunks = bytes / layout->chunk;
+  tdms_segment.rest = bytes % layout->chunk;
+  tdms->cut = tdms->cut || tdms_segment.rest;
   for (int i = 0; i < layout->parts; i++)
     if (layout->part[i].type != EO_TDMS_STRING)
-      tdms->series[layout->part[i].channel].length += eo_tdms_place(&s, layout->part[i].channel).values;
-  tdms->segment[tdms->segments++] = s;
+      tdms->series[layout->part[i].channel].length += eo_tdms_place(&tdms_segment, layout->part[i].channel).values;
+  tdms->segment[tdms->segments++] = tdms_segment;
   return EO_OK;
 }
 

@@ -12,14 +12,14 @@
 #define KEY 96
 #define MARKS " \t:=;,|\"([{<>)]}'"
 
-void eo_header_split(struct eo_header *header, const struct eo_text_format *f, const char *head)
+void eo_header_split(struct eo_header *header, const struct eo_text_format *format, const char *head)
 {
-  const char *last = head + f->first_byte;
+  const char *last = head + format->first_byte;
   header->lines = 0;
-  for (const char *start = head + f->header_byte; start < last;) {
-    const char *end = memchr(start, f->line_end, (size_t)(last - start));
+  for (const char *start = head + format->header_byte; start < last;) {
+    const char *end = memchr(start, format->line_end, (size_t)(last - start));
     end = end ? end : last;
-    const char *comment = eo_text_comment(start, end, f->separator), *from = comment ? comment : start;
+    const char *comment = eo_text_comment(start, end, format->separator), *from = comment ? comment : start;
     if (!eo_text_empty(from, end)) {
       if (header->lines == EO_HEADER_LINES)
         memmove(header->line, header->line + 1, (size_t)--header->lines * sizeof *header->line);
@@ -80,21 +80,21 @@ static const char *unit_behind(const char *p, const char *end, char *unit, size_
   return last;
 }
 
-static void use_fact(struct eo_text_format *format, const struct eo_stated *s)
+static void use_fact(struct eo_text_format *format, const struct eo_stated *stated)
 {
   for (int c = 0; c < format->cells; c++) {
     int member = eo_stated_member(format->name[c]);
-    if (s->member >= 0 && member >= 0 && member != s->member)
+    if (stated->member >= 0 && member >= 0 && member != stated->member)
       continue;
-    if (s->kind == EO_STATED_INTERVAL && !(format->clock[c].interval > 0))
-      format->clock[c].interval = s->value;
-    else if (s->kind == EO_STATED_START)
-      format->clock[c].start = s->value;
-    else if (s->kind == EO_STATED_TURN && !(format->turn[c] > 0))
-      format->turn[c] = s->value;
+    if (stated->kind == EO_STATED_INTERVAL && !(format->clock[c].interval > 0))
+      format->clock[c].interval = stated->value;
+    else if (stated->kind == EO_STATED_START)
+      format->clock[c].start = stated->value;
+    else if (stated->kind == EO_STATED_TURN && !(format->turn[c] > 0))
+      format->turn[c] = stated->value;
   }
-  if (s->kind == EO_STATED_TICK)
-    format->tick = s->value;
+  if (stated->kind == EO_STATED_TICK)
+    format->tick = stated->value;
 }
 
 /* The key as it stands in its cell, else with what is before it in the line. */
@@ -107,8 +107,8 @@ static struct eo_stated read_fact(const char *from, const char *number, double v
     if (strchr(";\t|,", *p))
       cut = p + 1;
   copy_trimmed(cell, sizeof cell, cut, key + strlen(key));
-  struct eo_stated s = eo_stated_read(cell, value, unit);
-  return s.kind || cut == key ? s : eo_stated_read(key, value, unit);
+  struct eo_stated stated = eo_stated_read(cell, value, unit);
+  return stated.kind || cut == key ? stated : eo_stated_read(key, value, unit);
 }
 
 struct begin {
@@ -164,11 +164,11 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
     if (!after || after > line->end)
       continue;
     behind = unit_behind(after, line->end, unit, sizeof unit);
-    struct eo_stated s = read_fact(from, p, value, unit);
-    if (!s.kind)
-      s = read_fact(from, p, value, "");
-    if (s.kind) {
-      use_fact(format, &s);
+    struct eo_stated stated = read_fact(from, p, value, unit);
+    if (!stated.kind)
+      stated = read_fact(from, p, value, "");
+    if (stated.kind) {
+      use_fact(format, &stated);
       from = behind;
     }
     p = after - 1;
@@ -194,8 +194,8 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
     copy_cell(key, sizeof key, &name);
     if (end != value.text + value.length)
       continue;
-    struct eo_stated s = eo_stated_read(key, number, "");
-    use_fact(format, &s);
+    struct eo_stated stated = eo_stated_read(key, number, "");
+    use_fact(format, &stated);
   }
 }
 

@@ -66,33 +66,33 @@ static int points_of(enum eo_cell_kind kind)
   return kind == EO_CELL_TEXT ? -1 : kind == EO_CELL_MISSING ? 0 : kind == EO_CELL_NUMBER ? 2 : 1;
 }
 
-static void add_cell(struct shape *s, enum eo_cell_kind kind)
+static void add_cell(struct shape *shape, enum eo_cell_kind kind)
 {
-  uint64_t bit = s->cells < 64 ? (uint64_t)1 << s->cells : 0;
-  s->numbers += kind != EO_CELL_TEXT && kind != EO_CELL_MISSING;
-  s->texts += kind == EO_CELL_TEXT;
-  s->points += points_of(kind);
-  s->text |= kind == EO_CELL_TEXT ? bit : 0;
-  s->moment |= kind == EO_CELL_MOMENT ? bit : 0;
-  s->unit |= kind == EO_CELL_UNIT ? bit : 0;
-  s->missing |= kind == EO_CELL_MISSING ? bit : 0;
+  uint64_t bit = shape->cells < 64 ? (uint64_t)1 << shape->cells : 0;
+  shape->numbers += kind != EO_CELL_TEXT && kind != EO_CELL_MISSING;
+  shape->texts += kind == EO_CELL_TEXT;
+  shape->points += points_of(kind);
+  shape->text |= kind == EO_CELL_TEXT ? bit : 0;
+  shape->moment |= kind == EO_CELL_MOMENT ? bit : 0;
+  shape->unit |= kind == EO_CELL_UNIT ? bit : 0;
+  shape->missing |= kind == EO_CELL_MISSING ? bit : 0;
 }
 
 static struct shape shape_of(const struct line *line, char separator, char point)
 {
-  struct shape s = {0};
+  struct shape shape = {0};
   struct eo_cell cell;
   double value;
-  for (const char *at = line->start; s.cells < EO_TEXT_CELLS && eo_text_next_cell(&at, line->end, separator, &cell);
-       s.cells++) {
+  for (const char *at = line->start; shape.cells < EO_TEXT_CELLS && eo_text_next_cell(&at, line->end, separator, &cell);
+       shape.cells++) {
     enum eo_cell_kind kind = eo_text_cell_value(&cell, point, &value);
-    if (kind == EO_CELL_NUMBER && separator == ',' && point == '.' && s.cells > 0 && follows_comma(&cell))
+    if (kind == EO_CELL_NUMBER && separator == ',' && point == '.' && shape.cells > 0 && follows_comma(&cell))
       kind = EO_CELL_TEXT;
-    s.open = !cell.length && !cell.quoted && s.cells > 0;
-    add_cell(&s, kind);
+    shape.open = !cell.length && !cell.quoted && shape.cells > 0;
+    add_cell(&shape, kind);
   }
-  s.cells -= s.open;
-  return s;
+  shape.cells -= shape.open;
+  return shape;
 }
 
 static bool as_many(const struct shape *a, const struct shape *b)
@@ -117,9 +117,9 @@ static bool is_flawed_row(const struct shape *run, const struct shape *row)
          !((run->moment ^ row->moment) & both & ~row->text);
 }
 
-static bool is_row(const struct shape *s)
+static bool is_row(const struct shape *shape)
 {
-  return s->numbers > 0 && 2 * s->numbers > s->texts;
+  return shape->numbers > 0 && 2 * shape->numbers > shape->texts;
 }
 
 static bool holds_cells(const struct line *line, char separator)

@@ -38,16 +38,16 @@ static int count_cells(const struct eo_header_line *line, char separator)
 
 /* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. A line
    with the rows' own separator may have more cells. 0: none does. */
-static char header_separator(const struct eo_text_format *f, const struct eo_header_line *line)
+static char header_separator(const struct eo_text_format *format, const struct eo_header_line *line)
 {
-  const char marks[] = {f->separator, '\t', ';', ',', '|'}, blanks[] = {' ', EO_TEXT_WIDE};
+  const char marks[] = {format->separator, '\t', ';', ',', '|'}, blanks[] = {' ', EO_TEXT_WIDE};
   for (size_t i = 0; i < sizeof marks; i++)
-    if (count_cells(line, marks[i]) == f->cells)
+    if (count_cells(line, marks[i]) == format->cells)
       return marks[i];
-  if (f->cells > 1 && f->separator != ' ' && count_cells(line, f->separator) > f->cells)
-    return f->separator; /* before blanks, which names have inside */
+  if (format->cells > 1 && format->separator != ' ' && count_cells(line, format->separator) > format->cells)
+    return format->separator; /* before blanks, which names have inside */
   for (size_t i = 0; i < sizeof blanks; i++)
-    if (count_cells(line, blanks[i]) == f->cells)
+    if (count_cells(line, blanks[i]) == format->cells)
       return blanks[i];
   return '\0';
 }
@@ -146,14 +146,14 @@ static void take_names(struct eo_text_format *format, const struct eo_header_lin
 }
 
 /* The lines of names and units; of equally good ones the last. */
-static int find_names(const struct eo_text_format *f, const struct eo_header *header, int *units)
+static int find_names(const struct eo_text_format *format, const struct eo_header *header, int *units)
 {
   int names = -1, best = 0, most = 0;
   *units = -1;
   for (int i = 0; i < header->lines; i++) {
-    char separator = header_separator(f, &header->line[i]);
-    int as_units = units_score(&header->line[i], separator ? separator : f->separator, f->cells);
-    int as_names = separator ? names_score(&header->line[i], separator, f->cells, f->point) : 0;
+    char separator = header_separator(format, &header->line[i]);
+    int as_units = units_score(&header->line[i], separator ? separator : format->separator, format->cells);
+    int as_names = separator ? names_score(&header->line[i], separator, format->cells, format->point) : 0;
     if (as_units >= (separator ? 3 : 2) || (as_units && i > 0 && names == i - 1)) {
       if (as_units >= most)
         most = as_units, *units = i;
@@ -165,20 +165,20 @@ static int find_names(const struct eo_text_format *f, const struct eo_header *he
 
 void eo_text_read_header(struct eo_text_format *format, const char *head)
 {
-  struct eo_header *h = malloc(sizeof *h);
+  struct eo_header *header = malloc(sizeof *header);
   int units;
   for (int c = 0; c < format->cells; c++)
     format->clock[c] = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
-  if (!h)
+  if (!header)
     return;
-  eo_header_split(h, format, head);
-  int names = find_names(format, h, &units);
+  eo_header_split(header, format, head);
+  int names = find_names(format, header, &units);
   if (units >= 0) {
-    char separator = header_separator(format, &h->line[units]);
-    take_units(format, &h->line[units], separator ? separator : format->separator);
+    char separator = header_separator(format, &header->line[units]);
+    take_units(format, &header->line[units], separator ? separator : format->separator);
   }
   if (names >= 0)
-    take_names(format, &h->line[names], header_separator(format, &h->line[names]));
-  eo_header_facts(h, format, names);
-  free(h);
+    take_names(format, &header->line[names], header_separator(format, &header->line[names]));
+  eo_header_facts(header, format, names);
+  free(header);
 }

@@ -44,16 +44,16 @@ struct text {
   char block[BLOCK + 2];              /* one byte for a line end that the file lacks, one for a final 0 */
 };
 
-static double *next_row(struct text *t)
+static double *next_row(struct text *text)
 {
-  return t->batch + (size_t)t->batched * (size_t)t->format.columns;
+  return text->batch + (size_t)text->batched * (size_t)text->format.columns;
 }
 
-static enum eo_code flush(struct text *t, struct eo_error *error)
+static enum eo_code flush(struct text *text, struct eo_error *error)
 {
-  int rows = t->batched;
-  t->batched = 0;
-  return eo_recording_append(t->recording, t->batch, rows, error);
+  int rows = text->batched;
+  text->batched = 0;
+  return eo_recording_append(text->recording, text->batch, rows, error);
 }
 
 /* Takes the row that was read to the end of the batch. */
@@ -72,16 +72,16 @@ static enum eo_code keep_row(struct text *text, struct eo_error *error)
 }
 
 /* An odd row or cell: said once with its place; too many of them are an error. */
-static enum eo_code add_fault(struct text *t, int cell, const char *what, struct eo_error *error)
+static enum eo_code add_fault(struct text *text, int cell, const char *what, struct eo_error *error)
 {
-  int64_t rows = eo_recording_rows(t->recording) + t->batched;
-  t->faults++;
-  if (t->faults > FAULTS_FREE + rows / FAULT_SHARE)
+  int64_t rows = eo_recording_rows(text->recording) + text->batched;
+  text->faults++;
+  if (text->faults > FAULTS_FREE + rows / FAULT_SHARE)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld, column %d: %s; that makes %lld such rows of %lld.",
-                        (long long)t->line, cell + 1, what, (long long)t->faults, (long long)rows + 1);
-  if (t->faults <= FAULTS_NAMED)
-    eo_notes_add(t->notes, "Line %lld, column %d: %s; what is missing was left empty.", (long long)t->line, cell + 1,
-                 what);
+                        (long long)text->line, cell + 1, what, (long long)text->faults, (long long)rows + 1);
+  if (text->faults <= FAULTS_NAMED)
+    eo_notes_add(text->notes, "Line %lld, column %d: %s; what is missing was left empty.", (long long)text->line,
+                 cell + 1, what);
   return EO_OK;
 }
 
@@ -95,25 +95,26 @@ static void describe_cell(const struct eo_cell *cell, char *what, size_t size)
   memcpy(what + n, tail, sizeof tail);
 }
 
-static void count_missing(struct text *t, int cell)
+static void count_missing(struct text *text, int cell)
 {
-  if (t->missing++)
+  if (text->missing++)
     return;
-  t->missing_line = t->line;
-  t->missing_cell = cell;
+  text->missing_line = text->line;
+  text->missing_cell = cell;
 }
 
 /* A row that has too few or too many cells: which ones are missing is not known, so that all are. */
-static enum eo_code odd_length(struct text *t, int cells, struct eo_error *error)
+static enum eo_code odd_length(struct text *text, int cells, struct eo_error *error)
 {
   char what[80];
-  bool more = cells > t->format.cells;
-  snprintf(what, sizeof what, "the row has %s%d cells instead of %d", more ? "at least " : "", cells, t->format.cells);
-  double *row = next_row(t);
-  for (int c = 0; c < t->format.columns; c++)
+  bool more = cells > text->format.cells;
+  snprintf(what, sizeof what, "the row has %s%d cells instead of %d", more ? "at least " : "", cells,
+           text->format.cells);
+  double *row = next_row(text);
+  for (int c = 0; c < text->format.columns; c++)
     row[c] = NAN;
-  enum eo_code code = add_fault(t, more ? cells - 1 : cells, what, error);
-  return code ? code : keep_row(t, error);
+  enum eo_code code = add_fault(text, more ? cells - 1 : cells, what, error);
+  return code ? code : keep_row(text, error);
 }
 
 /* True when nothing but empty cells follows. */
@@ -146,22 +147,22 @@ static enum eo_cell_kind moment_value(struct text *text, int c, double *value)
 {
   const struct eo_cell *cell = &text->cell[c],
                        *date = text->format.date[c] < 0 ? NULL : &text->cell[text->format.date[c]];
-  struct eo_moment m, day;
-  if (!cell->length || !eo_moment_read(cell->text, cell->length, &m))
+  struct eo_moment moment, day;
+  if (!cell->length || !eo_moment_read(cell->text, cell->length, &moment))
     return eo_text_cell_value(cell, text->format.point, value) == EO_CELL_MISSING ? EO_CELL_MISSING : EO_CELL_TEXT;
   if (date && eo_moment_read(date->text, date->length, &day) && day.has_day)
-    m.has_day = true, m.day = day.day;
+    moment.has_day = true, moment.day = day.day;
   if (!text->based[c]) {
     struct eo_clock clock = {.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
-    text->day[c] = m.day;
-    if (m.has_day)
-      clock.epoch = m.day * 86400000000000LL;
+    text->day[c] = moment.day;
+    if (moment.has_day)
+      clock.epoch = moment.day * 86400000000000LL;
     text->format.clock[c] = clock;
   }
-  *value = (double)(m.day - text->day[c]) * EO_MOMENT_DAY + m.seconds;
-  if (text->based[c] && !m.has_day) {
-    double turn = m.minutes ? 3600 : EO_MOMENT_DAY;
-    *value = m.seconds + (double)text->day[c] * turn; /* whole days, or hours, passed so far */
+  *value = (double)(moment.day - text->day[c]) * EO_MOMENT_DAY + moment.seconds;
+  if (text->based[c] && !moment.has_day) {
+    double turn = moment.minutes ? 3600 : EO_MOMENT_DAY;
+    *value = moment.seconds + (double)text->day[c] * turn; /* whole days, or hours, passed so far */
     if (*value < text->before[c] - turn / 2) {
       *value += turn;
       text->day[c]++;
@@ -191,11 +192,11 @@ static enum eo_cell_kind cell_value(struct text *text, int c, double *value)
 /* Converts the cells of the row that was split; returns the place of the first that is no number, -1: none is. */
 static int convert_cells(struct text *text)
 {
-  const struct eo_text_format *f = &text->format;
+  const struct eo_text_format *format = &text->format;
   double *row = next_row(text);
   int odd = -1;
-  for (int c = 0; c < f->cells; c++) {
-    if (f->content[c] == EO_TEXT_WORDS || f->content[c] == EO_TEXT_DATE)
+  for (int c = 0; c < format->cells; c++) {
+    if (format->content[c] == EO_TEXT_WORDS || format->content[c] == EO_TEXT_DATE)
       continue;
     enum eo_cell_kind kind = cell_value(text, c, row++);
     if (kind == EO_CELL_MISSING)
@@ -210,19 +211,19 @@ static int convert_cells(struct text *text)
    without a line end. */
 static enum eo_code read_slowly(struct text *text, const char *line, const char *end, bool last, struct eo_error *error)
 {
-  const struct eo_text_format *f = &text->format;
-  if (eo_text_empty(line, end) || eo_text_comment(line, end, f->separator))
+  const struct eo_text_format *format = &text->format;
+  if (eo_text_empty(line, end) || eo_text_comment(line, end, format->separator))
     return EO_OK;
   const char *at = line;
   int c = 0;
-  while (c < f->cells && eo_text_next_cell(&at, end, f->separator, &text->cell[c]))
+  while (c < format->cells && eo_text_next_cell(&at, end, format->separator, &text->cell[c]))
     c++;
-  if (c < f->cells && last) {
+  if (c < format->cells && last) {
     eo_notes_add(text->notes, "The last row, in line %lld, is cut off and was left out.", (long long)text->line);
     return EO_OK;
   }
-  if (c < f->cells || !only_empty_cells(at, end, f->separator))
-    return odd_length(text, c < f->cells ? c : c + 1, error);
+  if (c < format->cells || !only_empty_cells(at, end, format->separator))
+    return odd_length(text, c < format->cells ? c : c + 1, error);
   enum eo_code code = EO_OK;
   int odd = convert_cells(text);
   if (odd >= 0) {
@@ -242,10 +243,11 @@ static inline const char *skip_blanks(const char *p)
 
 /* Reads a line of nothing but numbers and returns its end; NULL when there is anything else. point and separator are
    constants where it is inlined. */
-static inline __attribute__((always_inline)) const char *read_numbers(const struct eo_text_format *f, const char *p,
-                                                                      char separator, char point, double *row)
+static inline __attribute__((always_inline)) const char *read_numbers(const struct eo_text_format *format,
+                                                                      const char *p, char separator, char point,
+                                                                      double *row)
 {
-  for (int c = 0; c < f->columns; c++) {
+  for (int c = 0; c < format->columns; c++) {
     while (*p == ' ' || (separator != '\t' && *p == '\t'))
       p++;
     p = eo_decimal_read(p, point, row + c);
@@ -253,7 +255,7 @@ static inline __attribute__((always_inline)) const char *read_numbers(const stru
       return NULL;
     while (*p == ' ' && separator != ' ')
       p++;
-    if (c + 1 == f->columns)
+    if (c + 1 == format->columns)
       break;
     if (*p != separator && !(separator == ' ' && *p == '\t'))
       return NULL;
@@ -262,18 +264,18 @@ static inline __attribute__((always_inline)) const char *read_numbers(const stru
   p = skip_blanks(p);
   if (*p == separator)
     p = skip_blanks(p + 1);
-  return *p == f->line_end ? p : NULL;
+  return *p == format->line_end ? p : NULL;
 }
 
-static const char *read_quickly(const struct eo_text_format *f, const char *p, double *row)
+static const char *read_quickly(const struct eo_text_format *format, const char *p, double *row)
 {
-  if (!f->plain || f->separator == f->point || f->line_end != '\n')
+  if (!format->plain || format->separator == format->point || format->line_end != '\n')
     return NULL;
-  if (f->separator == ',')
-    return read_numbers(f, p, ',', '.', row);
-  if (f->point == '.')
-    return read_numbers(f, p, f->separator, '.', row);
-  return read_numbers(f, p, f->separator, ',', row);
+  if (format->separator == ',')
+    return read_numbers(format, p, ',', '.', row);
+  if (format->point == '.')
+    return read_numbers(format, p, format->separator, '.', row);
+  return read_numbers(format, p, format->separator, ',', row);
 }
 
 /* Reads all whole lines of the block and moves what is left to its beginning. */
@@ -304,55 +306,55 @@ static enum eo_code read_lines(struct text *text, size_t from, struct eo_error *
   return EO_OK;
 }
 
-static enum eo_code fill(struct text *t, struct eo_error *error)
+static enum eo_code fill(struct text *text, struct eo_error *error)
 {
   size_t got;
-  enum eo_code code = eo_source_read(t->source, t->block + t->filled, BLOCK - t->filled, &got, error);
-  t->ended = got < BLOCK - t->filled;
-  t->filled += got;
+  enum eo_code code = eo_source_read(text->source, text->block + text->filled, BLOCK - text->filled, &got, error);
+  text->ended = got < BLOCK - text->filled;
+  text->filled += got;
   return code;
 }
 
-static enum eo_code read_rows(struct text *t, struct eo_error *error)
+static enum eo_code read_rows(struct text *text, struct eo_error *error)
 {
-  enum eo_code code = read_lines(t, t->format.first_byte, error);
-  while (!code && !t->ended) {
-    if (eo_progress_report(t->progress, "rig file", eo_source_fraction(t->source)))
+  enum eo_code code = read_lines(text, text->format.first_byte, error);
+  while (!code && !text->ended) {
+    if (eo_progress_report(text->progress, "rig file", eo_source_fraction(text->source)))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
-    code = fill(t, error);
+    code = fill(text, error);
     if (!code)
-      code = read_lines(t, 0, error);
+      code = read_lines(text, 0, error);
   }
-  return code ? code : flush(t, error);
+  return code ? code : flush(text, error);
 }
 
 static enum eo_code make_recording(struct text *text, const char *spool_directory, struct eo_error *error)
 {
-  const struct eo_text_format *f = &text->format;
-  enum eo_code code = eo_recording_new(&text->recording, f->columns, spool_directory, error);
+  const struct eo_text_format *format = &text->format;
+  enum eo_code code = eo_recording_new(&text->recording, format->columns, spool_directory, error);
   if (code)
     return code;
-  for (int c = 0, column = 0; c < f->cells; c++)
-    if (f->content[c] == EO_TEXT_WORDS)
-      eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, f->name[c]);
-    else if (f->content[c] != EO_TEXT_DATE)
-      eo_recording_set_column(text->recording, column++, f->name[c],
-                              f->content[c] == EO_TEXT_MOMENT ? "s" : f->unit[c]);
-  text->batch_rows = BATCH / f->columns;
-  text->line = f->first_line;
+  for (int c = 0, column = 0; c < format->cells; c++)
+    if (format->content[c] == EO_TEXT_WORDS)
+      eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, format->name[c]);
+    else if (format->content[c] != EO_TEXT_DATE)
+      eo_recording_set_column(text->recording, column++, format->name[c],
+                              format->content[c] == EO_TEXT_MOMENT ? "s" : format->unit[c]);
+  text->batch_rows = BATCH / format->columns;
+  text->line = format->first_line;
   return EO_OK;
 }
 
 /* What the heading and the moments say of each column's clock and counts. */
-static void state_columns(const struct text *t)
+static void state_columns(const struct text *text)
 {
-  const struct eo_text_format *f = &t->format;
-  for (int c = 0, column = 0; c < f->cells; c++)
-    if (f->content[c] != EO_TEXT_WORDS && f->content[c] != EO_TEXT_DATE) {
-      eo_recording_set_clock(t->recording, column, &f->clock[c]);
-      eo_recording_set_turn(t->recording, column++, f->turn[c]);
+  const struct eo_text_format *format = &text->format;
+  for (int c = 0, column = 0; c < format->cells; c++)
+    if (format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE) {
+      eo_recording_set_clock(text->recording, column, &format->clock[c]);
+      eo_recording_set_turn(text->recording, column++, format->turn[c]);
     }
-  eo_recording_set_tick(t->recording, f->tick);
+  eo_recording_set_tick(text->recording, format->tick);
 }
 
 static const char *separator_name(char separator)
@@ -366,12 +368,12 @@ static const char *separator_name(char separator)
 
 static void note_format(const struct text *text)
 {
-  const struct eo_text_format *f = &text->format;
+  const struct eo_text_format *format = &text->format;
   int64_t rows = eo_recording_rows(text->recording);
   eo_notes_add(text->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.",
-               f->cells, f->cells == 1 ? "" : "s", f->cells == 1 ? "" : " separated by ",
-               f->cells == 1 ? "" : separator_name(f->separator), f->point == ',' ? "comma" : "point", (long long)rows,
-               (long long)f->first_line);
+               format->cells, format->cells == 1 ? "" : "s", format->cells == 1 ? "" : " separated by ",
+               format->cells == 1 ? "" : separator_name(format->separator), format->point == ',' ? "comma" : "point",
+               (long long)rows, (long long)format->first_line);
   if (text->missing)
     eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
                  (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,

@@ -175,21 +175,21 @@ static void name_series(struct eo_tree *tree, const struct eo_leaf *series)
     length = (size_t)(series->path + group - part);
   }
   for (int c = 0; c < series->channels; c++) {
-    struct eo_series *s = &tree->series[series->first + c];
+    struct eo_series *this_series = &tree->series[series->first + c];
     char label[EO_RECORDING_NAME], unit[EO_RECORDING_UNIT];
-    if (*s->name)
-      snprintf(label, sizeof label, "%s", s->name);
+    if (*this_series->name)
+      snprintf(label, sizeof label, "%s", this_series->name);
     else if (series->channels > 1)
       snprintf(label, sizeof label, "%.*s %d", length < 50 ? (int)length : 50, part, c + 1);
     else
       snprintf(label, sizeof label, "%.*s", length < 63 ? (int)length : 63, part);
-    if (*s->unit)
-      memcpy(s->name, label, sizeof label);
+    if (*this_series->unit)
+      memcpy(this_series->name, label, sizeof label);
     else if (series->channels == 1 || tree->own[series->first + c].name_depth >= 0) {
-      eo_unit_split(label, s->name, (int)sizeof s->name, unit, (int)sizeof unit);
-      memcpy(s->unit, unit, sizeof unit);
+      eo_unit_split(label, this_series->name, (int)sizeof this_series->name, unit, (int)sizeof unit);
+      memcpy(this_series->unit, unit, sizeof unit);
     } else
-      memcpy(s->name, label, sizeof label);
+      memcpy(this_series->name, label, sizeof label);
   }
 }
 

@@ -159,23 +159,23 @@ static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const s
     snprintf(key, sizeof key, "%s", eo_tree_base_of(fact->path));
   depth += mine ? 50 : 0;
   const char *unit = unit_named_after(tree, fact);
-  struct eo_stated s = eo_stated_read(key, fact->number,
-                                      !*unit && about_abscissa(fact, outer) ? unit_beside(tree, fact) : unit);
+  struct eo_stated stated = eo_stated_read(key, fact->number,
+                                           !*unit && about_abscissa(fact, outer) ? unit_beside(tree, fact) : unit);
   int member = eo_stated_member(eo_tree_base_of(series->path));
-  if (!s.kind || (s.member >= 0 && member >= 0 && s.member != member))
+  if (!stated.kind || (stated.member >= 0 && member >= 0 && stated.member != member))
     return;
   for (int c = series->first; c < series->first + series->channels; c++) {
     struct eo_own *own = &tree->own[c];
-    if (depth <= own->depth[s.kind])
+    if (depth <= own->depth[stated.kind])
       continue;
     bool direct = depth >= 50 || own->whole;
-    if (s.kind == EO_STATED_SCALE && direct)
-      own->scale = s.value;
-    else if (s.kind == EO_STATED_OFFSET && direct)
-      own->offset = s.value;
-    else if (!eo_series_state(&tree->series[c], &s))
+    if (stated.kind == EO_STATED_SCALE && direct)
+      own->scale = stated.value;
+    else if (stated.kind == EO_STATED_OFFSET && direct)
+      own->offset = stated.value;
+    else if (!eo_series_state(&tree->series[c], &stated))
       continue;
-    own->depth[s.kind] = depth;
+    own->depth[stated.kind] = depth;
   }
 }
 

@@ -34,10 +34,10 @@ struct uff {
   double batch[2 * BATCH];
 };
 
-static enum eo_code new_column(const struct uff *u, struct eo_recording **column, struct eo_error *error)
+static enum eo_code new_column(const struct uff *uff, struct eo_recording **column, struct eo_error *error)
 {
-  enum eo_code code = eo_recording_new(column, 1, u->spool_directory, error);
-  if (!code && u->spool_directory)
+  enum eo_code code = eo_recording_new(column, 1, uff->spool_directory, error);
+  if (!code && uff->spool_directory)
     eo_recording_set_memory(*column, MEMORY);
   return code;
 }
@@ -49,41 +49,41 @@ struct stream {
   const struct eo_uff_header *header;
 };
 
-static enum eo_code next_number(struct stream *s, int64_t taken, double *value, struct eo_error *error)
+static enum eo_code next_number(struct stream *stream, int64_t taken, double *value, struct eo_error *error)
 {
   enum eo_code code;
   for (;;) {
-    while (s->at && *s->at == ' ')
-      s->at++;
-    if (s->at && *s->at)
+    while (stream->at && *stream->at == ' ')
+      stream->at++;
+    if (stream->at && *stream->at)
       break;
-    if (!eo_uff_next(s->lines, error, &code) || eo_uff_is_end(s->lines))
+    if (!eo_uff_next(stream->lines, error, &code) || eo_uff_is_end(stream->lines))
       return code ? code
                   : eo_error_set(error, EO_ERROR_INPUT, "",
                                  "UFF: the data set in line %lld ends in line %lld after %lld of %lld values.",
-                                 (long long)s->header->line, (long long)s->lines->number, (long long)taken,
-                                 (long long)s->header->count);
-    s->at = s->lines->line;
+                                 (long long)stream->header->line, (long long)stream->lines->number, (long long)taken,
+                                 (long long)stream->header->count);
+    stream->at = stream->lines->line;
   }
-  const char *end = eo_decimal_read(s->at, '.', value);
+  const char *end = eo_decimal_read(stream->at, '.', value);
   if (!end)
     return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld, column %d: there is no number.",
-                        (long long)s->lines->number, (int)(s->at - s->lines->line) + 1);
-  s->at = end;
+                        (long long)stream->lines->number, (int)(stream->at - stream->lines->line) + 1);
+  stream->at = end;
   return EO_OK;
 }
 
 /* Reads the numbers of text into column and, for an uneven abscissa, time. */
-static enum eo_code read_text(struct uff *uff, const struct eo_uff_header *h, struct eo_recording *time,
+static enum eo_code read_text(struct uff *uff, const struct eo_uff_header *header, struct eo_recording *time,
                               struct eo_recording *column, struct eo_error *error)
 {
-  struct stream stream = {&uff->lines, NULL, h};
+  struct stream stream = {&uff->lines, NULL, header};
   double *times = uff->batch, *ordinates = uff->batch + BATCH;
-  for (int64_t first = 0; first < h->count; first += BATCH) {
-    int64_t n = h->count - first < BATCH ? h->count - first : BATCH;
+  for (int64_t first = 0; first < header->count; first += BATCH) {
+    int64_t n = header->count - first < BATCH ? header->count - first : BATCH;
     enum eo_code code = EO_OK;
     for (int64_t i = 0; !code && i < n; i++) {
-      if (!h->even)
+      if (!header->even)
         code = next_number(&stream, first + i, &times[i], error);
       if (!code)
         code = next_number(&stream, first + i, &ordinates[i], error);
@@ -98,13 +98,15 @@ static enum eo_code read_text(struct uff *uff, const struct eo_uff_header *h, st
   return EO_OK;
 }
 
-static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+static enum eo_code add_text(struct uff *uff, const struct eo_uff_header *header, int time, int ordinate,
                              struct eo_error *error)
 {
-  enum eo_code code = new_column(u, &u->values[ordinate].column, error);
+  enum eo_code code = new_column(uff, &uff->values[ordinate].column, error);
   if (!code && time >= 0)
-    code = new_column(u, &u->values[time].column, error);
-  return code ? code : read_text(u, h, time >= 0 ? u->values[time].column : NULL, u->values[ordinate].column, error);
+    code = new_column(uff, &uff->values[time].column, error);
+  return code
+             ? code
+             : read_text(uff, header, time >= 0 ? uff->values[time].column : NULL, uff->values[ordinate].column, error);
 }
 
 /* True when the line that ends a data set follows at a place. */
@@ -123,69 +125,71 @@ static bool ends_at(const struct uff *uff, int64_t at)
 }
 
 /* The bytes of a binary data set: as stated, or, where the writer left them at 0, by the number of values. */
-static int64_t count_bytes(const struct uff *u, const struct eo_uff_header *h)
+static int64_t count_bytes(const struct uff *uff, const struct eo_uff_header *header)
 {
-  int64_t size = h->type == 4 ? 8 : 4, single = h->count * (4 + size), equal = h->count * 2 * size;
-  if (h->bytes > 0)
-    return h->bytes;
-  if (h->even)
-    return h->count * size;
-  return ends_at(u, u->lines.at + equal) && !ends_at(u, u->lines.at + single) ? equal : single;
+  int64_t size = header->type == 4 ? 8 : 4, single = header->count * (4 + size), equal = header->count * 2 * size;
+  if (header->bytes > 0)
+    return header->bytes;
+  if (header->even)
+    return header->count * size;
+  return ends_at(uff, uff->lines.at + equal) && !ends_at(uff, uff->lines.at + single) ? equal : single;
 }
 
 /* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */
-static enum eo_code add_binary(struct uff *uff, const struct eo_uff_header *h, int time, int ordinate,
+static enum eo_code add_binary(struct uff *uff, const struct eo_uff_header *header, int time, int ordinate,
                                struct eo_error *error)
 {
-  int size = h->type == 4 ? 8 : 4;
-  int64_t bytes = count_bytes(uff, h);
-  int abscissa = h->even ? 0 : bytes == h->count * (4 + size) ? 4 : size;
-  struct values *v = &uff->values[ordinate];
-  *v = (struct values){.at = uff->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
-  if (bytes < h->count * v->stride || bytes > uff->lines.size - uff->lines.at)
+  int size = header->type == 4 ? 8 : 4;
+  int64_t bytes = count_bytes(uff, header);
+  int abscissa = header->even ? 0 : bytes == header->count * (4 + size) ? 4 : size;
+  struct values *values = &uff->values[ordinate];
+  *values =
+      (struct values){.at = uff->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = header->big};
+  if (bytes < header->count * values->stride || bytes > uff->lines.size - uff->lines.at)
     return eo_error_set(error, EO_ERROR_INPUT, "",
-                        "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
-                        (long long)bytes, (long long)h->count);
+                        "UFF: the binary data set in line %lld has %lld bytes for %lld values.",
+                        (long long)header->line, (long long)bytes, (long long)header->count);
   if (time >= 0)
-    uff->values[time] = (struct values){.at = uff->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
+    uff->values[time] =
+        (struct values){.at = uff->lines.at, .stride = values->stride, .size = abscissa, .big = header->big};
   eo_uff_seek(&uff->lines, uff->lines.at + bytes);
   return EO_OK;
 }
 
-static void name_series(struct eo_series *series, const struct eo_uff_header *h)
+static void name_series(struct eo_series *series, const struct eo_uff_header *header)
 {
-  const char *name = *h->title ? h->title : h->label;
-  eo_series_init(series, "", h->count);
+  const char *name = *header->title ? header->title : header->label;
+  eo_series_init(series, "", header->count);
   int used = snprintf(series->name, sizeof series->name, "%.50s", name);
-  if (h->node)
-    snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", h->node,
-             h->direction);
-  snprintf(series->unit, sizeof series->unit, "%s", h->unit);
-  series->clock.interval = h->even ? h->increment * h->time_scale : 0;
-  series->clock.start = h->even ? h->start * h->time_scale : 0;
+  if (header->node)
+    snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", header->node,
+             header->direction);
+  snprintf(series->unit, sizeof series->unit, "%s", header->unit);
+  series->clock.interval = header->even ? header->increment * header->time_scale : 0;
+  series->clock.start = header->even ? header->start * header->time_scale : 0;
 }
 
 /* Over time and real: an encoder's record. Spectra and the like are passed over. */
-static bool is_record(const struct eo_uff_header *h)
+static bool is_record(const struct eo_uff_header *header)
 {
-  return h->function <= 1 && (h->type == 2 || h->type == 4) && h->abscissa != 18 && h->count > 0 &&
-         (!h->even || h->increment > 0);
+  return header->function <= 1 && (header->type == 2 || header->type == 4) && header->abscissa != 18 &&
+         header->count > 0 && (!header->even || header->increment > 0);
 }
 
-static enum eo_code add_set(struct uff *uff, const struct eo_uff_header *h, struct eo_error *error)
+static enum eo_code add_set(struct uff *uff, const struct eo_uff_header *header, struct eo_error *error)
 {
   int time = -1;
   if (uff->count + 2 > CHANNELS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file has more than %d data sets.", CHANNELS);
-  if (!h->even) {
+  if (!header->even) {
     time = uff->count++;
-    eo_series_init(&uff->series[time], "time", h->count);
-    snprintf(uff->series[time].unit, sizeof uff->series[time].unit, "%s", *h->time_unit ? h->time_unit : "s");
+    eo_series_init(&uff->series[time], "time", header->count);
+    snprintf(uff->series[time].unit, sizeof uff->series[time].unit, "%s", *header->time_unit ? header->time_unit : "s");
   }
   int ordinate = uff->count++;
-  name_series(&uff->series[ordinate], h);
+  name_series(&uff->series[ordinate], header);
   uff->series[ordinate].clock.column = time;
-  return h->binary ? add_binary(uff, h, time, ordinate, error) : add_text(uff, h, time, ordinate, error);
+  return header->binary ? add_binary(uff, header, time, ordinate, error) : add_text(uff, header, time, ordinate, error);
 }
 
 /* The data set whose number stands in the current line, up to the line "    -1" that ends it. */
@@ -228,20 +232,20 @@ static enum eo_code read_sets(struct uff *uff, struct eo_error *error)
   return code;
 }
 
-static enum eo_code read_binary(const struct uff *uff, const struct values *v, int64_t first, int64_t count,
+static enum eo_code read_binary(const struct uff *uff, const struct values *this_values, int64_t first, int64_t count,
                                 double *values, struct eo_error *error)
 {
   unsigned char bytes[PIECE];
-  int64_t most = ((int64_t)PIECE - v->size) / v->stride + 1;
+  int64_t most = ((int64_t)PIECE - this_values->size) / this_values->stride + 1;
   while (count > 0) {
     int64_t n = count < most ? count : most;
-    enum eo_code code = eo_bytes_read(uff->lines.file, v->at + first * v->stride, bytes,
-                                      (size_t)((n - 1) * v->stride + v->size), error);
+    enum eo_code code = eo_bytes_read(uff->lines.file, this_values->at + first * this_values->stride, bytes,
+                                      (size_t)((n - 1) * this_values->stride + this_values->size), error);
     if (code)
       return code;
     for (int64_t i = 0; i < n; i++) {
-      const unsigned char *p = bytes + i * v->stride;
-      *values++ = v->size == 8 ? eo_bytes_double(p, v->big) : eo_bytes_float(p, v->big);
+      const unsigned char *p = bytes + i * this_values->stride;
+      *values++ = this_values->size == 8 ? eo_bytes_double(p, this_values->big) : eo_bytes_float(p, this_values->big);
     }
     first += n;
     count -= n;
@@ -252,10 +256,10 @@ static enum eo_code read_binary(const struct uff *uff, const struct values *v, i
 static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
                                 struct eo_error *error)
 {
-  const struct uff *u = context;
-  const struct values *v = &u->values[series];
-  return v->column ? eo_recording_read(v->column, first, count, values, error)
-                   : read_binary(u, v, first, count, values, error);
+  const struct uff *uff = context;
+  const struct values *this_values = &uff->values[series];
+  return this_values->column ? eo_recording_read(this_values->column, first, count, values, error)
+                             : read_binary(uff, this_values, first, count, values, error);
 }
 
 enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,

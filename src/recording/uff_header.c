@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <strings.h>
 
-static enum eo_code fill(struct eo_uff_lines *l, struct eo_error *error)
+static enum eo_code fill(struct eo_uff_lines *lines, struct eo_error *error)
 {
-  int64_t left = l->size - l->at;
-  l->used = 0;
-  l->filled = left < (int64_t)sizeof l->buffer ? (size_t)left : sizeof l->buffer;
-  return eo_bytes_read(l->file, l->at, l->buffer, l->filled, error);
+  int64_t left = lines->size - lines->at;
+  lines->used = 0;
+  lines->filled = left < (int64_t)sizeof lines->buffer ? (size_t)left : sizeof lines->buffer;
+  return eo_bytes_read(lines->file, lines->at, lines->buffer, lines->filled, error);
 }
 
 bool eo_uff_next(struct eo_uff_lines *lines, struct eo_error *error, enum eo_code *code)
@@ -67,36 +67,36 @@ bool eo_uff_is_end(const struct eo_uff_lines *lines)
 }
 
 /* The columns first .. first + width - 1 of the line, without blanks around; shorter lines have empty fields. */
-static void field(const struct eo_uff_lines *l, size_t first, size_t width, char *text)
+static void field(const struct eo_uff_lines *lines, size_t first, size_t width, char *text)
 {
-  size_t end = first + width < l->length ? first + width : l->length;
-  while (first < end && l->line[first] == ' ')
+  size_t end = first + width < lines->length ? first + width : lines->length;
+  while (first < end && lines->line[first] == ' ')
     first++;
-  while (end > first && l->line[end - 1] == ' ')
+  while (end > first && lines->line[end - 1] == ' ')
     end--;
   size_t n = end > first ? end - first : 0;
-  memcpy(text, l->line + first, n);
+  memcpy(text, lines->line + first, n);
   text[n] = '\0';
 }
 
-static int64_t integer_field(const struct eo_uff_lines *l, size_t first, size_t width)
+static int64_t integer_field(const struct eo_uff_lines *lines, size_t first, size_t width)
 {
   char text[32];
-  field(l, first, width, text);
+  field(lines, first, width, text);
   return strtoll(text, NULL, 10);
 }
 
-static double number_field(const struct eo_uff_lines *l, size_t first, size_t width)
+static double number_field(const struct eo_uff_lines *lines, size_t first, size_t width)
 {
   char text[32];
   double value = 0;
-  field(l, first, width, text);
+  field(lines, first, width, text);
   return eo_decimal_read(text, '.', &value) ? value : 0;
 }
 
-static void text_field(const struct eo_uff_lines *l, size_t first, size_t width, char *text)
+static void text_field(const struct eo_uff_lines *lines, size_t first, size_t width, char *text)
 {
-  field(l, first, width, text);
+  field(lines, first, width, text);
   if (!strcasecmp(text, "NONE"))
     *text = '\0';
 }

@@ -54,13 +54,13 @@ static const char *local(const char *name)
 
 static void XMLCALL take_characters(void *context, const char *text, int length)
 {
-  struct workbook *w = context;
-  if (!w->in_value && !w->in_text)
+  struct workbook *workbook = context;
+  if (!workbook->in_value && !workbook->in_text)
     return;
-  size_t n = (size_t)length < VALUE - 1 - w->length ? (size_t)length : VALUE - 1 - w->length;
-  memcpy(w->value + w->length, text, n);
-  w->length += n;
-  w->value[w->length] = '\0';
+  size_t n = (size_t)length < VALUE - 1 - workbook->length ? (size_t)length : VALUE - 1 - workbook->length;
+  memcpy(workbook->value + workbook->length, text, n);
+  workbook->length += n;
+  workbook->value[workbook->length] = '\0';
 }
 
 static void keep_text(struct workbook *workbook)
@@ -91,19 +91,19 @@ static void keep_text(struct workbook *workbook)
 
 static void XMLCALL begin_text(void *context, const char *name, const char **attributes)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   (void)attributes;
   if (!strcmp(local(name), "si"))
-    w->length = 0, w->value[0] = '\0';
-  w->in_text = !strcmp(local(name), "t");
+    workbook->length = 0, workbook->value[0] = '\0';
+  workbook->in_text = !strcmp(local(name), "t");
 }
 
 static void XMLCALL end_text(void *context, const char *name)
 {
-  struct workbook *w = context;
-  w->in_text = false;
+  struct workbook *workbook = context;
+  workbook->in_text = false;
   if (!strcmp(local(name), "si"))
-    keep_text(w);
+    keep_text(workbook);
 }
 
 /* A format with letters of dates and times outside quotes and brackets shows numbers as dates. */
@@ -136,17 +136,17 @@ static void XMLCALL begin_style(void *context, const char *name, const char **at
 
 static void XMLCALL end_style(void *context, const char *name)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   if (!strcmp(local(name), "cellXfs"))
-    w->in_formats = false;
+    workbook->in_formats = false;
 }
 
 static void XMLCALL begin_book(void *context, const char *name, const char **attributes)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   const char *since = attribute(attributes, "date1904");
   if (!strcmp(local(name), "workbookPr") && since)
-    w->since_1904 = !strcmp(since, "1") || !strcmp(since, "true");
+    workbook->since_1904 = !strcmp(since, "1") || !strcmp(since, "true");
 }
 
 static void XMLCALL end_nothing(void *context, const char *name)
@@ -184,12 +184,12 @@ static void XMLCALL begin_cell(void *context, const char *name, const char **att
 }
 
 /* Days since the end of 1899 as a date, a fraction of a day as a time. */
-static void write_date(struct workbook *w, double days)
+static void write_date(struct workbook *workbook, double days)
 {
   if (days >= 1)
-    eo_sheet_text_moment(&w->out, w->column, days - 25569 + (w->since_1904 ? 1462 : 0));
+    eo_sheet_text_moment(&workbook->out, workbook->column, days - 25569 + (workbook->since_1904 ? 1462 : 0));
   else
-    eo_sheet_text_time(&w->out, w->column, days);
+    eo_sheet_text_time(&workbook->out, workbook->column, days);
 }
 
 static void write_cell(struct workbook *workbook)
@@ -208,15 +208,15 @@ static void write_cell(struct workbook *workbook)
 
 static void XMLCALL end_cell(void *context, const char *name)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   const char *element = local(name);
-  w->in_value = w->in_text = false;
+  workbook->in_value = workbook->in_text = false;
   if (!strcmp(element, "c")) {
-    w->numbers += !strcmp(w->type, "n") && w->length > 0;
-    if (w->writing)
-      write_cell(w);
-  } else if (!strcmp(element, "row") && w->writing)
-    eo_sheet_text_row(&w->out);
+    workbook->numbers += !strcmp(workbook->type, "n") && workbook->length > 0;
+    if (workbook->writing)
+      write_cell(workbook);
+  } else if (!strcmp(element, "row") && workbook->writing)
+    eo_sheet_text_row(&workbook->out);
 }
 
 static bool parse(struct workbook *workbook, XML_StartElementHandler begin, XML_EndElementHandler end)
@@ -273,12 +273,12 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
 
 static bool write_best(void *context, struct eo_archive *archive, const char *name)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   (void)archive;
-  if (strcmp(name, w->best))
+  if (strcmp(name, workbook->best))
     return true;
-  w->writing = true;
-  parse(w, begin_cell, end_cell);
+  workbook->writing = true;
+  parse(workbook, begin_cell, end_cell);
   return false;
 }
 

@@ -17,52 +17,53 @@ struct contents {
   char name[EO_RECORDING_NAME * 2], list[160]; /* the last rig file; some names for people */
 };
 
-static enum eo_code damaged(struct eo_archive *a)
+static enum eo_code damaged(struct eo_archive *archive)
 {
-  const char *why = archive_error_string(a->handle);
-  return eo_error_set(a->error, EO_ERROR_INPUT, "", "The zip file cannot be read: %.120s.",
+  const char *why = archive_error_string(archive->handle);
+  return eo_error_set(archive->error, EO_ERROR_INPUT, "", "The zip file cannot be read: %.120s.",
                       why ? why : "it is damaged");
 }
 
-enum eo_code eo_archive_visit(struct eo_archive *a,
+enum eo_code eo_archive_visit(struct eo_archive *this_archive,
                               bool (*visit)(void *context, struct eo_archive *archive, const char *name), void *context)
 {
   struct archive_entry *entry;
   enum eo_code code = EO_OK;
-  a->handle = archive_read_new();
-  if (!a->handle)
-    return eo_error_memory(a->error);
-  archive_read_support_format_zip_seekable(a->handle);
-  if (archive_read_open_filename(a->handle, a->path, EO_ARCHIVE_PIECE) != ARCHIVE_OK)
-    code = damaged(a);
+  this_archive->handle = archive_read_new();
+  if (!this_archive->handle)
+    return eo_error_memory(this_archive->error);
+  archive_read_support_format_zip_seekable(this_archive->handle);
+  if (archive_read_open_filename(this_archive->handle, this_archive->path, EO_ARCHIVE_PIECE) != ARCHIVE_OK)
+    code = damaged(this_archive);
   for (bool more = true; !code && more;) {
-    int state = archive_read_next_header(a->handle, &entry);
+    int state = archive_read_next_header(this_archive->handle, &entry);
     if (state == ARCHIVE_EOF)
       break;
     if (state != ARCHIVE_OK && state != ARCHIVE_WARN)
-      code = damaged(a);
+      code = damaged(this_archive);
     else if (archive_entry_filetype(entry) == AE_IFREG && archive_entry_pathname(entry)) {
-      a->error->code = EO_OK;
-      more = visit(context, a, archive_entry_pathname(entry));
-      code = a->error->code;
+      this_archive->error->code = EO_OK;
+      more = visit(context, this_archive, archive_entry_pathname(entry));
+      code = this_archive->error->code;
     }
   }
-  archive_read_free(a->handle);
-  a->handle = NULL;
+  archive_read_free(this_archive->handle);
+  this_archive->handle = NULL;
   return code;
 }
 
-int64_t eo_archive_read(struct eo_archive *a, void *bytes, size_t size)
+int64_t eo_archive_read(struct eo_archive *archive, void *bytes, size_t size)
 {
-  la_ssize_t got = archive_read_data(a->handle, bytes, size);
+  la_ssize_t got = archive_read_data(archive->handle, bytes, size);
   if (got < 0) {
-    damaged(a);
+    damaged(archive);
     return -1;
   }
-  a->taken += got;
-  if (a->taken > a->limit || (a->taken > EO_SOURCE_FREE && a->taken / EO_SOURCE_EXPANSION > a->bytes)) {
-    eo_error_set(a->error, EO_ERROR_INPUT, "", "The zip file grows to more than %lld MB; that is no measurement.",
-                 (long long)(a->taken >> 20));
+  archive->taken += got;
+  if (archive->taken > archive->limit ||
+      (archive->taken > EO_SOURCE_FREE && archive->taken / EO_SOURCE_EXPANSION > archive->bytes)) {
+    eo_error_set(archive->error, EO_ERROR_INPUT, "", "The zip file grows to more than %lld MB; that is no measurement.",
+                 (long long)(archive->taken >> 20));
     return -1;
   }
   return got;
@@ -116,27 +117,27 @@ static bool copy_file(void *context, struct eo_archive *archive, const char *nam
   return false;
 }
 
-static enum eo_code unpack(struct eo_archive *a, FILE *file, char *name, size_t size)
+static enum eo_code unpack(struct eo_archive *archive, FILE *file, char *name, size_t size)
 {
-  struct contents c = {0};
-  enum eo_code code = eo_archive_visit(a, look, &c);
+  struct contents contents = {0};
+  enum eo_code code = eo_archive_visit(archive, look, &contents);
   if (code)
     return code;
-  if (c.workbook)
-    return eo_workbook_write(a, file, name, size);
-  if (c.opendocument)
-    return eo_opendocument_write(a, file, name, size);
-  if (c.numpy)
-    return eo_error_set(a->error, EO_ERROR_INPUT, "",
+  if (contents.workbook)
+    return eo_workbook_write(archive, file, name, size);
+  if (contents.opendocument)
+    return eo_opendocument_write(archive, file, name, size);
+  if (contents.numpy)
+    return eo_error_set(archive->error, EO_ERROR_INPUT, "",
                         "The file is a NumPy archive (.npz); save the arrays as text or .mat (numpy.savetxt, "
                         "scipy.io.savemat).");
-  if (c.files != 1)
-    return eo_error_set(a->error, EO_ERROR_INPUT, "",
+  if (contents.files != 1)
+    return eo_error_set(archive->error, EO_ERROR_INPUT, "",
                         "The zip file holds %d files (%s%s); upload the one with the recording, or zip it alone.",
-                        c.files, c.list, c.files > 4 ? ", ..." : "");
-  snprintf(name, size, "%s", c.name);
-  struct copy copy = {c.name, file};
-  return eo_archive_visit(a, copy_file, &copy);
+                        contents.files, contents.list, contents.files > 4 ? ", ..." : "");
+  snprintf(name, size, "%s", contents.name);
+  struct copy copy = {contents.name, file};
+  return eo_archive_visit(archive, copy_file, &copy);
 }
 
 enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options *options,

@@ -40,13 +40,13 @@ static void read_triangles(struct eo_case *list, struct eo_flank_modification *f
     int side = eo_case_need(row, "corner") ? eo_case_choice(row, "corner", corners, -1) : -1, face = face_side(row);
     if (side < 0)
       continue;
-    struct eo_triangular_relief *t = &flank->triangular[side][face];
-    if (t->amount != 0)
+    struct eo_triangular_relief *relief = &flank->triangular[side][face];
+    if (relief->amount != 0)
       eo_case_fault(row, "This corner has a triangular relief already.");
-    *t = (struct eo_triangular_relief){.amount = UM * eo_case_number(row, "amount_um"),
-                                       .profile_length = MM * eo_case_number(row, "profile_length_mm"),
-                                       .face_length = MM * eo_case_number(row, "face_length_mm"),
-                                       .exponent = eo_case_number_or(row, "power", 1)};
+    *relief = (struct eo_triangular_relief){.amount = UM * eo_case_number(row, "amount_um"),
+                                            .profile_length = MM * eo_case_number(row, "profile_length_mm"),
+                                            .face_length = MM * eo_case_number(row, "face_length_mm"),
+                                            .exponent = eo_case_number_or(row, "power", 1)};
   }
 }
 

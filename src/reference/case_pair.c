@@ -97,39 +97,39 @@ void eo_case_design(struct eo_case *input, struct eo_design *design)
   design->load_case[0] = (struct eo_load_case){.torque = 1, .speed = 1, .share = 1};
 }
 
-void eo_case_check_geometry(struct eo_verification *v, struct eo_case *output, const struct eo_geometry *g,
-                            double scale, double relative)
+void eo_case_check_geometry(struct eo_verification *verification, struct eo_case *output,
+                            const struct eo_geometry *geometry, double scale, double relative)
 {
   const struct {
     const char *key;
     double value;
-  } row[] = {{"mt", scale * g->transverse_module},
-             {"at", g->transverse_pressure_angle},
-             {"bb", g->base_helix_angle},
-             {"r1", scale * g->reference_radius[0]},
-             {"r2", scale * g->reference_radius[1]},
-             {"rb1", scale * g->base_radius[0]},
-             {"rb2", scale * g->base_radius[1]},
-             {"ra1", scale * g->tip_radius[0]},
-             {"ra2", scale * g->tip_radius[1]},
-             {"rf1", scale * g->root_radius[0]},
-             {"rf2", scale * g->root_radius[1]},
-             {"a", scale * g->centre_distance},
-             {"pbt", scale * g->transverse_base_pitch},
-             {"pbn", scale * g->normal_base_pitch},
-             {"ga", scale * (g->path_end - g->path_start)},
-             {"sA", scale * g->path_start},
-             {"sE", scale * g->path_end},
-             {"eps_a", g->transverse_contact_ratio},
-             {"eps_b", g->overlap_ratio},
-             {"ku", g->rack_factor},
-             {"u_bot", scale * g->rack_bottom},
-             {"u_tip", scale * g->rack_top},
-             {"T1C", scale * g->tangent_length[0]},
-             {"T2C", scale * g->tangent_length[1]},
-             {"awt", g->working_pressure_angle}};
+  } row[] = {{"mt", scale * geometry->transverse_module},
+             {"at", geometry->transverse_pressure_angle},
+             {"bb", geometry->base_helix_angle},
+             {"r1", scale * geometry->reference_radius[0]},
+             {"r2", scale * geometry->reference_radius[1]},
+             {"rb1", scale * geometry->base_radius[0]},
+             {"rb2", scale * geometry->base_radius[1]},
+             {"ra1", scale * geometry->tip_radius[0]},
+             {"ra2", scale * geometry->tip_radius[1]},
+             {"rf1", scale * geometry->root_radius[0]},
+             {"rf2", scale * geometry->root_radius[1]},
+             {"a", scale * geometry->centre_distance},
+             {"pbt", scale * geometry->transverse_base_pitch},
+             {"pbn", scale * geometry->normal_base_pitch},
+             {"ga", scale * (geometry->path_end - geometry->path_start)},
+             {"sA", scale * geometry->path_start},
+             {"sE", scale * geometry->path_end},
+             {"eps_a", geometry->transverse_contact_ratio},
+             {"eps_b", geometry->overlap_ratio},
+             {"ku", geometry->rack_factor},
+             {"u_bot", scale * geometry->rack_bottom},
+             {"u_tip", scale * geometry->rack_top},
+             {"T1C", scale * geometry->tangent_length[0]},
+             {"T2C", scale * geometry->tangent_length[1]},
+             {"awt", geometry->working_pressure_angle}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
-    eo_verify_member(v, output, row[i].key, row[i].value, relative, 0);
+    eo_verify_member(verification, output, row[i].key, row[i].value, relative, 0);
 }
 
 void eo_case_modification(struct eo_case *block, const struct eo_gear_pair *pair, struct eo_flank_modification *flank)

@@ -15,8 +15,8 @@
 void eo_case_design(struct eo_case *input, struct eo_design *design);
 
 /* Compares every member of the block with the geometry: mt, at, bb, r1, ... in lengths of 1/scale metres (1e3: mm). */
-void eo_case_check_geometry(struct eo_verification *v, struct eo_case *output, const struct eo_geometry *geometry,
-                            double scale, double relative);
+void eo_case_check_geometry(struct eo_verification *verification, struct eo_case *output,
+                            const struct eo_geometry *geometry, double scale, double relative);
 
 /* d_tr, d_br, a_m, a_l per mm or with _um and per um; u_ts, u_bs in mm. NULL: none. */
 void eo_case_modification(struct eo_case *block, const struct eo_gear_pair *pair, struct eo_flank_modification *flank);

@@ -28,21 +28,21 @@ struct eo_contact_case {
 
 /* Reads macro.input and every modification, so that none passes with a misspelt key. Errors: what the geometry refuses;
    faults of the file. */
-enum eo_code eo_contact_case_init(struct eo_contact_case *c, struct eo_case *file, struct eo_verification *v,
-                                  struct eo_error *error);
+enum eo_code eo_contact_case_init(struct eo_contact_case *contact_case, struct eo_case *file,
+                                  struct eo_verification *verification, struct eo_error *error);
 
-void eo_contact_case_done(struct eo_contact_case *c);
+void eo_contact_case_done(struct eo_contact_case *contact_case);
 
 /* The modification of that name in the file. where: of the fault when there is none. */
-void eo_contact_case_modification(struct eo_contact_case *c, const char *name, struct eo_case *where,
+void eo_contact_case_modification(struct eo_contact_case *contact_case, const char *name, struct eo_case *where,
                                   struct eo_flank_modification *flank);
 
 /* Both flanks of the pinion: what a case names by "left" and "right", by "mod", or by the first word of its "case" or
    "name". */
-void eo_contact_case_modify(struct eo_contact_case *c, struct eo_case *item, struct eo_design *design);
+void eo_contact_case_modify(struct eo_contact_case *contact_case, struct eo_case *item, struct eo_design *design);
 
 /* [left, right] of a case, where it has the key. */
-void eo_contact_case_ends(struct eo_contact_case *c, struct eo_case *item, const char *key, const double value[2],
-                          double relative, double absolute);
+void eo_contact_case_ends(struct eo_contact_case *contact_case, struct eo_case *item, const char *key,
+                          const double value[2], double relative, double absolute);
 
 #endif

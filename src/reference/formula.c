@@ -23,29 +23,29 @@ struct reader {
 
 enum { DEEPEST = 40 };
 
-static struct value read_sum(struct reader *r);
+static struct value read_sum(struct reader *reader);
 
 static struct value number(double v)
 {
   return (struct value){.size = 1, .element = {v}};
 }
 
-static struct value fail(struct reader *r, const char *fault)
+static struct value fail(struct reader *reader, const char *fault)
 {
-  if (!r->fault) {
-    r->fault = fault;
-    r->fault_at = r->at;
+  if (!reader->fault) {
+    reader->fault = fault;
+    reader->fault_at = reader->at;
   }
   return number(NAN);
 }
 
-static bool take(struct reader *r, char c)
+static bool take(struct reader *reader, char c)
 {
-  while (isspace((unsigned char)*r->at))
-    r->at++;
-  if (*r->at != c)
+  while (isspace((unsigned char)*reader->at))
+    reader->at++;
+  if (*reader->at != c)
     return false;
-  r->at++;
+  reader->at++;
   return true;
 }
 
@@ -65,31 +65,31 @@ static double apply_operator(char op, double a, double b)
   }
 }
 
-static struct value combine(struct reader *r, char op, const struct value *a, const struct value *b)
+static struct value combine(struct reader *reader, char op, const struct value *a, const struct value *b)
 {
   if (a->size != b->size && a->size != 1 && b->size != 1)
-    return fail(r, "vectors of different length meet");
+    return fail(reader, "vectors of different length meet");
   struct value result = {.size = a->size > b->size ? a->size : b->size};
   for (int i = 0; i < result.size; i++)
     result.element[i] = apply_operator(op, a->element[a->size == 1 ? 0 : i], b->element[b->size == 1 ? 0 : i]);
   return result;
 }
 
-static double reduce(const char *name, const struct value *v, bool *known)
+static double reduce(const char *name, const struct value *this_value, bool *known)
 {
   double sum = 0, product = 1, squares = 0, low = INFINITY, high = -INFINITY;
-  for (int i = 0; i < v->size; i++) {
-    sum += v->element[i];
-    product *= v->element[i];
-    squares += v->element[i] * v->element[i];
-    low = fmin(low, v->element[i]);
-    high = fmax(high, v->element[i]);
+  for (int i = 0; i < this_value->size; i++) {
+    sum += this_value->element[i];
+    product *= this_value->element[i];
+    squares += this_value->element[i] * this_value->element[i];
+    low = fmin(low, this_value->element[i]);
+    high = fmax(high, this_value->element[i]);
   }
   const struct {
     const char *name;
     double value;
-  } all[] = {{"sum", sum}, {"mean", sum / v->size}, {"prod", product},
-             {"min", low}, {"max", high},           {"norm", sqrt(squares)}};
+  } all[] = {{"sum", sum},  {"mean", sum / this_value->size}, {"prod", product}, {"min", low},
+             {"max", high}, {"norm", sqrt(squares)}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (strcmp(name, all[i].name) == 0)
       return all[i].value;
@@ -97,7 +97,7 @@ static double reduce(const char *name, const struct value *v, bool *known)
   return NAN;
 }
 
-static struct value apply_function(struct reader *r, const char *name, const struct value *argument)
+static struct value apply_function(struct reader *reader, const char *name, const struct value *argument)
 {
   static const struct {
     const char *name;
@@ -113,30 +113,30 @@ static struct value apply_function(struct reader *r, const char *name, const str
   }
   bool known = true;
   const double reduced = reduce(name, argument, &known);
-  return known ? number(reduced) : fail(r, "there is no such function");
+  return known ? number(reduced) : fail(reader, "there is no such function");
 }
 
-static struct value read_vector(struct reader *r)
+static struct value read_vector(struct reader *reader)
 {
   struct value result = {0};
   do {
-    const struct value element = read_sum(r);
+    const struct value element = read_sum(reader);
     if (result.size == EO_FORMULA_VARIABLES || element.size != 1)
-      return fail(r, "a vector holds up to 64 numbers");
+      return fail(reader, "a vector holds up to 64 numbers");
     result.element[result.size++] = element.element[0];
-  } while (take(r, ','));
-  return take(r, ']') ? result : fail(r, "a ] is missing");
+  } while (take(reader, ','));
+  return take(reader, ']') ? result : fail(reader, "a ] is missing");
 }
 
 /* Where "name = ..." is defined after the expression, or NULL. */
-static const char *find_definition(const struct reader *r, const char *name)
+static const char *find_definition(const struct reader *reader, const char *name)
 {
-  for (const char *p = r->start; (p = strchr(p, '=')); p++) {
+  for (const char *p = reader->start; (p = strchr(p, '=')); p++) {
     const char *end = p;
-    while (end > r->start && isspace((unsigned char)end[-1]))
+    while (end > reader->start && isspace((unsigned char)end[-1]))
       end--;
     const char *begin = end;
-    while (begin > r->start && (isalnum((unsigned char)begin[-1]) || begin[-1] == '_'))
+    while (begin > reader->start && (isalnum((unsigned char)begin[-1]) || begin[-1] == '_'))
       begin--;
     if ((size_t)(end - begin) == strlen(name) && strncmp(begin, name, strlen(name)) == 0)
       return p + 1;
@@ -144,93 +144,93 @@ static const char *find_definition(const struct reader *r, const char *name)
   return NULL;
 }
 
-static struct value read_constant(struct reader *r, const char *name)
+static struct value read_constant(struct reader *reader, const char *name)
 {
-  struct value result = {.size = r->n};
+  struct value result = {.size = reader->n};
   if (strcmp(name, "pi") == 0)
     return number(M_PI);
   if (strcmp(name, "n") == 0)
-    return number(r->n);
-  for (int i = 0; i < r->n; i++)
-    result.element[i] = strcmp(name, "x") == 0 ? r->x[i] : i + 1;
+    return number(reader->n);
+  for (int i = 0; i < reader->n; i++)
+    result.element[i] = strcmp(name, "x") == 0 ? reader->x[i] : i + 1;
   if (strcmp(name, "x") == 0 || strcmp(name, "k") == 0)
     return result;
-  struct reader definition = *r;
-  definition.at = find_definition(r, name);
+  struct reader definition = *reader;
+  definition.at = find_definition(reader, name);
   if (!definition.at)
-    return fail(r, "a name is not defined");
+    return fail(reader, "a name is not defined");
   result = read_sum(&definition);
-  return definition.fault ? fail(r, definition.fault) : result;
+  return definition.fault ? fail(reader, definition.fault) : result;
 }
 
-static struct value read_name(struct reader *r)
+static struct value read_name(struct reader *reader)
 {
   char name[32];
   size_t length = 0;
-  while ((isalnum((unsigned char)*r->at) || *r->at == '_') && length + 1 < sizeof name)
-    name[length++] = *r->at++;
+  while ((isalnum((unsigned char)*reader->at) || *reader->at == '_') && length + 1 < sizeof name)
+    name[length++] = *reader->at++;
   name[length] = '\0';
-  if (!take(r, '('))
-    return read_constant(r, name);
-  const struct value argument = read_sum(r);
-  return take(r, ')') ? apply_function(r, name, &argument) : fail(r, "a ) is missing");
+  if (!take(reader, '('))
+    return read_constant(reader, name);
+  const struct value argument = read_sum(reader);
+  return take(reader, ')') ? apply_function(reader, name, &argument) : fail(reader, "a ) is missing");
 }
 
-static struct value read_atom(struct reader *r)
+static struct value read_atom(struct reader *reader)
 {
-  if (take(r, '(')) {
-    const struct value inner = read_sum(r);
-    return take(r, ')') ? inner : fail(r, "a ) is missing");
+  if (take(reader, '(')) {
+    const struct value inner = read_sum(reader);
+    return take(reader, ')') ? inner : fail(reader, "a ) is missing");
   }
-  if (take(r, '['))
-    return read_vector(r);
-  if (isalpha((unsigned char)*r->at))
-    return read_name(r);
-  if (!isdigit((unsigned char)*r->at) && *r->at != '.')
-    return fail(r, "a number, a name or a bracket is missing");
+  if (take(reader, '['))
+    return read_vector(reader);
+  if (isalpha((unsigned char)*reader->at))
+    return read_name(reader);
+  if (!isdigit((unsigned char)*reader->at) && *reader->at != '.')
+    return fail(reader, "a number, a name or a bracket is missing");
   char *end;
-  const double v = strtod(r->at, &end);
-  r->at = end;
+  const double v = strtod(reader->at, &end);
+  reader->at = end;
   return number(v);
 }
 
-static struct value read_power(struct reader *r)
+static struct value read_power(struct reader *reader)
 {
-  const bool negative = take(r, '-');
-  struct value result = read_atom(r);
-  if (take(r, '^')) {
-    const struct value exponent = read_power(r);
-    result = combine(r, '^', &result, &exponent);
+  const bool negative = take(reader, '-');
+  struct value result = read_atom(reader);
+  if (take(reader, '^')) {
+    const struct value exponent = read_power(reader);
+    result = combine(reader, '^', &result, &exponent);
   }
   const struct value minus_one = number(-1);
-  return negative ? combine(r, '*', &minus_one, &result) : result;
+  return negative ? combine(reader, '*', &minus_one, &result) : result;
 }
 
-static struct value read_product(struct reader *r)
+static struct value read_product(struct reader *reader)
 {
-  struct value result = read_power(r);
+  struct value result = read_power(reader);
   for (;;) {
-    const char op = take(r, '*') ? '*' : take(r, '/') ? '/' : '\0';
+    const char op = take(reader, '*') ? '*' : take(reader, '/') ? '/' : '\0';
     if (!op)
       return result;
-    const struct value right = read_power(r);
-    result = combine(r, op, &result, &right);
+    const struct value right = read_power(reader);
+    result = combine(reader, op, &result, &right);
   }
 }
 
-static struct value read_sum(struct reader *r)
+static struct value read_sum(struct reader *reader)
 {
-  if (++r->depth > DEEPEST)
-    return fail(r, "it is nested too deeply");
-  struct value result = read_product(r);
+  if (++reader->depth > DEEPEST)
+    return fail(reader, "it is nested too deeply");
+  struct value result = read_product(reader);
   for (;;) {
-    const char op = take(r, '+') ? '+' : take(r, '-') ? '-' : '\0';
-    if (!op || r->fault)
+    const char op = take(reader, '+') ? '+' : take(reader, '-') ? '-' : '\0';
+    if (!op || reader->fault)
       break;
-    const struct value right = read_product(r);
-    result = combine(r, op, &result, &right);
+    const struct value right = read_product(reader);
+    result = combine(reader, op, &result, &right);
   }
-  r->depth--;
+  reader->depth--;
   return result;
 }
 
@@ -239,15 +239,15 @@ enum eo_code eo_formula_evaluate(const char *text, const double *x, int n, doubl
   if (n < 1 || n > EO_FORMULA_VARIABLES)
     return eo_error_set(error, EO_ERROR_INPUT, "", "A formula takes 1 to %d variables, not %d.", EO_FORMULA_VARIABLES,
                         n);
-  struct reader r = {.at = text, .start = text, .x = x, .n = n};
-  const struct value result = read_sum(&r);
-  if (!r.fault && result.size != 1)
-    fail(&r, "it is a vector, not a number");
-  if (!r.fault && !take(&r, ',') && !take(&r, ';') && *r.at != '\0')
-    fail(&r, "something is left over");
-  if (r.fault)
+  struct reader reader = {.at = text, .start = text, .x = x, .n = n};
+  const struct value result = read_sum(&reader);
+  if (!reader.fault && result.size != 1)
+    fail(&reader, "it is a vector, not a number");
+  if (!reader.fault && !take(&reader, ',') && !take(&reader, ';') && *reader.at != '\0')
+    fail(&reader, "something is left over");
+  if (reader.fault)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The formula \"%.200s\" cannot be read: %s, at character %d.", text,
-                        r.fault, (int)(r.fault_at - text) + 1);
+                        reader.fault, (int)(reader.fault_at - text) + 1);
   *value = result.element[0];
   return EO_OK;
 }

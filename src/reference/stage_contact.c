@@ -144,9 +144,10 @@ static enum eo_code read_pairs(struct end_output *out, const struct eo_contact_g
       return code;
   }
   for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      out->pair[p->point[i].pair - range[0]].load.value[j] += line_load[p->first + i] * p->length[i];
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++)
+      out->pair[position->point[i].pair - range[0]].load.value[j] += line_load[position->first + i] *
+                                                                     position->length[i];
   }
   return EO_OK;
 }
@@ -156,19 +157,19 @@ static enum eo_code read_points(struct points_output *out, const struct eo_conta
 {
   enum eo_code code = eo_stage_columns(POINT_COLUMNS, out->column, grid->points, error);
   for (int j = 0; j < grid->positions && !code; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++) {
-      double q = line_load[p->first + i];
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++) {
+      double q = line_load[position->first + i];
       const double row[POINT_COLUMNS] = {j,
-                                         p->point[i].pair,
-                                         p->path[i],
-                                         p->point[i].eta,
-                                         gap[p->first + i],
-                                         p->length[i],
+                                         position->point[i].pair,
+                                         position->path[i],
+                                         position->point[i].eta,
+                                         gap[position->first + i],
+                                         position->length[i],
                                          q,
-                                         q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0};
+                                         q > 0 ? eo_loaded_pressure(grid, q, position->radius[i]) : 0};
       for (int k = 0; k < POINT_COLUMNS; k++)
-        out->column[k].value[p->first + i] = row[k];
+        out->column[k].value[position->first + i] = row[k];
     }
   }
   return code;
@@ -177,13 +178,13 @@ static enum eo_code read_points(struct points_output *out, const struct eo_conta
 static void read_position(struct end_output *out, const struct eo_contact_grid *grid, const struct eo_loaded_end *end,
                           int j)
 {
-  const struct eo_contact_position *p = &grid->position[j];
+  const struct eo_contact_position *position = &grid->position[j];
   double line_load = 0, pressure = 0, edge = 0;
-  for (int i = 0; i < p->points; i++) {
-    double q = end->line_load[p->first + i];
+  for (int i = 0; i < position->points; i++) {
+    double q = end->line_load[position->first + i];
     line_load = fmax(line_load, q);
-    pressure = fmax(pressure, q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0);
-    edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i] / end->load[j];
+    pressure = fmax(pressure, q > 0 ? eo_loaded_pressure(grid, q, position->radius[i]) : 0);
+    edge += position->kind[i] == EO_POINT_LINE ? 0 : q * position->length[i] / end->load[j];
   }
   out->column[LINE_LOAD].value[j] = line_load;
   out->column[PRESSURE].value[j] = pressure;

@@ -267,102 +267,103 @@ static enum eo_code check_source(const struct input *given, struct eo_error *err
   return EO_OK;
 }
 
-static enum eo_code make_laws(struct problem *p, const struct input *given, double load, double backlash,
+static enum eo_code make_laws(struct problem *problem, const struct input *given, double load, double backlash,
                               double stiffness[2], struct eo_error *error)
 {
-  enum eo_code code = eo_stage_law_make(&p->law[0], &given->law, load, backlash, "/law", error);
+  enum eo_code code = eo_stage_law_make(&problem->law[0], &given->law, load, backlash, "/law", error);
   if (!code && given->has_right_law)
-    code = eo_stage_law_make(&p->law[1], &given->right_law, load, backlash, "/law_right", error);
+    code = eo_stage_law_make(&problem->law[1], &given->right_law, load, backlash, "/law_right", error);
   else if (!code)
-    code = eo_law_copy(&p->law[1], &p->law[0], error);
+    code = eo_law_copy(&problem->law[1], &problem->law[0], error);
   for (int end = 0; end < 2 && !code; end++)
-    stiffness[end] = eo_stage_law_stiffness(&p->law[end], load);
+    stiffness[end] = eo_stage_law_stiffness(&problem->law[end], load);
   return code;
 }
 
 /* Laws and parameters, given or derived. */
-static enum eo_code make_model(struct problem *p, const struct input *given, struct output *found,
+static enum eo_code make_model(struct problem *problem, const struct input *given, struct output *found,
                                struct eo_error *error)
 {
-  struct explicit_parameters *e = &found->parameters;
+  struct explicit_parameters *explicit_parameters = &found->parameters;
   enum eo_code code = EO_OK;
   if (given->has_parameters) {
-    *e = given->parameters;
-    if (e->fixed)
-      e->of.pinion_axial_stiffness = INFINITY;
-    return make_laws(p, given, eo_dynamics_mesh_load(&e->of, given->torque), 2 * e->half_backlash, found->stiffness,
-                     error);
+    *explicit_parameters = given->parameters;
+    if (explicit_parameters->fixed)
+      explicit_parameters->of.pinion_axial_stiffness = INFINITY;
+    return make_laws(problem, given, eo_dynamics_mesh_load(&explicit_parameters->of, given->torque),
+                     2 * explicit_parameters->half_backlash, found->stiffness, error);
   }
-  p->design = given->design;
-  code = eo_design_complete(&p->design, &p->geometry, error);
+  problem->design = given->design;
+  code = eo_design_complete(&problem->design, &problem->geometry, error);
   if (code)
     return code;
-  int ends = p->design.gear_pair.ends;
-  double load = given->torque / (ends * p->geometry.base_radius[EO_PINION] * cos(p->geometry.base_helix_angle));
-  e->half_backlash = p->design.gear_pair.backlash / 2;
-  code = make_laws(p, given, load, p->design.gear_pair.backlash, found->stiffness, error);
+  int ends = problem->design.gear_pair.ends;
+  double load = given->torque /
+                (ends * problem->geometry.base_radius[EO_PINION] * cos(problem->geometry.base_helix_angle));
+  explicit_parameters->half_backlash = problem->design.gear_pair.backlash / 2;
+  code = make_laws(problem, given, load, problem->design.gear_pair.backlash, found->stiffness, error);
   double mean = ends == 2 ? (found->stiffness[0] + found->stiffness[1]) / 2 : found->stiffness[0];
   return code ? code
-              : eo_dynamics_parameters_init(&e->of, &p->geometry, ends,
-                                            eo_alignment_axial_stiffness(&p->design.alignment), &p->design.supports,
-                                            given->has_right_law, mean, error);
+              : eo_dynamics_parameters_init(&explicit_parameters->of, &problem->geometry, ends,
+                                            eo_alignment_axial_stiffness(&problem->design.alignment),
+                                            &problem->design.supports, given->has_right_law, mean, error);
 }
 
-static void make_load(struct problem *p, const struct input *given)
+static void make_load(struct problem *problem, const struct input *given)
 {
   int cosines = given->axial_cosine.count, sines = given->axial_sine.count;
-  p->load = (struct eo_vibration_case){.torque = given->torque,
-                                       .speed = given->speed,
-                                       .pinion_teeth = given->pinion_teeth ? given->pinion_teeth
-                                                                           : given->design.gear_pair.teeth[EO_PINION],
-                                       .law = {&p->law[0], &p->law[1]},
-                                       .phase_right = -given->stagger,
-                                       .gated = given->gated,
-                                       .axial_order = cosines > sines ? cosines : sines,
-                                       .axial_motion = p->axial};
+  problem->load = (struct eo_vibration_case){
+      .torque = given->torque,
+      .speed = given->speed,
+      .pinion_teeth = given->pinion_teeth ? given->pinion_teeth : given->design.gear_pair.teeth[EO_PINION],
+      .law = {&problem->law[0], &problem->law[1]},
+      .phase_right = -given->stagger,
+      .gated = given->gated,
+      .axial_order = cosines > sines ? cosines : sines,
+      .axial_motion = problem->axial};
   for (int n = 0; n < cosines; n++)
-    p->axial[2 * n + 1] = given->axial_cosine.value[n];
+    problem->axial[2 * n + 1] = given->axial_cosine.value[n];
   for (int n = 0; n < sines; n++)
-    p->axial[2 * n + 2] = given->axial_sine.value[n];
+    problem->axial[2 * n + 2] = given->axial_sine.value[n];
   if (!given->has_impact)
     return;
-  p->load.impact = given->impact.mode;
+  problem->load.impact = given->impact.mode;
   for (int end = 0; end < 2; end++)
-    p->load.pulse[end] = (struct eo_pulse){EO_PULSE_HALF_SINE, given->impact.force[end], given->impact.start[end],
-                                           given->impact.duration[end]};
+    problem->load.pulse[end] = (struct eo_pulse){EO_PULSE_HALF_SINE, given->impact.force[end], given->impact.start[end],
+                                                 given->impact.duration[end]};
 }
 
 static enum eo_code read_spectrum(struct spectrum *out, const struct eo_vibration_solver *solver, int end,
                                   struct eo_error *error)
 {
-  const struct eo_spectrum *s = eo_vibration_spectrum(solver);
-  enum eo_code code = eo_stage_columns(3, &out->deflection_real, s->harmonics, error);
-  for (int n = 0; n < s->harmonics && !code; n++) {
-    double complex x = s->deflection[end][n + 1];
+  const struct eo_spectrum *this_spectrum = eo_vibration_spectrum(solver);
+  enum eo_code code = eo_stage_columns(3, &out->deflection_real, this_spectrum->harmonics, error);
+  for (int n = 0; n < this_spectrum->harmonics && !code; n++) {
+    double complex x = this_spectrum->deflection[end][n + 1];
     out->deflection_real.value[n] = creal(x);
     out->deflection_imaginary.value[n] = cimag(x);
-    out->acceleration.value[n] = cabs(x) * pow((n + 1) * s->frequency, 2);
+    out->acceleration.value[n] = cabs(x) * pow((n + 1) * this_spectrum->frequency, 2);
   }
   return code;
 }
 
 static enum eo_code read_modes(struct output *found, const struct eo_dynamics_model *model, struct eo_error *error)
 {
-  struct eo_dynamics_modes m;
-  enum eo_code code = eo_dynamics_model_modes(model, found->stiffness, &m, error);
+  struct eo_dynamics_modes dynamics_modes;
+  enum eo_code code = eo_dynamics_model_modes(model, found->stiffness, &dynamics_modes, error);
   if (!code)
-    code = eo_stage_copy(&found->frequency, m.n, m.frequency, error);
-  return code ? code : eo_stage_copy(&found->damping_ratio, m.n, m.damping_ratio, error);
+    code = eo_stage_copy(&found->frequency, dynamics_modes.n, dynamics_modes.frequency, error);
+  return code ? code : eo_stage_copy(&found->damping_ratio, dynamics_modes.n, dynamics_modes.damping_ratio, error);
 }
 
-static enum eo_code solve(struct problem *p, const struct input *given, struct eo_vibration_solver *solver,
+static enum eo_code solve(struct problem *problem, const struct input *given, struct eo_vibration_solver *solver,
                           struct output *found, struct eo_error *error)
 {
   bool integrate = given->solver == EO_SOLVER_TIME_INTEGRATION;
   enum eo_code code = eo_vibration_set_model(solver, &found->parameters.of, error);
   if (!code)
-    code = integrate ? eo_vibration_settle_integrated(solver, &p->load, &found->r, error)
-                     : eo_vibration_settle(solver, &p->load, &found->r, error);
+    code = integrate ? eo_vibration_settle_integrated(solver, &problem->load, &found->r, error)
+                     : eo_vibration_settle(solver, &problem->load, &found->r, error);
   if (code)
     return code;
   found->outcome = found->r.outcome;
@@ -387,22 +388,22 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   enum eo_code code = check_source(given, error);
   if (code)
     return code;
-  struct problem *p = calloc(1, sizeof *p);
-  code = p ? make_model(p, given, found, error) : eo_error_memory(error);
+  struct problem *problem = calloc(1, sizeof *problem);
+  code = problem ? make_model(problem, given, found, error) : eo_error_memory(error);
   if (!code)
     code = eo_vibration_new(&solver, given->harmonics, 0, error);
   if (!code) {
-    make_load(p, given);
-    code = solve(p, given, solver, found, error);
+    make_load(problem, given);
+    code = solve(problem, given, solver, found, error);
   }
   if (isinf(found->parameters.of.pinion_axial_stiffness)) { /* the output says it with the flag */
     found->parameters.fixed = 1;
     found->parameters.of.pinion_axial_stiffness = 0;
   }
   eo_vibration_free(solver);
-  for (int end = 0; p && end < 2; end++)
-    eo_law_done(&p->law[end]);
-  free(p);
+  for (int end = 0; problem && end < 2; end++)
+    eo_law_done(&problem->law[end]);
+  free(problem);
   return code;
 }
 

@@ -106,42 +106,39 @@ static const struct eo_field output[] = {
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
 
-static enum eo_code read_end(struct end_output *out, const struct eo_case_result *c, int end, int positions,
+static enum eo_code read_end(struct end_output *out, const struct eo_case_result *case_result, int end, int positions,
                              struct eo_error *error)
 {
-  const struct eo_end_result *e = &c->end[end];
-  *out = (struct end_output){.peak_to_peak = e->transmission_peak, .datum = e->datum, .impact = e->impact};
+  const struct eo_end_result *end_result = &case_result->end[end];
+  *out = (struct end_output){
+      .peak_to_peak = end_result->transmission_peak, .datum = end_result->datum, .impact = end_result->impact};
   for (int i = 0; i < EO_READINGS; i++)
-    out->rms[i] = c->vibration.rms[i][end];
+    out->rms[i] = case_result->vibration.rms[i][end];
   for (int j = 0; j < positions; j++)
-    out->tangent_mean += e->loaded.tangent[j] / positions;
-  enum eo_code code = eo_stage_copy(&out->column[UNLOADED], positions, e->unloaded, error);
-  if (!code)
-    code = eo_stage_copy(&out->column[APPROACH], positions, e->loaded.approach, error);
-  if (!code)
-    code = eo_stage_copy(&out->column[TANGENT], positions, e->loaded.tangent, error);
-  return code;
+    out->tangent_mean += end_result->loaded.tangent[j] / positions;
+  EO_TRY(eo_stage_copy(&out->column[UNLOADED], positions, end_result->unloaded, error));
+  EO_TRY(eo_stage_copy(&out->column[APPROACH], positions, end_result->loaded.approach, error));
+  return eo_stage_copy(&out->column[TANGENT], positions, end_result->loaded.tangent, error);
 }
 
 static enum eo_code read_case(struct case_output *out, const struct eo_evaluation *evaluation, int k,
                               struct eo_error *error)
 {
-  const struct eo_case_result *c = &evaluation->load_case[k];
-  out->load_case = c->load_case;
+  const struct eo_case_result *case_result = &evaluation->load_case[k];
+  out->load_case = case_result->load_case;
   out->raw = evaluation->objective[k];
-  out->mean = c->mean;
-  out->outcome = c->vibration.outcome;
+  out->mean = case_result->mean;
+  out->outcome = case_result->vibration.outcome;
   out->two = evaluation->ends == 2;
   for (int i = 0; i < EO_READINGS; i++)
-    out->rms[i] = c->vibration.rms_pair[i];
+    out->rms[i] = case_result->vibration.rms_pair[i];
   for (int i = 0; i < 2; i++)
-    out->band[i] = c->band[EO_READING_NORMAL][i];
-  enum eo_code code = eo_stage_copy(&out->transmission, evaluation->positions, c->transmission, error);
-  if (!code)
-    code = read_end(&out->left, c, EO_LEFT, evaluation->positions, error);
-  if (!code && out->two)
-    code = read_end(&out->right, c, EO_RIGHT, evaluation->positions, error);
-  return code;
+    out->band[i] = case_result->band[EO_READING_NORMAL][i];
+  EO_TRY(eo_stage_copy(&out->transmission, evaluation->positions, case_result->transmission, error));
+  EO_TRY(read_end(&out->left, case_result, EO_LEFT, evaluation->positions, error));
+  if (out->two)
+    EO_TRY(read_end(&out->right, case_result, EO_RIGHT, evaluation->positions, error));
+  return EO_OK;
 }
 
 static enum eo_code read_evaluation(struct output *out, const struct eo_evaluation *evaluation, struct eo_error *error)

@@ -167,7 +167,7 @@ static enum eo_code run_surface(const void *in, void *out, struct eo_error *erro
   if (!code)
     code = eo_stage_columns(SURFACE_COLUMNS, found->column, rows, error);
   for (int i = 0; i < rows && !code; i++) {
-    struct eo_surface_point p;
+    struct eo_surface_point surface_point;
     double u, v;
     if (given->s.count)
       eo_surface_coordinates(&geometry, given->member, given->s.value[i], given->eta.count ? given->eta.value[i] : 0,
@@ -176,13 +176,13 @@ static enum eo_code run_surface(const void *in, void *out, struct eo_error *erro
       u = given->u.value[i];
       v = given->v.value[i];
     }
-    eo_surface_evaluate(&geometry, given->member, &shape, u, v, &p);
+    eo_surface_evaluate(&geometry, given->member, &shape, u, v, &surface_point);
     found->column[SURFACE_U].value[i] = u;
     found->column[SURFACE_V].value[i] = v;
-    found->column[ROLL].value[i] = p.roll;
+    found->column[ROLL].value[i] = surface_point.roll;
     for (int k = 0; k < 3; k++) {
-      found->column[POSITION + k].value[i] = p.position[k];
-      found->column[NORMAL + k].value[i] = p.normal[k];
+      found->column[POSITION + k].value[i] = surface_point.position[k];
+      found->column[NORMAL + k].value[i] = surface_point.normal[k];
     }
   }
   return code;

@@ -110,13 +110,13 @@ enum eo_code eo_stage_law_make(struct eo_law *out, const struct eo_stage_law *gi
   return eo_law_set_tangent(out, n, given->approach.value, given->tangent.value, nominal, order, -backlash, error);
 }
 
-double eo_stage_law_stiffness(const struct eo_law *l, double load)
+double eo_stage_law_stiffness(const struct eo_law *this_law, double load)
 {
   enum { PHASES = 256 };
   double sum = 0, value[EO_STAGE_LAW_ROWS + 2];
   for (int i = 0; i < PHASES; i++) {
-    eo_law_rows(l, (double)i / PHASES, value);
-    sum += eo_law_force(l, value, eo_law_deflection(l, value, load), 1).slope;
+    eo_law_rows(this_law, (double)i / PHASES, value);
+    sum += eo_law_force(this_law, value, eo_law_deflection(this_law, value, load), 1).slope;
   }
   return sum / PHASES;
 }

@@ -24,16 +24,17 @@ static const struct eo_field kernel[] = {
 };
 const struct eo_table eo_stage_kernel_table = EO_TABLE("kernel", struct eo_stage_kernel, kernel);
 
-struct eo_pair_options eo_stage_pair_options(const struct eo_stage_kernel *k, enum eo_stage_pivot pivot)
+struct eo_pair_options eo_stage_pair_options(const struct eo_stage_kernel *stage_kernel, enum eo_stage_pivot pivot)
 {
-  struct eo_pair_options options = {.cache_directory = *k->cache_directory ? k->cache_directory : NULL,
+  struct eo_pair_options options = {.cache_directory = *stage_kernel->cache_directory ? stage_kernel->cache_directory
+                                                                                      : NULL,
                                     .own_pivots = pivot == EO_PIVOT_MID_FACE};
-  if (k->closed)
-    options.kernel = (struct eo_kernel){.evaluate = eo_closed_form_kernel, .context = &k->form};
+  if (stage_kernel->closed)
+    options.kernel = (struct eo_kernel){.evaluate = eo_closed_form_kernel, .context = &stage_kernel->form};
   return options;
 }
 
-enum eo_code eo_stage_prepare(const struct eo_design *given, const struct eo_stage_kernel *k,
+enum eo_code eo_stage_prepare(const struct eo_design *given, const struct eo_stage_kernel *stage_kernel,
                               struct eo_flexibility **flexibility, struct eo_error *error)
 {
   struct eo_design design = *given;
@@ -43,7 +44,8 @@ enum eo_code eo_stage_prepare(const struct eo_design *given, const struct eo_sta
     return code;
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
   return eo_flexibility_prepare(&geometry, &design.gear_pair, &design.material, &settings,
-                                *k->cache_directory ? k->cache_directory : NULL, NULL, flexibility, error);
+                                *stage_kernel->cache_directory ? stage_kernel->cache_directory : NULL, NULL,
+                                flexibility, error);
 }
 
 /* Phases must lie within one cycle for the curves over it to mean anything. */

@@ -78,23 +78,24 @@ static const struct eo_table output_table = EO_TABLE("the output", struct output
 
 static enum eo_code find_folds(const struct input *given, struct folds *found, struct eo_error *error)
 {
-  struct eo_sdof_folds f;
+  struct eo_sdof_folds sdof_folds;
   int count[2] = {0, 0};
   if (!(given->range.from < given->range.to))
     return eo_error_set(error, EO_ERROR_INPUT, "/folds", "The range of frequencies ends at %g, not above its start %g.",
                         given->range.to, given->range.from);
-  enum eo_code code = eo_sdof_folds(&given->sdof, given->range.from, given->range.to, &f, error);
+  enum eo_code code = eo_sdof_folds(&given->sdof, given->range.from, given->range.to, &sdof_folds, error);
   if (!code)
-    code = eo_stage_columns(1, &found->up, f.count, error);
+    code = eo_stage_columns(1, &found->up, sdof_folds.count, error);
   if (!code)
-    code = eo_stage_columns(1, &found->down, f.count, error);
-  for (int i = 0; i < f.count && !code; i++)
-    (f.going_up[i] ? &found->up : &found->down)->value[count[!f.going_up[i]]++] = f.frequency[i];
+    code = eo_stage_columns(1, &found->down, sdof_folds.count, error);
+  for (int i = 0; i < sdof_folds.count && !code; i++)
+    (sdof_folds.going_up[i] ? &found->up : &found->down)->value[count[!sdof_folds.going_up[i]]++] =
+        sdof_folds.frequency[i];
   if (code)
     return code;
   found->up.count = count[0];
   found->down.count = count[1];
-  found->contact_lost = f.contact_lost;
+  found->contact_lost = sdof_folds.contact_lost;
   return EO_OK;
 }
 

@@ -83,10 +83,10 @@ static void compare(struct output *found)
   int count = 0;
   double sum = 0;
   for (int i = 0; i < found->rows; i++) {
-    struct row *r = &found->row[i];
-    bool both = r->exact.touch == EO_TOUCH_POINT && r->minimum.touch == EO_TOUCH_POINT;
-    r->difference = both ? r->exact.transmission_error - r->minimum.transmission_error : NAN;
-    sum += both ? r->difference : 0;
+    struct row *this_row = &found->row[i];
+    bool both = this_row->exact.touch == EO_TOUCH_POINT && this_row->minimum.touch == EO_TOUCH_POINT;
+    this_row->difference = both ? this_row->exact.transmission_error - this_row->minimum.transmission_error : NAN;
+    sum += both ? this_row->difference : 0;
     count += both;
   }
   found->mean = count ? sum / count : NAN;

@@ -98,17 +98,17 @@ static bool find_input(const struct eo_tolerance_bench *bench, const char *name,
 struct eo_distribution eo_bench_distribution(struct eo_case *object)
 {
   static const char *const types[] = {"normal", "uniform", NULL};
-  struct eo_distribution d = {.cut = INFINITY};
-  d.kind = eo_case_need(object, "type") ? eo_case_choice(object, "type", types, 0) : 0;
-  if (d.kind == EO_DISTRIBUTION_UNIFORM) {
-    d.low = eo_case_number(object, "min");
-    d.high = eo_case_number(object, "max");
-    return d;
+  struct eo_distribution distribution = {.cut = INFINITY};
+  distribution.kind = eo_case_need(object, "type") ? eo_case_choice(object, "type", types, 0) : 0;
+  if (distribution.kind == EO_DISTRIBUTION_UNIFORM) {
+    distribution.low = eo_case_number(object, "min");
+    distribution.high = eo_case_number(object, "max");
+    return distribution;
   }
-  d.mean = eo_case_number(object, "mean");
-  d.sigma = eo_case_number(object, "sigma");
-  d.cut = eo_case_number_or(object, "truncated_at_sigma", INFINITY);
-  return d;
+  distribution.mean = eo_case_number(object, "mean");
+  distribution.sigma = eo_case_number(object, "sigma");
+  distribution.cut = eo_case_number_or(object, "truncated_at_sigma", INFINITY);
+  return distribution;
 }
 
 void eo_bench_read_inputs(struct eo_tolerance_bench *bench, struct eo_case *variables)
@@ -127,18 +127,18 @@ void eo_bench_read_inputs(struct eo_tolerance_bench *bench, struct eo_case *vari
   }
 }
 
-static void read_design(struct eo_case *pair, struct eo_design *d)
+static void read_design(struct eo_case *pair, struct eo_design *design)
 {
   struct eo_case *input = eo_case_need(pair, "input");
-  eo_case_design(input, d);
-  d->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
-  d->gear_pair.bore[EO_PINION] = 0;
-  d->resolution.positions = 64;
-  d->resolution.cells_per_line = 30;
-  d->resolution.tip_edge_contact = false;
-  d->resolution.body = EO_BODY_SECTOR;
-  d->resolution.sector_teeth = 3;
-  d->resolution.neighbour_coupling = false;
+  eo_case_design(input, design);
+  design->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
+  design->gear_pair.bore[EO_PINION] = 0;
+  design->resolution.positions = 64;
+  design->resolution.cells_per_line = 30;
+  design->resolution.tip_edge_contact = false;
+  design->resolution.body = EO_BODY_SECTOR;
+  design->resolution.sector_teeth = 3;
+  design->resolution.neighbour_coupling = false;
 }
 
 static void drop(struct eo_tolerance_bench *bench)
@@ -186,7 +186,7 @@ static enum eo_code prepare(struct eo_tolerance_bench *bench, const char *name, 
 
 static void read_flanks(struct eo_tolerance_bench *bench, struct eo_case *flanks)
 {
-  struct eo_modification *m = &bench->nominal.modification;
+  struct eo_modification *modification = &bench->nominal.modification;
   for (int end = 0; end < bench->ends; end++) {
     struct eo_case *of_end = flanks ? eo_case_find(flanks, end_name[bench->ends == 1 ? 2 : end]) : NULL;
     if (flanks && !of_end)
@@ -195,7 +195,8 @@ static void read_flanks(struct eo_tolerance_bench *bench, struct eo_case *flanks
       eo_case_fault(of_end, "Flanks of this kind of file have terms by name, no grids.");
     for (int member = 0; member < 2; member++)
       eo_case_flank(eo_case_find(of_end, member_name[member]), bench->flank, member, end,
-                    bench->flank == EO_COAST_FLANK ? &m->coast[member][end] : &m->flank[member][end],
+                    bench->flank == EO_COAST_FLANK ? &modification->coast[member][end]
+                                                   : &modification->flank[member][end],
                     &bench->nominal.grids);
   }
 }
@@ -232,9 +233,10 @@ enum eo_code eo_bench_read(struct eo_tolerance_bench *bench, struct eo_case *ite
 static double first_contact(const struct eo_pair *pair, const struct eo_gap_field *field)
 {
   enum { POSITIONS = 8 };
-  const struct eo_geometry *g = &pair->geometry;
-  double pitch = g->transverse_base_pitch, mean = 0, at;
-  double reach = fabs(g->path_start) + fabs(g->path_end) + g->face_width * tan(g->base_helix_angle);
+  const struct eo_geometry *geometry = &pair->geometry;
+  double pitch = geometry->transverse_base_pitch, mean = 0, at;
+  double reach = fabs(geometry->path_start) + fabs(geometry->path_end) +
+                 geometry->face_width * tan(geometry->base_helix_angle);
   int lines = (int)ceil(reach / pitch);
   for (int j = 0; j < POSITIONS; j++) {
     double least = INFINITY;
@@ -246,9 +248,10 @@ static double first_contact(const struct eo_pair *pair, const struct eo_gap_fiel
 }
 
 /* Index deviations common to all teeth close the gap by F cos(alpha_t) cos(beta_b), reference angle. */
-static double index_gap(const struct eo_geometry *g, const double index[2])
+static double index_gap(const struct eo_geometry *geometry, const double index[2])
 {
-  return -(index[EO_PINION] + index[EO_GEAR]) * cos(g->transverse_pressure_angle) * cos(g->base_helix_angle);
+  return -(index[EO_PINION] + index[EO_GEAR]) * cos(geometry->transverse_pressure_angle) *
+         cos(geometry->base_helix_angle);
 }
 
 static void set_fields(struct eo_tolerance_bench *bench, const struct eo_design *design, const double index[2],
@@ -307,8 +310,8 @@ static void summarise(const struct eo_tolerance_bench *bench, double *output)
 /* The loaded contact of both ends. */
 static bool solve(struct eo_tolerance_bench *bench, const struct eo_gap_field field[2])
 {
-  const struct eo_geometry *g = &bench->pair->geometry;
-  double force = bench->torque / (bench->ends * g->base_radius[EO_PINION] * cos(g->base_helix_angle));
+  const struct eo_geometry *geometry = &bench->pair->geometry;
+  double force = bench->torque / (bench->ends * geometry->base_radius[EO_PINION] * cos(geometry->base_helix_angle));
   struct eo_loaded_half half[2] = {{0}};
   int failures = 0;
   for (int end = 0; end < bench->ends; end++) {

@@ -85,34 +85,34 @@ static void done_check(struct eo_check *check)
   free(check->pointer);
 }
 
-static bool make_room(struct eo_verification *v)
+static bool make_room(struct eo_verification *verification)
 {
-  if (v->count < v->capacity)
+  if (verification->count < verification->capacity)
     return true;
-  int capacity = v->capacity ? 2 * v->capacity : 64;
-  struct eo_check *check = realloc(v->check, (size_t)capacity * sizeof *check);
+  int capacity = verification->capacity ? 2 * verification->capacity : 64;
+  struct eo_check *check = realloc(verification->check, (size_t)capacity * sizeof *check);
   if (!check)
     return false;
-  v->check = check;
-  v->capacity = capacity;
+  verification->check = check;
+  verification->capacity = capacity;
   return true;
 }
 
-static void add(struct eo_verification *v, struct eo_case *where, const char *quantity, double value, double expected,
-                double tolerance, bool pass)
+static void add(struct eo_verification *verification, struct eo_case *where, const char *quantity, double value,
+                double expected, double tolerance, bool pass)
 {
   if (!where) /* needed and not there: a fault already */
     return;
   struct eo_check check = {.value = value, .expected = expected, .tolerance = tolerance, .pass = pass};
-  if (v->failed || !make_room(v) || !name_check(&check, where, quantity)) {
+  if (verification->failed || !make_room(verification) || !name_check(&check, where, quantity)) {
     done_check(&check);
-    v->failed = true;
+    verification->failed = true;
     return;
   }
-  v->check[v->count++] = check;
+  verification->check[verification->count++] = check;
 }
 
-void eo_verify_derived(struct eo_verification *v, struct eo_case *where, const char *quantity, double value,
+void eo_verify_derived(struct eo_verification *verification, struct eo_case *where, const char *quantity, double value,
                        double expected, double tolerance)
 {
   if (isnan(expected)) {
@@ -121,25 +121,25 @@ void eo_verify_derived(struct eo_verification *v, struct eo_case *where, const c
   } else if (!(tolerance > 0 && isfinite(tolerance)))
     eo_case_fault(where, "An expected 0 needs an absolute tolerance or a scale, and this one has none.");
   else
-    add(v, where, quantity, value, expected, tolerance, fabs(value - expected) <= tolerance);
+    add(verification, where, quantity, value, expected, tolerance, fabs(value - expected) <= tolerance);
 }
 
-void eo_verify_number(struct eo_verification *v, struct eo_case *expected, double value, double relative,
+void eo_verify_number(struct eo_verification *verification, struct eo_case *expected, double value, double relative,
                       double absolute)
 {
   if (!expected)
     return;
   double wanted = eo_case_real(expected);
-  eo_verify_derived(v, expected, NULL, value, wanted, fmax(relative * fabs(wanted), absolute));
+  eo_verify_derived(verification, expected, NULL, value, wanted, fmax(relative * fabs(wanted), absolute));
 }
 
-void eo_verify_member(struct eo_verification *v, struct eo_case *object, const char *key, double value, double relative,
-                      double absolute)
+void eo_verify_member(struct eo_verification *verification, struct eo_case *object, const char *key, double value,
+                      double relative, double absolute)
 {
-  eo_verify_number(v, eo_case_find(object, key), value, relative, absolute);
+  eo_verify_number(verification, eo_case_find(object, key), value, relative, absolute);
 }
 
-void eo_verify_exact(struct eo_verification *v, struct eo_case *expected, double value)
+void eo_verify_exact(struct eo_verification *verification, struct eo_case *expected, double value)
 {
   if (!expected)
     return;
@@ -148,47 +148,47 @@ void eo_verify_exact(struct eo_verification *v, struct eo_case *expected, double
   if (wanted != floor(wanted))
     eo_case_fault(expected, "A whole number is expected here.");
   else if (!isnan(wanted))
-    add(v, expected, NULL, value, wanted, 0, value == wanted);
+    add(verification, expected, NULL, value, wanted, 0, value == wanted);
 }
 
-void eo_verify_size(struct eo_verification *v, struct eo_case *list, int count)
+void eo_verify_size(struct eo_verification *verification, struct eo_case *list, int count)
 {
   int size = eo_case_size(list);
   if (list && !eo_case_is_list(list))
     eo_case_fault(list, "A list is expected here.");
   else if (list)
-    add(v, list, "length", count, size, 0, count == size);
+    add(verification, list, "length", count, size, 0, count == size);
 }
 
-void eo_verify_list(struct eo_verification *v, struct eo_case *expected, int count, const double *value, double unit,
-                    double relative, double absolute)
+void eo_verify_list(struct eo_verification *verification, struct eo_case *expected, int count, const double *value,
+                    double unit, double relative, double absolute)
 {
-  eo_verify_size(v, expected, count);
+  eo_verify_size(verification, expected, count);
   for (int i = 0; i < eo_case_size(expected); i++)
-    eo_verify_number(v, eo_case_at(expected, i), i < count ? value[i] * unit : NAN, relative, absolute);
+    eo_verify_number(verification, eo_case_at(expected, i), i < count ? value[i] * unit : NAN, relative, absolute);
 }
 
-void eo_verify_fact(struct eo_verification *v, struct eo_case *where, const char *quantity, bool holds)
+void eo_verify_fact(struct eo_verification *verification, struct eo_case *where, const char *quantity, bool holds)
 {
-  add(v, where, quantity, holds, 1, 0, holds);
+  add(verification, where, quantity, holds, 1, 0, holds);
 }
 
-void eo_verify_diverged(struct eo_verification *v, struct eo_case *where)
-{
-  eo_case_skip(where);
-  add(v, where, "did not converge", NAN, NAN, NAN, false);
-}
-
-void eo_verify_broken(struct eo_verification *v, struct eo_case *where, const struct eo_error *error)
+void eo_verify_diverged(struct eo_verification *verification, struct eo_case *where)
 {
   eo_case_skip(where);
-  add(v, where, "computed at all", NAN, 1, 0, false);
-  if (!v->failed)
-    eo_verify_note(v, "%s could not be computed: %s%s%s", v->check[v->count - 1].label, error->pointer,
-                   *error->pointer ? ": " : "", error->text);
+  add(verification, where, "did not converge", NAN, NAN, NAN, false);
 }
 
-void eo_verify_note(struct eo_verification *v, const char *format, ...)
+void eo_verify_broken(struct eo_verification *verification, struct eo_case *where, const struct eo_error *error)
+{
+  eo_case_skip(where);
+  add(verification, where, "computed at all", NAN, 1, 0, false);
+  if (!verification->failed)
+    eo_verify_note(verification, "%s could not be computed: %s%s%s", verification->check[verification->count - 1].label,
+                   error->pointer, *error->pointer ? ": " : "", error->text);
+}
+
+void eo_verify_note(struct eo_verification *verification, const char *format, ...)
 {
   char line[600], clean[300];
   va_list arguments;
@@ -196,11 +196,11 @@ void eo_verify_note(struct eo_verification *v, const char *format, ...)
   vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
   eo_text_clean(clean, sizeof clean, line);
-  for (size_t i = 0; i < json_array_size(v->notes); i++)
-    if (strcmp(json_string_value(json_array_get(v->notes, i)), clean) == 0)
+  for (size_t i = 0; i < json_array_size(verification->notes); i++)
+    if (strcmp(json_string_value(json_array_get(verification->notes, i)), clean) == 0)
       return;
-  if (json_array_append_new(v->notes, json_string_nocheck(clean)) != 0)
-    v->failed = true;
+  if (json_array_append_new(verification->notes, json_string_nocheck(clean)) != 0)
+    verification->failed = true;
 }
 
 static void refuse_text(const struct eo_case *value)
@@ -211,7 +211,7 @@ static void refuse_text(const struct eo_case *value)
     refuse_text(eo_case_peek(value, i));
 }
 
-void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, const char *why)
+void eo_verify_uncompared(struct eo_verification *verification, struct eo_case *value, const char *why)
 {
   char pointer[NAME_SIZE];
   if (!value)
@@ -219,7 +219,7 @@ void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, cons
   refuse_text(value);
   eo_case_skip(value);
   eo_case_pointer(value, pointer, sizeof pointer);
-  eo_verify_note(v, "%s is not compared: %s", pointer, why);
+  eo_verify_note(verification, "%s is not compared: %s", pointer, why);
 }
 
 double eo_verify_rounding(double printed)
@@ -231,40 +231,40 @@ double eo_verify_rounding(double printed)
   return 0.5 * pow(10, (exponent ? atoi(exponent + 1) : 0) - decimals);
 }
 
-char *eo_verify_path(const struct eo_verification *v, const char *name)
+char *eo_verify_path(const struct eo_verification *verification, const char *name)
 {
   struct eo_text text = {0};
-  eo_text_print(&text, "%s%s%s", name[0] == '/' ? "" : v->folder, name[0] == '/' ? "" : "/", name);
+  eo_text_print(&text, "%s%s%s", name[0] == '/' ? "" : verification->folder, name[0] == '/' ? "" : "/", name);
   if (text.failed)
     eo_text_done(&text);
   return text.data;
 }
 
-void eo_verification_done(struct eo_verification *v)
+void eo_verification_done(struct eo_verification *verification)
 {
-  for (int i = 0; i < v->count; i++)
-    done_check(&v->check[i]);
-  free(v->check);
-  json_decref(v->notes);
-  *v = (struct eo_verification){0};
+  for (int i = 0; i < verification->count; i++)
+    done_check(&verification->check[i]);
+  free(verification->check);
+  json_decref(verification->notes);
+  *verification = (struct eo_verification){0};
 }
 
-static enum eo_code run_one(struct eo_verification *v, struct eo_case *item, bool checks, eo_verify_function *run,
-                            void *context, struct eo_error *error)
+static enum eo_code run_one(struct eo_verification *verification, struct eo_case *item, bool checks,
+                            eo_verify_function *run, void *context, struct eo_error *error)
 {
-  int before = v->count;
+  int before = verification->count;
   enum eo_code code = run(context, item, error);
   if (code == EO_ERROR_INPUT || code == EO_ERROR_NUMERIC || code == EO_ERROR_FILE) {
-    eo_verify_broken(v, item, error);
+    eo_verify_broken(verification, item, error);
     code = EO_OK;
   }
-  if (!code && checks && !v->failed && v->count == before && !eo_case_faulty(item))
+  if (!code && checks && !verification->failed && verification->count == before && !eo_case_faulty(item))
     eo_case_fault(item, "Nothing here is checked.");
   return code;
 }
 
-enum eo_code eo_verify_each(struct eo_verification *v, struct eo_case *items, eo_verify_function *run, void *context,
-                            struct eo_error *error)
+enum eo_code eo_verify_each(struct eo_verification *verification, struct eo_case *items, eo_verify_function *run,
+                            void *context, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   if (!items)
@@ -276,7 +276,7 @@ enum eo_code eo_verify_each(struct eo_verification *v, struct eo_case *items, eo
     if (eo_case_key(item) && eo_case_is_commentary(eo_case_key(item)))
       continue;
     eo_case_at(items, i);
-    code = run_one(v, item, true, run, context, error);
+    code = run_one(verification, item, true, run, context, error);
     eo_case_sweep(item);
   }
   return code;
@@ -306,8 +306,8 @@ static void refuse_unknown(struct eo_case *file, const struct eo_verify_block *b
   }
 }
 
-enum eo_code eo_verify_blocks(struct eo_verification *v, struct eo_case *file, const struct eo_verify_block *blocks,
-                              void *context, struct eo_error *error)
+enum eo_code eo_verify_blocks(struct eo_verification *verification, struct eo_case *file,
+                              const struct eo_verify_block *blocks, void *context, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   refuse_unknown(file, blocks);
@@ -319,9 +319,9 @@ enum eo_code eo_verify_blocks(struct eo_verification *v, struct eo_case *file, c
     if (block->shape == EO_BLOCK_REMARKS)
       eo_case_remark(file, eo_case_key(member));
     else if (block->shape == EO_BLOCK_WHOLE || block->shape == EO_BLOCK_EITHER)
-      code = run_one(v, member, block->shape == EO_BLOCK_WHOLE, block->run, context, error);
+      code = run_one(verification, member, block->shape == EO_BLOCK_WHOLE, block->run, context, error);
     else if (block->shape == EO_BLOCK_EACH)
-      code = eo_verify_each(v, member, block->run, context, error);
+      code = eo_verify_each(verification, member, block->run, context, error);
   }
   return code;
 }

@@ -30,44 +30,45 @@ struct eo_verification {
 
 /* A computed number beside an expected one. Its tolerance is the larger of relative |expected| and absolute (0: none);
    an expected 0 without an absolute tolerance is a fault of the file. expected NULL: nothing happens. */
-void eo_verify_number(struct eo_verification *v, struct eo_case *expected, double value, double relative,
+void eo_verify_number(struct eo_verification *verification, struct eo_case *expected, double value, double relative,
                       double absolute);
 /* The member of that name, where the case has one. */
-void eo_verify_member(struct eo_verification *v, struct eo_case *object, const char *key, double value, double relative,
-                      double absolute);
+void eo_verify_member(struct eo_verification *verification, struct eo_case *object, const char *key, double value,
+                      double relative, double absolute);
 /* Whole numbers and flags agree exactly or not at all. */
-void eo_verify_exact(struct eo_verification *v, struct eo_case *expected, double value);
+void eo_verify_exact(struct eo_verification *verification, struct eo_case *expected, double value);
 /* A list of numbers, which must be as long as it is expected. value: [count], times unit. */
-void eo_verify_list(struct eo_verification *v, struct eo_case *expected, int count, const double *value, double unit,
-                    double relative, double absolute);
-void eo_verify_size(struct eo_verification *v, struct eo_case *list, int count);
+void eo_verify_list(struct eo_verification *verification, struct eo_case *expected, int count, const double *value,
+                    double unit, double relative, double absolute);
+void eo_verify_size(struct eo_verification *verification, struct eo_case *list, int count);
 /* A number that follows from values of the file, with its name. */
-void eo_verify_derived(struct eo_verification *v, struct eo_case *where, const char *quantity, double value,
+void eo_verify_derived(struct eo_verification *verification, struct eo_case *where, const char *quantity, double value,
                        double expected, double tolerance);
 /* Passes when it holds. quantity: what is then true. */
-void eo_verify_fact(struct eo_verification *v, struct eo_case *where, const char *quantity, bool holds);
+void eo_verify_fact(struct eo_verification *verification, struct eo_case *where, const char *quantity, bool holds);
 /* "did not converge": fails, and what the case expects counts as read. */
-void eo_verify_diverged(struct eo_verification *v, struct eo_case *where);
+void eo_verify_diverged(struct eo_verification *verification, struct eo_case *where);
 /* The computation itself failed where numbers are expected: a check that fails, its reason as a note. */
-void eo_verify_broken(struct eo_verification *v, struct eo_case *where, const struct eo_error *error);
+void eo_verify_broken(struct eo_verification *verification, struct eo_case *where, const struct eo_error *error);
 /* Told once, however often it is said. */
-void eo_verify_note(struct eo_verification *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void eo_verify_note(struct eo_verification *verification, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Numbers for information: they count as read, and a note says that it is not compared, and why. */
-void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, const char *why);
+void eo_verify_uncompared(struct eo_verification *verification, struct eo_case *value, const char *why);
 
 /* Half a unit in the last decimal that a printed number shows: 2.35 -> 0.005. */
 double eo_verify_rounding(double printed);
 
 /* Full path of a file named in the case file; to be freed. NULL without memory. */
-char *eo_verify_path(const struct eo_verification *v, const char *name);
+char *eo_verify_path(const struct eo_verification *verification, const char *name);
 
 /* Reads a case, computes it, adds its checks. */
 typedef enum eo_code eo_verify_function(void *context, struct eo_case *item, struct eo_error *error);
 
 /* Runs every element of a list or member of an object. One that cannot be computed fails alone; one that checks nothing
    or is not fully read is a fault of the file, and nothing is computed after a fault. */
-enum eo_code eo_verify_each(struct eo_verification *v, struct eo_case *items, eo_verify_function *run, void *context,
-                            struct eo_error *error);
+enum eo_code eo_verify_each(struct eo_verification *verification, struct eo_case *items, eo_verify_function *run,
+                            void *context, struct eo_error *error);
 
 enum eo_verify_shape {
   EO_BLOCK_INPUT,   /* read by other blocks or beforehand */
@@ -86,8 +87,8 @@ struct eo_verify_block {
 
 /* Runs the blocks of a file in its order; refuses what is not in the table before anything is computed, and blocks that
    check nothing. */
-enum eo_code eo_verify_blocks(struct eo_verification *v, struct eo_case *file, const struct eo_verify_block *blocks,
-                              void *context, struct eo_error *error);
+enum eo_code eo_verify_blocks(struct eo_verification *verification, struct eo_case *file,
+                              const struct eo_verify_block *blocks, void *context, struct eo_error *error);
 
 /* A kind of case file. Adds its checks; faults of the file are collected in it. */
 struct eo_verify_kind {
@@ -99,31 +100,31 @@ struct eo_verify_kind {
 const struct eo_verify_kind *eo_verify_kind_at(int index);
 
 /* Runs the file as its kind says. Faults of the file are collected in it; an error is what else went wrong. */
-enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
-void eo_verification_done(struct eo_verification *v);
+enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
+void eo_verification_done(struct eo_verification *verification);
 
 /* The lumped model: modes, periodic responses, the single degree of freedom. */
-enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Files of other programs read into designs. */
-enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Designs as drawings state them. */
-enum eo_code eo_verify_gear(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_gear(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Recordings of two encoders with known truth. */
-enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* The optimizer's random numbers, prediction, history, operators and whole runs. */
-enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Drawing dimensions and rating by ISO 6336. */
-enum eo_code eo_verify_rating(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_rating(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Compliance of whole gear bodies and loaded contact on it. */
-enum eo_code eo_verify_ring(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_ring(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* Worked numbers of standards and published reports. */
-enum eo_code eo_verify_standards(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_standards(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 #endif

@@ -48,31 +48,32 @@ static void read_words(struct eo_case *what, struct eo_design *design)
   eo_case_close(input);
 }
 
-static enum eo_code read_file(struct calculix *x, struct eo_error *error)
+static enum eo_code read_file(struct calculix *calculix, struct eo_error *error)
 {
-  struct eo_design *design = &x->design;
-  struct eo_case *what = eo_case_need(x->file, "what"), *input = eo_case_find(x->file, "input");
+  struct eo_design *design = &calculix->design;
+  struct eo_case *what = eo_case_need(calculix->file, "what"), *input = eo_case_find(calculix->file, "input");
   double force = stated(what, "normal force ", NAN);
   if (input)
     eo_case_design(input, design);
   else
     read_words(what, design);
   design->resolution.body = EO_BODY_SECTOR;
-  design->resolution.sector_teeth = eo_case_count(x->file, "boundary", "-tooth sectors", 3);
+  design->resolution.sector_teeth = eo_case_count(calculix->file, "boundary", "-tooth sectors", 3);
   design->resolution.neighbour_coupling = false;
   design->resolution.tip_edge_contact = true;
-  if (eo_case_faulty(x->file))
+  if (eo_case_faulty(calculix->file))
     return EO_OK;
-  enum eo_code code = eo_geometry_init(&x->geometry, &design->gear_pair, error);
+  enum eo_code code = eo_geometry_init(&calculix->geometry, &design->gear_pair, error);
   if (code)
     return code;
-  eo_design_resolve(design, &x->geometry);
-  design->load_case[0].torque = 2 * force * x->geometry.base_radius[0] * cos(x->geometry.base_helix_angle);
+  eo_design_resolve(design, &calculix->geometry);
+  design->load_case[0].torque = 2 * force * calculix->geometry.base_radius[0] *
+                                cos(calculix->geometry.base_helix_angle);
   return EO_OK;
 }
 
 /* The modification of a block: "mod", or none in a block called unmodified. */
-static void read_modification(const struct calculix *x, struct eo_case *block, struct eo_design *design)
+static void read_modification(const struct calculix *calculix, struct eo_case *block, struct eo_design *design)
 {
   static const char *const plain[] = {"unmodified", "unmod"};
   struct eo_case *mod = eo_case_find(block, "mod");
@@ -83,47 +84,47 @@ static void read_modification(const struct calculix *x, struct eo_case *block, s
   if (!named)
     eo_case_fault(block, "The block states no modification \"mod\", and its name does not begin with unmodified.");
   if (eo_case_is_text(mod))
-    eo_case_named_modification(NULL, eo_case_text(mod), mod, &x->design.gear_pair, &flank[EO_LEFT]);
+    eo_case_named_modification(NULL, eo_case_text(mod), mod, &calculix->design.gear_pair, &flank[EO_LEFT]);
   else
-    eo_case_modification(mod, &x->design.gear_pair, &flank[EO_LEFT]);
+    eo_case_modification(mod, &calculix->design.gear_pair, &flank[EO_LEFT]);
   flank[EO_RIGHT] = flank[EO_LEFT];
 }
 
 /* Shares of the pairs that stand near the phases which the keys name, mm. */
-static void check_shares(const struct calculix *x, struct eo_case *shares, const struct eo_pair *pair,
-                         const struct eo_evaluation *r, int j)
+static void check_shares(const struct calculix *calculix, struct eo_case *shares, const struct eo_pair *pair,
+                         const struct eo_evaluation *evaluation, int j)
 {
   const double tolerance = 0.015, near = 1e-2;
-  const struct eo_contact_position *p = &pair->grid->position[j];
-  const double *line_load = r->load_case[0].end[0].loaded.line_load + p->first;
+  const struct eo_contact_position *position = &pair->grid->position[j];
+  const double *line_load = evaluation->load_case[0].end[0].loaded.line_load + position->first;
   const double pitch = pair->geometry.transverse_base_pitch;
   for (int k = 0; k < eo_case_size(shares); k++) {
     struct eo_case *share = eo_case_at(shares, k);
-    double load = 0, place = 1e-3 * eo_case_key_number(share), whole = (place - p->phase) / pitch;
+    double load = 0, place = 1e-3 * eo_case_key_number(share), whole = (place - position->phase) / pitch;
     if (fabs(whole - round(whole)) > near)
-      eo_case_fault(share, "No pair of teeth is in this place at the phase of %g mm.", 1e3 * p->phase);
-    for (int i = 0; i < p->points; i++)
-      if (p->point[i].pair == (int)round(whole))
-        load += line_load[i] * p->length[i];
-    eo_verify_number(x->v, share, load / r->load_case[0].force, 0, tolerance);
+      eo_case_fault(share, "No pair of teeth is in this place at the phase of %g mm.", 1e3 * position->phase);
+    for (int i = 0; i < position->points; i++)
+      if (position->point[i].pair == (int)round(whole))
+        load += line_load[i] * position->length[i];
+    eo_verify_number(calculix->v, share, load / evaluation->load_case[0].force, 0, tolerance);
   }
 }
 
 /* The load, N, at which the position j stands at a prescribed approach (m, normal); NaN when it is not found. The force
    over the approach is smooth and nearly straight, so a few steps along the tangent stiffness do. */
 static double load_at(struct eo_evaluator *evaluator, struct eo_design *design, const struct eo_pair *pair, int j,
-                      double approach, const struct eo_evaluation **r, struct eo_error *error)
+                      double approach, const struct eo_evaluation **evaluation, struct eo_error *error)
 {
   enum { MOST_STEPS = 12 };
   const double close = 1e-10, per_torque = 2 * pair->geometry.base_radius[0] * cos(pair->geometry.base_helix_angle);
   for (int step = 0; step < MOST_STEPS; step++) {
-    if (eo_evaluator_contact(evaluator, design, r, error) || (*r)->load_case[0].contact_failures)
+    if (eo_evaluator_contact(evaluator, design, evaluation, error) || (*evaluation)->load_case[0].contact_failures)
       return NAN;
-    const struct eo_loaded_end *end = &(*r)->load_case[0].end[0].loaded;
+    const struct eo_loaded_end *end = &(*evaluation)->load_case[0].end[0].loaded;
     double missing = approach - end->approach[j];
     if (fabs(missing) < close)
-      return (*r)->load_case[0].force;
-    design->load_case[0].torque = per_torque * fmax((*r)->load_case[0].force + end->tangent[j] * missing, 1);
+      return (*evaluation)->load_case[0].force;
+    design->load_case[0].torque = per_torque * fmax((*evaluation)->load_case[0].force + end->tangent[j] * missing, 1);
   }
   return NAN;
 }
@@ -183,9 +184,10 @@ static double largest_at(const struct eo_root *root, const double *stress, doubl
 static bool is_at_contact(const struct standing *at, int member, int pair, double eta)
 {
   static const double LAYER = 5e-3; /* of a mesh of about 12 layers over the paper's face */
-  const struct eo_geometry *g = &at->pair->geometry;
-  double end = member == EO_PINION ? g->path_start : g->path_end, c = at->p->phase + pair * g->transverse_base_pitch;
-  return fabs(end - c - eta * tan(g->base_helix_angle)) < LAYER * tan(g->base_helix_angle);
+  const struct eo_geometry *geometry = &at->pair->geometry;
+  double end = member == EO_PINION ? geometry->path_start : geometry->path_end,
+         c = at->p->phase + pair * geometry->transverse_base_pitch;
+  return fabs(end - c - eta * tan(geometry->base_helix_angle)) < LAYER * tan(geometry->base_helix_angle);
 }
 
 /* [largest principal stress of the root, MPa; where over the face, mm]. A maximum over the face is flat, so its place
@@ -237,25 +239,26 @@ static enum eo_code check_roots(const struct standing *at, struct eo_case *block
 }
 
 /* Loads and root stresses of single pairs when all stand at one prescribed transverse approach. */
-static enum eo_code check_prescribed(const struct calculix *x, struct eo_case *block, struct eo_evaluator *evaluator,
-                                     const struct eo_pair *pair, const struct eo_design *given, struct eo_error *error)
+static enum eo_code check_prescribed(const struct calculix *calculix, struct eo_case *block,
+                                     struct eo_evaluator *evaluator, const struct eo_pair *pair,
+                                     const struct eo_design *given, struct eo_error *error)
 {
   struct eo_case *loads = eo_case_find(block, "pair_load_N");
   struct eo_design design = *given;
-  const struct eo_evaluation *r;
+  const struct eo_evaluation *evaluation;
   enum eo_code code = EO_OK;
   if (!eo_case_find(block, "Z_prescribed_um"))
     return EO_OK;
   const double approach = 1e-6 * eo_case_number(block, "Z_prescribed_um") * cos(pair->geometry.base_helix_angle);
   const double uncertainty = eo_case_number_or(block, "pair_load_uncertainty_rel", 0);
   for (int j = 0; j < pair->grid->positions && !code; j++) {
-    struct standing at = {x, pair, &pair->grid->position[j], NULL, 0};
-    at.total = load_at(evaluator, &design, pair, j, approach, &r, error);
+    struct standing at = {calculix, pair, &pair->grid->position[j], NULL, 0};
+    at.total = load_at(evaluator, &design, pair, j, approach, &evaluation, error);
     if (isnan(at.total)) {
-      eo_verify_diverged(x->v, block);
+      eo_verify_diverged(calculix->v, block);
       return EO_OK;
     }
-    at.line_load = r->load_case[0].end[0].loaded.line_load + at.p->first;
+    at.line_load = evaluation->load_case[0].end[0].loaded.line_load + at.p->first;
     check_pair_loads(&at, loads, uncertainty);
     code = check_roots(&at, block, error);
   }
@@ -264,7 +267,7 @@ static enum eo_code check_prescribed(const struct calculix *x, struct eo_case *b
 
 /* The level within 3 %; the curve, less the difference of the means, within 0.1 um; its sampled range as the two
    curves' extremes may each be out. */
-static void check_transmission(const struct calculix *x, struct eo_case *block, int n, const double *lte)
+static void check_transmission(const struct calculix *calculix, struct eo_case *block, int n, const double *lte)
 {
   const double of_mean = 0.03, of_curve = 0.1;
   double wanted[MOST_PHASES], mean = 0, expected = 0, low = INFINITY, high = -INFINITY;
@@ -277,37 +280,37 @@ static void check_transmission(const struct calculix *x, struct eo_case *block, 
     low = fmin(low, 1e6 * lte[j]);
     high = fmax(high, 1e6 * lte[j]);
   }
-  eo_verify_derived(x->v, list, "mean LTE um", mean, expected, of_mean * fabs(expected));
+  eo_verify_derived(calculix->v, list, "mean LTE um", mean, expected, of_mean * fabs(expected));
   for (int j = 0; j < n; j++)
-    eo_verify_number(x->v, eo_case_at(list, j), 1e6 * lte[j] - (mean - expected), 0, of_curve);
-  eo_verify_member(x->v, block, "LTE_mean_um", mean, of_mean, 0);
-  eo_verify_member(x->v, block, "LTE_pp_sampled_um", high - low, 0, 2 * of_curve);
+    eo_verify_number(calculix->v, eo_case_at(list, j), 1e6 * lte[j] - (mean - expected), 0, of_curve);
+  eo_verify_member(calculix->v, block, "LTE_mean_um", mean, of_mean, 0);
+  eo_verify_member(calculix->v, block, "LTE_pp_sampled_um", high - low, 0, 2 * of_curve);
 }
 
-static enum eo_code solve_block(struct calculix *x, struct eo_case *block, struct eo_design *design, int n,
+static enum eo_code solve_block(struct calculix *calculix, struct eo_case *block, struct eo_design *design, int n,
                                 const double *phase, struct eo_error *error)
 {
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&design->resolution);
   struct eo_pair_options options = {.grid = &grid, .phase = phase, .own_pivots = true};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  const struct eo_evaluation *r;
+  const struct eo_evaluation *evaluation;
   struct eo_case *share = eo_case_find(block, "share");
   grid.positions = design->resolution.positions = n;
   enum eo_code code = eo_pair_new(&pair, design, &options, NULL, error);
   if (!code)
     code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_evaluator_contact(evaluator, design, &r, error);
-  if (!code && r->load_case[0].contact_failures)
-    eo_verify_diverged(x->v, block);
+    code = eo_evaluator_contact(evaluator, design, &evaluation, error);
+  if (!code && evaluation->load_case[0].contact_failures)
+    eo_verify_diverged(calculix->v, block);
   else if (!code) {
-    check_transmission(x, block, n, r->load_case[0].transmission);
+    check_transmission(calculix, block, n, evaluation->load_case[0].transmission);
     if (share)
-      eo_verify_size(x->v, share, n);
+      eo_verify_size(calculix->v, share, n);
     for (int j = 0; j < n && j < eo_case_size(share); j++)
-      check_shares(x, eo_case_at(share, j), pair, r, j);
-    code = check_prescribed(x, block, evaluator, pair, design, error);
+      check_shares(calculix, eo_case_at(share, j), pair, evaluation, j);
+    code = check_prescribed(calculix, block, evaluator, pair, design, error);
   }
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
@@ -316,21 +319,21 @@ static enum eo_code solve_block(struct calculix *x, struct eo_case *block, struc
 
 static enum eo_code check_block(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct calculix *x = context;
-  struct eo_design design = x->design;
+  struct calculix *calculix = context;
+  struct eo_design design = calculix->design;
   double phase[MOST_PHASES];
   int n = eo_case_numbers(eo_case_need(block, "phases_mm"), -1, MOST_PHASES, phase);
-  read_modification(x, block, &design);
+  read_modification(calculix, block, &design);
   if (n == 0)
     eo_case_fault(eo_case_find(block, "phases_mm"), "Phases are expected here.");
   if (eo_case_faulty(block))
     return EO_OK;
   for (int j = 0; j < n; j++)
     phase[j] *= 1e-3;
-  return solve_block(x, block, &design, n, phase, error);
+  return solve_block(calculix, block, &design, n, phase, error);
 }
 
-enum eo_code eo_verify_calculix(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_calculix(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   /* Any other key is a block of its own. */
   static const struct eo_verify_block blocks[] = {{"boundary", EO_BLOCK_REMARKS, NULL},
@@ -338,14 +341,14 @@ enum eo_code eo_verify_calculix(struct eo_case *file, struct eo_verification *v,
                                                   {"kind", EO_BLOCK_INPUT, NULL},
                                                   {"*", EO_BLOCK_WHOLE, check_block},
                                                   {NULL, EO_BLOCK_INPUT, NULL}};
-  struct calculix *x = calloc(1, sizeof *x);
-  if (!x)
+  struct calculix *calculix = calloc(1, sizeof *calculix);
+  if (!calculix)
     return eo_error_memory(error);
-  x->file = file;
-  x->v = v;
-  enum eo_code code = read_file(x, error);
+  calculix->file = file;
+  calculix->v = verification;
+  enum eo_code code = read_file(calculix, error);
   if (!code && !eo_case_faulty(file))
-    code = eo_verify_blocks(v, file, blocks, x, error);
-  free(x);
+    code = eo_verify_blocks(verification, file, blocks, calculix, error);
+  free(calculix);
   return code;
 }

@@ -49,23 +49,23 @@ static const char *const end_name[3] = {"left", "right", "single"};
 static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const flexibilities[] = {"closed_form", "fe", NULL};
 
-static void read_pair(struct eo_case *pair, struct eo_design *d)
+static void read_pair(struct eo_case *pair, struct eo_design *design)
 {
   struct eo_case *input = eo_case_need(pair, "input");
-  eo_case_design(input, d);
-  d->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
-  d->gear_pair.bore[EO_PINION] = 0;
-  d->resolution.positions = 64;
-  d->resolution.cells_per_line = 30;
-  d->resolution.tip_edge_contact = false;
-  d->resolution.body = EO_BODY_SECTOR;
-  d->resolution.sector_teeth = 3;
-  d->resolution.neighbour_coupling = false;
+  eo_case_design(input, design);
+  design->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
+  design->gear_pair.bore[EO_PINION] = 0;
+  design->resolution.positions = 64;
+  design->resolution.cells_per_line = 30;
+  design->resolution.tip_edge_contact = false;
+  design->resolution.body = EO_BODY_SECTOR;
+  design->resolution.sector_teeth = 3;
+  design->resolution.neighbour_coupling = false;
 }
 
 static enum eo_code check_pair(void *context, struct eo_case *pair, struct eo_error *error)
 {
-  const struct bench *b = context;
+  const struct bench *bench = context;
   struct eo_case *output = eo_case_find(pair, "check");
   struct eo_design design;
   struct eo_geometry geometry;
@@ -77,8 +77,8 @@ static enum eo_code check_pair(void *context, struct eo_case *pair, struct eo_er
     return EO_OK;
   EO_TRY(eo_geometry_init(&geometry, &design.gear_pair, error));
   if (output)
-    eo_case_check_geometry(b->v, output, &geometry, 1e3, 1e-9);
-  eo_verify_member(b->v, output, "aw", geometry.working_pressure_angle, 1e-9, 0);
+    eo_case_check_geometry(bench->v, output, &geometry, 1e3, 1e-9);
+  eo_verify_member(bench->v, output, "aw", geometry.working_pressure_angle, 1e-9, 0);
   return EO_OK;
 }
 
@@ -90,7 +90,7 @@ static enum eo_code check_pairs(void *context, struct eo_case *pairs, struct eo_
 }
 
 /* Rounded as the standard prints them. */
-static enum eo_code check_tolerance_row(const struct bench *b, struct eo_case *row, struct eo_error *error)
+static enum eo_code check_tolerance_row(const struct bench *bench, struct eo_case *row, struct eo_error *error)
 {
   struct eo_tolerance_input in = {.reference_diameter = 1e-3 * eo_case_number(row, "d_mm"),
                                   .normal_module = 1e-3 * eo_case_number(row, "mn_mm"),
@@ -99,20 +99,26 @@ static enum eo_code check_tolerance_row(const struct bench *b, struct eo_case *r
                                   .grade = eo_case_whole(row, "tolerance_class", 1, 11),
                                   .total_contact_ratio = NAN};
   struct eo_case *rounded = eo_case_need(row, "rounded_um");
-  struct eo_flank_tolerance t;
+  struct eo_flank_tolerance tolerance;
   if (eo_case_faulty(row))
     return EO_OK;
-  EO_TRY(eo_flank_tolerance(&t, EO_ISO1328_2013, &in, error));
+  EO_TRY(eo_flank_tolerance(&tolerance, EO_ISO1328_2013, &in, error));
   const struct {
     const char *key;
     double value;
-  } all[] = {{"f_pT", t.single_pitch},      {"F_pT", t.total_pitch},     {"f_HalphaT", t.profile_slope},
-             {"f_falphaT", t.profile_form}, {"f_HbetaT", t.helix_slope}, {"f_fbetaT", t.helix_form},
-             {"F_alphaT", t.profile_total}, {"F_betaT", t.helix_total},  {"F_rT", t.runout}};
+  } all[] = {{"f_pT", tolerance.single_pitch},
+             {"F_pT", tolerance.total_pitch},
+             {"f_HalphaT", tolerance.profile_slope},
+             {"f_falphaT", tolerance.profile_form},
+             {"f_HbetaT", tolerance.helix_slope},
+             {"f_fbetaT", tolerance.helix_form},
+             {"F_alphaT", tolerance.profile_total},
+             {"F_betaT", tolerance.helix_total},
+             {"F_rT", tolerance.runout}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    eo_verify_member(b->v, rounded, all[i].key, 1e6 * all[i].value, 0, 1e-6);
+    eo_verify_member(bench->v, rounded, all[i].key, 1e6 * all[i].value, 0, 1e-6);
   if (eo_case_find(row, "unrounded_um"))
-    eo_verify_uncompared(b->v, eo_case_find(row, "unrounded_um"),
+    eo_verify_uncompared(bench->v, eo_case_find(row, "unrounded_um"),
                          "tolerances are computed as the standard rounds them");
   return EO_OK;
 }
@@ -134,7 +140,7 @@ static void drop(struct half *half)
 }
 
 /* phase: of mid face ahead of the left half's, m. */
-static enum eo_code prepare_half(struct bench *b, struct half *half, const struct half *wanted,
+static enum eo_code prepare_half(struct bench *bench, struct half *half, const struct half *wanted,
                                  const struct eo_design *design, struct eo_error *error)
 {
   struct eo_design own = *design;
@@ -155,126 +161,129 @@ static enum eo_code prepare_half(struct bench *b, struct half *half, const struc
   struct eo_pair_options options = {.grid = &grid,
                                     .phase = wanted->phase != 0 ? phase : NULL,
                                     .own_pivots = true,
-                                    .tilt_rule = eo_case_tilt_rule(b->file)};
+                                    .tilt_rule = eo_case_tilt_rule(bench->file)};
   if (wanted->flexibility == 0)
-    options.kernel = (struct eo_kernel){eo_closed_form_kernel, &b->form};
+    options.kernel = (struct eo_kernel){eo_closed_form_kernel, &bench->form};
   *half = *wanted;
   EO_TRY(eo_pair_new(&half->pair, &own, &options, NULL, error));
   return eo_loaded_workspace_new(&half->workspace, half->pair->grid, error);
 }
 
-static struct eo_case *end_of(struct eo_case *object, const struct trial *t, int end)
+static struct eo_case *end_of(struct eo_case *object, const struct trial *trial, int end)
 {
-  return object ? eo_case_find(object, end_name[t->ends == 1 ? 2 : end]) : NULL;
+  return object ? eo_case_find(object, end_name[trial->ends == 1 ? 2 : end]) : NULL;
 }
 
 /* How the pinion is held. The constants of the gaps that a file gives are those of its apex offset. */
-static void read_axial(struct trial *t, double lean)
+static void read_axial(struct trial *trial, double lean)
 {
   static const char *const ways[] = {"floating", "fixed", "spring", "single", NULL};
-  struct eo_case *offset = eo_case_find(t->item, "apex_offset_um");
-  int way = eo_case_need(t->item, "pinion_axial") ? eo_case_choice(t->item, "pinion_axial", ways, 0) : 0;
-  double spring = way == 2 ? eo_case_number(t->item, "pinion_axial_stiffness_N_per_m") : 0;
-  t->hold.stiffness = way == 1 ? INFINITY : spring;
+  struct eo_case *offset = eo_case_find(trial->item, "apex_offset_um");
+  int way = eo_case_need(trial->item, "pinion_axial") ? eo_case_choice(trial->item, "pinion_axial", ways, 0) : 0;
+  double spring = way == 2 ? eo_case_number(trial->item, "pinion_axial_stiffness_N_per_m") : 0;
+  trial->hold.stiffness = way == 1 ? INFINITY : spring;
   for (int member = 0; member < 2 && offset; member++)
-    t->design.alignment.apex_offset[member] = 1e-6 * eo_case_number(offset, member_name[member]);
+    trial->design.alignment.apex_offset[member] = 1e-6 * eo_case_number(offset, member_name[member]);
   if (offset)
     eo_case_remark(offset, "definition");
-  struct eo_case *constant = eo_case_find(t->item, "gap_constant_um");
+  struct eo_case *constant = eo_case_find(trial->item, "gap_constant_um");
   for (int end = 0; end < 2 && constant; end++) {
-    double *a = t->design.alignment.apex_offset, sign = t->running.inwards ? -1 : 1;
-    t->constant[end] = 1e-6 * eo_case_element(constant, end);
+    double *a = trial->design.alignment.apex_offset, sign = trial->running.inwards ? -1 : 1;
+    trial->constant[end] = 1e-6 * eo_case_element(constant, end);
     if (offset)
-      eo_verify_number(t->bench->v, eo_case_at(constant, end), end ? 1e6 * sign * lean * (a[0] - a[1]) : 0, 0, 1e-4);
+      eo_verify_number(trial->bench->v, eo_case_at(constant, end), end ? 1e6 * sign * lean * (a[0] - a[1]) : 0, 0,
+                       1e-4);
   }
   if (offset)
-    t->constant[0] = t->constant[1] = 0;
+    trial->constant[0] = trial->constant[1] = 0;
 }
 
-static void read_flanks(struct trial *t)
+static void read_flanks(struct trial *trial)
 {
-  struct eo_case *flanks = eo_case_need(t->item, "flanks");
-  bool coast = t->running.flank == EO_COAST_FLANK;
-  for (int end = 0; end < t->ends; end++) {
-    struct eo_case *of_end = end_of(flanks, t, end);
+  struct eo_case *flanks = eo_case_need(trial->item, "flanks");
+  bool coast = trial->running.flank == EO_COAST_FLANK;
+  for (int end = 0; end < trial->ends; end++) {
+    struct eo_case *of_end = end_of(flanks, trial, end);
     if (!of_end)
       eo_case_fault(flanks, "The flanks of every end are expected here.");
     for (int member = 0; member < 2; member++)
-      eo_case_flank(eo_case_find(of_end, member_name[member]), t->running.flank, member, end,
-                    coast ? &t->design.modification.coast[member][end] : &t->design.modification.flank[member][end],
-                    &t->design.grids);
+      eo_case_flank(eo_case_find(of_end, member_name[member]), trial->running.flank, member, end,
+                    coast ? &trial->design.modification.coast[member][end]
+                          : &trial->design.modification.flank[member][end],
+                    &trial->design.grids);
   }
 }
 
-static enum eo_code read_case(struct trial *t, struct eo_error *error)
+static enum eo_code read_case(struct trial *trial, struct eo_error *error)
 {
   static const char *const flanks[] = {"drive", "coast", NULL};
-  struct bench *b = t->bench;
-  struct eo_case *name = eo_case_need(t->item, "pair"), *errors = eo_case_find(t->item, "shaft_error_deg"),
-                 *widths = eo_case_find(t->item, "face_width_mm");
-  struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(b->file, "pairs"), eo_case_text(name))
+  struct bench *bench = trial->bench;
+  struct eo_case *name = eo_case_need(trial->item, "pair"), *errors = eo_case_find(trial->item, "shaft_error_deg"),
+                 *widths = eo_case_find(trial->item, "face_width_mm");
+  struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(bench->file, "pairs"), eo_case_text(name))
                                                : NULL;
   struct half wanted = {.pair_name = eo_case_is_text(name) ? eo_case_text(name) : "",
-                        .flexibility = eo_case_choice(t->item, "flexibility", flexibilities, 0)};
+                        .flexibility = eo_case_choice(trial->item, "flexibility", flexibilities, 0)};
   if (!pair) {
-    eo_case_fault(name ? name : t->item, "There is no such pair.");
+    eo_case_fault(name ? name : trial->item, "There is no such pair.");
     return EO_OK;
   }
-  read_pair(pair, &t->design);
-  t->design.resolution.positions = wanted.positions = eo_case_whole_or(t->item, "positions_per_cycle", 8, 1024, 64);
-  t->ends = t->design.gear_pair.ends;
-  t->running.flank = eo_case_choice(t->item, "flank_used", flanks, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
-  t->running.inwards = t->running.flank == EO_COAST_FLANK;
-  t->running.in_plane = eo_case_number_or(errors, "inplane", 0) * M_PI / 180;
-  t->running.out_of_plane = eo_case_number_or(errors, "crossing", 0) * M_PI / 180;
-  double width = t->design.gear_pair.face_width,
-         lag = 1e-3 * eo_case_number_or(t->item, "phase_right_minus_left_mm", 0);
-  read_flanks(t);
+  read_pair(pair, &trial->design);
+  trial->design.resolution.positions = wanted.positions = eo_case_whole_or(trial->item, "positions_per_cycle", 8, 1024,
+                                                                           64);
+  trial->ends = trial->design.gear_pair.ends;
+  trial->running.flank = eo_case_choice(trial->item, "flank_used", flanks, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+  trial->running.inwards = trial->running.flank == EO_COAST_FLANK;
+  trial->running.in_plane = eo_case_number_or(errors, "inplane", 0) * M_PI / 180;
+  trial->running.out_of_plane = eo_case_number_or(errors, "crossing", 0) * M_PI / 180;
+  double width = trial->design.gear_pair.face_width,
+         lag = 1e-3 * eo_case_number_or(trial->item, "phase_right_minus_left_mm", 0);
+  read_flanks(trial);
   struct eo_geometry geometry;
-  if (!eo_case_faulty(t->item))
-    EO_TRY(eo_geometry_init(&geometry, &t->design.gear_pair, error));
-  read_axial(t, eo_case_faulty(t->item) ? 0 : sin(geometry.base_helix_angle));
-  for (int end = 0; end < t->ends && !eo_case_faulty(t->item); end++) {
+  if (!eo_case_faulty(trial->item))
+    EO_TRY(eo_geometry_init(&geometry, &trial->design.gear_pair, error));
+  read_axial(trial, eo_case_faulty(trial->item) ? 0 : sin(geometry.base_helix_angle));
+  for (int end = 0; end < trial->ends && !eo_case_faulty(trial->item); end++) {
     wanted.face_width = widths ? 1e-3 * eo_case_number(widths, end_name[end]) : width;
     wanted.phase = end == EO_RIGHT ? lag : 0;
-    if (!eo_case_faulty(t->item))
-      EO_TRY(prepare_half(b, &b->half[end], &wanted, &t->design, error));
+    if (!eo_case_faulty(trial->item))
+      EO_TRY(prepare_half(bench, &bench->half[end], &wanted, &trial->design, error));
   }
   return EO_OK;
 }
 
-static enum eo_code set_gaps(struct trial *t, struct eo_error *error)
+static enum eo_code set_gaps(struct trial *trial, struct eo_error *error)
 {
-  for (int end = 0; end < t->ends; end++) {
-    const struct eo_pair *pair = t->bench->half[end].pair;
+  for (int end = 0; end < trial->ends; end++) {
+    const struct eo_pair *pair = trial->bench->half[end].pair;
     for (int member = 0; member < 2; member++) {
-      struct eo_flank_grid grid = eo_flank_grid_at(&t->design.grids, t->running.flank, member, end);
+      struct eo_flank_grid grid = eo_flank_grid_at(&trial->design.grids, trial->running.flank, member, end);
       if (grid.u_knots)
-        EO_TRY(eo_flank_spline_new(&t->spline[member][end], &grid, error));
+        EO_TRY(eo_flank_spline_new(&trial->spline[member][end], &grid, error));
     }
-    const struct eo_flank_spline *const spline[2] = {t->spline[EO_PINION][end], t->spline[EO_GEAR][end]};
-    eo_meeting_field_init(&t->field[end], pair, &t->design, spline, &t->running, end);
-    t->field[end].offset += t->constant[end];
-    EO_TRY(eo_loaded_gaps_init(&t->gaps[end], pair->grid, error));
-    EO_TRY(eo_loaded_end_init(&t->loaded[end], pair->grid, error));
-    eo_loaded_gaps_set(&t->gaps[end], pair->grid, &t->field[end]);
+    const struct eo_flank_spline *const spline[2] = {trial->spline[EO_PINION][end], trial->spline[EO_GEAR][end]};
+    eo_meeting_field_init(&trial->field[end], pair, &trial->design, spline, &trial->running, end);
+    trial->field[end].offset += trial->constant[end];
+    EO_TRY(eo_loaded_gaps_init(&trial->gaps[end], pair->grid, error));
+    EO_TRY(eo_loaded_end_init(&trial->loaded[end], pair->grid, error));
+    eo_loaded_gaps_set(&trial->gaps[end], pair->grid, &trial->field[end]);
   }
   return EO_OK;
 }
 
 /* Both ends under a torque; returns P of an end. */
-static double solve(struct trial *t, double torque)
+static double solve(struct trial *trial, double torque)
 {
-  const struct eo_geometry *g = &t->bench->half[0].pair->geometry;
-  double force = torque / (t->ends * g->base_radius[EO_PINION] * cos(g->base_helix_angle));
+  const struct eo_geometry *geometry = &trial->bench->half[0].pair->geometry;
+  double force = torque / (trial->ends * geometry->base_radius[EO_PINION] * cos(geometry->base_helix_angle));
   struct eo_loaded_half half[2] = {{0}};
-  for (int end = 0; end < t->ends; end++) {
-    const struct half *own = &t->bench->half[end];
-    half[end] = (struct eo_loaded_half){own->workspace, own->pair->grid, &t->gaps[end]};
-    eo_loaded_solve(own->workspace, own->pair->grid, &t->gaps[end], 1, 1, &force, &t->loaded[end]);
+  for (int end = 0; end < trial->ends; end++) {
+    const struct half *own = &trial->bench->half[end];
+    half[end] = (struct eo_loaded_half){own->workspace, own->pair->grid, &trial->gaps[end]};
+    eo_loaded_solve(own->workspace, own->pair->grid, &trial->gaps[end], 1, 1, &force, &trial->loaded[end]);
   }
-  if (t->ends == 2)
-    eo_loaded_balance(half, 1, &t->hold, 0, force, t->loaded);
+  if (trial->ends == 2)
+    eo_loaded_balance(half, 1, &trial->hold, 0, force, trial->loaded);
   return force;
 }
 
@@ -294,21 +303,21 @@ static struct span span_of(int n, const double *value)
   return span;
 }
 
-static double relative(const struct trial *t, const char *key, double usual)
+static double relative(const struct trial *trial, const char *key, double usual)
 {
-  return eo_case_relative_or(t->tolerance, key, usual);
+  return eo_case_relative_or(trial->tolerance, key, usual);
 }
 
-static double absolute(const struct trial *t, const char *key, double usual)
+static double absolute(const struct trial *trial, const char *key, double usual)
 {
-  return eo_case_absolute_or(t->tolerance, key, usual);
+  return eo_case_absolute_or(trial->tolerance, key, usual);
 }
 
-static void check_ends(const struct trial *t, struct eo_case *row, const char *key, const double value[2], double unit,
-                       double rel, double abs)
+static void check_ends(const struct trial *trial, struct eo_case *row, const char *key, const double value[2],
+                       double unit, double rel, double abs)
 {
   if (eo_case_find(row, key))
-    eo_verify_list(t->bench->v, eo_case_find(row, key), t->ends, value, unit, rel, abs);
+    eo_verify_list(trial->bench->v, eo_case_find(row, key), trial->ends, value, unit, rel, abs);
 }
 
 static double highest_pressure(const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
@@ -322,214 +331,216 @@ static double highest_pressure(const struct eo_contact_grid *grid, const struct 
 }
 
 /* Loads of tooth pairs at some positions, within a share of P. */
-static void check_pair_loads(const struct trial *t, struct eo_case *rows, double force)
+static void check_pair_loads(const struct trial *trial, struct eo_case *rows, double force)
 {
-  double within = relative(t, "pair_loads_rel_of_P", 0.003) * force;
+  double within = relative(trial, "pair_loads_rel_of_P", 0.003) * force;
   double share[MOST_POSITIONS];
   for (int i = 0; i < eo_case_size(rows); i++) {
     struct eo_case *row = eo_case_at(rows, i), *hands = eo_case_need(row, "hands");
-    int j = eo_case_whole(row, "position", 0, t->bench->half[0].pair->grid->positions - 1);
-    for (int end = 0; end < t->ends && !eo_case_faulty(row); end++) {
+    int j = eo_case_whole(row, "position", 0, trial->bench->half[0].pair->grid->positions - 1);
+    for (int end = 0; end < trial->ends && !eo_case_faulty(row); end++) {
       struct eo_case *pairs = eo_case_at(hands, end);
-      const struct eo_contact_grid *grid = t->bench->half[end].pair->grid;
+      const struct eo_contact_grid *grid = trial->bench->half[end].pair->grid;
       for (int k = 0; k < eo_case_size(pairs); k++) {
         struct eo_case *expected = eo_case_at(pairs, k);
-        eo_contact_pair_share(grid, &t->loaded[end], (int)eo_case_key_number(expected), share);
-        eo_verify_number(t->bench->v, expected, share[j] * t->loaded[end].load[j], 0, within);
+        eo_contact_pair_share(grid, &trial->loaded[end], (int)eo_case_key_number(expected), share);
+        eo_verify_number(trial->bench->v, expected, share[j] * trial->loaded[end].load[j], 0, within);
       }
     }
   }
 }
 
 /* Transmission errors, transverse, of the ends and of the pair: curve[2] is their mean. */
-static void set_curves(const struct trial *t, double curve[3][MOST_POSITIONS])
+static void set_curves(const struct trial *trial, double curve[3][MOST_POSITIONS])
 {
-  int n = t->bench->half[0].pair->grid->positions, last = t->ends - 1;
-  double normal = cos(t->bench->half[0].pair->geometry.base_helix_angle);
+  int n = trial->bench->half[0].pair->grid->positions, last = trial->ends - 1;
+  double normal = cos(trial->bench->half[0].pair->geometry.base_helix_angle);
   for (int j = 0; j < n; j++) {
-    for (int end = 0; end < t->ends; end++)
-      curve[end][j] = t->loaded[end].approach[j] / normal;
+    for (int end = 0; end < trial->ends; end++)
+      curve[end][j] = trial->loaded[end].approach[j] / normal;
     curve[2][j] = (curve[0][j] + curve[last][j]) / 2;
   }
 }
 
 /* Displacement of the pinion as the files have it, (Z_L - Z_R) / (2 sin beta_b) on either flank. */
-static void check_float(const struct trial *t, struct eo_case *row)
+static void check_float(const struct trial *trial, struct eo_case *row)
 {
-  const struct eo_contact_grid *grid = t->bench->half[0].pair->grid;
-  double z[MOST_POSITIONS], lean = sin(grid->geometry.base_helix_angle), within = absolute(t, "float_um", 0.03);
-  for (int j = 0; j < grid->positions && t->ends == 2; j++)
-    z[j] = (t->loaded[EO_LEFT].approach[j] - t->loaded[EO_RIGHT].approach[j]) / (2 * lean);
-  if (t->ends == 1)
+  const struct eo_contact_grid *grid = trial->bench->half[0].pair->grid;
+  double z[MOST_POSITIONS], lean = sin(grid->geometry.base_helix_angle), within = absolute(trial, "float_um", 0.03);
+  for (int j = 0; j < grid->positions && trial->ends == 2; j++)
+    z[j] = (trial->loaded[EO_LEFT].approach[j] - trial->loaded[EO_RIGHT].approach[j]) / (2 * lean);
+  if (trial->ends == 1)
     return;
   struct span span = span_of(grid->positions, z);
-  eo_verify_member(t->bench->v, row, "float_mean_um", 1e6 * span.mean, 0, within);
-  eo_verify_member(t->bench->v, row, "float_pp_um", 1e6 * (span.high - span.low), 0, within);
+  eo_verify_member(trial->bench->v, row, "float_mean_um", 1e6 * span.mean, 0, within);
+  eo_verify_member(trial->bench->v, row, "float_pp_um", 1e6 * (span.high - span.low), 0, within);
 }
 
-static enum eo_code check_result(struct trial *t, struct eo_case *row)
+static enum eo_code check_result(struct trial *trial, struct eo_case *row)
 {
   static double curve[3][MOST_POSITIONS];
-  struct eo_verification *v = t->bench->v;
-  double force = solve(t, eo_case_number(row, "T_Nm")), swing[2] = {0}, mean[2] = {0}, pressure[2] = {0},
+  struct eo_verification *verification = trial->bench->v;
+  double force = solve(trial, eo_case_number(row, "T_Nm")), swing[2] = {0}, mean[2] = {0}, pressure[2] = {0},
          tangent[2] = {0}, least[2] = {0}, most[2] = {0}, load[2] = {0};
-  int n = t->bench->half[0].pair->grid->positions;
-  double pp_rel = relative(t, "PPLTE_rel", 0.005), pp_um = absolute(t, "PPLTE_um", 0.01),
-         mean_rel = relative(t, "LTE_mean_rel", 0.002), load_rel = relative(t, "load_rel", 0.003);
-  set_curves(t, curve);
-  for (int end = 0; end < t->ends; end++) {
-    struct span lte = span_of(n, curve[end]), loads = span_of(n, t->loaded[end].load);
+  int n = trial->bench->half[0].pair->grid->positions;
+  double pp_rel = relative(trial, "PPLTE_rel", 0.005), pp_um = absolute(trial, "PPLTE_um", 0.01),
+         mean_rel = relative(trial, "LTE_mean_rel", 0.002), load_rel = relative(trial, "load_rel", 0.003);
+  set_curves(trial, curve);
+  for (int end = 0; end < trial->ends; end++) {
+    struct span lte = span_of(n, curve[end]), loads = span_of(n, trial->loaded[end].load);
     swing[end] = lte.high - lte.low;
     mean[end] = lte.mean;
-    pressure[end] = highest_pressure(t->bench->half[end].pair->grid, &t->loaded[end]);
-    tangent[end] = span_of(n, t->loaded[end].tangent).mean;
+    pressure[end] = highest_pressure(trial->bench->half[end].pair->grid, &trial->loaded[end]);
+    tangent[end] = span_of(n, trial->loaded[end].tangent).mean;
     least[end] = loads.low;
     most[end] = loads.high;
     load[end] = loads.mean;
   }
   struct span pair = span_of(n, curve[2]);
-  eo_verify_member(v, row, "PPLTE_um", 1e6 * (pair.high - pair.low), pp_rel, pp_um);
-  eo_verify_member(v, row, "LTE_mean_um", 1e6 * pair.mean, mean_rel, 0);
-  check_ends(t, row, "PPLTE_hands_um", swing, 1e6, pp_rel, pp_um);
-  check_ends(t, row, "LTE_mean_hands_um", mean, 1e6, mean_rel, 0);
-  check_ends(t, row, "max_pressure_MPa", pressure, 1e-6, relative(t, "max_pressure_rel", 0.005), 0);
-  check_ends(t, row, "k_tan_mean_N_um", tangent, 1e-6, relative(t, "k_tan_rel", 0.005), 0);
-  check_ends(t, row, "load_min_N", least, 1, 0, load_rel * force);
-  check_ends(t, row, "load_max_N", most, 1, 0, load_rel * force);
-  check_ends(t, row, "load_mean_N", load, 1, 0, load_rel * force);
-  check_float(t, row);
-  check_pair_loads(t, eo_case_find(row, "pair_loads_N"), force);
-  if (t->loaded[0].failures + t->loaded[1].failures)
-    eo_verify_diverged(v, row);
+  eo_verify_member(verification, row, "PPLTE_um", 1e6 * (pair.high - pair.low), pp_rel, pp_um);
+  eo_verify_member(verification, row, "LTE_mean_um", 1e6 * pair.mean, mean_rel, 0);
+  check_ends(trial, row, "PPLTE_hands_um", swing, 1e6, pp_rel, pp_um);
+  check_ends(trial, row, "LTE_mean_hands_um", mean, 1e6, mean_rel, 0);
+  check_ends(trial, row, "max_pressure_MPa", pressure, 1e-6, relative(trial, "max_pressure_rel", 0.005), 0);
+  check_ends(trial, row, "k_tan_mean_N_um", tangent, 1e-6, relative(trial, "k_tan_rel", 0.005), 0);
+  check_ends(trial, row, "load_min_N", least, 1, 0, load_rel * force);
+  check_ends(trial, row, "load_max_N", most, 1, 0, load_rel * force);
+  check_ends(trial, row, "load_mean_N", load, 1, 0, load_rel * force);
+  check_float(trial, row);
+  check_pair_loads(trial, eo_case_find(row, "pair_loads_N"), force);
+  if (trial->loaded[0].failures + trial->loaded[1].failures)
+    eo_verify_diverged(verification, row);
   return EO_OK;
 }
 
-static void check_curve(struct trial *t, struct eo_case *block)
+static void check_curve(struct trial *trial, struct eo_case *block)
 {
   static double curve[3][MOST_POSITIONS];
   static const char *const key[3] = {"LTE_left_um", "LTE_right_um", "LTE_pair_um"};
-  int n = t->bench->half[0].pair->grid->positions;
-  double force = solve(t, eo_case_number(block, "T_Nm")), within = absolute(t, "curve_um", 0.015);
-  set_curves(t, curve);
+  int n = trial->bench->half[0].pair->grid->positions;
+  double force = solve(trial, eo_case_number(block, "T_Nm")), within = absolute(trial, "curve_um", 0.015);
+  set_curves(trial, curve);
   for (int i = 0; i < 3; i++)
     if (eo_case_find(block, key[i]))
-      eo_verify_list(t->bench->v, eo_case_find(block, key[i]), n, curve[i], 1e6, 0, within);
-  check_pair_loads(t, eo_case_find(block, "pair_loads_N"), force);
+      eo_verify_list(trial->bench->v, eo_case_find(block, key[i]), n, curve[i], 1e6, 0, within);
+  check_pair_loads(trial, eo_case_find(block, "pair_loads_N"), force);
 }
 
-static int end_index(const struct trial *t, struct eo_case *row)
+static int end_index(const struct trial *trial, struct eo_case *row)
 {
   static const char *const names[] = {"left", "right", "single", NULL};
   int end = eo_case_need(row, "hand") ? eo_case_choice(row, "hand", names, -1) : -1;
-  return end == 2 ? 0 : end < t->ends ? end : -1;
+  return end == 2 ? 0 : end < trial->ends ? end : -1;
 }
 
 /* Gaps of the flanks alone: without shaft errors and constants. */
-static void check_gap_points(struct trial *t, struct eo_case *rows)
+static void check_gap_points(struct trial *trial, struct eo_case *rows)
 {
   for (int i = 0; i < eo_case_size(rows); i++) {
-    struct eo_case *row = eo_case_at(rows, i), *gap = eo_case_need(row, "gap_um"), *s = eo_case_need(row, "s_mm"),
-                   *eta = eo_case_need(row, "eta_mm");
-    int end = end_index(t, row), count = eo_case_size(gap);
-    struct eo_gap_field *field = &t->field[end < 0 ? 0 : end];
-    const struct eo_pair *pair = t->bench->half[end < 0 ? 0 : end].pair;
+    struct eo_case *row = eo_case_at(rows, i), *gap = eo_case_need(row, "gap_um"),
+                   *this_case = eo_case_need(row, "s_mm"), *eta = eo_case_need(row, "eta_mm");
+    int end = end_index(trial, row), count = eo_case_size(gap);
+    struct eo_gap_field *field = &trial->field[end < 0 ? 0 : end];
+    const struct eo_pair *pair = trial->bench->half[end < 0 ? 0 : end].pair;
     eo_gap_field_init_shapes(field, &pair->geometry, field->shape, end, 0, 0, 0, pair->grid->corner);
-    eo_verify_size(t->bench->v, s, count);
+    eo_verify_size(trial->bench->v, this_case, count);
     for (int k = 0; k < count && !eo_case_faulty(row); k++)
-      eo_verify_number(
-          t->bench->v, eo_case_at(gap, k),
-          1e6 * eo_gap_field_at(field, 1e-3 * eo_case_element(s, k), 1e-3 * eo_case_element(eta, k), NULL, NULL), 0,
-          absolute(t, "gap_um", 0.02));
+      eo_verify_number(trial->bench->v, eo_case_at(gap, k),
+                       1e6 * eo_gap_field_at(field, 1e-3 * eo_case_element(this_case, k),
+                                             1e-3 * eo_case_element(eta, k), NULL, NULL),
+                       0, absolute(trial, "gap_um", 0.02));
     if (eo_case_find(row, "first_order_um"))
       eo_case_skip(eo_case_find(row, "first_order_um"));
     if (eo_case_find(row, "laid_on_involute_um"))
       eo_case_skip(eo_case_find(row, "laid_on_involute_um"));
-    eo_verify_note(t->bench->v, "first_order_um and laid_on_involute_um are for information and are not compared.");
+    eo_verify_note(trial->bench->v, "first_order_um and laid_on_involute_um are for information and are not compared.");
   }
 }
 
-static void check_interpolation(const struct trial *t, struct eo_case *rows)
+static void check_interpolation(const struct trial *trial, struct eo_case *rows)
 {
   static const char *const members[] = {"pinion", "gear", NULL};
   for (int i = 0; i < eo_case_size(rows); i++) {
-    struct eo_case *row = eo_case_at(rows, i), *delta = eo_case_need(row, "delta_um"), *u = eo_case_need(row, "u_mm"),
-                   *y = eo_case_need(row, "y_mm");
-    int end = end_index(t, row), member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
-    const struct eo_flank_spline *spline = end < 0 || member < 0 ? NULL : t->spline[member][end];
+    struct eo_case *row = eo_case_at(rows, i), *delta = eo_case_need(row, "delta_um"),
+                   *this_case = eo_case_need(row, "u_mm"), *the_case = eo_case_need(row, "y_mm");
+    int end = end_index(trial, row),
+        member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
+    const struct eo_flank_spline *spline = end < 0 || member < 0 ? NULL : trial->spline[member][end];
     if (!spline)
       eo_case_fault(row, "This flank has no grid.");
     for (int k = 0; k < eo_case_size(delta) && !eo_case_faulty(row); k++)
-      eo_verify_number(
-          t->bench->v, eo_case_at(delta, k),
-          1e6 * eo_flank_spline_at(spline, 1e-3 * eo_case_element(u, k), 1e-3 * eo_case_element(y, k), NULL), 0, 1e-4);
+      eo_verify_number(trial->bench->v, eo_case_at(delta, k),
+                       1e6 * eo_flank_spline_at(spline, 1e-3 * eo_case_element(this_case, k),
+                                                1e-3 * eo_case_element(the_case, k), NULL),
+                       0, 1e-4);
   }
 }
 
 /* Deviations tooth by tooth on the flanks of the case. */
-static enum eo_code run_pitch(const struct trial *t, struct eo_error *error)
+static enum eo_code run_pitch(const struct trial *trial, struct eo_error *error)
 {
-  struct eo_pitch_bench bench = {.ends = t->ends, .inwards = t->running.inwards, .hold = t->hold};
-  for (int end = 0; end < t->ends; end++) {
-    bench.grid[end] = t->bench->half[end].pair->grid;
-    bench.gap[end] = t->gaps[end].gap;
+  struct eo_pitch_bench bench = {.ends = trial->ends, .inwards = trial->running.inwards, .hold = trial->hold};
+  for (int end = 0; end < trial->ends; end++) {
+    bench.grid[end] = trial->bench->half[end].pair->grid;
+    bench.gap[end] = trial->gaps[end].gap;
   }
-  return eo_verify_pitch(t->bench->v, t->item, &bench, error);
+  return eo_verify_pitch(trial->bench->v, trial->item, &bench, error);
 }
 
-static enum eo_code run_trial(struct trial *t, struct eo_error *error)
+static enum eo_code run_trial(struct trial *trial, struct eo_error *error)
 {
-  struct eo_case *expected = eo_case_need(t->item, "expected"), *results = eo_case_find(expected, "results");
-  EO_TRY(read_case(t, error));
-  if (eo_case_find(t->item, "discretisation"))
-    eo_case_skip(eo_case_find(t->item, "discretisation"));
-  absolute(t, "gap_um", 1); /* all cases state the same tolerances, whether they use them or not */
-  absolute(t, "float_um", 1);
-  relative(t, "load_rel", 0.5);
+  struct eo_case *expected = eo_case_need(trial->item, "expected"), *results = eo_case_find(expected, "results");
+  EO_TRY(read_case(trial, error));
+  if (eo_case_find(trial->item, "discretisation"))
+    eo_case_skip(eo_case_find(trial->item, "discretisation"));
+  absolute(trial, "gap_um", 1); /* all cases state the same tolerances, whether they use them or not */
+  absolute(trial, "float_um", 1);
+  relative(trial, "load_rel", 0.5);
   static const char *const remarks[] = {"curve_note", "gap_points_note", "interpolation_note"};
   for (int i = 0; i < 3; i++)
     eo_case_remark(expected, remarks[i]);
-  if (eo_case_faulty(t->item))
+  if (eo_case_faulty(trial->item))
     return EO_OK;
-  EO_TRY(set_gaps(t, error));
-  if (eo_case_find(t->item, "pitch"))
-    return run_pitch(t, error);
+  EO_TRY(set_gaps(trial, error));
+  if (eo_case_find(trial->item, "pitch"))
+    return run_pitch(trial, error);
   for (int i = 0; i < eo_case_size(results); i++)
-    EO_TRY(check_result(t, eo_case_at(results, i)));
+    EO_TRY(check_result(trial, eo_case_at(results, i)));
   if (eo_case_find(expected, "curve"))
-    check_curve(t, eo_case_find(expected, "curve"));
-  check_interpolation(t, eo_case_find(expected, "interpolation"));
-  check_gap_points(t, eo_case_find(expected, "gap_points"));
+    check_curve(trial, eo_case_find(expected, "curve"));
+  check_interpolation(trial, eo_case_find(expected, "interpolation"));
+  check_gap_points(trial, eo_case_find(expected, "gap_points"));
   return EO_OK;
 }
 
 static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct bench *b = context;
-  struct trial *t = calloc(1, sizeof *t);
-  if (!t)
+  struct bench *bench = context;
+  struct trial *trial = calloc(1, sizeof *trial);
+  if (!trial)
     return eo_error_memory(error);
-  t->bench = b;
-  t->item = item;
-  t->tolerance = eo_case_find(item, "tolerance");
-  enum eo_code code = run_trial(t, error);
+  trial->bench = bench;
+  trial->item = item;
+  trial->tolerance = eo_case_find(item, "tolerance");
+  enum eo_code code = run_trial(trial, error);
   for (int end = 0; end < 2; end++) {
-    eo_loaded_gaps_done(&t->gaps[end]);
-    eo_loaded_end_done(&t->loaded[end]);
+    eo_loaded_gaps_done(&trial->gaps[end]);
+    eo_loaded_end_done(&trial->loaded[end]);
     for (int member = 0; member < 2; member++)
-      eo_flank_spline_free(t->spline[member][end]);
+      eo_flank_spline_free(trial->spline[member][end]);
   }
-  free(t);
+  free(trial);
   return code;
 }
 
-static enum eo_code read_conventions(struct bench *b)
+static enum eo_code read_conventions(struct bench *bench)
 {
-  struct eo_case *words = eo_case_find(b->file, "conventions");
+  struct eo_case *words = eo_case_find(bench->file, "conventions");
   struct eo_case *form = words ? eo_case_find(words, "closed_form_flexibility") : NULL;
   if (form)
-    eo_case_closed_form(form, &b->form);
+    eo_case_closed_form(form, &bench->form);
   else
-    eo_case_fault(b->file, "The closed-form flexibility is stated in \"conventions\".");
+    eo_case_fault(bench->file, "The closed-form flexibility is stated in \"conventions\".");
   return EO_OK;
 }
 
@@ -540,18 +551,18 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
-  struct bench *b = calloc(1, sizeof *b);
-  if (!b)
+  struct bench *bench = calloc(1, sizeof *bench);
+  if (!bench)
     return eo_error_memory(error);
-  b->file = file;
-  b->v = v;
+  bench->file = file;
+  bench->v = verification;
   eo_case_need(file, "cases");
-  read_conventions(b);
-  enum eo_code code = eo_case_faulty(file) ? EO_OK : eo_verify_blocks(v, file, blocks, b, error);
+  read_conventions(bench);
+  enum eo_code code = eo_case_faulty(file) ? EO_OK : eo_verify_blocks(verification, file, blocks, bench, error);
   for (int end = 0; end < 2; end++)
-    drop(&b->half[end]);
-  free(b);
+    drop(&bench->half[end]);
+  free(bench);
   return code;
 }

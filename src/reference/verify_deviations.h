@@ -7,7 +7,7 @@
 #include "gear/flank_grid.h"
 #include "reference/verify.h"
 
-enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* What a case of pitch deviations is computed on: of each end its grid and the gaps of its flanks, m; borrowed. */
 struct eo_pitch_bench {
@@ -19,8 +19,8 @@ struct eo_pitch_bench {
 };
 
 /* Index deviations over the hunting period. */
-enum eo_code eo_verify_pitch(struct eo_verification *v, struct eo_case *item, const struct eo_pitch_bench *bench,
-                             struct eo_error *error);
+enum eo_code eo_verify_pitch(struct eo_verification *verification, struct eo_case *item,
+                             const struct eo_pitch_bench *bench, struct eo_error *error);
 
 /* A flank of a case file (tip_relief_um, triangular, grid ...): its terms, and its grid in *grids. */
 struct eo_flank_modification;

@@ -40,12 +40,12 @@ static double entry_number(struct eo_case *object, const char *key, int i)
 }
 
 /* The case's own parameters, or the file's. */
-static void read_parameters(const struct dynamics *d, struct eo_case *item, struct eo_dynamics_parameters *p,
-                            double *tau)
+static void read_parameters(const struct dynamics *dynamics, struct eo_case *item,
+                            struct eo_dynamics_parameters *parameters, double *tau)
 {
   struct eo_case *given = eo_case_find(item, "params");
-  eo_verify_read_parameters(given ? given : eo_case_need(d->file, "defaults"), p, tau);
-  eo_verify_couple(d->file, item, p);
+  eo_verify_read_parameters(given ? given : eo_case_need(dynamics->file, "defaults"), parameters, tau);
+  eo_verify_couple(dynamics->file, item, parameters);
 }
 
 /* A block that describes the whole pair, in m and rad, is compared with our geometry; else it states the pinion's
@@ -53,7 +53,7 @@ static void read_parameters(const struct dynamics *d, struct eo_case *item, stru
  */
 static enum eo_code check_geometry(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   struct eo_gear_pair pair = {.ends = 1, .backlash = 1e-4, .centre_distance = NAN, .tip_diameter = {NAN, NAN}};
   struct eo_geometry geometry;
   if (!eo_case_find(block, "mn"))
@@ -61,7 +61,7 @@ static enum eo_code check_geometry(void *context, struct eo_case *block, struct 
   pair.addendum_coefficient = 1; /* the usual rack */
   pair.dedendum_coefficient = 1.25;
   pair.fillet_radius_coefficient = 0.38;
-  pair.teeth[0] = d->teeth;
+  pair.teeth[0] = dynamics->teeth;
   pair.teeth[1] = eo_case_whole(block, "z2", 1, LARGEST_TEETH);
   pair.normal_module = eo_case_number(block, "mn");
   pair.normal_pressure_angle = eo_case_number(block, "an");
@@ -70,17 +70,17 @@ static enum eo_code check_geometry(void *context, struct eo_case *block, struct 
   pair.groove_width = eo_case_number_or(block, "groove", 0);
   enum eo_code code = eo_case_faulty(block) ? EO_OK : eo_geometry_init(&geometry, &pair, error);
   if (!code && !eo_case_faulty(block))
-    eo_case_check_geometry(d->v, block, &geometry, 1, 1e-9);
+    eo_case_check_geometry(dynamics->v, block, &geometry, 1, 1e-9);
   return code;
 }
 
 static enum eo_code check_defaults(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_dynamics_parameters p;
+  struct eo_dynamics_parameters parameters;
   double tau;
   (void)context;
   (void)error;
-  eo_verify_read_parameters(block, &p, &tau);
+  eo_verify_read_parameters(block, &parameters, &tau);
   return EO_OK;
 }
 
@@ -96,59 +96,59 @@ static enum eo_code check_coupling(void *context, struct eo_case *block, struct 
 /* Laws are read where they stand, so that one which no case names cannot be wrong unseen. */
 static enum eo_code check_law(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   struct eo_law law = {0};
-  struct eo_case *defaults = eo_case_find(d->file, "defaults");
-  enum eo_code code = eo_verify_read_law(d->file, block, eo_case_number_or(defaults, "tau", 0), &law, error);
+  struct eo_case *defaults = eo_case_find(dynamics->file, "defaults");
+  enum eo_code code = eo_verify_read_law(dynamics->file, block, eo_case_number_or(defaults, "tau", 0), &law, error);
   eo_law_done(&law);
   return code == EO_ERROR_INPUT ? (eo_case_fault(block, "%s", error->text), EO_OK) : code;
 }
 
 static enum eo_code check_modes(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   struct eo_dynamics_model model;
   struct eo_dynamics_modes modes;
-  struct eo_dynamics_parameters p;
+  struct eo_dynamics_parameters parameters;
   double tau;
-  read_parameters(d, item, &p, &tau);
-  double km[2] = {entry_number(item, "km", 0), p.ends == 2 ? entry_number(item, "km", 1) : NAN};
+  read_parameters(dynamics, item, &parameters, &tau);
+  double km[2] = {entry_number(item, "km", 0), parameters.ends == 2 ? entry_number(item, "km", 1) : NAN};
   if (eo_case_faulty(item))
     return EO_OK;
-  enum eo_code code = eo_dynamics_model_init(&model, &p, error);
+  enum eo_code code = eo_dynamics_model_init(&model, &parameters, error);
   if (!code)
     code = eo_dynamics_model_modes(&model, km, &modes, error);
   if (code)
     return code;
   struct eo_case *ratio = eo_case_find(item, "damping_ratio");
-  eo_verify_exact(d->v, eo_case_find(item, "zero_modes"), modes.zero_modes);
-  eo_verify_list(d->v, eo_case_need(item, "freq_hz"), modes.n, modes.frequency, 1, of_frequency, 0);
+  eo_verify_exact(dynamics->v, eo_case_find(item, "zero_modes"), modes.zero_modes);
+  eo_verify_list(dynamics->v, eo_case_need(item, "freq_hz"), modes.n, modes.frequency, 1, of_frequency, 0);
   if (ratio)
-    eo_verify_list(d->v, ratio, modes.n, modes.damping_ratio, 1, of_damping, 0);
+    eo_verify_list(dynamics->v, ratio, modes.n, modes.damping_ratio, 1, of_damping, 0);
   return EO_OK;
 }
 
 /* The mesh stiffness of the block, or of the first case of eigen. imag_hz: the imaginary part over 2 pi. */
 static enum eo_code check_printed_signs(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct dynamics *d = context;
-  struct eo_case *other = eo_case_at(eo_case_find(d->file, "eigen"), 0);
+  const struct dynamics *dynamics = context;
+  struct eo_case *other = eo_case_at(eo_case_find(dynamics->file, "eigen"), 0);
   struct eo_dynamics_model model;
-  struct eo_dynamics_parameters p;
+  struct eo_dynamics_parameters parameters;
   double complex pole;
   double tau;
-  read_parameters(d, item, &p, &tau);
+  read_parameters(dynamics, item, &parameters, &tau);
   struct eo_case *from = eo_case_find(item, "km") || !other ? item : other;
-  double km[2] = {entry_number(from, "km", 0), p.ends == 2 ? entry_number(from, "km", 1) : NAN};
+  double km[2] = {entry_number(from, "km", 0), parameters.ends == 2 ? entry_number(from, "km", 1) : NAN};
   if (eo_case_faulty(item))
     return EO_OK;
-  enum eo_code code = eo_dynamics_model_init(&model, &p, error);
+  enum eo_code code = eo_dynamics_model_init(&model, &parameters, error);
   if (!code)
     code = eo_dynamics_model_printed_pole(&model, km, &pole, error);
   if (code)
     return code;
-  eo_verify_number(d->v, eo_case_need(item, "max_real_pole_per_s"), creal(pole), of_frequency, 0);
-  eo_verify_member(d->v, item, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), of_frequency, 0);
+  eo_verify_number(dynamics->v, eo_case_need(item, "max_real_pole_per_s"), creal(pole), of_frequency, 0);
+  eo_verify_member(dynamics->v, item, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), of_frequency, 0);
   return EO_OK;
 }
 
@@ -198,23 +198,24 @@ static void compare_harmonics(const struct verified *at, const char *key, const 
 }
 
 /* Motions y, z, theta in turn, to 1e-5 of the largest of their kind. */
-static void compare_freedoms(const struct verified *at, const struct eo_vibration *r)
+static void compare_freedoms(const struct verified *at, const struct eo_vibration *vibration)
 {
   enum { MOTIONS = 3 };
   struct eo_case *expected = eo_case_find(at->expected, "dof_acc_rms");
-  const int freedoms = 2 * MOTIONS * r->ends;
+  const int freedoms = 2 * MOTIONS * vibration->ends;
   double largest[MOTIONS] = {0}, wanted[EO_MAX_FREEDOMS];
   if (!expected || eo_case_numbers(expected, freedoms, EO_MAX_FREEDOMS, wanted) < 0)
     return;
   for (int i = 0; i < freedoms; i++)
     largest[i % MOTIONS] = fmax(largest[i % MOTIONS], fabs(wanted[i]));
   for (int i = 0; i < freedoms; i++)
-    eo_verify_number(at->v, eo_case_at(expected, i), r->freedom_rms[i], at->relative, 1e-5 * largest[i % MOTIONS]);
+    eo_verify_number(at->v, eo_case_at(expected, i), vibration->freedom_rms[i], at->relative,
+                     1e-5 * largest[i % MOTIONS]);
 }
 
-static void compare_statics(const struct verified *at, const struct eo_vibration *r)
+static void compare_statics(const struct verified *at, const struct eo_vibration *vibration)
 {
-  const double *q = r->freedom_mean;
+  const double *q = vibration->freedom_mean;
   double apart = q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z)] -
                  q[eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z)];
   eo_verify_member(at->v, at->expected, "y_static_p1", q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Y)], of_mean,
@@ -225,26 +226,26 @@ static void compare_statics(const struct verified *at, const struct eo_vibration
 }
 
 static void compare_response(const struct verified *at, const struct eo_vibration_solver *solver,
-                             const struct eo_vibration *r)
+                             const struct eo_vibration *vibration)
 {
-  const struct eo_spectrum *s = eo_vibration_spectrum(solver);
-  const double load = fabs(r->force_mean[0]), rms = at->relative, least_force = 3e-4;
-  int ends = r->ends;
-  compare(at, "X_mean", r->deflection_mean, ends, of_mean, 0);
-  compare(at, "rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
-  compare(at, "rms_t", r->rms[EO_READING_TRANSVERSE], ends, rms, 0);
-  compare(at, "rms_rot", r->rms[EO_READING_ROTATIONAL], ends, rms, 0);
-  compare(at, "time_domain_rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
-  eo_verify_member(at->v, at->expected, "rms_meanLR", r->rms_of_mean[EO_READING_NORMAL], rms, 0);
-  compare(at, "F_mean", r->force_mean, ends, of_mean, 0);
-  compare(at, "F_min", r->force_min, ends, 0, fmax(rms, least_force) * load);
-  compare(at, "F_max", r->force_max, ends, 0, fmax(rms, least_force) * load);
+  const struct eo_spectrum *spectrum = eo_vibration_spectrum(solver);
+  const double load = fabs(vibration->force_mean[0]), rms = at->relative, least_force = 3e-4;
+  int ends = vibration->ends;
+  compare(at, "X_mean", vibration->deflection_mean, ends, of_mean, 0);
+  compare(at, "rms_n", vibration->rms[EO_READING_NORMAL], ends, rms, 0);
+  compare(at, "rms_t", vibration->rms[EO_READING_TRANSVERSE], ends, rms, 0);
+  compare(at, "rms_rot", vibration->rms[EO_READING_ROTATIONAL], ends, rms, 0);
+  compare(at, "time_domain_rms_n", vibration->rms[EO_READING_NORMAL], ends, rms, 0);
+  eo_verify_member(at->v, at->expected, "rms_meanLR", vibration->rms_of_mean[EO_READING_NORMAL], rms, 0);
+  compare(at, "F_mean", vibration->force_mean, ends, of_mean, 0);
+  compare(at, "F_min", vibration->force_min, ends, 0, fmax(rms, least_force) * load);
+  compare(at, "F_max", vibration->force_max, ends, 0, fmax(rms, least_force) * load);
   if (ends == 2)
-    compare_statics(at, r);
-  compare_harmonics(at, "X_harm_left", s->deflection[0]);
+    compare_statics(at, vibration);
+  compare_harmonics(at, "X_harm_left", spectrum->deflection[0]);
   if (ends == 2)
-    compare_harmonics(at, "X_harm_right", s->deflection[1]);
-  compare_freedoms(at, r);
+    compare_harmonics(at, "X_harm_right", spectrum->deflection[1]);
+  compare_freedoms(at, vibration);
 }
 
 static void read_impact(struct eo_case *impact, struct eo_vibration_case *load)
@@ -266,82 +267,83 @@ static void read_impact(struct eo_case *impact, struct eo_vibration_case *load)
 /* The response by harmonic balance. Where teeth separate several states may exist: an unstable one is replaced by the
    one that time integration settles to. */
 static enum eo_code solve_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
-                                 struct eo_vibration *r, double *floquet, struct eo_error *error)
+                                 struct eo_vibration *vibration, double *floquet, struct eo_error *error)
 {
   double complex multiplier[2 * EO_MAX_COORDINATES];
   *floquet = NAN;
-  enum eo_code code = eo_vibration_solve(solver, load, EO_START_COLD, r, error);
-  if (code || r->outcome == EO_VIBRATION_NOT_CONVERGED)
+  enum eo_code code = eo_vibration_solve(solver, load, EO_START_COLD, vibration, error);
+  if (code || vibration->outcome == EO_VIBRATION_NOT_CONVERGED)
     return code;
   code = eo_vibration_stability(solver, load, multiplier, error);
   if (code)
     return code;
   *floquet = cabs(multiplier[0]);
   if (*floquet > 1 + 1e-6)
-    code = eo_vibration_integrate(solver, load, NULL, r, NULL, error);
+    code = eo_vibration_integrate(solver, load, NULL, vibration, NULL, error);
   return code;
 }
 
-static struct eo_vibration_case read_case(const struct dynamics *d, struct eo_case *item, const struct eo_law law[2])
+static struct eo_vibration_case read_case(const struct dynamics *dynamics, struct eo_case *item,
+                                          const struct eo_law law[2])
 {
   return (struct eo_vibration_case){.torque = eo_case_number(item, "T"),
                                     .speed = eo_case_number(item, "rpm") * M_PI / 30,
-                                    .pinion_teeth = eo_case_whole_or(item, "z1", 1, LARGEST_TEETH, d->teeth),
+                                    .pinion_teeth = eo_case_whole_or(item, "z1", 1, LARGEST_TEETH, dynamics->teeth),
                                     .law = {&law[0], &law[1]},
                                     .phase_right = eo_case_number_or(item, "shift_right", 0),
                                     .gated = eo_case_flag_or(item, "gate", false)};
 }
 
-static enum eo_code solve_case(const struct dynamics *d, struct eo_case *item, struct eo_law law[2],
-                               struct eo_vibration *r, double *floquet, struct eo_error *error)
+static enum eo_code solve_case(const struct dynamics *dynamics, struct eo_case *item, struct eo_law law[2],
+                               struct eo_vibration *vibration, double *floquet, struct eo_error *error)
 {
   struct eo_case *laws = eo_case_need(item, "law");
-  struct eo_dynamics_parameters p;
+  struct eo_dynamics_parameters parameters;
   double tau;
-  read_parameters(d, item, &p, &tau);
-  struct eo_vibration_case load = read_case(d, item, law);
+  read_parameters(dynamics, item, &parameters, &tau);
+  struct eo_vibration_case load = read_case(dynamics, item, law);
   read_impact(eo_case_given(item, "impact"), &load);
   if (eo_case_is_list(laws) && eo_case_size(laws) != 2)
     eo_case_fault(laws, "A law, or a pair [left, right] of laws, is expected here.");
   if (eo_case_faulty(item))
     return EO_OK;
-  enum eo_code code = eo_vibration_set_model(d->solver, &p, error);
+  enum eo_code code = eo_vibration_set_model(dynamics->solver, &parameters, error);
   for (int end = 0; end < 2 && !code; end++)
-    code = eo_verify_read_law(d->file, entry(laws, end), tau, &law[end], error);
-  return code || eo_case_faulty(item) ? code : solve_stable(d->solver, &load, r, floquet, error);
+    code = eo_verify_read_law(dynamics->file, entry(laws, end), tau, &law[end], error);
+  return code || eo_case_faulty(item) ? code : solve_stable(dynamics->solver, &load, vibration, floquet, error);
 }
 
 /* A response that was not found fails, unless the case says that there is none. */
-static void compare_outcome(const struct dynamics *d, struct eo_case *expected, const struct eo_vibration *r,
-                            double floquet)
+static void compare_outcome(const struct dynamics *dynamics, struct eo_case *expected,
+                            const struct eo_vibration *vibration, double floquet)
 {
-  const struct verified at = {d->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
-  bool found = r->outcome != EO_VIBRATION_NOT_CONVERGED, wanted = eo_case_flag_or(expected, "converged", true);
+  const struct verified at = {dynamics->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
+  bool found = vibration->outcome != EO_VIBRATION_NOT_CONVERGED, wanted = eo_case_flag_or(expected, "converged", true);
   if (at.relative >= 1)
     eo_case_fault(eo_case_find(expected, "rel_unc"), "An uncertainty is below 0.1.");
   if (!found && wanted) {
-    eo_verify_diverged(d->v, expected);
+    eo_verify_diverged(dynamics->v, expected);
     return;
   }
-  eo_verify_exact(d->v, eo_case_find(expected, "converged"), found);
+  eo_verify_exact(dynamics->v, eo_case_find(expected, "converged"), found);
   if (!found)
     return;
-  compare_response(&at, d->solver, r);
+  compare_response(&at, dynamics->solver, vibration);
   struct eo_case *multiplier = eo_case_find(expected, "max_floquet");
   if (!is_stated_absent(&at, multiplier))
-    eo_verify_number(d->v, multiplier, floquet, of_floquet, 0);
+    eo_verify_number(dynamics->v, multiplier, floquet, of_floquet, 0);
 }
 
 static enum eo_code check_response(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   struct eo_law law[2] = {{0}, {0}};
-  struct eo_vibration r;
+  struct eo_vibration vibration;
   double floquet = NAN;
   struct eo_case *expected = eo_case_need(item, "expected");
-  enum eo_code code = solve_case(d, item, law, &r, &floquet, error);
+  enum eo_code code = solve_case(dynamics, item, law, &vibration, &floquet, error);
   if (!code && !eo_case_faulty(item))
-    compare_outcome(d, expected, &r, floquet);
+    compare_outcome(dynamics, expected, &vibration, floquet);
   eo_law_done(&law[0]);
   eo_law_done(&law[1]);
   return code;
@@ -349,11 +351,11 @@ static enum eo_code check_response(void *context, struct eo_case *item, struct e
 
 static enum eo_code check_responses(void *context, struct eo_case *items, struct eo_error *error)
 {
-  struct dynamics *d = context;
-  enum eo_code code = eo_vibration_new(&d->solver, HARMONICS, SAMPLES, error);
+  struct dynamics *dynamics = context;
+  enum eo_code code = eo_vibration_new(&dynamics->solver, HARMONICS, SAMPLES, error);
   if (!code)
-    code = eo_verify_each(d->v, items, check_response, d, error);
-  eo_vibration_free(d->solver);
+    code = eo_verify_each(dynamics->v, items, check_response, dynamics, error);
+  eo_vibration_free(dynamics->solver);
   return code;
 }
 
@@ -366,25 +368,25 @@ static struct eo_sdof read_sdof(struct eo_case *item)
                           .frequency = eo_case_number(item, "W")};
 }
 
-static void compare_single(const struct verified *at, const struct eo_sdof_response *r)
+static void compare_single(const struct verified *at, const struct eo_sdof_response *response)
 {
-  const double second = fmax(1e-3 * r->amplitude[0], at->relative * r->amplitude[1]), of_loss = 1e-3;
-  eo_verify_member(at->v, at->expected, "mean", r->mean, of_mean, 0);
-  eo_verify_member(at->v, at->expected, "rms", r->rms, at->relative, 0);
-  eo_verify_member(at->v, at->expected, "pp", r->peak_to_peak, at->relative, 0);
-  eo_verify_member(at->v, at->expected, "h1", r->amplitude[0], at->relative, 0);
-  eo_verify_member(at->v, at->expected, "h2", r->amplitude[1], 0, second);
-  eo_verify_member(at->v, at->expected, "contact_loss_fraction", r->contact_loss, 0, of_loss);
-  eo_verify_member(at->v, at->expected, "max_floquet", r->floquet, of_floquet, 0);
-  eo_verify_exact(at->v, eo_case_find(at->expected, "back_contact"), r->back_contact);
+  const double second = fmax(1e-3 * response->amplitude[0], at->relative * response->amplitude[1]), of_loss = 1e-3;
+  eo_verify_member(at->v, at->expected, "mean", response->mean, of_mean, 0);
+  eo_verify_member(at->v, at->expected, "rms", response->rms, at->relative, 0);
+  eo_verify_member(at->v, at->expected, "pp", response->peak_to_peak, at->relative, 0);
+  eo_verify_member(at->v, at->expected, "h1", response->amplitude[0], at->relative, 0);
+  eo_verify_member(at->v, at->expected, "h2", response->amplitude[1], 0, second);
+  eo_verify_member(at->v, at->expected, "contact_loss_fraction", response->contact_loss, 0, of_loss);
+  eo_verify_member(at->v, at->expected, "max_floquet", response->floquet, of_floquet, 0);
+  eo_verify_exact(at->v, eo_case_find(at->expected, "back_contact"), response->back_contact);
 }
 
 static enum eo_code check_sdof(void *context, struct eo_case *item, struct eo_error *error)
 {
   static const char *const branches[] = {"lo", "hi", NULL};
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   const struct eo_sdof sdof = read_sdof(item);
-  struct eo_sdof_response r;
+  struct eo_sdof_response response;
   struct eo_case *state = eo_case_find(item, "x0"), *expected = eo_case_need(item, "expected");
   double x0[2] = {0, 0};
   enum eo_sdof_start start = eo_case_choice(item, "branch", branches, 0) == 1 ? EO_SDOF_HIGH : EO_SDOF_LOW;
@@ -392,16 +394,16 @@ static enum eo_code check_sdof(void *context, struct eo_case *item, struct eo_er
     start = EO_SDOF_STATE;
   if (eo_case_faulty(item))
     return EO_OK;
-  enum eo_code code = eo_sdof_solve(&sdof, start, x0, &r, error);
+  enum eo_code code = eo_sdof_solve(&sdof, start, x0, &response, error);
   if (code)
     return code;
-  const struct verified at = {d->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
+  const struct verified at = {dynamics->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
   if (at.relative >= 1)
     eo_case_fault(eo_case_find(expected, "rel_unc"), "An uncertainty is below 0.1.");
-  if (r.converged)
-    compare_single(&at, &r);
+  if (response.converged)
+    compare_single(&at, &response);
   else
-    eo_verify_diverged(d->v, expected);
+    eo_verify_diverged(dynamics->v, expected);
   return EO_OK;
 }
 
@@ -422,9 +424,10 @@ static struct eo_case *case_of_family(struct eo_case *cases, const char *family)
    downward sweep falls back to it. */
 static enum eo_code check_folds(void *context, struct eo_case *expected, struct eo_error *error)
 {
-  const struct dynamics *d = context;
+  const struct dynamics *dynamics = context;
   const double slowest = 0.3, fastest = 3, tolerance = 2e-3;
-  struct eo_case *item = case_of_family(eo_case_find(eo_case_find(d->file, "sdof"), "cases"), eo_case_key(expected));
+  struct eo_case *item = case_of_family(eo_case_find(eo_case_find(dynamics->file, "sdof"), "cases"),
+                                        eo_case_key(expected));
   if (!item) {
     eo_case_fault(expected, "No case belongs to these folds.");
     return EO_OK;
@@ -437,18 +440,18 @@ static enum eo_code check_folds(void *context, struct eo_case *expected, struct 
   int down = 0;
   while (down < folds.count && folds.going_up[down])
     down++;
-  eo_verify_member(d->v, expected, "up", folds.contact_lost, 0, tolerance);
-  eo_verify_member(d->v, expected, "down", down < folds.count ? folds.frequency[down] : NAN, 0, tolerance);
+  eo_verify_member(dynamics->v, expected, "up", folds.contact_lost, 0, tolerance);
+  eo_verify_member(dynamics->v, expected, "down", down < folds.count ? folds.frequency[down] : NAN, 0, tolerance);
   return EO_OK;
 }
 
 static enum eo_code check_single(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct dynamics *d = context;
+  struct dynamics *dynamics = context;
   eo_case_remark(block, "equation");
   eo_case_remark(block, "analytic_A");
-  enum eo_code code = eo_verify_each(d->v, eo_case_find(block, "cases"), check_sdof, d, error);
-  return code ? code : eo_verify_each(d->v, eo_case_find(block, "folds"), check_folds, d, error);
+  enum eo_code code = eo_verify_each(dynamics->v, eo_case_find(block, "cases"), check_sdof, dynamics, error);
+  return code ? code : eo_verify_each(dynamics->v, eo_case_find(block, "folds"), check_folds, dynamics, error);
 }
 
 static const struct eo_verify_block blocks[] = {
@@ -465,11 +468,12 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   enum { USUAL_TEETH = 17 };
   struct eo_case *geometry = eo_case_find(file, "geometry");
-  struct dynamics d = {
-      .file = file, .v = v, .teeth = geometry ? eo_case_whole(geometry, "z1", 1, LARGEST_TEETH) : USUAL_TEETH};
-  return eo_verify_blocks(v, file, blocks, &d, error);
+  struct dynamics dynamics = {.file = file,
+                              .v = verification,
+                              .teeth = geometry ? eo_case_whole(geometry, "z1", 1, LARGEST_TEETH) : USUAL_TEETH};
+  return eo_verify_blocks(verification, file, blocks, &dynamics, error);
 }

@@ -115,33 +115,35 @@ static void read_teeth(struct eo_case *object, int teeth[2])
 }
 
 /* Tooth numbers, radii, orders and speed as an object states them; what it leaves out stays. */
-static void read_settings(struct eo_case *object, struct eo_measurement_settings *s)
+static void read_settings(struct eo_case *object, struct eo_measurement_settings *measurement_settings)
 {
   enum { MOST_ORDERS = 10000 };
   static const char *const millimetre[2] = {"rb1_mm", "rb2_mm"}, *const metre[2] = {"rb1_m", "rb2_m"};
-  struct eo_transmission_settings *t = &s->transmission;
+  struct eo_transmission_settings *transmission_settings = &measurement_settings->transmission;
   struct eo_case *both = eo_case_find(object, "base_radius_mm");
-  read_teeth(object, t->teeth);
+  read_teeth(object, transmission_settings->teeth);
   for (int i = 0; i < 2; i++) {
     if (both)
-      t->base_radius[i] = 1e-3 * eo_case_element(both, i);
+      transmission_settings->base_radius[i] = 1e-3 * eo_case_element(both, i);
     else if (eo_case_find(object, millimetre[i]))
-      t->base_radius[i] = 1e-3 * eo_case_number(object, millimetre[i]);
+      transmission_settings->base_radius[i] = 1e-3 * eo_case_number(object, millimetre[i]);
     else
-      t->base_radius[i] = eo_case_number_or(object, metre[i], t->base_radius[i]);
+      transmission_settings->base_radius[i] = eo_case_number_or(object, metre[i],
+                                                                transmission_settings->base_radius[i]);
   }
-  t->harmonics = eo_case_whole_or(object, eo_case_find(object, "harmonics") ? "harmonics" : "H", 1, MOST_ORDERS,
-                                  t->harmonics);
-  s->stated_speed = eo_case_number_or(object, eo_case_find(object, "speed_rpm") ? "speed_rpm" : "stated_rpm",
-                                      s->stated_speed * 30 / M_PI) *
-                    M_PI / 30;
+  transmission_settings->harmonics = eo_case_whole_or(object, eo_case_find(object, "harmonics") ? "harmonics" : "H", 1,
+                                                      MOST_ORDERS, transmission_settings->harmonics);
+  measurement_settings->stated_speed = eo_case_number_or(object,
+                                                         eo_case_find(object, "speed_rpm") ? "speed_rpm" : "stated_rpm",
+                                                         measurement_settings->stated_speed * 30 / M_PI) *
+                                       M_PI / 30;
 }
 
 /* The paper's pair unless the file says otherwise. */
-static enum eo_code set_pair(struct run *r, struct eo_error *error)
+static enum eo_code set_pair(struct run *run, struct eo_error *error)
 {
   struct eo_design *design = calloc(1, sizeof *design);
-  struct eo_case *pair = eo_case_find(r->file, "pair");
+  struct eo_case *pair = eo_case_find(run->file, "pair");
   struct eo_geometry geometry;
   if (!design)
     return eo_error_memory(error);
@@ -149,28 +151,28 @@ static enum eo_code set_pair(struct run *r, struct eo_error *error)
     eo_case_design(pair, design);
   else
     eo_example_build("paper", design);
-  enum eo_code code = eo_case_faulty(r->file) ? EO_OK : eo_geometry_init(&geometry, &design->gear_pair, error);
+  enum eo_code code = eo_case_faulty(run->file) ? EO_OK : eo_geometry_init(&geometry, &design->gear_pair, error);
   for (int i = 0; i < design->load_cases && !code; i++) {
     double speed = design->load_case[i].speed;
-    r->speed[0] = i && r->speed[0] < speed ? r->speed[0] : speed;
-    r->speed[1] = fmax(r->speed[1], speed);
+    run->speed[0] = i && run->speed[0] < speed ? run->speed[0] : speed;
+    run->speed[1] = fmax(run->speed[1], speed);
   }
   free(design);
-  if (code || eo_case_faulty(r->file))
+  if (code || eo_case_faulty(run->file))
     return code;
   for (int i = 0; i < 2; i++) {
-    r->settings.transmission.teeth[i] = geometry.teeth[i];
-    r->settings.transmission.base_radius[i] = geometry.base_radius[i];
+    run->settings.transmission.teeth[i] = geometry.teeth[i];
+    run->settings.transmission.base_radius[i] = geometry.base_radius[i];
   }
-  r->settings.stated_speed = NAN;
-  memcpy(r->settings.expected_speed, r->speed, sizeof r->speed);
-  read_settings(r->file, &r->settings);
-  read_settings(eo_case_find(r->file, "mesh"), &r->settings);
+  run->settings.stated_speed = NAN;
+  memcpy(run->settings.expected_speed, run->speed, sizeof run->speed);
+  read_settings(run->file, &run->settings);
+  read_settings(eo_case_find(run->file, "mesh"), &run->settings);
   return EO_OK;
 }
 
 /* Every finding of the list, and none besides that repairs or refuses. */
-static void check_findings(struct eo_verification *v, struct eo_case *list, const struct eo_findings *found)
+static void check_findings(struct eo_verification *verification, struct eo_case *list, const struct eo_findings *found)
 {
   bool expected[EO_FINDING_KINDS] = {false};
   int surprises = 0;
@@ -187,79 +189,88 @@ static void check_findings(struct eo_verification *v, struct eo_case *list, cons
     expected[kind] = true;
     snprintf(quantity, sizeof quantity, "finding %.60s",
              eo_case_is_text(value) ? json_string_value(eo_case_json(value)) : "of this kind");
-    eo_verify_fact(v, eo_case_at(list, i), quantity, eo_findings_find(found, kind) != NULL);
+    eo_verify_fact(verification, eo_case_at(list, i), quantity, eo_findings_find(found, kind) != NULL);
   }
   for (int i = 0; i < found->count && i < EO_MAX_FINDINGS; i++)
     if (found->finding[i].severity >= EO_SEVERITY_REPAIRED && !expected[found->finding[i].kind]) {
       surprises++;
-      eo_verify_note(v, "not expected: %s", found->finding[i].text);
+      eo_verify_note(verification, "not expected: %s", found->finding[i].text);
     }
-  eo_verify_fact(v, list, "no finding besides", surprises == 0);
+  eo_verify_fact(verification, list, "no finding besides", surprises == 0);
 }
 
 /* An order may deviate by four standard deviations of the noise beside it. */
-static void check_orders(struct eo_verification *v, struct eo_case *truth, double relative,
-                         const struct eo_transmission *t)
+static void check_orders(struct eo_verification *verification, struct eo_case *truth, double relative,
+                         const struct eo_transmission *transmission)
 {
   const double deviations = 4;
   struct eo_case *amplitude = eo_case_find(truth, "line_amp_um"), *acceleration = eo_case_find(truth, "line_acc"),
                  *rms = eo_case_find(truth, "rms_by_H");
   struct eo_case *const lists[] = {amplitude, acceleration, rms};
   for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
-    if (lists[i] && (!eo_case_is_list(lists[i]) || eo_case_size(lists[i]) > t->harmonics))
-      eo_case_fault(lists[i], "A list of at most %d numbers, the orders measured, is expected here.", t->harmonics);
-  for (int h = 0; h < t->harmonics && !eo_case_faulty(truth); h++) {
-    double noise = deviations * t->mesh[h].sigma, weight = pow(t->mesh[h].order * t->speed, 2);
+    if (lists[i] && (!eo_case_is_list(lists[i]) || eo_case_size(lists[i]) > transmission->harmonics))
+      eo_case_fault(lists[i], "A list of at most %d numbers, the orders measured, is expected here.",
+                    transmission->harmonics);
+  for (int h = 0; h < transmission->harmonics && !eo_case_faulty(truth); h++) {
+    double noise = deviations * transmission->mesh[h].sigma,
+           weight = pow(transmission->mesh[h].order * transmission->speed, 2);
     struct eo_case *a = eo_case_at(amplitude, h), *b = eo_case_at(acceleration, h);
     if (a)
-      eo_verify_number(v, a, 1e6 * cabs(t->mesh[h].amplitude), 0, relative * fabs(eo_case_real(a)) + 1e6 * noise);
+      eo_verify_number(verification, a, 1e6 * cabs(transmission->mesh[h].amplitude), 0,
+                       relative * fabs(eo_case_real(a)) + 1e6 * noise);
     if (b)
-      eo_verify_number(v, b, t->mesh[h].acceleration, 0, relative * fabs(eo_case_real(b)) + weight * noise);
-    eo_verify_number(v, eo_case_at(rms, h), t->rms_upto[h], relative, 0);
+      eo_verify_number(verification, b, transmission->mesh[h].acceleration, 0,
+                       relative * fabs(eo_case_real(b)) + weight * noise);
+    eo_verify_number(verification, eo_case_at(rms, h), transmission->rms_upto[h], relative, 0);
   }
 }
 
 /* "rms", "rms_mesh_lines" and "rms_mesh_lines_H8": of all orders, or of so many. */
-static void check_rms(struct eo_verification *v, struct eo_case *truth, double relative, const struct eo_measurement *m)
+static void check_rms(struct eo_verification *verification, struct eo_case *truth, double relative,
+                      const struct eo_measurement *measurement)
 {
   static const char stem[] = "rms_mesh_lines";
-  const struct eo_transmission *t = &m->transmission;
+  const struct eo_transmission *transmission = &measurement->transmission;
   for (int i = 0; i < eo_case_size(truth); i++) {
     const char *key = eo_case_key(eo_case_peek(truth, i));
     bool all = strcmp(key, "rms") == 0 || strcmp(key, stem) == 0;
     char *end = NULL;
     if (!all && (strncmp(key, stem, strlen(stem)) != 0 || strncmp(key + strlen(stem), "_H", 2) != 0))
       continue;
-    long orders = all ? t->harmonics : strtol(key + strlen(stem) + 2, &end, 10);
+    long orders = all ? transmission->harmonics : strtol(key + strlen(stem) + 2, &end, 10);
     if (orders < 1 || (end && *end))
       eo_case_fault(eo_case_peek(truth, i), "The key says how many orders, like rms_mesh_lines_H8.");
-    if (orders > t->harmonics && !m->refused)
-      eo_verify_note(v, "%s is compared with the %d orders that this recording shows.", key, t->harmonics);
-    int upto = orders > t->harmonics ? t->harmonics : (int)orders;
-    eo_verify_number(v, eo_case_peek(truth, i), m->refused || upto < 1 ? NAN : t->rms_upto[upto - 1], relative, 0);
+    if (orders > transmission->harmonics && !measurement->refused)
+      eo_verify_note(verification, "%s is compared with the %d orders that this recording shows.", key,
+                     transmission->harmonics);
+    int upto = orders > transmission->harmonics ? transmission->harmonics : (int)orders;
+    eo_verify_number(verification, eo_case_peek(truth, i),
+                     measurement->refused || upto < 1 ? NAN : transmission->rms_upto[upto - 1], relative, 0);
   }
 }
 
-static void check_numbers(struct eo_verification *v, struct eo_case *item, const struct eo_measurement *m)
+static void check_numbers(struct eo_verification *verification, struct eo_case *item,
+                          const struct eo_measurement *measurement)
 {
   const double of_speed = 1e-4;
   struct eo_case *truth = eo_case_find(item, "truth");
   double relative = eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel",
                                         0.002);
-  const struct eo_transmission *t = &m->transmission;
+  const struct eo_transmission *transmission = &measurement->transmission;
   if (!truth)
     return;
   if (eo_case_size(truth) == 0)
     eo_case_fault(truth, "Numbers are expected here.");
-  if (m->refused) {
-    eo_verify_fact(v, truth, "measured, not refused", false);
+  if (measurement->refused) {
+    eo_verify_fact(verification, truth, "measured, not refused", false);
     eo_case_skip(truth);
     return;
   }
-  check_rms(v, truth, relative, m);
-  eo_verify_member(v, eo_case_find(item, "reference_pipeline"), "rms_lines_ls", t->rms, relative, 0);
-  eo_verify_member(v, truth, "mean_rpm", t->speed * 30 / M_PI, of_speed, 0);
-  check_orders(v, truth, relative, t);
+  check_rms(verification, truth, relative, measurement);
+  eo_verify_member(verification, eo_case_find(item, "reference_pipeline"), "rms_lines_ls", transmission->rms, relative,
+                   0);
+  eo_verify_member(verification, truth, "mean_rpm", transmission->speed * 30 / M_PI, of_speed, 0);
+  check_orders(verification, truth, relative, transmission);
 }
 
 static const char *temporary_folder(void)
@@ -269,7 +280,7 @@ static const char *temporary_folder(void)
 }
 
 /* The layout of the entry; lines per turn also as a key of their own or in the words of the note. */
-static enum eo_code find_tracks(const struct run *r, struct eo_case *item, struct eo_recording **recording,
+static enum eo_code find_tracks(const struct run *run, struct eo_case *item, struct eo_recording **recording,
                                 struct eo_notes *notes, struct eo_tracks *tracks, struct eo_error *error)
 {
   static const char *const names[] = {"lines_per_rev", "lines", "lines_per_turn"};
@@ -288,8 +299,8 @@ static enum eo_code find_tracks(const struct run *r, struct eo_case *item, struc
     lines = eo_case_number_or(item, names[i], lines);
   for (int i = 0; i < 2; i++)
     layout.choice.lines[i] = layout.choice.lines[i] > 0 ? layout.choice.lines[i] : lines;
-  struct eo_layout_pair pair = {.teeth = {r->settings.transmission.teeth[0], r->settings.transmission.teeth[1]},
-                                .speed = {r->speed[0], r->speed[1]}};
+  struct eo_layout_pair pair = {.teeth = {run->settings.transmission.teeth[0], run->settings.transmission.teeth[1]},
+                                .speed = {run->speed[0], run->speed[1]}};
   return eo_case_faulty(item)
              ? EO_OK
              : eo_layout_find(recording, &layout.choice, &pair, temporary_folder(), tracks, notes, error);
@@ -312,54 +323,55 @@ static bool refusal_expected(struct eo_case *item)
   return expected;
 }
 
-static void check_measurement(struct eo_verification *v, struct eo_case *item, const struct eo_measurement *m)
+static void check_measurement(struct eo_verification *verification, struct eo_case *item,
+                              const struct eo_measurement *measurement)
 {
   bool accepted = refusal_expected(item);
-  eo_verify_exact(v, eo_case_find(item, "refused"), m->refused);
-  check_findings(v, eo_case_find(item, "expected_findings"), &m->findings);
-  if (m->refused && accepted) {
-    eo_verify_fact(v, item, "refused, as may be", true);
-    eo_verify_uncompared(v, eo_case_find(item, "truth"), "the recording is refused, as it may be.");
+  eo_verify_exact(verification, eo_case_find(item, "refused"), measurement->refused);
+  check_findings(verification, eo_case_find(item, "expected_findings"), &measurement->findings);
+  if (measurement->refused && accepted) {
+    eo_verify_fact(verification, item, "refused, as may be", true);
+    eo_verify_uncompared(verification, eo_case_find(item, "truth"), "the recording is refused, as it may be.");
     eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel", 0.002);
   } else
-    check_numbers(v, item, m);
+    check_numbers(verification, item, measurement);
 }
 
 static enum eo_code run_file(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct run *r = context;
-  struct eo_measurement_settings settings = r->settings;
+  struct run *run = context;
+  struct eo_measurement_settings settings = run->settings;
   const char *name = eo_case_word(item, "file");
   eo_case_remark(item, "columns");
   read_settings(item, &settings);
   if (eo_case_faulty(item))
     return EO_OK;
-  struct eo_measurement *m = calloc(1, sizeof *m);
+  struct eo_measurement *measurement = calloc(1, sizeof *measurement);
   struct eo_recording *recording = NULL;
   struct eo_notes *notes = calloc(1, sizeof *notes);
   struct eo_tracks tracks;
   const struct eo_reader_options options = {.spool_directory = temporary_folder()};
-  char *path = eo_verify_path(r->v, name);
-  enum eo_code code = m && notes && path ? eo_reader_read(path, &options, &recording, notes, error)
-                                         : eo_error_memory(error);
+  char *path = eo_verify_path(run->v, name);
+  enum eo_code code = measurement && notes && path ? eo_reader_read(path, &options, &recording, notes, error)
+                                                   : eo_error_memory(error);
   if (!code)
-    code = find_tracks(r, item, &recording, notes, &tracks, error);
+    code = find_tracks(run, item, &recording, notes, &tracks, error);
   if (!code && !eo_case_faulty(item))
-    code = eo_measurement_run(m, recording, &tracks, &settings, NULL, error);
+    code = eo_measurement_run(measurement, recording, &tracks, &settings, NULL, error);
   if (!code && !eo_case_faulty(item))
-    check_measurement(r->v, item, m);
+    check_measurement(run->v, item, measurement);
   if (code == EO_ERROR_INPUT && refusal_expected(item)) { /* a question instead of a number */
-    eo_verify_uncompared(r->v, eo_case_find(item, "truth"), error->text);
-    eo_verify_fact(r->v, item, "refused, as may be", true);
+    eo_verify_uncompared(run->v, eo_case_find(item, "truth"), error->text);
+    eo_verify_fact(run->v, item, "refused, as may be", true);
     eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel", 0.002);
     code = EO_OK;
   }
-  if (m)
-    eo_measurement_done(m);
+  if (measurement)
+    eo_measurement_done(measurement);
   eo_recording_free(recording);
   free(path);
   free(notes);
-  free(m);
+  free(measurement);
   return code;
 }
 
@@ -383,10 +395,10 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
-  struct run r = {.file = file, .v = v};
+  struct run run = {.file = file, .v = verification};
   eo_case_need(file, "files");
-  enum eo_code code = set_pair(&r, error);
-  return code || eo_case_faulty(file) ? code : eo_verify_blocks(v, file, blocks, &r, error);
+  enum eo_code code = set_pair(&run, error);
+  return code || eo_case_faulty(file) ? code : eo_verify_blocks(verification, file, blocks, &run, error);
 }

@@ -22,11 +22,12 @@ static bool same_ids(const json_t *expected, const json_t *found)
   return json_equal(expected, found);
 }
 
-static void check_pairs(struct eo_verification *v, struct eo_case *pairs, const struct eo_import *import)
+static void check_pairs(struct eo_verification *verification, struct eo_case *pairs, const struct eo_import *import)
 {
   if (!pairs || eo_case_is_null(pairs))
     return;
-  eo_verify_derived(v, pairs, "number of pairs", (double)json_array_size(import->pairs), eo_case_size(pairs), 0.5);
+  eo_verify_derived(verification, pairs, "number of pairs", (double)json_array_size(import->pairs), eo_case_size(pairs),
+                    0.5);
   for (int i = 0; i < eo_case_size(pairs); i++) {
     struct eo_case *pair = eo_case_at(pairs, i);
     const json_t *found = json_array_get(import->pairs, (size_t)i), *expected = eo_case_json(pair);
@@ -35,19 +36,21 @@ static void check_pairs(struct eo_verification *v, struct eo_case *pairs, const 
     eo_case_remark(pair, "remark");
     for (int k = 0; k < 3; k++) {
       struct eo_case *list = eo_case_need(pair, ids[k]);
-      eo_verify_fact(v, list, ids[k], same_ids(json_object_get(expected, ids[k]), json_object_get(found, ids[k])));
+      eo_verify_fact(verification, list, ids[k],
+                     same_ids(json_object_get(expected, ids[k]), json_object_get(found, ids[k])));
       eo_case_skip(list);
     }
-    eo_verify_exact(v, eo_case_need(pair, "ends"), (double)json_integer_value(json_object_get(found, "ends")));
-    eo_verify_exact(v, eo_case_need(pair, "importable"), json_is_true(json_object_get(found, "importable")));
+    eo_verify_exact(verification, eo_case_need(pair, "ends"),
+                    (double)json_integer_value(json_object_get(found, "ends")));
+    eo_verify_exact(verification, eo_case_need(pair, "importable"), json_is_true(json_object_get(found, "importable")));
   }
 }
 
 /* Design: */
 
 /* Every key the case states, and every other one that differs from what it has without being stated. */
-static void compare(struct eo_verification *v, struct eo_case *where, const json_t *stated, const json_t *expected,
-                    const json_t *found, const char *path)
+static void compare(struct eo_verification *verification, struct eo_case *where, const json_t *stated,
+                    const json_t *expected, const json_t *found, const char *path)
 {
   char name[200];
   const char *key;
@@ -58,28 +61,28 @@ static void compare(struct eo_verification *v, struct eo_case *where, const json
     {
       snprintf(name, sizeof name, "%s%s%s", path, *path ? "." : "", key);
       if (strcmp(name, "name") != 0)
-        compare(v, where, json_object_get(stated, key), value, json_object_get(found, key), name);
+        compare(verification, where, json_object_get(stated, key), value, json_object_get(found, key), name);
     }
     json_object_foreach((json_t *)found, key, value)
     {
       snprintf(name, sizeof name, "%s%s%s: not expected", path, *path ? "." : "", key);
       if (!json_object_get(expected, key))
-        eo_verify_fact(v, where, name, false);
+        eo_verify_fact(verification, where, name, false);
     }
   } else if (json_is_array(expected)) {
-    eo_verify_fact(v, where, path, json_array_size(expected) == json_array_size(found));
+    eo_verify_fact(verification, where, path, json_array_size(expected) == json_array_size(found));
     json_array_foreach(expected, i, value)
     {
       snprintf(name, sizeof name, "%s[%zu]", path, i);
-      compare(v, where, json_array_get(stated, i), value, json_array_get(found, i), name);
+      compare(verification, where, json_array_get(stated, i), value, json_array_get(found, i), name);
     }
   } else if (json_is_number(expected) && json_is_number(found)) {
     double wanted = json_number_value(expected), value_ = json_number_value(found);
     double tolerance = fmax(relative * fabs(wanted), absolute);
     if (stated || !(fabs(value_ - wanted) <= tolerance))
-      eo_verify_derived(v, where, path, value_, wanted, tolerance);
+      eo_verify_derived(verification, where, path, value_, wanted, tolerance);
   } else if (stated || !json_equal(expected, found))
-    eo_verify_fact(v, where, path, json_equal(expected, found));
+    eo_verify_fact(verification, where, path, json_equal(expected, found));
 }
 
 static json_t *completed(const json_t *document, struct eo_case *where)
@@ -100,20 +103,20 @@ static json_t *completed(const json_t *document, struct eo_case *where)
   return encoded;
 }
 
-static void check_design(struct eo_verification *v, struct eo_case *design, const struct eo_import *import)
+static void check_design(struct eo_verification *verification, struct eo_case *design, const struct eo_import *import)
 {
   if (!design || eo_case_is_null(design)) {
     if (design)
-      eo_verify_fact(v, design, "no design", import->design == NULL);
+      eo_verify_fact(verification, design, "no design", import->design == NULL);
     return;
   }
-  eo_verify_fact(v, design, "a design", import->design != NULL);
+  eo_verify_fact(verification, design, "a design", import->design != NULL);
   json_t *expected = completed(eo_case_json(design), design),
          *found = import->design ? completed(import->design, NULL) : NULL;
   if (import->design)
-    eo_verify_fact(v, design, "the design can be read", found != NULL);
+    eo_verify_fact(verification, design, "the design can be read", found != NULL);
   if (expected && found)
-    compare(v, design, eo_case_json(design), expected, found, "");
+    compare(verification, design, eo_case_json(design), expected, found, "");
   json_decref(expected);
   json_decref(found);
   eo_case_skip(design);
@@ -130,7 +133,7 @@ static bool says(const json_t *list, const char *text)
 }
 
 /* Each expected text is said; only: nothing else is. */
-static void check_texts(struct eo_verification *v, struct eo_case *expected, const json_t *said, bool only,
+static void check_texts(struct eo_verification *verification, struct eo_case *expected, const json_t *said, bool only,
                         struct eo_case *where, const char *what)
 {
   int surprises = 0;
@@ -138,7 +141,7 @@ static void check_texts(struct eo_verification *v, struct eo_case *expected, con
   size_t i;
   for (int k = 0; k < eo_case_size(expected); k++) {
     struct eo_case *text = eo_case_at(expected, k);
-    eo_verify_fact(v, text, eo_case_text(text), says(said, eo_case_text(text)));
+    eo_verify_fact(verification, text, eo_case_text(text), says(said, eo_case_text(text)));
   }
   if (!only)
     return;
@@ -149,9 +152,9 @@ static void check_texts(struct eo_verification *v, struct eo_case *expected, con
       known = known || strstr(json_string_value(entry), json_string_value(eo_case_json(eo_case_peek(expected, k))));
     surprises += !known;
     if (!known)
-      eo_verify_note(v, "not expected: %s", json_string_value(entry));
+      eo_verify_note(verification, "not expected: %s", json_string_value(entry));
   }
-  eo_verify_fact(v, expected ? expected : where, what, surprises == 0);
+  eo_verify_fact(verification, expected ? expected : where, what, surprises == 0);
 }
 
 /* Faults: */
@@ -189,7 +192,7 @@ static bool is_noted(const json_t *expected, const json_t *notes)
   return false;
 }
 
-static void check_faults(struct eo_verification *v, struct eo_case *faults, const struct eo_import *import)
+static void check_faults(struct eo_verification *verification, struct eo_case *faults, const struct eo_import *import)
 {
   int surprises = 0;
   const json_t *found;
@@ -199,7 +202,7 @@ static void check_faults(struct eo_verification *v, struct eo_case *faults, cons
     const json_t *expected = eo_case_json(fault);
     bool known = is_noted(expected, import->notes);
     json_array_foreach(import->faults, n, found) known = known || is_fault(expected, found);
-    eo_verify_fact(v, fault, eo_case_word(fault, "kind"), known);
+    eo_verify_fact(verification, fault, eo_case_word(fault, "kind"), known);
     eo_case_skip(fault);
   }
   json_array_foreach(import->faults, n, found)
@@ -209,32 +212,32 @@ static void check_faults(struct eo_verification *v, struct eo_case *faults, cons
       expected = expected || is_fault(eo_case_json(eo_case_peek(faults, i)), found);
     surprises += !expected;
     if (!expected)
-      eo_verify_note(v, "not expected: %s", json_string_value(json_object_get(found, "text")));
+      eo_verify_note(verification, "not expected: %s", json_string_value(json_object_get(found, "text")));
   }
-  eo_verify_fact(v, faults, "no fault besides", surprises == 0);
+  eo_verify_fact(verification, faults, "no fault besides", surprises == 0);
 }
 
-static void check_case(struct eo_verification *v, struct eo_case *item, const struct eo_import *import)
+static void check_case(struct eo_verification *verification, struct eo_case *item, const struct eo_import *import)
 {
   const char *version = eo_case_word_given(item, "version");
   char format[40];
   if (version) {
     snprintf(format, sizeof format, "REXS %.20s ", version);
-    eo_verify_fact(v, item, "version", strstr(import->format, format) != NULL);
+    eo_verify_fact(verification, item, "version", strstr(import->format, format) != NULL);
   }
-  check_pairs(v, eo_case_find(item, "pairs"), import);
-  check_design(v, eo_case_find(item, "design"), import);
+  check_pairs(verification, eo_case_find(item, "pairs"), import);
+  check_design(verification, eo_case_find(item, "design"), import);
   struct eo_case *not_used = eo_case_find(item, "not_used"), *refused = eo_case_find(item, "refused");
-  check_texts(v, not_used, import->not_used, not_used != NULL, item, "nothing else is not used");
-  check_texts(v, refused, import->refused, import->design != NULL, item, "nothing else is refused");
-  check_texts(v, eo_case_find(item, "assumptions"), import->assumed, false, item, "");
+  check_texts(verification, not_used, import->not_used, not_used != NULL, item, "nothing else is not used");
+  check_texts(verification, refused, import->refused, import->design != NULL, item, "nothing else is refused");
+  check_texts(verification, eo_case_find(item, "assumptions"), import->assumed, false, item, "");
   eo_case_skip(eo_case_find(item, "tolerated"));
-  check_faults(v, eo_case_need(item, "faults"), import);
+  check_faults(verification, eo_case_need(item, "faults"), import);
 }
 
 static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct run *r = context;
+  const struct run *run = context;
   struct eo_case *choose = eo_case_given(item, "choose");
   struct eo_import_options options = {0};
   struct eo_import import;
@@ -243,12 +246,12 @@ static enum eo_code run_case(void *context, struct eo_case *item, struct eo_erro
   options.pair = choose ? (int)eo_case_real(choose) + 1 : 0;
   if (eo_case_faulty(item))
     return EO_OK;
-  char *path = eo_verify_path(r->v, name);
+  char *path = eo_verify_path(run->v, name);
   enum eo_code code = path ? eo_text_read(&text, path, EO_REXS_BYTES, error) : eo_error_memory(error);
   if (!code) {
     code = eo_import_read(&import, text.size ? text.data : "", text.size, &options, error);
     if (!code)
-      check_case(r->v, item, &import);
+      check_case(run->v, item, &import);
     eo_import_done(&import);
   }
   eo_text_done(&text);
@@ -261,9 +264,9 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
-  struct run r = {v};
+  struct run run = {verification};
   eo_case_need(file, "cases");
-  return eo_case_faulty(file) ? EO_OK : eo_verify_blocks(v, file, blocks, &r, error);
+  return eo_case_faulty(file) ? EO_OK : eo_verify_blocks(verification, file, blocks, &run, error);
 }

@@ -43,14 +43,10 @@ static enum eo_code init(struct rig *rig, const struct eo_geometry *geometry, in
   const struct eo_contact_grid_settings settings = {.positions = positions, .cells = cells, .edge_reach = NAN};
   const struct eo_kernel kernel = {foundation, stiffness};
   *rig = (struct rig){0};
-  enum eo_code code = eo_contact_grid_new(&rig->grid, geometry, &rigid, &settings, phase, kernel, NULL, error);
-  if (!code)
-    code = eo_loaded_gaps_init(&rig->gaps, rig->grid, error);
-  if (!code)
-    code = eo_loaded_end_init(&rig->end, rig->grid, error);
-  if (!code)
-    code = eo_loaded_workspace_new(&rig->workspace, rig->grid, error);
-  return code;
+  EO_TRY(eo_contact_grid_new(&rig->grid, geometry, &rigid, &settings, phase, kernel, NULL, error));
+  EO_TRY(eo_loaded_gaps_init(&rig->gaps, rig->grid, error));
+  EO_TRY(eo_loaded_end_init(&rig->end, rig->grid, error));
+  return eo_loaded_workspace_new(&rig->workspace, rig->grid, error);
 }
 
 static enum eo_code solve(struct rig *rig, double load, struct eo_error *error)

@@ -42,15 +42,15 @@ static const struct eo_verify_kind *find_kind(struct eo_case *file)
   return NULL;
 }
 
-enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   const struct eo_verify_kind *kind = find_kind(file);
-  enum eo_code code = kind ? kind->run(file, v, error) : EO_OK;
-  if (!code && v->failed)
+  enum eo_code code = kind ? kind->run(file, verification, error) : EO_OK;
+  if (!code && verification->failed)
     code = eo_error_memory(error);
   if (code)
     return code;
-  if (kind && v->count == 0 && !eo_case_faulty(file))
+  if (kind && verification->count == 0 && !eo_case_faulty(file))
     eo_case_fault(file, "Nothing in this file is checked.");
   if (kind)
     eo_case_sweep(file);

@@ -38,16 +38,16 @@ static enum eo_code read_stiffness(struct eo_case *object, double tau, struct eo
 static enum eo_code read_power(struct eo_case *object, double tau, struct eo_law *law, struct eo_error *error)
 {
   double coefficient[TERMS], offset[TERMS] = {0};
-  struct eo_case *k = eo_case_find(object, "K"), *e = eo_case_find(object, "e");
+  struct eo_case *this_case = eo_case_find(object, "K"), *the_case = eo_case_find(object, "e");
   int order = 0, offset_order = 0;
-  if (k)
-    order = read_series(k, "k0", "a", "b", coefficient);
+  if (this_case)
+    order = read_series(this_case, "k0", "a", "b", coefficient);
   else if (eo_case_find(object, "K0"))
     order = read_series(object, "K0", "Ka", "Kb", coefficient);
   else
     order = read_series(object, "k0", "a", "b", coefficient);
-  if (e)
-    offset_order = read_series(e, eo_case_find(e, "e0") ? "e0" : "k0", "a", "b", offset);
+  if (the_case)
+    offset_order = read_series(the_case, eo_case_find(the_case, "e0") ? "e0" : "k0", "a", "b", offset);
   else if (eo_case_find(object, "e0"))
     offset_order = read_series(object, "e0", "ea", "eb", offset);
   double power = eo_case_number(object, eo_case_find(object, "exponent") ? "exponent" : "p");
@@ -59,9 +59,9 @@ static enum eo_code read_power(struct eo_case *object, double tau, struct eo_law
 /* Loads P[n] and deflections Z[n][positions]. */
 static enum eo_code read_table(struct eo_case *object, double tau, struct eo_law *law, struct eo_error *error)
 {
-  struct eo_case *z = eo_case_need(object, "Z"), *p = eo_case_need(object, "P");
-  int rows = eo_case_size(p), positions = eo_case_size(eo_case_at(z, 0));
-  if (p && (rows < 2 || eo_case_size(z) != rows || positions < 1 || positions > MAX_POSITIONS))
+  struct eo_case *this_case = eo_case_need(object, "Z"), *the_case = eo_case_need(object, "P");
+  int rows = eo_case_size(the_case), positions = eo_case_size(eo_case_at(this_case, 0));
+  if (the_case && (rows < 2 || eo_case_size(this_case) != rows || positions < 1 || positions > MAX_POSITIONS))
     eo_case_fault(object, "A table has loads P[n] and deflections Z[n][positions].");
   if (eo_case_faulty(object))
     return EO_OK;
@@ -69,9 +69,9 @@ static enum eo_code read_table(struct eo_case *object, double tau, struct eo_law
   if (!load)
     return eo_error_memory(error);
   double *deflection = load + rows;
-  eo_case_numbers(p, rows, rows, load);
+  eo_case_numbers(the_case, rows, rows, load);
   for (int i = 0; i < rows; i++)
-    eo_case_numbers(eo_case_at(z, i), positions, positions, deflection + (size_t)i * positions);
+    eo_case_numbers(eo_case_at(this_case, i), positions, positions, deflection + (size_t)i * positions);
   enum eo_code code = eo_case_faulty(object)
                           ? EO_OK
                           : eo_law_set_table(law, rows, positions, load, deflection, positions / 2, tau, error);
@@ -156,7 +156,7 @@ void eo_verify_read_parameters(struct eo_case *params, struct eo_dynamics_parame
   eo_case_number_or(params, "eps_z", 0); /* a constant axial float of the pinion: the float itself absorbs it */
 }
 
-void eo_verify_couple(struct eo_case *file, struct eo_case *item, struct eo_dynamics_parameters *p)
+void eo_verify_couple(struct eo_case *file, struct eo_case *item, struct eo_dynamics_parameters *parameters)
 {
   static const char *const key[2] = {"kt_p", "kt_g"}, *const words[] = {"none", "pinion", "gear", "both", "on", NULL};
   const double damping_ratio = 0.02;
@@ -167,9 +167,9 @@ void eo_verify_couple(struct eo_case *file, struct eo_case *item, struct eo_dyna
   for (int m = 0; m < 2; m++) {
     double stiffness = eo_case_number(torsion, key[m]);
     bool coupled = members > 2 || members == m + 1;
-    if (!coupled || p->groove_torsional_stiffness[m] != 0)
+    if (!coupled || parameters->groove_torsional_stiffness[m] != 0)
       continue;
-    p->groove_torsional_stiffness[m] = stiffness;
-    p->groove_torsional_damping[m] = 2 * damping_ratio * sqrt(stiffness * p->inertia[m] / 2);
+    parameters->groove_torsional_stiffness[m] = stiffness;
+    parameters->groove_torsional_damping[m] = 2 * damping_ratio * sqrt(stiffness * parameters->inertia[m] / 2);
   }
 }

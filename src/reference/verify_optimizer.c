@@ -23,22 +23,23 @@ struct verifier {
   double relative; /* of the case under work */
 };
 
-static void begin(struct verifier *v, struct eo_case *item)
+static void begin(struct verifier *verifier, struct eo_case *item)
 {
-  v->relative = eo_case_relative_or(item, "rel_tol", v->usual);
+  verifier->relative = eo_case_relative_or(item, "rel_tol", verifier->usual);
 }
 
 /* To the tolerance in force; a 0 to the same part of 1, the size of the unit cube and of a credibility. */
-static void compare(const struct verifier *v, struct eo_case *expected, double value)
+static void compare(const struct verifier *verifier, struct eo_case *expected, double value)
 {
-  eo_verify_number(v->v, expected, value, v->relative, eo_case_largest(expected) == 0 ? v->relative : 0);
+  eo_verify_number(verifier->v, expected, value, verifier->relative,
+                   eo_case_largest(expected) == 0 ? verifier->relative : 0);
 }
 
-static void compare_list(const struct verifier *v, struct eo_case *expected, int count, const double *value)
+static void compare_list(const struct verifier *verifier, struct eo_case *expected, int count, const double *value)
 {
-  eo_verify_size(v->v, expected, count);
+  eo_verify_size(verifier->v, expected, count);
   for (int i = 0; i < eo_case_size(expected); i++)
-    compare(v, eo_case_at(expected, i), i < count ? value[i] : NAN);
+    compare(verifier, eo_case_at(expected, i), i < count ? value[i] : NAN);
 }
 
 static uint64_t whole_number(struct eo_case *value)
@@ -96,7 +97,7 @@ static double *numbers(struct eo_case *list, int *rows, int *columns)
 
 static enum eo_code check_random(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct verifier *v = context;
+  const struct verifier *verifier = context;
   const double unit = 0x1p-53;
   struct eo_case *expected = eo_case_need(item, "u64");
   const uint64_t wanted = big_whole(expected), seed = big_whole(eo_case_need(item, "seed")),
@@ -108,8 +109,8 @@ static enum eo_code check_random(void *context, struct eo_case *item, struct eo_
   (void)error;
   if (eo_case_faulty(item))
     return EO_OK;
-  eo_verify_fact(v->v, expected, "the same 64 bits", bits == wanted);
-  eo_verify_number(v->v, eo_case_need(item, "u01"), eo_random_unit(random, draw), 0, unit / 2);
+  eo_verify_fact(verifier->v, expected, "the same 64 bits", bits == wanted);
+  eo_verify_number(verifier->v, eo_case_need(item, "u01"), eo_random_unit(random, draw), 0, unit / 2);
   return EO_OK;
 }
 
@@ -160,36 +161,37 @@ static bool is_choice(struct eo_case *object, const char *key, const char *usual
 }
 
 /* The rows of the region with their distances and weights. */
-static void compare_region(const struct verifier *v, struct eo_case *item, const struct eo_history *history,
+static void compare_region(const struct verifier *verifier, struct eo_case *item, const struct eo_history *history,
                            double radius)
 {
-  struct eo_case *rows = eo_case_need(item, "region"), *e = eo_case_need(item, "e"), *w = eo_case_need(item, "w");
+  struct eo_case *rows = eo_case_need(item, "region"), *this_case = eo_case_need(item, "e"),
+                 *the_case = eo_case_need(item, "w");
   int region = 0;
   for (int j = 0; j < history->count; j++) {
     if (!(history->distance[j] <= radius))
       continue;
-    eo_verify_exact(v->v, eo_case_at(rows, region), j);
-    compare(v, eo_case_at(e, region), history->distance[j]);
-    compare(v, eo_case_at(w, region), history->weight[j]);
+    eo_verify_exact(verifier->v, eo_case_at(rows, region), j);
+    compare(verifier, eo_case_at(this_case, region), history->distance[j]);
+    compare(verifier, eo_case_at(the_case, region), history->weight[j]);
     region++;
   }
-  eo_verify_size(v->v, rows, region);
-  eo_verify_size(v->v, e, region);
-  eo_verify_size(v->v, w, region);
+  eo_verify_size(verifier->v, rows, region);
+  eo_verify_size(verifier->v, this_case, region);
+  eo_verify_size(verifier->v, the_case, region);
 }
 
 /* null where the point has to be evaluated: then there is no estimate. */
-static void compare_fitness(const struct verifier *v, struct eo_case *item, const char *key, double fitness,
+static void compare_fitness(const struct verifier *verifier, struct eo_case *item, const char *key, double fitness,
                             bool predicts)
 {
   struct eo_case *expected = eo_case_find(item, key);
   if (expected && eo_case_is_null(expected))
-    eo_verify_fact(v->v, expected, "not predicted", !predicts);
+    eo_verify_fact(verifier->v, expected, "not predicted", !predicts);
   else
-    compare(v, expected, fitness);
+    compare(verifier, expected, fitness);
 }
 
-static void compare_estimate(const struct verifier *v, struct eo_case *item, struct eo_history *history)
+static void compare_estimate(const struct verifier *verifier, struct eo_case *item, struct eo_history *history)
 {
   static const char decision_key[] = "decision_at_Rstar_0_6";
   const double usual_trust = 0.6;
@@ -207,64 +209,64 @@ static void compare_estimate(const struct verifier *v, struct eo_case *item, str
   if (x && !eo_case_faulty(item)) {
     const struct eo_history_estimate estimate = eo_history_predict(history, &law, x);
     const bool predicts = eo_history_trusts(&estimate, trust);
-    compare_region(v, item, history, law.share_radius);
-    compare(v, eo_case_need(item, "R"), estimate.credibility);
-    eo_verify_fact(v->v, eo_case_find(item, decision_key), "the same decision", predicts == !evaluates);
-    compare_fitness(v, item, "fitness", estimate.fitness, predicts);
-    compare_fitness(v, item, "weighted_fitness", estimate.fitness, predicts);
+    compare_region(verifier, item, history, law.share_radius);
+    compare(verifier, eo_case_need(item, "R"), estimate.credibility);
+    eo_verify_fact(verifier->v, eo_case_find(item, decision_key), "the same decision", predicts == !evaluates);
+    compare_fitness(verifier, item, "fitness", estimate.fitness, predicts);
+    compare_fitness(verifier, item, "weighted_fitness", estimate.fitness, predicts);
   }
   free(x);
 }
 
 static enum eo_code check_predict(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   struct eo_history history = {0};
-  struct eo_case *name = eo_case_need(item, "history"), *all = eo_case_need(v->file, "histories");
+  struct eo_case *name = eo_case_need(item, "history"), *all = eo_case_need(verifier->file, "histories");
   struct eo_case *block = eo_case_text(name) ? eo_case_find(all, eo_case_text(name)) : NULL;
-  begin(v, item);
+  begin(verifier, item);
   if (!block && eo_case_is_text(name))
     eo_case_fault(name, "There is no such history.");
   enum eo_code code = block ? load_history(block, &history, error) : EO_OK;
   if (!code && !eo_case_faulty(item))
-    compare_estimate(v, item, &history);
+    compare_estimate(verifier, item, &history);
   eo_history_done(&history);
   return code;
 }
 
 /* Positions that are set in mark, in order, as the ids of their rows. ids NULL: the positions themselves. */
-static void compare_marks(const struct verifier *v, const bool *mark, const double *ids, int count,
+static void compare_marks(const struct verifier *verifier, const bool *mark, const double *ids, int count,
                           struct eo_case *expected)
 {
   int seen = 0;
   for (int i = 0; i < count; i++)
     if (mark[i]) {
-      eo_verify_exact(v->v, eo_case_at(expected, seen), ids ? ids[i] : i);
+      eo_verify_exact(verifier->v, eo_case_at(expected, seen), ids ? ids[i] : i);
       seen++;
     }
-  eo_verify_size(v->v, expected, seen);
+  eo_verify_size(verifier->v, expected, seen);
 }
 
 static enum eo_code check_redundancy(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   struct eo_history history = {0};
   const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "threshold"),
                                      .literal_redundancy = true};
   struct eo_case *expected = eo_case_need(item, "I_r"), *removed = eo_case_need(item, "removed");
-  begin(v, item);
+  begin(verifier, item);
   enum eo_code code = load_history(item, &history, error);
   if (!code && !eo_case_faulty(item)) {
     eo_history_mark_redundant(&history, &law);
-    eo_verify_size(v->v, expected, history.count);
+    eo_verify_size(verifier->v, expected, history.count);
     for (int i = 0; i < history.count && i < eo_case_size(expected); i++) {
       struct eo_case *one = eo_case_at(expected, i);
       if (eo_case_is_null(one)) /* the first and last row of a coordinate */
-        eo_verify_fact(v->v, one, "infinite", isinf(history.redundancy[i]));
+        eo_verify_fact(verifier->v, one, "infinite", isinf(history.redundancy[i]));
       else
-        compare(v, one, history.redundancy[i]);
+        compare(verifier, one, history.redundancy[i]);
     }
-    compare_marks(v, history.removed, NULL, history.count, removed);
+    compare_marks(verifier, history.removed, NULL, history.count, removed);
   }
   eo_history_done(&history);
   return code;
@@ -272,14 +274,14 @@ static enum eo_code check_redundancy(void *context, struct eo_case *item, struct
 
 static enum eo_code check_decay(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   struct eo_history history = {0};
   const struct eo_history_law law = {.credibility_loss = eo_case_number(item, "beta"),
                                      .removal_threshold = eo_case_number(item, "R0")};
   const double origin = 0, trust = eo_case_number_or(item, "Rstar", 0.6), start = eo_case_number(item, "R");
   struct eo_case *expected = eo_case_need(item, "R_after_each_generation");
   int last_trusted = 0, removed_after = 0;
-  begin(v, item);
+  begin(verifier, item);
   if (eo_case_faulty(item))
     return EO_OK;
   enum eo_code code = eo_history_init(&history, 1, 1, error);
@@ -288,20 +290,20 @@ static enum eo_code check_decay(void *context, struct eo_case *item, struct eo_e
   for (int generation = 1; generation <= eo_case_size(expected) && !code; generation++) {
     if (eo_history_decay(&history, &law) > 0)
       removed_after = generation;
-    compare(v, eo_case_at(expected, generation - 1), history.credibility[0]);
+    compare(verifier, eo_case_at(expected, generation - 1), history.credibility[0]);
     if (history.credibility[0] >= trust)
       last_trusted = generation;
   }
   if (!code) {
-    eo_verify_exact(v->v, eo_case_need(item, "removed_after_generation"), removed_after);
-    eo_verify_exact(v->v, eo_case_need(item, "last_generation_with_R_at_least_Rstar"), last_trusted);
+    eo_verify_exact(verifier->v, eo_case_need(item, "removed_after_generation"), removed_after);
+    eo_verify_exact(verifier->v, eo_case_need(item, "last_generation_with_R_at_least_Rstar"), last_trusted);
   }
   eo_history_done(&history);
   return code;
 }
 
 /* Ids of the redundant rows, of those that decay marks in addition, and of what stays. */
-static enum eo_code compare_clean_up(const struct verifier *v, struct eo_case *item, struct eo_history *history,
+static enum eo_code compare_clean_up(const struct verifier *verifier, struct eo_case *item, struct eo_history *history,
                                      const double *ids, const struct eo_history_law *law, struct eo_error *error)
 {
   struct eo_case *after = eo_case_need(item, "after");
@@ -310,7 +312,7 @@ static enum eo_code compare_clean_up(const struct verifier *v, struct eo_case *i
   enum eo_code code = decayed && kept ? EO_OK : eo_error_memory(error);
   if (!code) {
     eo_history_mark_redundant(history, law);
-    compare_marks(v, history->removed, ids, count, eo_case_need(item, "removed_redundant"));
+    compare_marks(verifier, history->removed, ids, count, eo_case_need(item, "removed_redundant"));
     for (int j = 0; j < count; j++)
       kept[j] = history->removed[j]; /* before decay */
     eo_history_decay(history, law);
@@ -318,10 +320,10 @@ static enum eo_code compare_clean_up(const struct verifier *v, struct eo_case *i
       decayed[j] = history->removed[j] && !kept[j];
       kept[j] = !history->removed[j];
     }
-    compare_marks(v, decayed, ids, count, eo_case_need(item, "removed_decayed"));
-    compare_marks(v, kept, ids, count, eo_case_need(after, "id"));
+    compare_marks(verifier, decayed, ids, count, eo_case_need(item, "removed_decayed"));
+    compare_marks(verifier, kept, ids, count, eo_case_need(after, "id"));
     eo_history_compact(history);
-    compare_list(v, eo_case_need(after, "R"), history->count, history->credibility);
+    compare_list(verifier, eo_case_need(after, "R"), history->count, history->credibility);
   }
   free(kept);
   free(decayed);
@@ -330,7 +332,7 @@ static enum eo_code compare_clean_up(const struct verifier *v, struct eo_case *i
 
 static enum eo_code check_clean_up(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   struct eo_history history = {0};
   struct eo_case *before = eo_case_need(item, "before");
   const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "Ir"),
@@ -339,12 +341,12 @@ static enum eo_code check_clean_up(void *context, struct eo_case *item, struct e
                                      .removal_threshold = eo_case_number(item, "R0")};
   int count, columns;
   double *ids = numbers(eo_case_need(before, "id"), &count, &columns);
-  begin(v, item);
+  begin(verifier, item);
   enum eo_code code = before ? load_history(before, &history, error) : EO_OK;
   if (!code && ids && !eo_case_faulty(item) && (count != history.count || columns != 1))
     eo_case_fault(eo_case_find(before, "id"), "There are %d rows.", history.count);
   if (!code && !eo_case_faulty(item))
-    code = compare_clean_up(v, item, &history, ids, &law, error);
+    code = compare_clean_up(verifier, item, &history, ids, &law, error);
   eo_history_done(&history);
   free(ids);
   return code;
@@ -356,32 +358,34 @@ static void replace(struct eo_case *object, const char *key, double *value)
 }
 
 /* The parameters of the files' operators and runs blocks; the files hold the algorithm as printed. */
-static void read_parameters(struct eo_optimizer_settings *s, struct eo_case *p)
+static void read_parameters(struct eo_optimizer_settings *settings, struct eo_case *this_case)
 {
-  replace(p, "pc", &s->crossover);
-  replace(p, "pm", &s->mutation);
-  replace(p, "eta_c", &s->crossover_index);
-  replace(p, "eta_m", &s->mutation_index);
-  s->mutation_mode = is_choice(p, "pm_mode", "gene", "individual") ? EO_MUTATE_INDIVIDUAL : EO_MUTATE_GENE;
-  s->population = eo_case_whole_or(p, "npop", 1, MOST_ROWS, s->population);
-  s->generations = eo_case_whole_or(p, "ngen", 1, MOST_GENERATIONS, s->generations);
-  s->elite = eo_case_whole_or(p, "elite", 0, MOST_ROWS, s->elite);
-  s->share_radius = eo_case_number_or(p, "r_share", NAN);
-  replace(p, "alpha", &s->weight_decay);
-  replace(p, "Rstar", &s->trust_threshold);
-  replace(p, "beta", &s->credibility_loss);
-  replace(p, "R0", &s->removal_threshold);
-  replace(p, "Ir", &s->redundancy_threshold);
-  s->distance_norm = is_choice(p, "norm", "range", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
-  s->weight_sum = is_choice(p, "wnorm", "region", "all") ? EO_WEIGHTS_ALL : EO_WEIGHTS_REGION;
-  s->decision_order = is_choice(p, "order", "sequential", "batch") ? EO_ORDER_BATCH : EO_ORDER_SEQUENTIAL;
-  s->store_predicted = eo_case_flag_or(p, "store_predicted", true);
-  s->literal_redundancy = eo_case_flag_or(p, "literal", true);
-  s->verify = eo_case_whole_or(p, "verify", 0, 1, 0);
-  s->reuse = eo_case_flag_or(p, "reuse", false);
+  replace(this_case, "pc", &settings->crossover);
+  replace(this_case, "pm", &settings->mutation);
+  replace(this_case, "eta_c", &settings->crossover_index);
+  replace(this_case, "eta_m", &settings->mutation_index);
+  settings->mutation_mode = is_choice(this_case, "pm_mode", "gene", "individual") ? EO_MUTATE_INDIVIDUAL
+                                                                                  : EO_MUTATE_GENE;
+  settings->population = eo_case_whole_or(this_case, "npop", 1, MOST_ROWS, settings->population);
+  settings->generations = eo_case_whole_or(this_case, "ngen", 1, MOST_GENERATIONS, settings->generations);
+  settings->elite = eo_case_whole_or(this_case, "elite", 0, MOST_ROWS, settings->elite);
+  settings->share_radius = eo_case_number_or(this_case, "r_share", NAN);
+  replace(this_case, "alpha", &settings->weight_decay);
+  replace(this_case, "Rstar", &settings->trust_threshold);
+  replace(this_case, "beta", &settings->credibility_loss);
+  replace(this_case, "R0", &settings->removal_threshold);
+  replace(this_case, "Ir", &settings->redundancy_threshold);
+  settings->distance_norm = is_choice(this_case, "norm", "range", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
+  settings->weight_sum = is_choice(this_case, "wnorm", "region", "all") ? EO_WEIGHTS_ALL : EO_WEIGHTS_REGION;
+  settings->decision_order = is_choice(this_case, "order", "sequential", "batch") ? EO_ORDER_BATCH
+                                                                                  : EO_ORDER_SEQUENTIAL;
+  settings->store_predicted = eo_case_flag_or(this_case, "store_predicted", true);
+  settings->literal_redundancy = eo_case_flag_or(this_case, "literal", true);
+  settings->verify = eo_case_whole_or(this_case, "verify", 0, 1, 0);
+  settings->reuse = eo_case_flag_or(this_case, "reuse", false);
 }
 
-static enum eo_code compare_children(const struct verifier *v, struct eo_case *expected,
+static enum eo_code compare_children(const struct verifier *verifier, struct eo_case *expected,
                                      const struct eo_optimizer_settings *settings, const double *parents,
                                      const double *fitness, int size, int n, int generation, struct eo_error *error)
 {
@@ -391,14 +395,14 @@ static enum eo_code compare_children(const struct verifier *v, struct eo_case *e
     return eo_error_memory(error);
   eo_breed(settings, parents, fitness, size, generation, 0, child, children);
   for (int i = 0; i < children; i++)
-    compare_list(v, eo_case_at(expected, i), n, child + (size_t)i * (size_t)n);
+    compare_list(verifier, eo_case_at(expected, i), n, child + (size_t)i * (size_t)n);
   free(child);
   return EO_OK;
 }
 
 static enum eo_code check_operators(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   int size, n, count, columns;
   double *parents = numbers(eo_case_need(item, "parents"), &size, &n);
   double *fitness = numbers(eo_case_need(item, "fitness"), &count, &columns);
@@ -406,14 +410,14 @@ static enum eo_code check_operators(void *context, struct eo_case *item, struct 
   const int generation = eo_case_whole(item, "gen", 0, MOST_GENERATIONS);
   struct eo_optimizer_settings settings;
   enum eo_code code = EO_OK;
-  begin(v, item);
+  begin(verifier, item);
   eo_optimizer_defaults(&settings, EO_GA, n);
   read_parameters(&settings, parameters);
   settings.seed = big_whole(eo_case_need(item, "seed"));
   if (parents && fitness && count != size)
     eo_case_fault(item, "parents and fitness do not belong together.");
   if (!eo_case_faulty(item))
-    code = compare_children(v, expected, &settings, parents, fitness, size, n, generation, error);
+    code = compare_children(verifier, expected, &settings, parents, fitness, size, n, generation, error);
   free(fitness);
   free(parents);
   return code;
@@ -436,39 +440,40 @@ static enum eo_code run_to_the_end(struct eo_optimizer *optimizer, const char *f
   return code;
 }
 
-static void compare_run(const struct verifier *v, const struct eo_optimizer *optimizer, struct eo_case *item)
+static void compare_run(const struct verifier *verifier, const struct eo_optimizer *optimizer, struct eo_case *item)
 {
   static const char *const keys[] = {"true_evaluations_after_generation", "rows_after_generation", "removed_redundant",
                                      "removed_decayed", "best_true_fitness"};
   enum { KEYS = sizeof keys / sizeof *keys, COUNTS = KEYS - 1 };
   int generations, true_evaluations = 0, best = eo_optimizer_best(optimizer);
-  const struct eo_generation *g = eo_optimizer_generations(optimizer, &generations);
+  const struct eo_generation *generation = eo_optimizer_generations(optimizer, &generations);
   struct eo_case *list[KEYS], *best_x = eo_case_need(item, "best_x");
   for (int k = 0; k < KEYS; k++) {
     list[k] = eo_case_need(item, keys[k]);
-    eo_verify_size(v->v, list[k], generations);
+    eo_verify_size(verifier->v, list[k], generations);
   }
   for (int i = 0; i < generations; i++) {
-    true_evaluations += g[i].true_count;
-    const double count[COUNTS] = {true_evaluations, g[i].history_rows, g[i].removed_redundant, g[i].removed_decayed};
+    true_evaluations += generation[i].true_count;
+    const double count[COUNTS] = {true_evaluations, generation[i].history_rows, generation[i].removed_redundant,
+                                  generation[i].removed_decayed};
     for (int k = 0; k < COUNTS; k++)
-      eo_verify_exact(v->v, eo_case_at(list[k], i), count[k]);
-    compare(v, eo_case_at(list[COUNTS], i), -g[i].best_value);
+      eo_verify_exact(verifier->v, eo_case_at(list[k], i), count[k]);
+    compare(verifier, eo_case_at(list[COUNTS], i), -generation[i].best_value);
   }
-  compare(v, eo_case_need(item, "pfc"), eo_optimizer_counters(optimizer).fitness_computed);
-  eo_verify_fact(v->v, best_x, "there is a best point", best >= 0);
+  compare(verifier, eo_case_need(item, "pfc"), eo_optimizer_counters(optimizer).fitness_computed);
+  eo_verify_fact(verifier->v, best_x, "there is a best point", best >= 0);
   if (best >= 0)
-    compare_list(v, best_x, eo_case_whole(item, "n", 1, EO_MAX_VARIABLES), eo_optimizer_row(optimizer, best).x);
+    compare_list(verifier, best_x, eo_case_whole(item, "n", 1, EO_MAX_VARIABLES), eo_optimizer_row(optimizer, best).x);
 }
 
 static enum eo_code check_run(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   const char *formula = eo_case_word(item, "fitness");
   const int n = eo_case_whole(item, "n", 1, EO_MAX_VARIABLES);
   struct eo_optimizer *optimizer = NULL;
   struct eo_optimizer_settings settings;
-  begin(v, item);
+  begin(verifier, item);
   eo_optimizer_defaults(&settings, EO_FPGA, n);
   read_parameters(&settings, eo_case_need(item, "params"));
   settings.seed = big_whole(eo_case_need(item, "seed"));
@@ -479,7 +484,7 @@ static enum eo_code check_run(void *context, struct eo_case *item, struct eo_err
   if (!code)
     code = run_to_the_end(optimizer, formula, n, error);
   if (!code)
-    compare_run(v, optimizer, item);
+    compare_run(verifier, optimizer, item);
   eo_optimizer_free(optimizer);
   return code;
 }
@@ -496,7 +501,7 @@ static double ridge_of(struct eo_case *item)
   return value;
 }
 
-static void compare_surrogate(const struct verifier *v, struct eo_case *item, struct eo_surrogate *s,
+static void compare_surrogate(const struct verifier *verifier, struct eo_case *item, struct eo_surrogate *surrogate,
                               const double *query, int queries)
 {
   struct eo_case *credibility = eo_case_need(item, "credibility"), *trust = eo_case_need(credibility, "R"),
@@ -505,20 +510,20 @@ static void compare_surrogate(const struct verifier *v, struct eo_case *item, st
   eo_case_remark(credibility, "formula");
   if (eo_case_faulty(item))
     return;
-  compare_list(v, eo_case_need(item, "loo_abs"), s->rows, s->residual);
-  compare_list(v, eo_case_need(item, "loo_by_refit"), s->rows, s->residual);
-  eo_surrogate_set_scale(s, s->residual, scale);
-  eo_verify_size(v->v, prediction, queries);
-  eo_verify_size(v->v, trust, queries);
+  compare_list(verifier, eo_case_need(item, "loo_abs"), surrogate->rows, surrogate->residual);
+  compare_list(verifier, eo_case_need(item, "loo_by_refit"), surrogate->rows, surrogate->residual);
+  eo_surrogate_set_scale(surrogate, surrogate->residual, scale);
+  eo_verify_size(verifier->v, prediction, queries);
+  eo_verify_size(verifier->v, trust, queries);
   for (int i = 0; i < queries; i++) {
-    eo_surrogate_visit(s, query + (size_t)i * (size_t)s->variables);
-    compare(v, eo_case_at(prediction, i), eo_surrogate_value(s, 0));
-    compare(v, eo_case_at(trust, i), eo_surrogate_credibility(s, length));
+    eo_surrogate_visit(surrogate, query + (size_t)i * (size_t)surrogate->variables);
+    compare(verifier, eo_case_at(prediction, i), eo_surrogate_value(surrogate, 0));
+    compare(verifier, eo_case_at(trust, i), eo_surrogate_credibility(surrogate, length));
   }
 }
 
-static enum eo_code check_surrogate(const struct verifier *v, struct eo_case *item, const double *x, int m, int n,
-                                    struct eo_error *error)
+static enum eo_code check_surrogate(const struct verifier *verifier, struct eo_case *item, const double *x, int m,
+                                    int n, struct eo_error *error)
 {
   int rows, queries, one, columns;
   double *y = numbers(eo_case_need(item, "y"), &rows, &one);
@@ -533,7 +538,7 @@ static enum eo_code check_surrogate(const struct verifier *v, struct eo_case *it
   if (!code && !eo_case_faulty(item) && !eo_surrogate_fit(&surrogate, EO_TAIL_LINEAR, ridge, x, y, m, 1))
     code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The rows do not determine a surrogate.");
   if (!code && !eo_case_faulty(item))
-    compare_surrogate(v, item, &surrogate, query, queries);
+    compare_surrogate(verifier, item, &surrogate, query, queries);
   eo_surrogate_done(&surrogate);
   free(query);
   free(y);
@@ -542,22 +547,22 @@ static enum eo_code check_surrogate(const struct verifier *v, struct eo_case *it
 
 static enum eo_code check_successor(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *v = context;
+  struct verifier *verifier = context;
   struct eo_case *latin = eo_case_need(item, "lhs"), *expected = eo_case_need(latin, "x");
   const int n = eo_case_whole(latin, "n", 1, EO_MAX_VARIABLES), m = eo_case_whole(latin, "m", 1, MOST_ROWS);
   const uint64_t seed = big_whole(eo_case_need(latin, "seed"));
-  begin(v, item);
+  begin(verifier, item);
   if (eo_case_faulty(item))
     return EO_OK;
   double *x = calloc((size_t)m * (size_t)n, sizeof *x), *scratch = calloc((size_t)m, sizeof *scratch);
   enum eo_code code = x && scratch ? EO_OK : eo_error_memory(error);
   if (!code) {
     eo_latin_hypercube(x, m, n, seed, 0, scratch);
-    eo_verify_size(v->v, expected, m);
+    eo_verify_size(verifier->v, expected, m);
     for (int i = 0; i < m && i < eo_case_size(expected); i++)
-      compare_list(v, eo_case_at(expected, i), n, x + (size_t)i * (size_t)n);
+      compare_list(verifier, eo_case_at(expected, i), n, x + (size_t)i * (size_t)n);
     if (eo_case_find(item, "y"))
-      code = check_surrogate(v, item, x, m, n, error);
+      code = check_surrogate(verifier, item, x, m, n, error);
   }
   free(scratch);
   free(x);
@@ -578,9 +583,10 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   struct eo_case *conventions = eo_case_find(file, "conventions");
-  struct verifier verifier = {.file = file, .v = v, .usual = eo_case_relative_or(conventions, "rel_tol", 1e-12)};
-  return eo_verify_blocks(v, file, blocks, &verifier, error);
+  struct verifier verifier = {
+      .file = file, .v = verification, .usual = eo_case_relative_or(conventions, "rel_tol", 1e-12)};
+  return eo_verify_blocks(verification, file, blocks, &verifier, error);
 }

@@ -28,66 +28,66 @@ struct trial {
 static const char *const member_key[2] = {"pinion_um", "gear_um"};
 static const char *const tooth_key[2] = {"pinion_tooth", "gear_tooth"};
 
-static const char *end_key(const struct trial *t, int end)
+static const char *end_key(const struct trial *trial, int end)
 {
-  return t->ends == 1 ? "single" : end == EO_LEFT ? "left" : "right";
+  return trial->ends == 1 ? "single" : end == EO_LEFT ? "left" : "right";
 }
 
-static void read_tables(struct trial *t)
+static void read_tables(struct trial *trial)
 {
-  struct eo_case *pitch = eo_case_need(t->item, "pitch"), *hands = eo_case_need(pitch, "hands");
+  struct eo_case *pitch = eo_case_need(trial->item, "pitch"), *hands = eo_case_need(pitch, "hands");
   double number[MOST_TEETH];
   eo_case_remark(pitch, "definition");
-  for (int end = 0; end < t->ends; end++) {
-    struct eo_case *hand = eo_case_need(hands, end_key(t, end));
+  for (int end = 0; end < trial->ends; end++) {
+    struct eo_case *hand = eo_case_need(hands, end_key(trial, end));
     for (int member = 0; member < 2; member++) {
       struct eo_case *list = eo_case_find(hand, member_key[member]);
-      int count = list ? eo_case_numbers(list, t->geometry->teeth[member], MOST_TEETH, number) : 0;
+      int count = list ? eo_case_numbers(list, trial->geometry->teeth[member], MOST_TEETH, number) : 0;
       for (int i = 0; i < count; i++)
-        t->tooth[end][member][i].index = 1e-6 * number[i];
+        trial->tooth[end][member][i].index = 1e-6 * number[i];
     }
   }
 }
 
 /* Which curve a key speaks of: of a hand, of the float (or shuttle) of the pinion, else of the pair. */
-static const double *curve_of(const struct trial *t, const char *key)
+static const double *curve_of(const struct trial *trial, const char *key)
 {
   if (strstr(key, "left"))
-    return t->curve[EO_LEFT];
+    return trial->curve[EO_LEFT];
   if (strstr(key, "right"))
-    return t->curve[t->ends - 1];
-  return strstr(key, "float") || strstr(key, "shuttle") ? t->curve[FLOAT] : t->curve[PAIR];
+    return trial->curve[trial->ends - 1];
+  return strstr(key, "float") || strstr(key, "shuttle") ? trial->curve[FLOAT] : trial->curve[PAIR];
 }
 
-static enum eo_code solve(struct trial *t, struct eo_error *error)
+static enum eo_code solve(struct trial *trial, struct eo_error *error)
 {
-  const struct eo_pitch_bench *bench = t->bench;
-  double normal = cos(t->geometry->base_helix_angle), lean = sin(t->geometry->base_helix_angle);
-  t->force = eo_case_number(t->item, "T_Nm") / (t->ends * t->geometry->base_radius[EO_PINION] * normal);
-  struct eo_hunting_input input = {.ends = t->ends,
+  const struct eo_pitch_bench *bench = trial->bench;
+  double normal = cos(trial->geometry->base_helix_angle), lean = sin(trial->geometry->base_helix_angle);
+  trial->force = eo_case_number(trial->item, "T_Nm") / (trial->ends * trial->geometry->base_radius[EO_PINION] * normal);
+  struct eo_hunting_input input = {.ends = trial->ends,
                                    .grid = {bench->grid[0], bench->grid[1]},
                                    .gap = {bench->gap[0], bench->gap[1]},
                                    .inwards = bench->inwards,
                                    .positions = bench->grid[0]->positions,
                                    .compliance_factor = 1,
-                                   .load = {t->force, t->force},
-                                   .shared_load = t->force,
+                                   .load = {trial->force, trial->force},
+                                   .shared_load = trial->force,
                                    .hold = bench->hold,
                                    .threads = 1};
   for (int i = 0; i < 4; i++)
-    input.tooth[i / 2][i % 2] = t->tooth[i / 2][i % 2];
-  EO_TRY(eo_hunting_run(&t->hunting, &input, NULL, error));
+    input.tooth[i / 2][i % 2] = trial->tooth[i / 2][i % 2];
+  EO_TRY(eo_hunting_run(&trial->hunting, &input, NULL, error));
   for (int i = 0; i < CURVES; i++) {
-    t->curve[i] = malloc(sizeof(double) * (size_t)t->hunting.instants);
-    if (!t->curve[i])
+    trial->curve[i] = malloc(sizeof(double) * (size_t)trial->hunting.instants);
+    if (!trial->curve[i])
       return eo_error_memory(error);
   }
-  for (int i = 0; i < t->hunting.instants; i++) {
-    double left = t->hunting.approach[0][i], right = t->hunting.approach[t->ends - 1][i];
-    t->curve[EO_LEFT][i] = left / normal;
-    t->curve[EO_RIGHT][i] = right / normal;
-    t->curve[PAIR][i] = (left + right) / (2 * normal);
-    t->curve[FLOAT][i] = t->ends == 2 ? (left - right) / (2 * lean) : 0;
+  for (int i = 0; i < trial->hunting.instants; i++) {
+    double left = trial->hunting.approach[0][i], right = trial->hunting.approach[trial->ends - 1][i];
+    trial->curve[EO_LEFT][i] = left / normal;
+    trial->curve[EO_RIGHT][i] = right / normal;
+    trial->curve[PAIR][i] = (left + right) / (2 * normal);
+    trial->curve[FLOAT][i] = trial->ends == 2 ? (left - right) / (2 * lean) : 0;
   }
   return EO_OK;
 }
@@ -120,20 +120,20 @@ static double amplitude(int n, const double *value, double order, double per_tur
 }
 
 /* A value of an order's row: of one curve, or a list of both hands. */
-static void check_order(const struct trial *t, struct eo_case *value, const char *key, double order)
+static void check_order(const struct trial *trial, struct eo_case *value, const char *key, double order)
 {
-  double relative = eo_case_relative_or(t->tolerance, "order_amplitude_rel", 0.005),
-         absolute = eo_case_absolute_or(t->tolerance, "order_amplitude_um", 0.005);
-  int n = t->hunting.instants, per_turn = t->hunting.positions * t->geometry->teeth[EO_PINION];
-  const double hands[2] = {amplitude(n, t->curve[EO_LEFT], order, per_turn),
-                           amplitude(n, t->curve[EO_RIGHT], order, per_turn)};
+  double relative = eo_case_relative_or(trial->tolerance, "order_amplitude_rel", 0.005),
+         absolute = eo_case_absolute_or(trial->tolerance, "order_amplitude_um", 0.005);
+  int n = trial->hunting.instants, per_turn = trial->hunting.positions * trial->geometry->teeth[EO_PINION];
+  const double hands[2] = {amplitude(n, trial->curve[EO_LEFT], order, per_turn),
+                           amplitude(n, trial->curve[EO_RIGHT], order, per_turn)};
   if (eo_case_is_list(value))
-    eo_verify_list(t->v, value, t->ends, hands, 1e6, relative, absolute);
+    eo_verify_list(trial->v, value, trial->ends, hands, 1e6, relative, absolute);
   else
-    eo_verify_number(t->v, value, 1e6 * amplitude(n, curve_of(t, key), order, per_turn), relative, absolute);
+    eo_verify_number(trial->v, value, 1e6 * amplitude(n, curve_of(trial, key), order, per_turn), relative, absolute);
 }
 
-static void check_orders(const struct trial *t, struct eo_case *rows)
+static void check_orders(const struct trial *trial, struct eo_case *rows)
 {
   for (int i = 0; i < eo_case_size(rows); i++) {
     struct eo_case *row = eo_case_at(rows, i);
@@ -142,24 +142,25 @@ static void check_orders(const struct trial *t, struct eo_case *rows)
     for (int k = 0; k < eo_case_size(row) && !eo_case_faulty(row); k++) {
       const char *key = eo_case_key(eo_case_peek(row, k));
       if (strncmp(key, "LTE", 3) == 0 || strstr(key, "float") || strstr(key, "shuttle"))
-        check_order(t, eo_case_at(row, k), key, order);
+        check_order(trial, eo_case_at(row, k), key, order);
     }
   }
 }
 
 /* Of the tables alone: what a rigid pair does, one number for each mesh cycle. Keys name orders: "2 z1/z2". */
-static void check_kinematic(const struct trial *t, struct eo_case *hands)
+static void check_kinematic(const struct trial *trial, struct eo_case *hands)
 {
-  double x[EO_HUNTING_MOST_INSTANTS / 16], normal = cos(t->geometry->base_helix_angle),
-                                           ratio = (double)t->geometry->teeth[EO_PINION] / t->geometry->teeth[EO_GEAR];
+  double x[EO_HUNTING_MOST_INSTANTS / 16],
+      normal = cos(trial->geometry->base_helix_angle),
+      ratio = (double)trial->geometry->teeth[EO_PINION] / trial->geometry->teeth[EO_GEAR];
   const struct eo_flank_point pitch_point = {0};
   eo_case_remark(hands, "note");
-  for (int end = 0; end < t->ends; end++) {
-    struct eo_case *hand = eo_case_find(hands, end_key(t, end));
-    for (int m = 0; m < t->hunting.cycles && m < EO_HUNTING_MOST_INSTANTS / 16; m++) {
-      const struct eo_tooth_deviation *const tooth[2] = {&t->tooth[end][0][m % t->geometry->teeth[0]],
-                                                         &t->tooth[end][1][m % t->geometry->teeth[1]]};
-      x[m] = eo_hunting_gap(t->geometry, &pitch_point, false, tooth) / normal;
+  for (int end = 0; end < trial->ends; end++) {
+    struct eo_case *hand = eo_case_find(hands, end_key(trial, end));
+    for (int m = 0; m < trial->hunting.cycles && m < EO_HUNTING_MOST_INSTANTS / 16; m++) {
+      const struct eo_tooth_deviation *const tooth[2] = {&trial->tooth[end][0][m % trial->geometry->teeth[0]],
+                                                         &trial->tooth[end][1][m % trial->geometry->teeth[1]]};
+      x[m] = eo_hunting_gap(trial->geometry, &pitch_point, false, tooth) / normal;
     }
     for (int k = 0; hand && k < eo_case_size(hand); k++) {
       struct eo_case *expected = eo_case_at(hand, k);
@@ -167,151 +168,156 @@ static void check_kinematic(const struct trial *t, struct eo_case *hands)
       char *rest;
       double order = strtod(key, &rest);
       order = (rest == key ? 1 : order) * (strstr(key, "z1/z2") ? ratio : 1);
-      eo_verify_number(t->v, expected, 1e6 * amplitude(t->hunting.cycles, x, order, t->geometry->teeth[EO_PINION]), 0,
-                       2e-4);
+      eo_verify_number(trial->v, expected,
+                       1e6 * amplitude(trial->hunting.cycles, x, order, trial->geometry->teeth[EO_PINION]), 0, 2e-4);
     }
   }
 }
 
 /* Swing of the transmission error within each mesh cycle. */
-static void check_cycles(const struct trial *t, struct eo_case *block)
+static void check_cycles(const struct trial *trial, struct eo_case *block)
 {
-  double low = INFINITY, sum = 0, high = 0, within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
-  int n = t->hunting.positions,
-      stated = eo_case_find(block, "cycle_of_max") ? eo_case_whole(block, "cycle_of_max", 0, t->hunting.cycles - 1) : 0;
-  for (int cycle = 0; cycle < t->hunting.cycles; cycle++) {
-    double own = swing(n, t->curve[PAIR] + cycle * n);
+  double low = INFINITY, sum = 0, high = 0, within = eo_case_absolute_or(trial->tolerance, "LTE_um", 0.02);
+  int n = trial->hunting.positions, stated = eo_case_find(block, "cycle_of_max")
+                                                 ? eo_case_whole(block, "cycle_of_max", 0, trial->hunting.cycles - 1)
+                                                 : 0;
+  for (int cycle = 0; cycle < trial->hunting.cycles; cycle++) {
+    double own = swing(n, trial->curve[PAIR] + cycle * n);
     low = fmin(low, own);
     high = fmax(high, own);
     sum += own;
   }
-  eo_verify_member(t->v, block, "min", 1e6 * low, 0, within);
-  eo_verify_member(t->v, block, "mean", 1e6 * sum / t->hunting.cycles, 0, within);
-  eo_verify_member(t->v, block, "max", 1e6 * high, 0, within);
+  eo_verify_member(trial->v, block, "min", 1e6 * low, 0, within);
+  eo_verify_member(trial->v, block, "mean", 1e6 * sum / trial->hunting.cycles, 0, within);
+  eo_verify_member(trial->v, block, "max", 1e6 * high, 0, within);
   if (eo_case_find(block, "cycle_of_max"))
-    eo_verify_derived(t->v, block, "swing of the cycle of the largest one", 1e6 * swing(n, t->curve[PAIR] + stated * n),
-                      1e6 * high, within);
+    eo_verify_derived(trial->v, block, "swing of the cycle of the largest one",
+                      1e6 * swing(n, trial->curve[PAIR] + stated * n), 1e6 * high, within);
 }
 
 /* The largest load of a pair of teeth, and that the teeth and the place stated carry it: of places that differ by less
    than the tolerance none is more right than another. */
-static void check_most_load(const struct trial *t, struct eo_case *block)
+static void check_most_load(const struct trial *trial, struct eo_case *block)
 {
-  const struct eo_hunting *r = &t->hunting;
+  const struct eo_hunting *hunting = &trial->hunting;
   static const char *const hands[] = {"left", "right", "single", NULL};
-  double relative = eo_case_relative_or(t->tolerance, "max_tooth_load_rel", 0.005),
-         most = fmax(r->most_load[0].value, r->most_load[1].value);
+  double relative = eo_case_relative_or(trial->tolerance, "max_tooth_load_rel", 0.005),
+         most = fmax(hunting->most_load[0].value, hunting->most_load[1].value);
   int hand = eo_case_find(block, "hand") ? eo_case_choice(block, "hand", hands, 0) : 0,
-      end = hand == 1 ? t->ends - 1 : 0;
-  int line = eo_case_whole(block, "line", r->first_line, r->first_line + r->lines - 1),
-      cycle = eo_case_whole(block, "cycle", 0, r->cycles - 1),
-      position = eo_case_whole(block, "position", 0, r->positions - 1);
-  eo_verify_member(t->v, block, "load_N", most, relative, 0);
-  eo_verify_member(t->v, block, "share_of_P", most / t->force, relative, 0);
+      end = hand == 1 ? trial->ends - 1 : 0;
+  int line = eo_case_whole(block, "line", hunting->first_line, hunting->first_line + hunting->lines - 1),
+      cycle = eo_case_whole(block, "cycle", 0, hunting->cycles - 1),
+      position = eo_case_whole(block, "position", 0, hunting->positions - 1);
+  eo_verify_member(trial->v, block, "load_N", most, relative, 0);
+  eo_verify_member(trial->v, block, "share_of_P", most / trial->force, relative, 0);
   if (eo_case_faulty(block))
     return;
-  eo_verify_derived(t->v, block, "load of the pair stated",
-                    (double)r->pair_load[end][(cycle * r->positions + position) * r->lines + line - r->first_line],
+  eo_verify_derived(trial->v, block, "load of the pair stated",
+                    (double)hunting->pair_load[end][(cycle * hunting->positions + position) * hunting->lines + line -
+                                                    hunting->first_line],
                     most, relative * most);
   for (int member = 0; member < 2; member++)
     if (eo_case_find(block, tooth_key[member])) {
-      int tooth = eo_case_whole(block, tooth_key[member], 0, r->teeth[member] - 1);
-      eo_verify_fact(t->v, block,
+      int tooth = eo_case_whole(block, tooth_key[member], 0, hunting->teeth[member] - 1);
+      eo_verify_fact(trial->v, block,
                      member ? "the pair stated has the tooth stated of the gear"
                             : "the pair stated has the tooth stated of the pinion",
-                     (cycle - line + r->cycles) % r->teeth[member] == tooth);
-      eo_verify_derived(t->v, block, "largest load of the tooth stated", r->tooth_load[end][member][tooth].value, most,
-                        relative * most);
+                     (cycle - line + hunting->cycles) % hunting->teeth[member] == tooth);
+      eo_verify_derived(trial->v, block, "largest load of the tooth stated",
+                        hunting->tooth_load[end][member][tooth].value, most, relative * most);
     }
 }
 
-static void check_means(const struct trial *t, struct eo_case *expected)
+static void check_means(const struct trial *trial, struct eo_case *expected)
 {
-  const double hands[2] = {mean(t->hunting.instants, t->curve[EO_LEFT]), mean(t->hunting.instants, t->curve[EO_RIGHT])};
-  double relative = eo_case_relative_or(t->tolerance, "LTE_mean_rel", 0.002),
-         within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
-  eo_verify_member(t->v, expected, "LTE_mean_um", 1e6 * mean(t->hunting.instants, t->curve[PAIR]), relative, 0);
-  eo_verify_member(t->v, expected, "LTE_range_um", 1e6 * swing(t->hunting.instants, t->curve[PAIR]), relative, within);
+  const double hands[2] = {mean(trial->hunting.instants, trial->curve[EO_LEFT]),
+                           mean(trial->hunting.instants, trial->curve[EO_RIGHT])};
+  double relative = eo_case_relative_or(trial->tolerance, "LTE_mean_rel", 0.002),
+         within = eo_case_absolute_or(trial->tolerance, "LTE_um", 0.02);
+  eo_verify_member(trial->v, expected, "LTE_mean_um", 1e6 * mean(trial->hunting.instants, trial->curve[PAIR]), relative,
+                   0);
+  eo_verify_member(trial->v, expected, "LTE_range_um", 1e6 * swing(trial->hunting.instants, trial->curve[PAIR]),
+                   relative, within);
   if (eo_case_find(expected, "LTE_mean_hands_um"))
-    eo_verify_list(t->v, eo_case_find(expected, "LTE_mean_hands_um"), t->ends, hands, 1e6, relative, 0);
+    eo_verify_list(trial->v, eo_case_find(expected, "LTE_mean_hands_um"), trial->ends, hands, 1e6, relative, 0);
   for (int k = 0; k < eo_case_size(expected); k++) {
     const char *key = eo_case_key(eo_case_peek(expected, k));
-    const double *curve = curve_of(t, key);
+    const double *curve = curve_of(trial, key);
     if ((strstr(key, "float") || strstr(key, "shuttle")) && !strstr(key, "revolutions_um")) {
       struct eo_case *value = eo_case_at(expected, k);
       bool is_mean = strstr(key, "mean") != NULL;
-      eo_verify_number(t->v, value,
-                       1e6 * (is_mean ? mean(t->hunting.instants, curve) : swing(t->hunting.instants, curve)), relative,
-                       within);
+      eo_verify_number(trial->v, value,
+                       1e6 * (is_mean ? mean(trial->hunting.instants, curve) : swing(trial->hunting.instants, curve)),
+                       relative, within);
     }
   }
 }
 
 /* The first revolutions, sample by sample. */
-static void check_curves(const struct trial *t, struct eo_case *expected)
+static void check_curves(const struct trial *trial, struct eo_case *expected)
 {
-  double within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
+  double within = eo_case_absolute_or(trial->tolerance, "LTE_um", 0.02);
   for (int k = 0; k < eo_case_size(expected); k++) {
     const char *key = eo_case_key(eo_case_peek(expected, k));
     if (!strstr(key, "revolutions_um"))
       continue;
     struct eo_case *list = eo_case_at(expected, k);
-    int count = eo_case_size(list) <= t->hunting.instants ? eo_case_size(list) : t->hunting.instants;
-    eo_verify_list(t->v, list, count, curve_of(t, key), 1e6, 0, within);
+    int count = eo_case_size(list) <= trial->hunting.instants ? eo_case_size(list) : trial->hunting.instants;
+    eo_verify_list(trial->v, list, count, curve_of(trial, key), 1e6, 0, within);
   }
 }
 
-static void check_pressure(const struct trial *t, struct eo_case *expected)
+static void check_pressure(const struct trial *trial, struct eo_case *expected)
 {
   struct eo_case *pressure = eo_case_find(expected, "max_pressure_MPa");
-  const double most[2] = {t->hunting.most_pressure[0].value, t->hunting.most_pressure[1].value};
-  double relative = eo_case_relative_or(t->tolerance, "max_pressure_rel", 0.01);
+  const double most[2] = {trial->hunting.most_pressure[0].value, trial->hunting.most_pressure[1].value};
+  double relative = eo_case_relative_or(trial->tolerance, "max_pressure_rel", 0.01);
   if (pressure && eo_case_is_list(pressure))
-    eo_verify_list(t->v, pressure, t->ends, most, 1e-6, relative, 0);
+    eo_verify_list(trial->v, pressure, trial->ends, most, 1e-6, relative, 0);
   else if (pressure)
-    eo_verify_number(t->v, pressure, 1e-6 * fmax(most[0], most[1]), relative, 0);
+    eo_verify_number(trial->v, pressure, 1e-6 * fmax(most[0], most[1]), relative, 0);
 }
 
-static void check(const struct trial *t, struct eo_case *expected)
+static void check(const struct trial *trial, struct eo_case *expected)
 {
-  eo_case_remark(t->item, "orders_note");
+  eo_case_remark(trial->item, "orders_note");
   if (eo_case_find(expected, "cycles"))
-    eo_verify_exact(t->v, eo_case_find(expected, "cycles"), t->hunting.cycles);
-  eo_verify_member(t->v, expected, "pinion_revolutions", (double)t->hunting.cycles / t->geometry->teeth[EO_PINION],
-                   1e-9, 0);
-  check_means(t, expected);
-  check_curves(t, expected);
+    eo_verify_exact(trial->v, eo_case_find(expected, "cycles"), trial->hunting.cycles);
+  eo_verify_member(trial->v, expected, "pinion_revolutions",
+                   (double)trial->hunting.cycles / trial->geometry->teeth[EO_PINION], 1e-9, 0);
+  check_means(trial, expected);
+  check_curves(trial, expected);
   if (eo_case_find(expected, "PPLTE_of_one_cycle_um"))
-    check_cycles(t, eo_case_find(expected, "PPLTE_of_one_cycle_um"));
-  check_orders(t, eo_case_find(expected, "order_amplitude_um"));
-  check_kinematic(t, eo_case_find(expected, "kinematic_order_amplitude_um"));
+    check_cycles(trial, eo_case_find(expected, "PPLTE_of_one_cycle_um"));
+  check_orders(trial, eo_case_find(expected, "order_amplitude_um"));
+  check_kinematic(trial, eo_case_find(expected, "kinematic_order_amplitude_um"));
   if (eo_case_find(expected, "max_tooth_load"))
-    check_most_load(t, eo_case_find(expected, "max_tooth_load"));
-  check_pressure(t, expected);
-  if (t->hunting.failures)
-    eo_verify_diverged(t->v, expected);
+    check_most_load(trial, eo_case_find(expected, "max_tooth_load"));
+  check_pressure(trial, expected);
+  if (trial->hunting.failures)
+    eo_verify_diverged(trial->v, expected);
 }
 
-enum eo_code eo_verify_pitch(struct eo_verification *v, struct eo_case *item, const struct eo_pitch_bench *bench,
-                             struct eo_error *error)
+enum eo_code eo_verify_pitch(struct eo_verification *verification, struct eo_case *item,
+                             const struct eo_pitch_bench *bench, struct eo_error *error)
 {
-  struct trial *t = calloc(1, sizeof *t);
-  if (!t)
+  struct trial *trial = calloc(1, sizeof *trial);
+  if (!trial)
     return eo_error_memory(error);
-  t->v = v;
-  t->item = item;
-  t->tolerance = eo_case_find(item, "tolerance");
-  t->bench = bench;
-  t->ends = bench->ends;
-  t->geometry = &bench->grid[0]->geometry;
-  read_tables(t);
+  trial->v = verification;
+  trial->item = item;
+  trial->tolerance = eo_case_find(item, "tolerance");
+  trial->bench = bench;
+  trial->ends = bench->ends;
+  trial->geometry = &bench->grid[0]->geometry;
+  read_tables(trial);
   struct eo_case *expected = eo_case_need(item, "expected");
-  enum eo_code code = eo_case_faulty(item) ? EO_OK : solve(t, error);
+  enum eo_code code = eo_case_faulty(item) ? EO_OK : solve(trial, error);
   if (!code && !eo_case_faulty(item))
-    check(t, expected);
-  eo_hunting_done(&t->hunting);
+    check(trial, expected);
+  eo_hunting_done(&trial->hunting);
   for (int i = 0; i < CURVES; i++)
-    free(t->curve[i]);
-  free(t);
+    free(trial->curve[i]);
+  free(trial);
   return code;
 }

@@ -141,7 +141,7 @@ static enum eo_code check_row(void *context, struct eo_case *item, struct eo_err
 
 static const struct eo_verify_block blocks[] = {{"rows", EO_BLOCK_EACH, check_row}, {NULL, EO_BLOCK_INPUT, NULL}};
 
-enum eo_code eo_verify_rating(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_rating(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
-  return eo_verify_blocks(v, file, blocks, v, error);
+  return eo_verify_blocks(verification, file, blocks, verification, error);
 }

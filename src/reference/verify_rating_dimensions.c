@@ -24,16 +24,16 @@ static void check_of(struct eo_rating_row *row, const char *format, int member, 
 }
 
 static void check_member(struct eo_rating_row *row, const struct eo_rating_pair *pair,
-                         const struct eo_rating_geometry *g, const struct eo_tooth *tooth, int i)
+                         const struct eo_rating_geometry *geometry, const struct eo_tooth *tooth, int i)
 {
-  check_of(row, "d%d_mm", i, 1e3 * g->reference_diameter[i]);
-  check_of(row, "db%d_mm", i, 1e3 * g->base_diameter[i]);
-  check_of(row, "dw%d_mm", i, 1e3 * g->working_diameter[i]);
+  check_of(row, "d%d_mm", i, 1e3 * geometry->reference_diameter[i]);
+  check_of(row, "db%d_mm", i, 1e3 * geometry->base_diameter[i]);
+  check_of(row, "dw%d_mm", i, 1e3 * geometry->working_diameter[i]);
   check_of(row, "da%d_mm", i, 1e3 * pair->tip_diameter[i]);
   check_of(row, "df%d_mm", i, 1e3 * eo_tooth_root_diameter(tooth));
   check_of(row, "dFf%d_mm", i, 1e3 * eo_tooth_form_diameter(tooth, NULL));
-  check_of(row, "dNf%d_mm", i, 1e3 * eo_active_root_diameter(pair, g, i));
-  check_of(row, "z_n%d", i, g->virtual_teeth[i]);
+  check_of(row, "dNf%d_mm", i, 1e3 * eo_active_root_diameter(pair, geometry, i));
+  check_of(row, "z_n%d", i, geometry->virtual_teeth[i]);
 }
 
 static struct eo_tooth tooth_of(struct eo_rating_row *row, const struct eo_rating_pair *pair, int member)
@@ -49,7 +49,7 @@ static struct eo_tooth tooth_of(struct eo_rating_row *row, const struct eo_ratin
 enum eo_code eo_row_geometry(struct eo_rating_row *row, struct eo_error *error)
 {
   struct eo_rating_pair pair;
-  struct eo_rating_geometry g;
+  struct eo_rating_geometry geometry;
   struct eo_shift_split split;
   eo_row_pair(row, &pair);
   double addendum = eo_row_number(row, "addendum_coefficient"), shift[2] = {eo_row_number(row, "x1")};
@@ -60,25 +60,25 @@ enum eo_code eo_row_geometry(struct eo_rating_row *row, struct eo_error *error)
   for (int i = 0; i < 2; i++)
     pair.tip_diameter[i] = pair.normal_module * pair.teeth[i] / cos(pair.helix_angle) +
                            2 * ((addendum + shift[i]) * pair.normal_module + split.tip_alteration);
-  code = eo_rating_geometry(&g, &pair, error);
+  code = eo_rating_geometry(&geometry, &pair, error);
   if (code)
     return code;
   for (int i = 0; i < 2; i++) {
     struct eo_tooth tooth = tooth_of(row, &pair, i);
     tooth.profile_shift = shift[i];
-    check_member(row, &pair, &g, &tooth, i);
+    check_member(row, &pair, &geometry, &tooth, i);
   }
-  eo_row_check(row, "alpha_wt_deg", degrees(g.working_pressure_angle));
-  eo_row_check(row, "alpha_t_deg", degrees(g.transverse_pressure_angle));
-  eo_row_check(row, "beta_b_deg", degrees(g.base_helix_angle));
+  eo_row_check(row, "alpha_wt_deg", degrees(geometry.working_pressure_angle));
+  eo_row_check(row, "alpha_t_deg", degrees(geometry.transverse_pressure_angle));
+  eo_row_check(row, "beta_b_deg", degrees(geometry.base_helix_angle));
   eo_row_check(row, "x2", shift[1]);
   eo_row_check(row, "k_mn_mm", 1e3 * split.tip_alteration);
-  eo_row_check(row, "g_alpha_mm", 1e3 * g.path_length);
-  eo_row_check(row, "p_et_mm", 1e3 * g.transverse_base_pitch);
-  eo_row_check(row, "eps_alpha", g.transverse_contact_ratio);
-  eo_row_check(row, "eps_beta", g.overlap_ratio);
-  eo_row_check(row, "eps_gamma", g.transverse_contact_ratio + g.overlap_ratio);
-  eo_row_check(row, "T1T2_mm", 1e3 * pair.centre_distance * sin(g.working_pressure_angle));
+  eo_row_check(row, "g_alpha_mm", 1e3 * geometry.path_length);
+  eo_row_check(row, "p_et_mm", 1e3 * geometry.transverse_base_pitch);
+  eo_row_check(row, "eps_alpha", geometry.transverse_contact_ratio);
+  eo_row_check(row, "eps_beta", geometry.overlap_ratio);
+  eo_row_check(row, "eps_gamma", geometry.transverse_contact_ratio + geometry.overlap_ratio);
+  eo_row_check(row, "T1T2_mm", 1e3 * pair.centre_distance * sin(geometry.working_pressure_angle));
   return EO_OK;
 }
 
@@ -228,10 +228,10 @@ enum eo_code eo_row_thickness(struct eo_rating_row *row, struct eo_error *error)
                             limits ? eo_case_element(allowance, 1) / 1e3 : 0};
   if (eo_case_faulty(row->inputs))
     return EO_OK;
-  enum eo_code code = check_tooth(row, &tooth, &means, tip, "", error);
-  if (!code && limits)
-    code = check_limits(row, &tooth, &means, values, tip, tip + shorter, error);
-  return code;
+  EO_TRY(check_tooth(row, &tooth, &means, tip, "", error));
+  if (limits)
+    EO_TRY(check_limits(row, &tooth, &means, values, tip, tip + shorter, error));
+  return EO_OK;
 }
 
 enum eo_code eo_row_allowance(struct eo_rating_row *row, struct eo_error *error)
@@ -249,13 +249,13 @@ enum eo_code eo_row_allowance(struct eo_rating_row *row, struct eo_error *error)
   return EO_OK;
 }
 
-static void check_backlash(struct eo_rating_row *row, const struct eo_backlash *j, const char *suffix)
+static void check_backlash(struct eo_rating_row *row, const struct eo_backlash *backlash, const char *suffix)
 {
-  check_suffixed(row, "j_wt_", suffix, "_mm", 1e3 * j->circumferential);
-  check_suffixed(row, "j_bn_", suffix, "_mm", 1e3 * j->normal);
-  check_suffixed(row, "j_n_report_", suffix, "_mm", 1e3 * j->of_reference);
-  check_suffixed(row, "j_r_", suffix, "_mm", 1e3 * j->radial);
-  check_suffixed(row, "a_without_backlash_", suffix, "_mm", 1e3 * j->tight_distance);
+  check_suffixed(row, "j_wt_", suffix, "_mm", 1e3 * backlash->circumferential);
+  check_suffixed(row, "j_bn_", suffix, "_mm", 1e3 * backlash->normal);
+  check_suffixed(row, "j_n_report_", suffix, "_mm", 1e3 * backlash->of_reference);
+  check_suffixed(row, "j_r_", suffix, "_mm", 1e3 * backlash->radial);
+  check_suffixed(row, "a_without_backlash_", suffix, "_mm", 1e3 * backlash->tight_distance);
 }
 
 /* e, i: upper and lower allowances at the nominal distance; min, max: with the distance's own limits. */
@@ -279,37 +279,37 @@ enum eo_code eo_row_backlash(struct eo_rating_row *row, struct eo_error *error)
                                    .helix_angle = pair.helix_angle,
                                    .profile_shift = {shift[0], shift[1]},
                                    .centre_distance = pair.centre_distance};
-    struct eo_backlash j;
+    struct eo_backlash backlash;
     for (int k = 0; k < 2; k++)
       in.allowance[k] = eo_case_element(eo_case_at(allowances, k), places[i].limit) / 1e3;
     in.centre_distance_allowance = places[i].at_nominal != 0 ? 0 : distance[places[i].limit] / 1e3;
-    enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_backlash(&j, &in, error);
+    enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_backlash(&backlash, &in, error);
     if (code)
       return code;
-    check_backlash(row, &j, places[i].suffix);
+    check_backlash(row, &backlash, places[i].suffix);
     if (places[i].at_nominal == 0 && places[i].limit == 1)
-      eo_row_check(row, "j_wt_of_Aa_mm", 1e3 * j.of_distance);
+      eo_row_check(row, "j_wt_of_Aa_mm", 1e3 * backlash.of_distance);
   }
   return EO_OK;
 }
 
-static void check_tolerances(struct eo_rating_row *row, const struct eo_flank_tolerance *t)
+static void check_tolerances(struct eo_rating_row *row, const struct eo_flank_tolerance *tolerance)
 {
   const struct {
     const char *old, *new;
     double value;
-  } all[] = {{"f_pt_um", "f_pT_um", t->single_pitch},
-             {"F_pk8_um", "F_pk8T_um", t->cumulative_pitch},
-             {"F_p_um", "F_pT_um", t->total_pitch},
-             {"F_alpha_um", "F_alphaT_um", t->profile_total},
-             {"f_falpha_um", "f_falphaT_um", t->profile_form},
-             {"f_Halpha_um", "f_HalphaT_um", t->profile_slope},
-             {"F_beta_um", "F_betaT_um", t->helix_total},
-             {"f_fbeta_um", "f_fbetaT_um", t->helix_form},
-             {"f_Hbeta_um", "f_HbetaT_um", t->helix_slope},
-             {"F_r_um", "F_rT_um", t->runout},
-             {"f_i_um", "f_isT_um", t->tooth_composite},
-             {"F_i_um", "F_isT_um", t->total_composite}};
+  } all[] = {{"f_pt_um", "f_pT_um", tolerance->single_pitch},
+             {"F_pk8_um", "F_pk8T_um", tolerance->cumulative_pitch},
+             {"F_p_um", "F_pT_um", tolerance->total_pitch},
+             {"F_alpha_um", "F_alphaT_um", tolerance->profile_total},
+             {"f_falpha_um", "f_falphaT_um", tolerance->profile_form},
+             {"f_Halpha_um", "f_HalphaT_um", tolerance->profile_slope},
+             {"F_beta_um", "F_betaT_um", tolerance->helix_total},
+             {"f_fbeta_um", "f_fbetaT_um", tolerance->helix_form},
+             {"f_Hbeta_um", "f_HbetaT_um", tolerance->helix_slope},
+             {"F_r_um", "F_rT_um", tolerance->runout},
+             {"f_i_um", "f_isT_um", tolerance->tooth_composite},
+             {"F_i_um", "F_isT_um", tolerance->total_composite}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     eo_row_check(row, all[i].old, 1e6 * all[i].value);
     eo_row_check(row, all[i].new, 1e6 * all[i].value);
@@ -317,14 +317,14 @@ static void check_tolerances(struct eo_rating_row *row, const struct eo_flank_to
 }
 
 /* Tolerances that follow from others: base pitch, parallelism of the axes. */
-static void check_derived(struct eo_rating_row *row, const struct eo_flank_tolerance *t)
+static void check_derived(struct eo_rating_row *row, const struct eo_flank_tolerance *tolerance)
 {
   if (eo_row_has(row, "alpha_t_deg")) {
-    double pitch = t ? t->single_pitch : eo_row_number(row, "f_pt_um") / 1e6;
+    double pitch = tolerance ? tolerance->single_pitch : eo_row_number(row, "f_pt_um") / 1e6;
     eo_row_check(row, "f_pb_um", 1e6 * eo_base_pitch_tolerance(pitch, eo_row_angle(row, "alpha_t_deg", NAN)));
   }
   if (eo_row_has(row, "bearing_span_over_face_width")) {
-    double helix = t ? t->helix_total : eo_row_number(row, "F_beta_um") / 1e6;
+    double helix = tolerance ? tolerance->helix_total : eo_row_number(row, "F_beta_um") / 1e6;
     struct eo_axis_tolerance axes = eo_axis_tolerance(helix, eo_row_number(row, "bearing_span_over_face_width"));
     eo_row_check(row, "f_Sigma_beta_um", 1e6 * axes.out_of_plane);
     eo_row_check(row, "f_Sigma_delta_um", 1e6 * axes.in_plane);

@@ -22,7 +22,7 @@ static enum eo_code contact_ratio(struct eo_rating_row *row, struct eo_rating_pa
                                   double *ratio, struct eo_error *error)
 {
   struct eo_shift_split split;
-  struct eo_rating_geometry g;
+  struct eo_rating_geometry geometry;
   *ratio = eo_row_number_or(row, "eps_alpha", NAN);
   if (!isnan(*ratio) || eo_case_faulty(row->inputs))
     return EO_OK;
@@ -32,9 +32,9 @@ static enum eo_code contact_ratio(struct eo_rating_row *row, struct eo_rating_pa
   for (int i = 0; i < 2; i++)
     pair->tip_diameter[i] = pair->normal_module * pair->teeth[i] / cos(pair->helix_angle) +
                             2 * ((1 + shift[i]) * pair->normal_module + split.tip_alteration);
-  code = eo_rating_geometry(&g, pair, error);
+  code = eo_rating_geometry(&geometry, pair, error);
   if (!code)
-    *ratio = g.transverse_contact_ratio;
+    *ratio = geometry.transverse_contact_ratio;
   return code;
 }
 

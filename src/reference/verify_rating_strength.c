@@ -52,7 +52,7 @@ enum eo_code eo_row_contact(struct eo_rating_row *row, struct eo_error *error)
   static const char *const factors[] = {"K_A", "K_gamma", "K_V", "K_Hbeta", "K_Halpha"};
   static const char *const unused[] = {"x", NULL};
   struct eo_rating_pair pair;
-  struct eo_rating_geometry g;
+  struct eo_rating_geometry geometry;
   struct eo_contact_stress found;
   double modulus[2] = {steel_modulus_mpa, steel_modulus_mpa}, ratio[2] = {0.3, 0.3};
   eo_row_pair(row, &pair);
@@ -68,9 +68,9 @@ enum eo_code eo_row_contact(struct eo_rating_row *row, struct eo_error *error)
                                 .elastic = {{1e6 * modulus[0], 1e6 * modulus[1]}, {ratio[0], ratio[1]}}};
   for (size_t i = 0; i < sizeof factors / sizeof *factors; i++)
     in.load_factor *= eo_row_number_or(row, factors[i], 1);
-  enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_rating_geometry(&g, &pair, error);
+  enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_rating_geometry(&geometry, &pair, error);
   if (!code && !eo_case_faulty(row->inputs))
-    code = eo_contact_stress(&found, &pair, &g, &in, error);
+    code = eo_contact_stress(&found, &pair, &geometry, &in, error);
   if (code || eo_case_faulty(row->inputs))
     return code;
   eo_row_check(row, "Z_H", found.zone);
@@ -93,7 +93,7 @@ static double stated_or(struct eo_rating_row *row, const char *key, double compu
   return eo_row_has(row, key) ? eo_row_number(row, key) : computed;
 }
 
-static void set_surface(struct eo_rating_row *row, struct eo_flank_influence *z, double softer)
+static void set_surface(struct eo_rating_row *row, struct eo_flank_influence *influence, double softer)
 {
   double velocity = eo_row_number_or(row, "velocity_m_per_s", NAN),
          viscosity = eo_row_number_or(row, "viscosity_40_mm2_per_s", NAN), roughness[2] = {NAN, NAN},
@@ -105,9 +105,9 @@ static void set_surface(struct eo_rating_row *row, struct eo_flank_influence *z,
   double working = eo_row_angle(row, "alpha_wt_deg", NAN);
   const double metres[2] = {base[0] / 1e3, base[1] / 1e3}, peaks[2] = {roughness[0] / 1e6, roughness[1] / 1e6};
   double curvature = eo_relative_curvature(metres, working);
-  z->lubricant = stated_or(row, "Z_L", eo_lubricant_factor(softer, viscosity));
-  z->velocity = stated_or(row, "Z_v", eo_velocity_factor(softer, velocity));
-  z->roughness = stated_or(row, "Z_R", eo_roughness_factor(softer, peaks, curvature));
+  influence->lubricant = stated_or(row, "Z_L", eo_lubricant_factor(softer, viscosity));
+  influence->velocity = stated_or(row, "Z_v", eo_velocity_factor(softer, velocity));
+  influence->roughness = stated_or(row, "Z_R", eo_roughness_factor(softer, peaks, curvature));
 }
 
 /* Z_W of a soft wheel whose hardness is stated; R_zH as stated. */
@@ -133,25 +133,25 @@ static double flank_life(struct eo_rating_row *row, enum eo_rating_material mate
 enum eo_code eo_row_flank_strength(struct eo_rating_row *row, struct eo_error *error)
 {
   enum eo_rating_material material;
-  struct eo_flank_influence z;
+  struct eo_flank_influence influence;
   double limit = 1e6 * eo_row_number(row, "sigma_Hlim_MPa"), share = 1;
   double softer = 1e6 * eo_row_number_or(row, "sigma_Hlim_softer_MPa", limit / 1e6);
   (void)error;
   if (!read_material(row, &material))
     return EO_OK;
-  set_surface(row, &z, softer);
-  z.work_hardening = stated_or(row, "Z_W", work_hardening(row));
-  z.size = stated_or(row, "Z_X", 1);
+  set_surface(row, &influence, softer);
+  influence.work_hardening = stated_or(row, "Z_W", work_hardening(row));
+  influence.size = stated_or(row, "Z_X", 1);
   double life = flank_life(row, material, &share), least = eo_row_number_or(row, "S_H_min", 1);
-  double strength = eo_flank_strength(limit, life, share, &z);
+  double strength = eo_flank_strength(limit, life, share, &influence);
   double stress = 1e6 * eo_row_number_or(row, "sigma_H_MPa", NAN);
   if (eo_case_faulty(row->inputs))
     return EO_OK;
-  eo_row_check(row, "Z_L", z.lubricant);
-  eo_row_check(row, "Z_v", z.velocity);
-  eo_row_check(row, "Z_R", z.roughness);
-  eo_row_check(row, "Z_W", z.work_hardening);
-  eo_row_check(row, "Z_X", z.size);
+  eo_row_check(row, "Z_L", influence.lubricant);
+  eo_row_check(row, "Z_v", influence.velocity);
+  eo_row_check(row, "Z_R", influence.roughness);
+  eo_row_check(row, "Z_W", influence.work_hardening);
+  eo_row_check(row, "Z_X", influence.size);
   eo_row_check(row, "Z_NT", life);
   eo_row_check(row, "sigma_HG_MPa", strength / 1e6);
   eo_row_check(row, "sigma_HP_MPa", strength / least / 1e6);
@@ -162,7 +162,7 @@ enum eo_code eo_row_flank_strength(struct eo_rating_row *row, struct eo_error *e
 enum eo_code eo_row_root(struct eo_rating_row *row, struct eo_error *error)
 {
   struct eo_rating_pair pair;
-  struct eo_rating_geometry g;
+  struct eo_rating_geometry geometry;
   struct eo_tooth_root found;
   double shift[2];
   int member = eo_row_member(row);
@@ -174,9 +174,9 @@ enum eo_code eo_row_root(struct eo_rating_row *row, struct eo_error *error)
                                    .fillet_radius_coefficient = eo_row_number(row, "root_radius_coefficient"),
                                    .tangential_force = eo_row_number_or(row, "F_t_N", NAN)};
   double load_factor = eo_row_number_or(row, "K_product", NAN);
-  enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_rating_geometry(&g, &pair, error);
+  enum eo_code code = eo_case_faulty(row->inputs) ? EO_OK : eo_rating_geometry(&geometry, &pair, error);
   if (!code && !eo_case_faulty(row->inputs))
-    code = eo_tooth_root(&found, &pair, &g, member, &in, error);
+    code = eo_tooth_root(&found, &pair, &geometry, member, &in, error);
   if (code || eo_case_faulty(row->inputs))
     return code;
   eo_row_check(row, "Y_F", found.form_factor);
@@ -226,23 +226,23 @@ static double allowable(struct eo_rating_row *row)
 enum eo_code eo_row_root_strength(struct eo_rating_row *row, struct eo_error *error)
 {
   enum eo_rating_material material;
-  struct eo_root_influence y = {.notch = NAN};
+  struct eo_root_influence influence = {.notch = NAN};
   if (!read_material(row, &material))
     return EO_OK;
   double notch = eo_row_number_or(row, "q_s", NAN), proof = 1e6 * eo_row_number_or(row, "proof_stress_MPa", NAN),
          stress = 1e6 * eo_row_number_or(row, "sigma_F_MPa", NAN), least = eo_row_number_or(row, "S_F_min", 1);
-  y.surface = eo_root_surface_factor(material, eo_row_number_or(row, "R_z_root_um", NAN) / 1e6);
-  y.size = root_size(row, material);
-  y.life = root_life(row, material);
-  y.mean = eo_row_number_or(row, "Y_M", 1);
-  enum eo_code code = isnan(notch) ? EO_OK : eo_notch_sensitivity(&y.notch, material, notch, proof, error);
-  double strength = eo_root_strength(allowable(row), &y);
+  influence.surface = eo_root_surface_factor(material, eo_row_number_or(row, "R_z_root_um", NAN) / 1e6);
+  influence.size = root_size(row, material);
+  influence.life = root_life(row, material);
+  influence.mean = eo_row_number_or(row, "Y_M", 1);
+  enum eo_code code = isnan(notch) ? EO_OK : eo_notch_sensitivity(&influence.notch, material, notch, proof, error);
+  double strength = eo_root_strength(allowable(row), &influence);
   if (code || eo_case_faulty(row->inputs))
     return code;
-  eo_row_check(row, "Y_drelT", y.notch);
-  eo_row_check(row, "Y_RrelT", y.surface);
-  eo_row_check(row, "Y_X", y.size);
-  eo_row_check(row, "Y_NT", y.life);
+  eo_row_check(row, "Y_drelT", influence.notch);
+  eo_row_check(row, "Y_RrelT", influence.surface);
+  eo_row_check(row, "Y_X", influence.size);
+  eo_row_check(row, "Y_NT", influence.life);
   eo_row_check(row, "sigma_FG_MPa", strength / 1e6);
   eo_row_check(row, "sigma_FP_MPa", strength / least / 1e6);
   eo_row_check(row, "S_F", strength / stress);

@@ -23,11 +23,12 @@ struct eo_ring_case {
 };
 
 /* Sets body and support of a design; a support this program does not have is a fault at `where`. */
-void eo_ring_support(const struct eo_ring_case *c, const char *name, struct eo_case *where, struct eo_design *design);
+void eo_ring_support(const struct eo_ring_case *ring_case, const char *name, struct eo_case *where,
+                     struct eo_design *design);
 
 /* Prepares a design's flexibility on the mesh that the file states; of the list of pairs, or the rest. reach: 0: as
    many pairs as are in contact. */
-enum eo_code eo_ring_prepare(const struct eo_ring_case *c, bool pairs, int reach, struct eo_design *design,
+enum eo_code eo_ring_prepare(const struct eo_ring_case *ring_case, bool pairs, int reach, struct eo_design *design,
                              struct eo_flexibility **flexibility, struct eo_error *error);
 
 /* Blocks "ltca" and "pairs". */

@@ -67,27 +67,27 @@ static double mean_of(const double *value, int n)
    contact anywhere on the flank, k; dP/dZ. */
 static void stiffness_of(const struct run *run, double *level, double *secant, double *tangent)
 {
-  const struct eo_case_result *r = &run->found->load_case[0];
+  const struct eo_case_result *case_result = &run->found->load_case[0];
   int n = run->found->positions;
   *level = *secant = *tangent = 0;
   for (int end = 0; end < 2; end++) {
     for (int j = 0; j < n; j++)
-      *level += r->force / r->end[end].loaded.approach[j] / (2 * n);
-    *secant += mean_of(r->end[end].stiffness, n) / 2;
-    *tangent += mean_of(r->end[end].loaded.tangent, n) / 2;
+      *level += case_result->force / case_result->end[end].loaded.approach[j] / (2 * n);
+    *secant += mean_of(case_result->end[end].stiffness, n) / 2;
+    *tangent += mean_of(case_result->end[end].loaded.tangent, n) / 2;
   }
 }
 
 /* Load of one pair at a position of the left end over the load of the end. */
 static double share_of(const struct run *run, int j, int pair)
 {
-  const struct eo_case_result *r = &run->found->load_case[0];
-  const struct eo_contact_position *p = &run->pair->grid->position[j];
-  const double *q = r->end[EO_LEFT].loaded.line_load + p->first;
+  const struct eo_case_result *case_result = &run->found->load_case[0];
+  const struct eo_contact_position *position = &run->pair->grid->position[j];
+  const double *q = case_result->end[EO_LEFT].loaded.line_load + position->first;
   double sum = 0;
-  for (int i = 0; i < p->points; i++)
-    sum += p->point[i].pair == pair ? q[i] * p->length[i] : 0;
-  return sum / r->force;
+  for (int i = 0; i < position->points; i++)
+    sum += position->point[i].pair == pair ? q[i] * position->length[i] : 0;
+  return sum / case_result->force;
 }
 
 static double largest_share(const struct run *run)
@@ -141,11 +141,12 @@ static enum eo_code largest_stress(const struct run *run, bool own, struct along
   for (int end = 0; end < 2 && !code; end++)
     for (int j = 0; j < grid->positions; j++)
       for (int tooth = range[0]; tooth <= range[1]; tooth++) {
-        const struct eo_contact_position *p = &grid->position[j];
-        const double *q = run->found->load_case[0].end[end].loaded.line_load + p->first;
-        for (int i = 0; i < p->points; i++)
-          force[i] = own && p->point[i].pair != tooth ? 0 : q[i] * p->length[i];
-        eo_flexibility_root_stress(flexibility, EO_PINION, tooth, p->points, p->point, force, 0, root.points, stress);
+        const struct eo_contact_position *position = &grid->position[j];
+        const double *q = run->found->load_case[0].end[end].loaded.line_load + position->first;
+        for (int i = 0; i < position->points; i++)
+          force[i] = own && position->point[i].pair != tooth ? 0 : q[i] * position->length[i];
+        eo_flexibility_root_stress(flexibility, EO_PINION, tooth, position->points, position->point, force, 0,
+                                   root.points, stress);
         find_largest_along(&root, stress, largest);
       }
   free(stress);
@@ -174,10 +175,10 @@ static void check_ratio(struct run *run, struct eo_case *wanted, const char *of_
     run->stress[run->stresses++] = (struct root_stress){of_case, key, stress, expected};
 }
 
-/* Tolerance: the file's, which is that of its nine elements, and what our own division leaves open. A finer division is no
-   way to do without the latter: on the reference's nine elements ours is 4.6 to 5.03 % above it, on 12, 15 and 20 it is
-   4.9 to 6.8, 5.7 to 6.9 and 5.9 to 7.3 % (floating), and on 6, 2.4 to 4.1 %. What the two codes differ by lies between
-   them, not in our mesh. */
+/* Tolerance: the file's, which is that of its nine elements, and what our own division leaves open. A finer division is
+   no way to do without the latter: on the reference's nine elements ours is 4.6 to 5.03 % above it, on 12, 15 and 20 it
+   is 4.9 to 6.8, 5.7 to 6.9 and 5.9 to 7.3 % (floating), and on 6, 2.4 to 4.1 %. What the two codes differ by lies
+   between them, not in our mesh. */
 static enum eo_code check_root(struct run *run, const char *of_case, struct eo_case *block, struct eo_error *error)
 {
   static const char *const key[2] = {"loads_on_itself", "loads_on_all_teeth"};
@@ -243,30 +244,31 @@ static void read_name(struct run *run, struct eo_case *block)
 
 static enum eo_code check_case(struct run *run, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_verification *v = run->c->v;
-  const struct eo_ring_tolerances *t = &run->c->tolerance;
+  struct eo_verification *verification = run->c->v;
+  const struct eo_ring_tolerances *tolerances = &run->c->tolerance;
   read_name(run, block);
   if (eo_case_faulty(block))
     return EO_OK;
   enum eo_code code = eo_evaluator_contact(run->evaluator, &run->design, &run->found, error);
   if (code)
     return code;
-  const struct eo_case_result *r = &run->found->load_case[0];
+  const struct eo_case_result *case_result = &run->found->load_case[0];
   double level, secant, tangent, normal = cos(run->pair->geometry.base_helix_angle);
-  if (r->contact_failures) {
-    eo_verify_diverged(v, block);
+  if (case_result->contact_failures) {
+    eo_verify_diverged(verification, block);
     return EO_OK;
   }
   stiffness_of(run, &level, &secant, &tangent);
-  eo_verify_member(v, block, "LTE_mean_um", 1e6 * r->mean, t->stiffness, 0);
-  eo_verify_member(v, block, "PPLTE_um", 1e6 * r->peak_to_peak, t->swing[1], t->swing[0]);
-  eo_verify_member(v, block, "k_secant_N_per_um", 1e-6 * secant, t->stiffness, 0);
-  eo_verify_member(v, block, "k_tangent_N_per_um", 1e-6 * tangent, t->stiffness, 0);
-  eo_verify_member(v, block, "c_N_per_mm_um", 1e-9 * level * normal * normal / run->pair->geometry.face_width,
-                   t->stiffness, 0);
-  eo_verify_member(v, block, "share_max", largest_share(run), 0, t->share);
-  eo_verify_list(v, eo_case_find(block, "LTE_um_of_32_positions"), run->found->positions, r->transmission, 1e6,
-                 t->stiffness, 0);
+  eo_verify_member(verification, block, "LTE_mean_um", 1e6 * case_result->mean, tolerances->stiffness, 0);
+  eo_verify_member(verification, block, "PPLTE_um", 1e6 * case_result->peak_to_peak, tolerances->swing[1],
+                   tolerances->swing[0]);
+  eo_verify_member(verification, block, "k_secant_N_per_um", 1e-6 * secant, tolerances->stiffness, 0);
+  eo_verify_member(verification, block, "k_tangent_N_per_um", 1e-6 * tangent, tolerances->stiffness, 0);
+  eo_verify_member(verification, block, "c_N_per_mm_um",
+                   1e-9 * level * normal * normal / run->pair->geometry.face_width, tolerances->stiffness, 0);
+  eo_verify_member(verification, block, "share_max", largest_share(run), 0, tolerances->share);
+  eo_verify_list(verification, eo_case_find(block, "LTE_um_of_32_positions"), run->found->positions,
+                 case_result->transmission, 1e6, tolerances->stiffness, 0);
   check_shares(run, eo_case_find(block, "share_by_phase_of_pair"));
   return check_root(run, eo_case_key(block), eo_case_find(block, "root_pinion_max_MPa"), error);
 }
@@ -342,7 +344,7 @@ static void check_iso(struct run *run, struct eo_case *block)
 
 static enum eo_code check_pair_support(struct run *run, struct eo_case *block, struct eo_error *error)
 {
-  const struct eo_ring_tolerances *t = &run->c->tolerance;
+  const struct eo_ring_tolerances *tolerances = &run->c->tolerance;
   struct eo_geometry geometry;
   eo_ring_support(run->c, eo_case_key(block), block, &run->design);
   if (eo_case_faulty(block))
@@ -359,10 +361,11 @@ static enum eo_code check_pair_support(struct run *run, struct eo_case *block, s
     return code;
   double level, secant, tangent, normal = cos(geometry.base_helix_angle);
   stiffness_of(run, &level, &secant, &tangent);
-  eo_verify_member(run->c->v, block, "c", 1e-9 * level * normal * normal / geometry.face_width, t->stiffness, 0);
-  eo_verify_member(run->c->v, block, "LTE_mean_um", 1e6 * run->found->load_case[0].mean, t->stiffness, 0);
-  eo_verify_member(run->c->v, block, "PPLTE_um", 1e6 * run->found->load_case[0].peak_to_peak, t->pairs_swing[1],
-                   t->pairs_swing[0]);
+  eo_verify_member(run->c->v, block, "c", 1e-9 * level * normal * normal / geometry.face_width, tolerances->stiffness,
+                   0);
+  eo_verify_member(run->c->v, block, "LTE_mean_um", 1e6 * run->found->load_case[0].mean, tolerances->stiffness, 0);
+  eo_verify_member(run->c->v, block, "PPLTE_um", 1e6 * run->found->load_case[0].peak_to_peak,
+                   tolerances->pairs_swing[1], tolerances->pairs_swing[0]);
   return EO_OK;
 }
 
@@ -384,12 +387,12 @@ static enum eo_code check_pair(void *context, struct eo_case *row, struct eo_err
 
 enum eo_code eo_ring_check_pairs(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_ring_case *c = context;
+  struct eo_ring_case *ring_case = context;
   struct run *run = calloc(1, sizeof *run);
   if (!run)
     return eo_error_memory(error);
-  run->c = c;
-  enum eo_code code = eo_verify_each(c->v, eo_case_need(block, "rows"), check_pair, run, error);
+  run->c = ring_case;
+  enum eo_code code = eo_verify_each(ring_case->v, eo_case_need(block, "rows"), check_pair, run, error);
   run_done(run);
   free(run);
   return code;

@@ -38,9 +38,9 @@ static double listed_tolerance(const char *name)
 }
 
 /* The tolerance of a row's output: "PPLTE_rel", "PPLTE_um". */
-static void row_tolerance(const struct trial *t, const char *name, double *relative, double *absolute)
+static void row_tolerance(const struct trial *trial, const char *name, double *relative, double *absolute)
 {
-  struct eo_case *rows = eo_case_find(t->tolerance, "rows");
+  struct eo_case *rows = eo_case_find(trial->tolerance, "rows");
   bool swing = strncmp(name, "PPLTE", 5) == 0, mean = strncmp(name, "LTE_mean", 8) == 0;
   double pp = eo_case_relative_or(rows, "PPLTE_rel", 0.005), of_mean = eo_case_relative_or(rows, "LTE_mean_rel", 0.002),
          pressure = eo_case_relative_or(rows, "max_pressure_rel", 0.005),
@@ -50,10 +50,10 @@ static void row_tolerance(const struct trial *t, const char *name, double *relat
 }
 
 /* f_HalphaT and f_HbetaT of the class, rounded as the standard prints them; sigma is half of them. */
-static enum eo_code check_limit(const struct trial *t, struct eo_case *row, const struct eo_bench_input *input,
+static enum eo_code check_limit(const struct trial *trial, struct eo_case *row, const struct eo_bench_input *input,
                                 int grade, struct eo_error *error)
 {
-  const struct eo_gear_pair *pair = &t->bench->nominal.gear_pair;
+  const struct eo_gear_pair *pair = &trial->bench->nominal.gear_pair;
   int member = strstr(input->name, ".gear.") ? EO_GEAR : EO_PINION;
   struct eo_tolerance_input in = {.reference_diameter = pair->normal_module / cos(pair->helix_angle) *
                                                         pair->teeth[member],
@@ -68,97 +68,98 @@ static enum eo_code check_limit(const struct trial *t, struct eo_case *row, cons
     return EO_OK;
   EO_TRY(eo_flank_tolerance(&limit, EO_ISO1328_2013, &in, error));
   double value = 1e6 * (strstr(input->name, "profile_slope") ? limit.profile_slope : limit.helix_slope);
-  eo_verify_number(t->v, expected, value, 0, 1e-6);
-  eo_verify_derived(t->v, expected, "sigma", value / 2, input->distribution.sigma, 1e-6);
+  eo_verify_number(trial->v, expected, value, 0, 1e-6);
+  eo_verify_derived(trial->v, expected, "sigma", value / 2, input->distribution.sigma, 1e-6);
   return EO_OK;
 }
 
-static enum eo_code check_variables(const struct trial *t, struct eo_case *variables, struct eo_error *error)
+static enum eo_code check_variables(const struct trial *trial, struct eo_case *variables, struct eo_error *error)
 {
-  int grade = eo_case_whole_or(t->item, "tolerance_class_iso_1328_1_2013", 1, 11, 5);
+  int grade = eo_case_whole_or(trial->item, "tolerance_class_iso_1328_1_2013", 1, 11, 5);
   for (int i = 0; i < eo_case_size(variables); i++) {
     struct eo_case *row = eo_case_at(variables, i);
-    const struct eo_bench_input *input = &t->bench->input[i];
-    EO_TRY(check_limit(t, row, input, grade, error));
-    eo_verify_uncompared(t->v, eo_case_find(row, "limit_unrounded"), "tolerances are computed as the standard rounds");
+    const struct eo_bench_input *input = &trial->bench->input[i];
+    EO_TRY(check_limit(trial, row, input, grade, error));
+    eo_verify_uncompared(trial->v, eo_case_find(row, "limit_unrounded"),
+                         "tolerances are computed as the standard rounds");
     double nominal = eo_case_number(row, "nominal"), si;
-    memcpy(&si, (const char *)&t->bench->nominal + input->offset, sizeof si);
+    memcpy(&si, (const char *)&trial->bench->nominal + input->offset, sizeof si);
     if (input->index < 0)
-      eo_verify_derived(t->v, eo_case_find(row, "nominal"), "the nominal flanks", si / input->unit, nominal, 1e-9);
+      eo_verify_derived(trial->v, eo_case_find(row, "nominal"), "the nominal flanks", si / input->unit, nominal, 1e-9);
   }
   return EO_OK;
 }
 
-static void read_columns(struct trial *t, struct eo_case *columns)
+static void read_columns(struct trial *trial, struct eo_case *columns)
 {
-  t->columns = eo_case_size(columns);
-  if (t->columns <= t->inputs || t->columns > MOST_COLUMNS)
+  trial->columns = eo_case_size(columns);
+  if (trial->columns <= trial->inputs || trial->columns > MOST_COLUMNS)
     eo_case_fault(columns, "The inputs and then the outputs are expected here.");
-  for (int i = 0; i < t->columns && !eo_case_faulty(columns); i++) {
+  for (int i = 0; i < trial->columns && !eo_case_faulty(columns); i++) {
     struct eo_case *column = eo_case_at(columns, i);
-    t->name[i] = eo_case_is_text(column) ? eo_case_text(column) : "";
-    t->output[i] = i < t->inputs ? -1 : eo_bench_output_find(t->name[i]);
-    if (i < t->inputs ? strcmp(t->name[i], t->bench->input[i].name) != 0 : t->output[i] < 0)
+    trial->name[i] = eo_case_is_text(column) ? eo_case_text(column) : "";
+    trial->output[i] = i < trial->inputs ? -1 : eo_bench_output_find(trial->name[i]);
+    if (i < trial->inputs ? strcmp(trial->name[i], trial->bench->input[i].name) != 0 : trial->output[i] < 0)
       eo_case_fault(column, "This is not the name of an input in the order of the variables, or of an output.");
   }
 }
 
-static enum eo_code read_rows(struct trial *t, struct eo_case *samples, struct eo_error *error)
+static enum eo_code read_rows(struct trial *trial, struct eo_case *samples, struct eo_error *error)
 {
   struct eo_case *rows = eo_case_need(samples, "rows");
-  t->inputs = eo_case_whole(samples, "inputs", 1, EO_BENCH_INPUTS);
-  t->rows = eo_case_whole(samples, "listed", 2, 100000);
-  eo_case_whole(samples, "drawn", t->rows, 10000000);
-  if (t->inputs != t->bench->inputs || eo_case_size(rows) != t->rows)
+  trial->inputs = eo_case_whole(samples, "inputs", 1, EO_BENCH_INPUTS);
+  trial->rows = eo_case_whole(samples, "listed", 2, 100000);
+  eo_case_whole(samples, "drawn", trial->rows, 10000000);
+  if (trial->inputs != trial->bench->inputs || eo_case_size(rows) != trial->rows)
     eo_case_fault(samples, "Inputs or rows are not as many as stated.");
-  read_columns(t, eo_case_need(samples, "columns"));
+  read_columns(trial, eo_case_need(samples, "columns"));
   if (eo_case_faulty(samples))
     return EO_OK;
-  size_t n = (size_t)t->rows, columns = (size_t)t->columns, inputs = (size_t)t->inputs;
-  t->input = malloc(sizeof *t->input * n * (inputs + 2 * columns));
-  if (!t->input)
+  size_t n = (size_t)trial->rows, columns = (size_t)trial->columns, inputs = (size_t)trial->inputs;
+  trial->input = malloc(sizeof *trial->input * n * (inputs + 2 * columns));
+  if (!trial->input)
     return eo_error_memory(error);
-  t->listed = t->input + n * inputs;
-  t->computed = t->listed + n * columns;
+  trial->listed = trial->input + n * inputs;
+  trial->computed = trial->listed + n * columns;
   for (size_t i = 0; i < n; i++) {
     double row[MOST_COLUMNS];
-    if (eo_case_numbers(eo_case_at(rows, (int)i), t->columns, MOST_COLUMNS, row) < 0)
+    if (eo_case_numbers(eo_case_at(rows, (int)i), trial->columns, MOST_COLUMNS, row) < 0)
       return EO_OK;
-    memcpy(t->input + i * inputs, row, sizeof *row * inputs);
+    memcpy(trial->input + i * inputs, row, sizeof *row * inputs);
     for (size_t c = 0; c < columns; c++)
-      t->listed[c * n + i] = row[c];
+      trial->listed[c * n + i] = row[c];
   }
   return EO_OK;
 }
 
 /* Every row again. */
-static void check_rows(struct trial *t, struct eo_case *rows)
+static void check_rows(struct trial *trial, struct eo_case *rows)
 {
-  for (int i = 0; i < t->rows; i++) {
+  for (int i = 0; i < trial->rows; i++) {
     double output[EO_BENCH_OUTPUTS];
-    bool converged = eo_bench_evaluate(t->bench, t->input + (size_t)i * (size_t)t->inputs, output);
+    bool converged = eo_bench_evaluate(trial->bench, trial->input + (size_t)i * (size_t)trial->inputs, output);
     if (!converged)
-      eo_verify_diverged(t->v, eo_case_at(rows, i));
-    for (int c = t->inputs; c < t->columns; c++) {
+      eo_verify_diverged(trial->v, eo_case_at(rows, i));
+    for (int c = trial->inputs; c < trial->columns; c++) {
       double relative, absolute;
-      row_tolerance(t, t->name[c], &relative, &absolute);
-      t->computed[(size_t)c * (size_t)t->rows + (size_t)i] = output[t->output[c]];
+      row_tolerance(trial, trial->name[c], &relative, &absolute);
+      trial->computed[(size_t)c * (size_t)trial->rows + (size_t)i] = output[trial->output[c]];
       if (converged)
-        eo_verify_number(t->v, eo_case_at(eo_case_at(rows, i), c), output[t->output[c]], relative, absolute);
+        eo_verify_number(trial->v, eo_case_at(eo_case_at(rows, i), c), output[trial->output[c]], relative, absolute);
     }
   }
 }
 
 /* Of the nominal pair. */
-static void check_nominal(struct trial *t)
+static void check_nominal(struct trial *trial)
 {
-  struct eo_case *expected = eo_case_find(eo_case_find(t->item, "nominal"), "expected");
+  struct eo_case *expected = eo_case_find(eo_case_find(trial->item, "nominal"), "expected");
   double output[EO_BENCH_OUTPUTS], relative, absolute;
-  if (!eo_bench_evaluate(t->bench, NULL, output))
-    eo_verify_diverged(t->v, expected);
+  if (!eo_bench_evaluate(trial->bench, NULL, output))
+    eo_verify_diverged(trial->v, expected);
   for (int i = 0; i < EO_BENCH_OUTPUTS; i++) {
-    row_tolerance(t, eo_bench_output_name(i), &relative, &absolute);
-    eo_verify_member(t->v, expected, eo_bench_output_name(i), output[i], relative, absolute);
+    row_tolerance(trial, eo_bench_output_name(i), &relative, &absolute);
+    eo_verify_member(trial->v, expected, eo_bench_output_name(i), output[i], relative, absolute);
   }
 }
 
@@ -167,14 +168,14 @@ static double width_of(struct eo_case *interval)
   return eo_case_element(interval, 1) - eo_case_element(interval, 0);
 }
 
-static void check_interval(struct eo_verification *v, struct eo_case *expected, const double interval[2], double share,
-                           double rounding)
+static void check_interval(struct eo_verification *verification, struct eo_case *expected, const double interval[2],
+                           double share, double rounding)
 {
   if (expected)
-    eo_verify_list(v, expected, 2, interval, 1, 0, fmax(share * width_of(expected), rounding));
+    eo_verify_list(verification, expected, 2, interval, 1, 0, fmax(share * width_of(expected), rounding));
 }
 
-static enum eo_code check_bootstrap(const struct trial *t, struct eo_case *block, const double *value,
+static enum eo_code check_bootstrap(const struct trial *trial, struct eo_case *block, const double *value,
                                     struct eo_error *error)
 {
   struct eo_case *percentiles = eo_case_need(block, "percentiles");
@@ -187,39 +188,39 @@ static enum eo_code check_bootstrap(const struct trial *t, struct eo_case *block
     percent[i] = eo_case_key_number(eo_case_at(percentiles, i));
   if (eo_case_faulty(block))
     return EO_OK;
-  EO_TRY(eo_bootstrap_run(&bootstrap, t->rows, value, n, percent, 0.95, RESAMPLES, 1, error));
-  check_interval(t->v, eo_case_find(block, "mean"), bootstrap.mean, MEAN_WIDTH, LISTED_UM);
-  check_interval(t->v, eo_case_find(block, "std"), bootstrap.deviation, MEAN_WIDTH, LISTED_UM);
+  EO_TRY(eo_bootstrap_run(&bootstrap, trial->rows, value, n, percent, 0.95, RESAMPLES, 1, error));
+  check_interval(trial->v, eo_case_find(block, "mean"), bootstrap.mean, MEAN_WIDTH, LISTED_UM);
+  check_interval(trial->v, eo_case_find(block, "std"), bootstrap.deviation, MEAN_WIDTH, LISTED_UM);
   for (int i = 0; i < n; i++)
-    check_interval(t->v, eo_case_at(percentiles, i), interval[i], PERCENTILE_WIDTH, LISTED_UM);
+    check_interval(trial->v, eo_case_at(percentiles, i), interval[i], PERCENTILE_WIDTH, LISTED_UM);
   return EO_OK;
 }
 
-static void check_ranks(const struct trial *t, struct eo_case *block, const double *sorted, double tolerance)
+static void check_ranks(const struct trial *trial, struct eo_case *block, const double *sorted, double tolerance)
 {
   for (int i = 0; i < eo_case_size(block); i++) {
     struct eo_case *row = eo_case_at(block, i);
     double share = eo_case_key_number(row) / 100;
-    struct eo_rank_interval found = eo_order_statistic_ranks(t->rows, share, 0.95);
+    struct eo_rank_interval found = eo_order_statistic_ranks(trial->rows, share, 0.95);
     double ranks[2] = {found.low, found.high};
     double ends[2] = {found.low > 0 ? sorted[found.low - 1] : NAN,
-                      found.high <= t->rows ? sorted[found.high - 1] : NAN};
-    eo_verify_list(t->v, eo_case_need(row, "ranks"), 2, ranks, 1, 0, 1e-9);
-    eo_verify_list(t->v, eo_case_need(row, "interval"), 2, ends, 1, 0, tolerance);
-    eo_verify_member(t->v, row, "coverage", found.coverage, 0, 1e-4);
+                      found.high <= trial->rows ? sorted[found.high - 1] : NAN};
+    eo_verify_list(trial->v, eo_case_need(row, "ranks"), 2, ranks, 1, 0, 1e-9);
+    eo_verify_list(trial->v, eo_case_need(row, "interval"), 2, ends, 1, 0, tolerance);
+    eo_verify_member(trial->v, row, "coverage", found.coverage, 0, 1e-4);
   }
 }
 
-static int index_of(const struct trial *t, const char *name)
+static int index_of(const struct trial *trial, const char *name)
 {
-  for (int i = 0; i < t->columns; i++)
-    if (strcmp(name, t->name[i]) == 0)
+  for (int i = 0; i < trial->columns; i++)
+    if (strcmp(name, trial->name[i]) == 0)
       return i;
   return -1;
 }
 
 /* Coefficients by name, their order and intervals. again: from the outputs computed here. */
-static enum eo_code check_regression(const struct trial *t, struct eo_case *block, const double *value,
+static enum eo_code check_regression(const struct trial *trial, struct eo_case *block, const double *value,
                                      const double *again, struct eo_error *error)
 {
   double coefficient[EO_BENCH_INPUTS], other[EO_BENCH_INPUTS], interval[EO_BENCH_INPUTS][2];
@@ -227,37 +228,39 @@ static enum eo_code check_regression(const struct trial *t, struct eo_case *bloc
   struct eo_regression listed = {.coefficient = coefficient}, computed = {.coefficient = other};
   struct eo_case *by_name = eo_case_need(block, "coefficient"), *rank = eo_case_need(block, "rank"),
                  *intervals = eo_case_find(block, "bootstrap_95"),
-                 *within = eo_case_find(t->tolerance, "statistics_of_recomputed_rows");
+                 *within = eo_case_find(trial->tolerance, "statistics_of_recomputed_rows");
   double near = eo_case_absolute_or(within, "coefficient", 0.005), r2 = eo_case_absolute_or(within, "R2", 0.005);
-  EO_TRY(eo_regression_run(&listed, t->rows, t->inputs, t->input, value, error));
-  EO_TRY(eo_regression_run(&computed, t->rows, t->inputs, t->input, again, error));
-  eo_verify_member(t->v, block, "R2", listed.r2, 0, LISTED_SHARE);
-  eo_verify_member(t->v, block, "R2_adjusted", listed.r2_adjusted, 0, LISTED_SHARE);
-  eo_verify_derived(t->v, eo_case_find(block, "R2"), "R2 of the rows computed here", computed.r2,
+  EO_TRY(eo_regression_run(&listed, trial->rows, trial->inputs, trial->input, value, error));
+  EO_TRY(eo_regression_run(&computed, trial->rows, trial->inputs, trial->input, again, error));
+  eo_verify_member(trial->v, block, "R2", listed.r2, 0, LISTED_SHARE);
+  eo_verify_member(trial->v, block, "R2_adjusted", listed.r2_adjusted, 0, LISTED_SHARE);
+  eo_verify_derived(trial->v, eo_case_find(block, "R2"), "R2 of the rows computed here", computed.r2,
                     eo_case_number(block, "R2"), r2);
-  for (int i = 0; i < t->inputs; i++) {
-    struct eo_case *expected = eo_case_need(by_name, t->name[i]);
-    eo_verify_number(t->v, expected, coefficient[i], 0, LISTED_SHARE);
+  for (int i = 0; i < trial->inputs; i++) {
+    struct eo_case *expected = eo_case_need(by_name, trial->name[i]);
+    eo_verify_number(trial->v, expected, coefficient[i], 0, LISTED_SHARE);
     if (expected)
-      eo_verify_derived(t->v, expected, "coefficient of the rows computed here", other[i], eo_case_real(expected),
+      eo_verify_derived(trial->v, expected, "coefficient of the rows computed here", other[i], eo_case_real(expected),
                         near);
   }
-  eo_order_by_size(t->inputs, coefficient, order);
-  eo_verify_size(t->v, rank, t->inputs);
-  for (int i = 0; i < t->inputs && i < eo_case_size(rank); i++) {
+  eo_order_by_size(trial->inputs, coefficient, order);
+  eo_verify_size(trial->v, rank, trial->inputs);
+  for (int i = 0; i < trial->inputs && i < eo_case_size(rank); i++) {
     struct eo_case *name = eo_case_at(rank, i);
     const char *expected = eo_case_text(name);
-    eo_verify_fact(t->v, name, "rank by the size of the coefficient", expected && index_of(t, expected) == order[i]);
+    eo_verify_fact(trial->v, name, "rank by the size of the coefficient",
+                   expected && index_of(trial, expected) == order[i]);
   }
   if (intervals)
-    EO_TRY(eo_regression_bootstrap(t->rows, t->inputs, t->input, value, 0.95, ROW_RESAMPLES, 1, interval, error));
-  for (int i = 0; i < t->inputs && intervals; i++)
-    check_interval(t->v, eo_case_need(intervals, t->name[i]), interval[i], 2 * MEAN_WIDTH, 1e-3);
+    EO_TRY(eo_regression_bootstrap(trial->rows, trial->inputs, trial->input, value, 0.95, ROW_RESAMPLES, 1, interval,
+                                   error));
+  for (int i = 0; i < trial->inputs && intervals; i++)
+    check_interval(trial->v, eo_case_need(intervals, trial->name[i]), interval[i], 2 * MEAN_WIDTH, 1e-3);
   return EO_OK;
 }
 
 /* Percentiles of other samples from the same distributions. */
-static enum eo_code check_own_samples(const struct trial *t, struct eo_case *block, int column, const double *own,
+static enum eo_code check_own_samples(const struct trial *trial, struct eo_case *block, int column, const double *own,
                                       struct eo_error *error)
 {
   struct eo_case *percentiles = eo_case_find(block, "percentiles");
@@ -272,51 +275,51 @@ static enum eo_code check_own_samples(const struct trial *t, struct eo_case *blo
     struct eo_rank_interval ranks = eo_order_statistic_ranks(OWN_PAIRS, percent / 100, 0.95);
     int low = ranks.low < 1 ? 1 : ranks.low, high = ranks.high > OWN_PAIRS ? OWN_PAIRS : ranks.high;
     double standard_error = (sorted[high - 1] - sorted[low - 1]) / 4;
-    eo_verify_derived(t->v, expected, "percentile of own samples", eo_percentile(OWN_PAIRS, sorted, percent),
+    eo_verify_derived(trial->v, expected, "percentile of own samples", eo_percentile(OWN_PAIRS, sorted, percent),
                       eo_case_real(expected), 4 * hypot(standard_error, here));
   }
   (void)column;
   return EO_OK;
 }
 
-static enum eo_code check_output(const struct trial *t, struct eo_case *block, int column, const double *own,
+static enum eo_code check_output(const struct trial *trial, struct eo_case *block, int column, const double *own,
                                  struct eo_error *error)
 {
-  const double *value = t->listed + (size_t)column * (size_t)t->rows,
-               *again = t->computed + (size_t)column * (size_t)t->rows;
-  double within = listed_tolerance(t->name[column]),
-         near = eo_case_relative_or(eo_case_find(t->tolerance, "statistics_of_recomputed_rows"), "percentile_rel",
+  const double *value = trial->listed + (size_t)column * (size_t)trial->rows,
+               *again = trial->computed + (size_t)column * (size_t)trial->rows;
+  double within = listed_tolerance(trial->name[column]),
+         near = eo_case_relative_or(eo_case_find(trial->tolerance, "statistics_of_recomputed_rows"), "percentile_rel",
                                     0.005);
-  struct eo_summary s = eo_summary_of(t->rows, value);
+  struct eo_summary summary = eo_summary_of(trial->rows, value);
   struct eo_case *percentiles = eo_case_need(block, "percentiles");
-  double *sorted = malloc(sizeof *sorted * 2 * (size_t)t->rows);
+  double *sorted = malloc(sizeof *sorted * 2 * (size_t)trial->rows);
   if (!sorted)
     return eo_error_memory(error);
-  double *other = sorted + t->rows;
-  memcpy(sorted, value, sizeof *sorted * (size_t)t->rows);
-  memcpy(other, again, sizeof *sorted * (size_t)t->rows);
-  eo_sort_numbers(t->rows, sorted);
-  eo_sort_numbers(t->rows, other);
-  eo_verify_member(t->v, block, "mean", s.mean, 0, within);
-  eo_verify_member(t->v, block, "std", s.deviation, 0, within);
-  eo_verify_member(t->v, block, "min", s.least, 0, within);
-  eo_verify_member(t->v, block, "max", s.largest, 0, within);
+  double *other = sorted + trial->rows;
+  memcpy(sorted, value, sizeof *sorted * (size_t)trial->rows);
+  memcpy(other, again, sizeof *sorted * (size_t)trial->rows);
+  eo_sort_numbers(trial->rows, sorted);
+  eo_sort_numbers(trial->rows, other);
+  eo_verify_member(trial->v, block, "mean", summary.mean, 0, within);
+  eo_verify_member(trial->v, block, "std", summary.deviation, 0, within);
+  eo_verify_member(trial->v, block, "min", summary.least, 0, within);
+  eo_verify_member(trial->v, block, "max", summary.largest, 0, within);
   for (int i = 0; i < eo_case_size(percentiles); i++) {
     struct eo_case *expected = eo_case_at(percentiles, i);
     double percent = eo_case_key_number(expected), listed = eo_case_real(expected);
-    eo_verify_number(t->v, expected, eo_percentile(t->rows, sorted, percent), 0, within);
-    eo_verify_derived(t->v, expected, "percentile of the rows computed here", eo_percentile(t->rows, other, percent),
-                      listed, near * fabs(listed));
+    eo_verify_number(trial->v, expected, eo_percentile(trial->rows, sorted, percent), 0, within);
+    eo_verify_derived(trial->v, expected, "percentile of the rows computed here",
+                      eo_percentile(trial->rows, other, percent), listed, near * fabs(listed));
   }
   if (eo_case_find(block, "order_statistic_95"))
-    check_ranks(t, eo_case_find(block, "order_statistic_95"), sorted, within);
+    check_ranks(trial, eo_case_find(block, "order_statistic_95"), sorted, within);
   enum eo_code code = eo_case_find(block, "bootstrap_95")
-                          ? check_bootstrap(t, eo_case_find(block, "bootstrap_95"), value, error)
+                          ? check_bootstrap(trial, eo_case_find(block, "bootstrap_95"), value, error)
                           : EO_OK;
   if (!code && eo_case_find(block, "standardised_regression"))
-    code = check_regression(t, eo_case_find(block, "standardised_regression"), value, again, error);
+    code = check_regression(trial, eo_case_find(block, "standardised_regression"), value, again, error);
   if (!code && !eo_case_faulty(block))
-    code = check_own_samples(t, block, column, own, error);
+    code = check_own_samples(trial, block, column, own, error);
   free(sorted);
   return code;
 }
@@ -330,63 +333,63 @@ static double pearson(int n, const double *a, const double *b, const int *row, d
   return eo_correlation(n, scratch, scratch + n);
 }
 
-static enum eo_code check_pair_of(const struct trial *t, struct eo_case *row, const double *a, const double *b,
+static enum eo_code check_pair_of(const struct trial *trial, struct eo_case *row, const double *a, const double *b,
                                   struct eo_error *error)
 {
-  size_t n = (size_t)t->rows;
+  size_t n = (size_t)trial->rows;
   double *rank = malloc(sizeof *rank * n * 4);
   if (!rank)
     return eo_error_memory(error);
-  enum eo_code code = eo_ranks(t->rows, a, rank, error);
+  enum eo_code code = eo_ranks(trial->rows, a, rank, error);
   if (!code)
-    code = eo_ranks(t->rows, b, rank + n, error);
+    code = eo_ranks(trial->rows, b, rank + n, error);
   if (!code) {
-    eo_verify_member(t->v, row, "pearson", pearson(t->rows, a, b, NULL, rank + 2 * n), 0, LISTED_SHARE);
-    eo_verify_member(t->v, row, "spearman", eo_correlation(t->rows, rank, rank + n), 0, LISTED_SHARE);
+    eo_verify_member(trial->v, row, "pearson", pearson(trial->rows, a, b, NULL, rank + 2 * n), 0, LISTED_SHARE);
+    eo_verify_member(trial->v, row, "spearman", eo_correlation(trial->rows, rank, rank + n), 0, LISTED_SHARE);
     if (eo_case_find(row, "bootstrap_95"))
-      eo_verify_uncompared(t->v, eo_case_find(row, "bootstrap_95"), "correlations are given without an interval");
+      eo_verify_uncompared(trial->v, eo_case_find(row, "bootstrap_95"), "correlations are given without an interval");
   }
   free(rank);
   return code;
 }
 
-static enum eo_code check_correlations(const struct trial *t, struct eo_case *list, struct eo_error *error)
+static enum eo_code check_correlations(const struct trial *trial, struct eo_case *list, struct eo_error *error)
 {
   for (int i = 0; i < eo_case_size(list); i++) {
     struct eo_case *row = eo_case_at(list, i), *of = eo_case_need(row, "of");
     int column[2] = {-1, -1};
     for (int k = 0; k < 2 && of; k++) {
       struct eo_case *name = eo_case_at(of, k);
-      column[k] = name && eo_case_is_text(name) ? index_of(t, eo_case_text(name)) : -1;
+      column[k] = name && eo_case_is_text(name) ? index_of(trial, eo_case_text(name)) : -1;
       if (column[k] < 0)
         eo_case_fault(of, "Two columns of the samples are expected here.");
     }
     if (!eo_case_faulty(row))
-      EO_TRY(check_pair_of(t, row, t->listed + (size_t)column[0] * (size_t)t->rows,
-                           t->listed + (size_t)column[1] * (size_t)t->rows, error));
+      EO_TRY(check_pair_of(trial, row, trial->listed + (size_t)column[0] * (size_t)trial->rows,
+                           trial->listed + (size_t)column[1] * (size_t)trial->rows, error));
   }
   return EO_OK;
 }
 
-static void check_share(const struct trial *t, struct eo_case *block, int inside)
+static void check_share(const struct trial *trial, struct eo_case *block, int inside)
 {
-  struct eo_share_interval exact = eo_clopper_pearson(inside, t->rows, 0.95);
+  struct eo_share_interval exact = eo_clopper_pearson(inside, trial->rows, 0.95);
   double ends[2] = {exact.low, exact.high};
   if (!block)
     return;
-  eo_verify_member(t->v, block, "inside", inside, 0, 1e-9);
-  eo_verify_member(t->v, block, "of", t->rows, 0, 1e-9);
-  eo_verify_member(t->v, block, "fraction", (double)inside / t->rows, 0, LISTED_SHARE);
+  eo_verify_member(trial->v, block, "inside", inside, 0, 1e-9);
+  eo_verify_member(trial->v, block, "of", trial->rows, 0, 1e-9);
+  eo_verify_member(trial->v, block, "fraction", (double)inside / trial->rows, 0, LISTED_SHARE);
   if (eo_case_find(block, "clopper_pearson_95"))
-    eo_verify_list(t->v, eo_case_find(block, "clopper_pearson_95"), 2, ends, 1, 0, LISTED_SHARE);
-  struct eo_share_interval wilson = eo_wilson(inside, t->rows, 0.95);
+    eo_verify_list(trial->v, eo_case_find(block, "clopper_pearson_95"), 2, ends, 1, 0, LISTED_SHARE);
+  struct eo_share_interval wilson = eo_wilson(inside, trial->rows, 0.95);
   double other[2] = {wilson.low, wilson.high};
   if (eo_case_find(block, "wilson_95"))
-    eo_verify_list(t->v, eo_case_find(block, "wilson_95"), 2, other, 1, 0, LISTED_SHARE);
+    eo_verify_list(trial->v, eo_case_find(block, "wilson_95"), 2, other, 1, 0, LISTED_SHARE);
 }
 
 /* Each limit alone, and all of them at once ("both", "all"). */
-static void check_yield(const struct trial *t, struct eo_case *block)
+static void check_yield(const struct trial *trial, struct eo_case *block)
 {
   struct eo_case *limits = eo_case_need(block, "limits");
   int count = eo_case_size(limits), column[16], inside[17] = {0};
@@ -395,119 +398,120 @@ static void check_yield(const struct trial *t, struct eo_case *block)
     eo_case_fault(block, "1 to 16 limits are expected here.");
   for (int k = 0; k < count && !eo_case_faulty(block); k++) {
     struct eo_case *own = eo_case_at(limits, k);
-    column[k] = index_of(t, eo_case_key(own));
+    column[k] = index_of(trial, eo_case_key(own));
     limit[k] = eo_case_real(own);
     if (column[k] < 0)
       eo_case_fault(own, "There is no such column.");
   }
-  for (int i = 0; i < t->rows && !eo_case_faulty(block); i++) {
+  for (int i = 0; i < trial->rows && !eo_case_faulty(block); i++) {
     int met = 0;
     for (int k = 0; k < count; k++) {
-      bool meets = t->listed[(size_t)column[k] * (size_t)t->rows + (size_t)i] <= limit[k];
+      bool meets = trial->listed[(size_t)column[k] * (size_t)trial->rows + (size_t)i] <= limit[k];
       inside[k] += meets;
       met += meets;
     }
     inside[count] += met == count;
   }
   for (int k = 0; k < count && !eo_case_faulty(block); k++)
-    check_share(t, eo_case_find(block, t->name[column[k]]), inside[k]);
-  check_share(t, eo_case_find(block, "both"), inside[count]);
-  check_share(t, eo_case_find(block, "all"), inside[count]);
+    check_share(trial, eo_case_find(block, trial->name[column[k]]), inside[k]);
+  check_share(trial, eo_case_find(block, "both"), inside[count]);
+  check_share(trial, eo_case_find(block, "all"), inside[count]);
 }
 
 /* How the listed inputs fell: mean and second moment about the true mean, in standard errors. */
-static void check_draw(const struct trial *t, struct eo_case *block)
+static void check_draw(const struct trial *trial, struct eo_case *block)
 {
-  for (int i = 0; i < t->inputs && block; i++) {
-    struct eo_moments m = eo_distribution_moments(&t->bench->input[i].distribution);
-    double mean = 0, square = 0, root = sqrt(t->rows);
-    for (int row = 0; row < t->rows; row++) {
-      double z = (t->input[(size_t)row * (size_t)t->inputs + (size_t)i] - m.mean) / m.deviation;
+  for (int i = 0; i < trial->inputs && block; i++) {
+    struct eo_moments moments = eo_distribution_moments(&trial->bench->input[i].distribution);
+    double mean = 0, square = 0, root = sqrt(trial->rows);
+    for (int row = 0; row < trial->rows; row++) {
+      double z = (trial->input[(size_t)row * (size_t)trial->inputs + (size_t)i] - moments.mean) / moments.deviation;
       mean += z / root;
-      square += (z * z - 1) / (root * sqrt(m.fourth - 1));
+      square += (z * z - 1) / (root * sqrt(moments.fourth - 1));
     }
     double found[2] = {mean, square};
-    eo_verify_list(t->v, eo_case_need(block, t->name[i]), 2, found, 1, 0, 0.0051);
+    eo_verify_list(trial->v, eo_case_need(block, trial->name[i]), 2, found, 1, 0, 0.0051);
   }
 }
 
 /* The same distributions drawn once more: [column][OWN_PAIRS]. */
-static enum eo_code draw_own(struct trial *t, double *own, struct eo_error *error)
+static enum eo_code draw_own(struct trial *trial, double *own, struct eo_error *error)
 {
-  double *value = malloc(sizeof *value * OWN_PAIRS * (size_t)t->inputs);
+  double *value = malloc(sizeof *value * OWN_PAIRS * (size_t)trial->inputs);
   if (!value)
     return eo_error_memory(error);
-  enum eo_code code = eo_bench_draw(t->bench->input, t->inputs, OWN_PAIRS, value, error);
+  enum eo_code code = eo_bench_draw(trial->bench->input, trial->inputs, OWN_PAIRS, value, error);
   for (int i = 0; i < OWN_PAIRS && !code; i++) {
     double output[EO_BENCH_OUTPUTS] = {0};
-    eo_bench_evaluate(t->bench, value + (size_t)i * (size_t)t->inputs, output);
-    for (int c = t->inputs; c < t->columns; c++)
-      own[(size_t)c * OWN_PAIRS + (size_t)i] = output[t->output[c]];
+    eo_bench_evaluate(trial->bench, value + (size_t)i * (size_t)trial->inputs, output);
+    for (int c = trial->inputs; c < trial->columns; c++)
+      own[(size_t)c * OWN_PAIRS + (size_t)i] = output[trial->output[c]];
   }
   free(value);
   return code;
 }
 
-static enum eo_code check_statistics(struct trial *t, struct eo_error *error)
+static enum eo_code check_statistics(struct trial *trial, struct eo_error *error)
 {
   double *own = malloc(sizeof *own * OWN_PAIRS * MOST_COLUMNS);
-  enum eo_code code = own ? draw_own(t, own, error) : eo_error_memory(error);
-  for (int c = t->inputs; c < t->columns && !code; c++) {
-    struct eo_case *block = eo_case_need(t->statistics, t->name[c]);
+  enum eo_code code = own ? draw_own(trial, own, error) : eo_error_memory(error);
+  for (int c = trial->inputs; c < trial->columns && !code; c++) {
+    struct eo_case *block = eo_case_need(trial->statistics, trial->name[c]);
     if (block)
-      code = check_output(t, block, c, own + (size_t)c * OWN_PAIRS, error);
+      code = check_output(trial, block, c, own + (size_t)c * OWN_PAIRS, error);
   }
-  if (!code && eo_case_find(t->statistics, "correlation"))
-    code = check_correlations(t, eo_case_find(t->statistics, "correlation"), error);
-  if (!code && eo_case_find(t->statistics, "yield"))
-    check_yield(t, eo_case_find(t->statistics, "yield"));
+  if (!code && eo_case_find(trial->statistics, "correlation"))
+    code = check_correlations(trial, eo_case_find(trial->statistics, "correlation"), error);
+  if (!code && eo_case_find(trial->statistics, "yield"))
+    check_yield(trial, eo_case_find(trial->statistics, "yield"));
   free(own);
   return code;
 }
 
-static void read_remarks(const struct trial *t)
+static void read_remarks(const struct trial *trial)
 {
   static const char *const information[] = {"table_against_search", "discretisation"};
-  struct eo_case *relations = eo_case_find(t->item, "exact_relations");
+  struct eo_case *relations = eo_case_find(trial->item, "exact_relations");
   for (int i = 0; i < 2; i++)
-    if (eo_case_find(t->item, information[i]))
-      eo_case_skip(eo_case_find(t->item, information[i]));
+    if (eo_case_find(trial->item, information[i]))
+      eo_case_skip(eo_case_find(trial->item, information[i]));
   if (relations) {
     eo_case_skip(relations);
-    eo_verify_note(t->v, "exact_relations, table_against_search, discretisation are for information, not compared.");
+    eo_verify_note(trial->v,
+                   "exact_relations, table_against_search, discretisation are for information, not compared.");
   }
-  eo_case_remark(t->tolerance, "statistics_of_listed_outputs");
-  eo_case_remark(t->tolerance, "own_samples");
+  eo_case_remark(trial->tolerance, "statistics_of_listed_outputs");
+  eo_case_remark(trial->tolerance, "own_samples");
 }
 
-static enum eo_code run_trial(struct trial *t, struct eo_error *error)
+static enum eo_code run_trial(struct trial *trial, struct eo_error *error)
 {
-  struct eo_case *variables = eo_case_need(t->item, "variables"), *samples = eo_case_need(t->item, "samples");
-  t->tolerance = eo_case_find(t->item, "tolerance");
-  t->statistics = eo_case_need(t->item, "statistics");
-  read_remarks(t);
-  EO_TRY(eo_bench_read(t->bench, t->item, eo_case_need(t->item, "nominal"), error));
-  if (!eo_case_faulty(t->item))
-    eo_bench_read_inputs(t->bench, variables);
-  if (eo_case_faulty(t->item))
+  struct eo_case *variables = eo_case_need(trial->item, "variables"), *samples = eo_case_need(trial->item, "samples");
+  trial->tolerance = eo_case_find(trial->item, "tolerance");
+  trial->statistics = eo_case_need(trial->item, "statistics");
+  read_remarks(trial);
+  EO_TRY(eo_bench_read(trial->bench, trial->item, eo_case_need(trial->item, "nominal"), error));
+  if (!eo_case_faulty(trial->item))
+    eo_bench_read_inputs(trial->bench, variables);
+  if (eo_case_faulty(trial->item))
     return EO_OK;
-  EO_TRY(check_variables(t, variables, error));
-  EO_TRY(read_rows(t, samples, error));
-  if (eo_case_faulty(t->item))
+  EO_TRY(check_variables(trial, variables, error));
+  EO_TRY(read_rows(trial, samples, error));
+  if (eo_case_faulty(trial->item))
     return EO_OK;
-  check_nominal(t);
-  check_rows(t, eo_case_find(samples, "rows"));
-  check_draw(t, eo_case_find(t->item, "draw_check"));
-  return check_statistics(t, error);
+  check_nominal(trial);
+  check_rows(trial, eo_case_find(samples, "rows"));
+  check_draw(trial, eo_case_find(trial->item, "draw_check"));
+  return check_statistics(trial, error);
 }
 
 static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
 {
   struct eo_tolerance_bench *bench = context;
-  struct trial t = {.bench = bench, .v = bench->v, .item = item};
+  struct trial trial = {.bench = bench, .v = bench->v, .item = item};
   eo_case_remark(item, "id");
-  enum eo_code code = run_trial(&t, error);
-  free(t.input);
+  enum eo_code code = run_trial(&trial, error);
+  free(trial.input);
   return code;
 }
 
@@ -542,7 +546,7 @@ static const struct eo_verify_block blocks[] = {
     {NULL, EO_BLOCK_INPUT, NULL},
 };
 
-enum eo_code eo_verify_tolerance(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_tolerance(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   struct eo_tolerance_bench *bench = calloc(1, sizeof *bench);
   struct eo_case *words = eo_case_find(file, "conventions"), *rules = eo_case_find(file, "statistics");
@@ -550,14 +554,14 @@ enum eo_code eo_verify_tolerance(struct eo_case *file, struct eo_verification *v
   if (!bench)
     return eo_error_memory(error);
   bench->file = file;
-  bench->v = v;
+  bench->v = verification;
   for (int i = 0; i < eo_case_size(rules); i++)
     eo_case_text(eo_case_at(rules, i)); /* words alone */
   if (form)
     eo_case_closed_form(form, &bench->form);
   else
     eo_case_fault(file, "The closed-form flexibility is stated in \"conventions\".");
-  enum eo_code code = eo_case_faulty(file) ? EO_OK : eo_verify_blocks(v, file, blocks, bench, error);
+  enum eo_code code = eo_case_faulty(file) ? EO_OK : eo_verify_blocks(verification, file, blocks, bench, error);
   eo_bench_done(bench);
   free(bench);
   return code;

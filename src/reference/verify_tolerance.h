@@ -5,7 +5,7 @@
 
 #include "reference/tolerance_bench.h"
 
-enum eo_code eo_verify_tolerance(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+enum eo_code eo_verify_tolerance(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 /* One case whose distribution is known. context: struct eo_tolerance_bench. */
 enum eo_code eo_verify_tolerance_analytic(void *context, struct eo_case *item, struct eo_error *error);

@@ -39,18 +39,18 @@ static void check_percentiles(const struct known *known, struct eo_case *rows, c
 /* An object with mean, std and percentiles. */
 static enum eo_code check_law(const struct known *known, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_summary s = eo_summary_of(known->points, known->value);
+  struct eo_summary summary = eo_summary_of(known->points, known->value);
   double *sorted = malloc(sizeof *sorted * (size_t)known->points), fourth = 0;
   if (!sorted)
     return eo_error_memory(error);
   for (int i = 0; i < known->points; i++)
-    fourth += pow((known->value[i] - s.mean) / s.deviation, 4) / known->points;
+    fourth += pow((known->value[i] - summary.mean) / summary.deviation, 4) / known->points;
   memcpy(sorted, known->value, sizeof *sorted * (size_t)known->points);
   eo_sort_numbers(known->points, sorted);
   double root = sqrt(known->points);
-  eo_verify_member(known->v, block, "mean", s.mean, 0, 4 * s.deviation / root + known->resolution);
-  eo_verify_member(known->v, block, "std", s.deviation, 0,
-                   4 * s.deviation * sqrt(fmax(fourth, 3) - 1) / (2 * root) + known->resolution);
+  eo_verify_member(known->v, block, "mean", summary.mean, 0, 4 * summary.deviation / root + known->resolution);
+  eo_verify_member(known->v, block, "std", summary.deviation, 0,
+                   4 * summary.deviation * sqrt(fmax(fourth, 3) - 1) / (2 * root) + known->resolution);
   check_percentiles(known, eo_case_find(block, "percentiles"), sorted);
   free(sorted);
   return EO_OK;
@@ -68,79 +68,80 @@ struct model_case {
 };
 
 /* Which input a key like "pinion" or "left" means; -1 with a fault. */
-static int input_of(const struct model_case *m, struct eo_case *value)
+static int input_of(const struct model_case *model_case, struct eo_case *value)
 {
-  for (int i = 0; i < m->bench->inputs; i++)
-    if (strstr(m->bench->input[i].name, eo_case_key(value)))
+  for (int i = 0; i < model_case->bench->inputs; i++)
+    if (strstr(model_case->bench->input[i].name, eo_case_key(value)))
       return i;
   eo_case_fault(value, "No variable has this in its name.");
   return -1;
 }
 
 /* The change of the response for one unit of each input. */
-static void find_slopes(struct model_case *m)
+static void find_slopes(struct model_case *model_case)
 {
-  struct eo_tolerance_bench *b = m->bench;
+  struct eo_tolerance_bench *bench = model_case->bench;
   double value[EO_BENCH_INPUTS] = {0}, output[EO_BENCH_OUTPUTS] = {0}, origin[EO_BENCH_OUTPUTS] = {0};
-  for (int i = 0; i < b->inputs; i++)
-    value[i] = eo_distribution_moments(&b->input[i].distribution).mean;
-  eo_bench_evaluate(b, value, origin);
-  for (int i = 0; i < b->inputs; i++) {
+  for (int i = 0; i < bench->inputs; i++)
+    value[i] = eo_distribution_moments(&bench->input[i].distribution).mean;
+  eo_bench_evaluate(bench, value, origin);
+  for (int i = 0; i < bench->inputs; i++) {
     value[i] += 1;
-    eo_bench_evaluate(b, value, output);
+    eo_bench_evaluate(bench, value, output);
     value[i] -= 1;
-    m->slope[i] = output[m->output] - origin[m->output];
-    m->float_slope[i] = output[EO_BENCH_FLOAT] - origin[EO_BENCH_FLOAT];
+    model_case->slope[i] = output[model_case->output] - origin[model_case->output];
+    model_case->float_slope[i] = output[EO_BENCH_FLOAT] - origin[EO_BENCH_FLOAT];
   }
 }
 
-static enum eo_code sample(struct model_case *m, struct eo_error *error)
+static enum eo_code sample(struct model_case *model_case, struct eo_error *error)
 {
-  struct eo_tolerance_bench *b = m->bench;
+  struct eo_tolerance_bench *bench = model_case->bench;
   double least[EO_BENCH_OUTPUTS], most[EO_BENCH_OUTPUTS];
-  EO_TRY(eo_bench_draw(b->input, b->inputs, MODEL_POINTS, m->input, error));
+  EO_TRY(eo_bench_draw(bench->input, bench->inputs, MODEL_POINTS, model_case->input, error));
   for (int i = 0; i < MODEL_POINTS; i++) {
     double output[EO_BENCH_OUTPUTS] = {0};
-    if (!eo_bench_evaluate(b, m->input + (size_t)i * (size_t)b->inputs, output))
-      eo_verify_diverged(b->v, m->item);
-    m->value[i] = output[m->output];
-    m->afloat[i] = output[EO_BENCH_FLOAT];
+    if (!eo_bench_evaluate(bench, model_case->input + (size_t)i * (size_t)bench->inputs, output))
+      eo_verify_diverged(bench->v, model_case->item);
+    model_case->value[i] = output[model_case->output];
+    model_case->afloat[i] = output[EO_BENCH_FLOAT];
     for (int k = 0; k < EO_BENCH_OUTPUTS; k++) {
       least[k] = i ? fmin(least[k], output[k]) : output[k];
       most[k] = i ? fmax(most[k], output[k]) : output[k];
     }
   }
-  if (eo_case_find(m->expected, "PPLTE_um")) {
-    eo_verify_derived(b->v, eo_case_find(m->expected, "PPLTE_um"), "spread over all samples",
+  if (eo_case_find(model_case->expected, "PPLTE_um")) {
+    eo_verify_derived(bench->v, eo_case_find(model_case->expected, "PPLTE_um"), "spread over all samples",
                       most[EO_BENCH_PPLTE] - least[EO_BENCH_PPLTE], 0, 1e-4);
-    eo_verify_derived(b->v, eo_case_find(m->expected, "max_pressure_MPa"), "spread over all samples",
+    eo_verify_derived(bench->v, eo_case_find(model_case->expected, "max_pressure_MPa"), "spread over all samples",
                       most[EO_BENCH_PRESSURE] - least[EO_BENCH_PRESSURE], 0, 0.05);
   }
   return EO_OK;
 }
 
 /* A sum of normals is normal; one input alone keeps its own distribution: exact quantiles of the change. */
-static bool exact_change(const struct model_case *m, double share, double *change)
+static bool exact_change(const struct model_case *model_case, double share, double *change)
 {
-  const struct eo_tolerance_bench *b = m->bench;
+  const struct eo_tolerance_bench *bench = model_case->bench;
   double variance = 0;
-  if (b->inputs == 1) {
-    const struct eo_distribution *d = &b->input[0].distribution;
-    *change = m->slope[0] *
-              (eo_distribution_quantile(d, m->slope[0] < 0 ? 1 - share : share) - eo_distribution_moments(d).mean);
+  if (bench->inputs == 1) {
+    const struct eo_distribution *distribution = &bench->input[0].distribution;
+    *change = model_case->slope[0] *
+              (eo_distribution_quantile(distribution, model_case->slope[0] < 0 ? 1 - share : share) -
+               eo_distribution_moments(distribution).mean);
     return true;
   }
-  for (int i = 0; i < b->inputs; i++) {
-    const struct eo_distribution *d = &b->input[i].distribution;
-    if (d->kind != EO_DISTRIBUTION_NORMAL || !isinf(d->cut))
+  for (int i = 0; i < bench->inputs; i++) {
+    const struct eo_distribution *this_distribution = &bench->input[i].distribution;
+    if (this_distribution->kind != EO_DISTRIBUTION_NORMAL || !isinf(this_distribution->cut))
       return false;
-    variance += pow(m->slope[i] * d->sigma, 2);
+    variance += pow(model_case->slope[i] * this_distribution->sigma, 2);
   }
   *change = sqrt(variance) * eo_normal_quantile(share);
   return true;
 }
 
-static void check_exact(const struct model_case *m, struct eo_case *law)
+static void check_exact(const struct model_case *model_case, struct eo_case *law)
 {
   struct eo_case *rows = eo_case_find(law, "percentiles");
   for (int i = 0; i < eo_case_size(rows); i++) {
@@ -148,45 +149,48 @@ static void check_exact(const struct model_case *m, struct eo_case *law)
     double change = NAN;
     if (!minus)
       continue;
-    if (exact_change(m, eo_case_number(row, "percent") / 100, &change))
-      eo_verify_number(m->bench->v, minus, change, 1e-5, 2e-6);
+    if (exact_change(model_case, eo_case_number(row, "percent") / 100, &change))
+      eo_verify_number(model_case->bench->v, minus, change, 1e-5, 2e-6);
     else
-      eo_verify_derived(m->bench->v, minus, "value less the nominal one",
-                        eo_case_number(row, "value") - eo_case_number(m->expected, "LTE_mean_nominal_um"),
+      eo_verify_derived(model_case->bench->v, minus, "value less the nominal one",
+                        eo_case_number(row, "value") - eo_case_number(model_case->expected, "LTE_mean_nominal_um"),
                         eo_case_real(minus), 2e-6);
   }
   if (eo_case_find(law, "std_over_sigma")) {
-    const struct eo_distribution *d = &m->bench->input[0].distribution;
-    eo_verify_member(m->bench->v, law, "std_over_sigma", eo_distribution_moments(d).deviation / d->sigma, 0, 1e-6);
+    const struct eo_distribution *distribution = &model_case->bench->input[0].distribution;
+    eo_verify_member(model_case->bench->v, law, "std_over_sigma",
+                     eo_distribution_moments(distribution).deviation / distribution->sigma, 0, 1e-6);
   }
 }
 
-static enum eo_code check_model_law(const struct model_case *m, struct eo_case *law, struct eo_error *error)
+static enum eo_code check_model_law(const struct model_case *model_case, struct eo_case *law, struct eo_error *error)
 {
-  struct known known = {m->bench->v, MODEL_POINTS, m->value, m->output == EO_BENCH_MEAN ? 0.02 : 5e-4};
+  struct known known = {model_case->bench->v, MODEL_POINTS, model_case->value,
+                        model_case->output == EO_BENCH_MEAN ? 0.02 : 5e-4};
   EO_TRY(check_law(&known, law, error));
-  check_exact(m, law);
+  check_exact(model_case, law);
   return EO_OK;
 }
 
-static enum eo_code check_model_regression(const struct model_case *m, struct eo_error *error)
+static enum eo_code check_model_regression(const struct model_case *model_case, struct eo_error *error)
 {
-  struct eo_case *block = eo_case_find(m->expected, "standardised_regression"),
-                 *alone = eo_case_find(m->expected, "standardised_regression_R2");
+  struct eo_case *block = eo_case_find(model_case->expected, "standardised_regression"),
+                 *alone = eo_case_find(model_case->expected, "standardised_regression_R2");
   double coefficient[EO_BENCH_INPUTS];
   struct eo_regression regression = {.coefficient = coefficient};
   if (!block && !alone)
     return EO_OK;
-  EO_TRY(eo_regression_run(&regression, MODEL_POINTS, m->bench->inputs, m->input, m->value, error));
+  EO_TRY(eo_regression_run(&regression, MODEL_POINTS, model_case->bench->inputs, model_case->input, model_case->value,
+                           error));
   /* a share of the variance that chance explains: one part in N for each input; four times that */
   if (alone)
-    eo_verify_number(m->bench->v, alone, regression.r2, 0, 4. * m->bench->inputs / MODEL_POINTS);
+    eo_verify_number(model_case->bench->v, alone, regression.r2, 0, 4. * model_case->bench->inputs / MODEL_POINTS);
   for (int i = 0; i < eo_case_size(block); i++) {
     struct eo_case *value = eo_case_at(block, i);
     bool share = strcmp(eo_case_key(value), "R2") == 0;
-    int input = share ? 0 : input_of(m, value);
+    int input = share ? 0 : input_of(model_case, value);
     /* columns of a sample are not quite uncorrelated: 0.02 for evenly spread points */
-    eo_verify_number(m->bench->v, value,
+    eo_verify_number(model_case->bench->v, value,
                      share       ? regression.r2
                      : input < 0 ? NAN
                                  : coefficient[input],
@@ -195,24 +199,25 @@ static enum eo_code check_model_regression(const struct model_case *m, struct eo
   return EO_OK;
 }
 
-static enum eo_code check_model_indices(const struct model_case *m, struct eo_error *error)
+static enum eo_code check_model_indices(const struct model_case *model_case, struct eo_error *error)
 {
   static const char *const key[2] = {"sobol_first", "sobol_total"};
   double index[2][EO_BENCH_INPUTS];
   struct eo_moments moments[EO_BENCH_INPUTS];
   struct eo_surface surface;
-  if (!eo_case_find(m->expected, key[0]) && !eo_case_find(m->expected, key[1]))
+  if (!eo_case_find(model_case->expected, key[0]) && !eo_case_find(model_case->expected, key[1]))
     return EO_OK;
-  for (int i = 0; i < m->bench->inputs; i++)
-    moments[i] = eo_distribution_moments(&m->bench->input[i].distribution);
-  enum eo_code code = eo_surface_fit(&surface, MODEL_POINTS, m->bench->inputs, moments, m->input, m->value, error);
+  for (int i = 0; i < model_case->bench->inputs; i++)
+    moments[i] = eo_distribution_moments(&model_case->bench->input[i].distribution);
+  enum eo_code code = eo_surface_fit(&surface, MODEL_POINTS, model_case->bench->inputs, moments, model_case->input,
+                                     model_case->value, error);
   if (!code)
     eo_surface_indices(&surface, index[0], index[1]);
   for (int k = 0; k < 2 && !code; k++) {
-    struct eo_case *block = eo_case_find(m->expected, key[k]);
+    struct eo_case *block = eo_case_find(model_case->expected, key[k]);
     for (int i = 0; i < eo_case_size(block); i++) {
-      int input = input_of(m, eo_case_at(block, i));
-      eo_verify_number(m->bench->v, eo_case_at(block, i), input < 0 ? NAN : index[k][input], 0, OF_RESPONSE);
+      int input = input_of(model_case, eo_case_at(block, i));
+      eo_verify_number(model_case->bench->v, eo_case_at(block, i), input < 0 ? NAN : index[k][input], 0, OF_RESPONSE);
     }
   }
   eo_surface_done(&surface);
@@ -220,12 +225,12 @@ static enum eo_code check_model_indices(const struct model_case *m, struct eo_er
 }
 
 /* Variance of the slopes of one end, and the square of their mean over it. */
-static double chi_square_of(const struct model_case *m, int end, double *noncentral)
+static double chi_square_of(const struct model_case *model_case, int end, double *noncentral)
 {
   double variance = 0, mean = 0;
-  for (int i = 0; i < m->bench->inputs; i++)
-    if (m->bench->input[i].end == end) {
-      struct eo_moments own = eo_distribution_moments(&m->bench->input[i].distribution);
+  for (int i = 0; i < model_case->bench->inputs; i++)
+    if (model_case->bench->input[i].end == end) {
+      struct eo_moments own = eo_distribution_moments(&model_case->bench->input[i].distribution);
       variance += own.deviation * own.deviation;
       mean += own.mean;
     }
@@ -234,54 +239,55 @@ static double chi_square_of(const struct model_case *m, int end, double *noncent
 }
 
 /* TE = -s X: s from one slope of the size of its sigma. */
-static void check_scale(const struct model_case *m)
+static void check_scale(const struct model_case *model_case)
 {
   double value[EO_BENCH_INPUTS] = {0}, output[EO_BENCH_OUTPUTS] = {0}, none = 0;
-  const struct eo_bench_input *first = &m->bench->input[0];
-  if (!eo_case_find(m->expected, "s_um"))
+  const struct eo_bench_input *first = &model_case->bench->input[0];
+  if (!eo_case_find(model_case->expected, "s_um"))
     return;
   value[0] = first->distribution.sigma;
-  eo_bench_evaluate(m->bench, value, output);
-  double x = value[0] * value[0] / chi_square_of(m, first->end, &none);
-  eo_verify_member(m->bench->v, m->expected, "s_um", -output[EO_BENCH_UNLOADED] / x, 1e-3, 0);
+  eo_bench_evaluate(model_case->bench, value, output);
+  double x = value[0] * value[0] / chi_square_of(model_case, first->end, &none);
+  eo_verify_member(model_case->bench->v, model_case->expected, "s_um", -output[EO_BENCH_UNLOADED] / x, 1e-3, 0);
 }
 
 /* "with_mean_helix_slope_6_um": the same with all slopes displaced. */
-static enum eo_code check_displaced(struct model_case *m, struct eo_error *error)
+static enum eo_code check_displaced(struct model_case *model_case, struct eo_error *error)
 {
-  for (int i = 0; i < eo_case_size(m->expected); i++) {
-    struct eo_case *block = eo_case_peek(m->expected, i);
+  for (int i = 0; i < eo_case_size(model_case->expected); i++) {
+    struct eo_case *block = eo_case_peek(model_case->expected, i);
     static const char start[] = "with_mean_helix_slope_";
     if (strncmp(eo_case_key(block), start, sizeof start - 1) != 0)
       continue;
-    eo_case_at(m->expected, i);
+    eo_case_at(model_case->expected, i);
     double mean = strtod(eo_case_key(block) + sizeof start - 1, NULL), noncentral = 0;
-    for (int k = 0; k < m->bench->inputs; k++)
-      m->bench->input[k].distribution.mean += mean;
-    for (int end = 0; end < m->bench->ends; end++)
-      chi_square_of(m, end, &noncentral);
-    eo_verify_member(m->bench->v, block, "noncentrality", noncentral, 1e-6, 0);
-    enum eo_code code = sample(m, error);
+    for (int k = 0; k < model_case->bench->inputs; k++)
+      model_case->bench->input[k].distribution.mean += mean;
+    for (int end = 0; end < model_case->bench->ends; end++)
+      chi_square_of(model_case, end, &noncentral);
+    eo_verify_member(model_case->bench->v, block, "noncentrality", noncentral, 1e-6, 0);
+    enum eo_code code = sample(model_case, error);
     if (!code)
-      code = check_model_law(m, eo_case_need(block, "unloaded_TE"), error);
-    for (int k = 0; k < m->bench->inputs; k++)
-      m->bench->input[k].distribution.mean -= mean;
+      code = check_model_law(model_case, eo_case_need(block, "unloaded_TE"), error);
+    for (int k = 0; k < model_case->bench->inputs; k++)
+      model_case->bench->input[k].distribution.mean -= mean;
     EO_TRY(code);
   }
   return EO_OK;
 }
 
 /* Columns are the variables in their order, then outputs. */
-static void check_model_rows(const struct model_case *m)
+static void check_model_rows(const struct model_case *model_case)
 {
-  struct eo_case *block = eo_case_find(m->item, "rows"), *columns = block ? eo_case_need(block, "columns") : NULL,
+  struct eo_case *block = eo_case_find(model_case->item, "rows"),
+                 *columns = block ? eo_case_need(block, "columns") : NULL,
                  *rows = block ? eo_case_need(block, "rows") : NULL;
-  int inputs = m->bench->inputs, count = eo_case_size(columns);
+  int inputs = model_case->bench->inputs, count = eo_case_size(columns);
   for (int i = 0; i < eo_case_size(rows) && !eo_case_faulty(block); i++) {
     double row[EO_BENCH_INPUTS + EO_BENCH_OUTPUTS], output[EO_BENCH_OUTPUTS] = {0};
     if (eo_case_numbers(eo_case_at(rows, i), count, EO_BENCH_INPUTS + EO_BENCH_OUTPUTS, row) < 0)
       return;
-    eo_bench_evaluate(m->bench, row, output);
+    eo_bench_evaluate(model_case->bench, row, output);
     for (int c = 0; c < count; c++) {
       const char *name = eo_case_text(eo_case_at(columns, c));
       int which = c < inputs ? -1 : name ? eo_bench_output_find(name) : -1;
@@ -290,59 +296,62 @@ static void check_model_rows(const struct model_case *m)
       if (c >= inputs && which < 0)
         eo_case_fault(eo_case_at(columns, c), "There is no such output.");
       if (which >= 0)
-        eo_verify_number(m->bench->v, eo_case_at(eo_case_at(rows, i), c), output[which], relative[which],
+        eo_verify_number(model_case->bench->v, eo_case_at(eo_case_at(rows, i), c), output[which], relative[which],
                          absolute[which]);
       if (which == EO_BENCH_MEAN) /* what the input alone does */
-        eo_verify_derived(m->bench->v, eo_case_at(eo_case_at(rows, i), c), "change from the nominal pair",
-                          output[which] - m->nominal[which],
-                          row[c] - eo_case_number_or(m->expected, "LTE_mean_nominal_um", m->nominal[which]), 1e-4);
+        eo_verify_derived(
+            model_case->bench->v, eo_case_at(eo_case_at(rows, i), c), "change from the nominal pair",
+            output[which] - model_case->nominal[which],
+            row[c] - eo_case_number_or(model_case->expected, "LTE_mean_nominal_um", model_case->nominal[which]), 1e-4);
     }
   }
 }
 
-static void check_model_nominal(const struct model_case *m)
+static void check_model_nominal(const struct model_case *model_case)
 {
-  struct eo_case *e = m->expected;
-  struct eo_verification *v = m->bench->v;
-  eo_verify_member(v, e, "LTE_mean_nominal_um", m->nominal[EO_BENCH_MEAN], 0.002, 0);
-  eo_verify_member(v, e, "PPLTE_um", m->nominal[EO_BENCH_PPLTE], 0.005, 0.01);
-  eo_verify_member(v, e, "max_pressure_MPa", m->nominal[EO_BENCH_PRESSURE], 0.005, 0);
-  eo_verify_member(v, e, "float_mean_nominal_um", m->nominal[EO_BENCH_FLOAT], 0, 0.03);
-  eo_verify_member(v, e, "slope_um_per_um", m->slope[0], 1e-5, 0);
-  if (eo_case_find(e, "float_mean_std_um")) {
+  struct eo_case *this_case = model_case->expected;
+  struct eo_verification *verification = model_case->bench->v;
+  eo_verify_member(verification, this_case, "LTE_mean_nominal_um", model_case->nominal[EO_BENCH_MEAN], 0.002, 0);
+  eo_verify_member(verification, this_case, "PPLTE_um", model_case->nominal[EO_BENCH_PPLTE], 0.005, 0.01);
+  eo_verify_member(verification, this_case, "max_pressure_MPa", model_case->nominal[EO_BENCH_PRESSURE], 0.005, 0);
+  eo_verify_member(verification, this_case, "float_mean_nominal_um", model_case->nominal[EO_BENCH_FLOAT], 0, 0.03);
+  eo_verify_member(verification, this_case, "slope_um_per_um", model_case->slope[0], 1e-5, 0);
+  if (eo_case_find(this_case, "float_mean_std_um")) {
     double variance = 0;
-    for (int i = 0; i < m->bench->inputs; i++)
-      variance += pow(m->float_slope[i] * eo_distribution_moments(&m->bench->input[i].distribution).deviation, 2);
-    eo_verify_member(v, e, "float_mean_std_um", sqrt(variance), 1e-4, 0);
+    for (int i = 0; i < model_case->bench->inputs; i++)
+      variance += pow(
+          model_case->float_slope[i] * eo_distribution_moments(&model_case->bench->input[i].distribution).deviation, 2);
+    eo_verify_member(verification, this_case, "float_mean_std_um", sqrt(variance), 1e-4, 0);
   }
-  if (eo_case_find(e, "correlation_LTE_float"))
-    eo_verify_member(v, e, "correlation_LTE_float", eo_correlation(MODEL_POINTS, m->value, m->afloat), 0, 1e-6);
-  check_scale(m);
+  if (eo_case_find(this_case, "correlation_LTE_float"))
+    eo_verify_member(verification, this_case, "correlation_LTE_float",
+                     eo_correlation(MODEL_POINTS, model_case->value, model_case->afloat), 0, 1e-6);
+  check_scale(model_case);
 }
 
-static enum eo_code run_model(struct model_case *m, struct eo_error *error)
+static enum eo_code run_model(struct model_case *model_case, struct eo_error *error)
 {
-  struct eo_case *law = eo_case_find(m->expected, "LTE_mean");
-  m->output = law ? EO_BENCH_MEAN : EO_BENCH_UNLOADED;
+  struct eo_case *law = eo_case_find(model_case->expected, "LTE_mean");
+  model_case->output = law ? EO_BENCH_MEAN : EO_BENCH_UNLOADED;
   if (!law)
-    law = eo_case_need(m->expected, "unloaded_TE");
-  if (!eo_bench_evaluate(m->bench, NULL, m->nominal))
-    eo_verify_diverged(m->bench->v, m->item);
-  EO_TRY(sample(m, error));
-  find_slopes(m);
-  check_model_nominal(m);
-  EO_TRY(check_model_law(m, law, error));
-  EO_TRY(check_model_regression(m, error));
-  EO_TRY(check_model_indices(m, error));
-  check_model_rows(m);
-  return check_displaced(m, error);
+    law = eo_case_need(model_case->expected, "unloaded_TE");
+  if (!eo_bench_evaluate(model_case->bench, NULL, model_case->nominal))
+    eo_verify_diverged(model_case->bench->v, model_case->item);
+  EO_TRY(sample(model_case, error));
+  find_slopes(model_case);
+  check_model_nominal(model_case);
+  EO_TRY(check_model_law(model_case, law, error));
+  EO_TRY(check_model_regression(model_case, error));
+  EO_TRY(check_model_indices(model_case, error));
+  check_model_rows(model_case);
+  return check_displaced(model_case, error);
 }
 
 static enum eo_code run_model_case(struct eo_tolerance_bench *bench, struct eo_case *item, struct eo_error *error)
 {
-  struct model_case m = {.bench = bench, .item = item, .expected = eo_case_need(item, "expected")};
+  struct model_case model_case = {.bench = bench, .item = item, .expected = eo_case_need(item, "expected")};
   bool unloaded = eo_case_flag_or(item, "unloaded", false);
-  eo_case_remark(m.expected, "law");
+  eo_case_remark(model_case.expected, "law");
   EO_TRY(eo_bench_read(bench, item, item, error));
   if (unloaded != !(bench->torque > 0))
     eo_case_fault(eo_case_find(item, "T_Nm"), "Unloaded is without torque, and the other way round.");
@@ -350,13 +359,13 @@ static enum eo_code run_model_case(struct eo_tolerance_bench *bench, struct eo_c
     eo_bench_read_inputs(bench, eo_case_need(item, "variables"));
   if (eo_case_faulty(item))
     return EO_OK;
-  m.input = malloc(sizeof *m.input * MODEL_POINTS * (size_t)(bench->inputs + 2));
-  if (!m.input)
+  model_case.input = malloc(sizeof *model_case.input * MODEL_POINTS * (size_t)(bench->inputs + 2));
+  if (!model_case.input)
     return eo_error_memory(error);
-  m.value = m.input + (size_t)MODEL_POINTS * (size_t)bench->inputs;
-  m.afloat = m.value + MODEL_POINTS;
-  enum eo_code code = run_model(&m, error);
-  free(m.input);
+  model_case.value = model_case.input + (size_t)MODEL_POINTS * (size_t)bench->inputs;
+  model_case.afloat = model_case.value + MODEL_POINTS;
+  enum eo_code code = run_model(&model_case, error);
+  free(model_case.input);
   return code;
 }
 
@@ -369,148 +378,151 @@ struct response {
   struct eo_distribution of[EO_BENCH_INPUTS];
 };
 
-static double response_at(const struct response *r, const double *x)
+static double response_at(const struct response *response, const double *x)
 {
-  double y = r->constant;
-  if (r->text)
-    return eo_response_value(r->text, x, NULL);
-  for (int i = 0; i < r->inputs; i++) {
-    y += r->linear[i] * x[i] + (r->squares ? x[i] * x[i] : 0);
-    for (int j = 0; j < r->inputs && !r->squares; j++)
-      y += x[i] * r->square[i][j] * x[j];
+  double y = response->constant;
+  if (response->text)
+    return eo_response_value(response->text, x, NULL);
+  for (int i = 0; i < response->inputs; i++) {
+    y += response->linear[i] * x[i] + (response->squares ? x[i] * x[i] : 0);
+    for (int j = 0; j < response->inputs && !response->squares; j++)
+      y += x[i] * response->square[i][j] * x[j];
   }
   return y;
 }
 
 static double response_of_unit(void *context, const double *u)
 {
-  const struct response *r = context;
+  const struct response *response = context;
   double x[EO_BENCH_INPUTS];
-  for (int i = 0; i < r->inputs; i++)
-    x[i] = eo_distribution_quantile(&r->of[i], u[i]);
-  return response_at(r, x);
+  for (int i = 0; i < response->inputs; i++)
+    x[i] = eo_distribution_quantile(&response->of[i], u[i]);
+  return response_at(response, x);
 }
 
 /* "x normal with sigma 1, 2, 3", "x standard normal", "x uniform in +-pi". */
-static bool read_inputs_text(const char *text, struct response *r)
+static bool read_inputs_text(const char *text, struct response *response)
 {
   const char *sigma = strstr(text, "normal with sigma"), *uniform = strstr(text, "uniform in +-");
   bool good = sigma || uniform || strstr(text, "standard normal");
-  for (int i = 0; i < r->inputs; i++) {
-    r->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_NORMAL, .sigma = 1, .cut = INFINITY};
+  for (int i = 0; i < response->inputs; i++) {
+    response->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_NORMAL, .sigma = 1, .cut = INFINITY};
     if (sigma) {
       char *end;
       sigma += i == 0 ? strlen("normal with sigma") : strspn(sigma, ", ");
-      r->of[i].sigma = strtod(sigma, &end);
+      response->of[i].sigma = strtod(sigma, &end);
       good = good && end != sigma;
       sigma = end;
     }
     if (uniform) {
       const char *half = uniform + strlen("uniform in +-");
       double width = strncmp(half, "pi", 2) == 0 ? M_PI : strtod(half, NULL);
-      r->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_UNIFORM, .low = -width, .high = width};
+      response->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_UNIFORM, .low = -width, .high = width};
     }
   }
   return good;
 }
 
 /* "chi-square, 1 degree: x1^2", or "3 degrees": as many squares. */
-static bool read_response_text(const char *text, struct response *r)
+static bool read_response_text(const char *text, struct response *response)
 {
   const char *colon = strchr(text, ':'), *formula = strstr(text, "y = ");
   double one[EO_BENCH_INPUTS];
   for (int i = 0; i < EO_BENCH_INPUTS; i++)
     one[i] = 1;
-  r->text = formula ? formula + 4 : colon ? colon + 1 : NULL;
-  if (r->text)
-    return !isnan(eo_response_value(r->text, one, &r->inputs)) && r->inputs > 0;
-  r->inputs = r->squares = (int)strtol(text, NULL, 10);
-  return r->inputs > 0 && r->inputs <= EO_BENCH_INPUTS;
+  response->text = formula ? formula + 4 : colon ? colon + 1 : NULL;
+  if (response->text)
+    return !isnan(eo_response_value(response->text, one, &response->inputs)) && response->inputs > 0;
+  response->inputs = response->squares = (int)strtol(text, NULL, 10);
+  return response->inputs > 0 && response->inputs <= EO_BENCH_INPUTS;
 }
 
-static bool read_quadratic(struct eo_case *item, struct response *r)
+static bool read_quadratic(struct eo_case *item, struct response *response)
 {
-  struct eo_case *b = eo_case_find(item, "b"), *q = eo_case_find(item, "Q");
-  if (!b || !q)
+  struct eo_case *this_case = eo_case_find(item, "b"), *the_case = eo_case_find(item, "Q");
+  if (!this_case || !the_case)
     return false;
-  r->constant = eo_case_number(item, "c0");
-  r->inputs = eo_case_numbers(b, -1, EO_BENCH_INPUTS, r->linear);
-  for (int i = 0; i < r->inputs; i++)
-    eo_case_numbers(eo_case_at(q, i), r->inputs, EO_BENCH_INPUTS, r->square[i]);
+  response->constant = eo_case_number(item, "c0");
+  response->inputs = eo_case_numbers(this_case, -1, EO_BENCH_INPUTS, response->linear);
+  for (int i = 0; i < response->inputs; i++)
+    eo_case_numbers(eo_case_at(the_case, i), response->inputs, EO_BENCH_INPUTS, response->square[i]);
   return true;
 }
 
 /* Draws the response. value[FUNCTION_POINTS], input[FUNCTION_POINTS][inputs]. */
-static enum eo_code draw_response(const struct response *r, double *input, double *value, struct eo_error *error)
+static enum eo_code draw_response(const struct response *response, double *input, double *value, struct eo_error *error)
 {
   struct eo_bench_input column[EO_BENCH_INPUTS];
-  for (int i = 0; i < r->inputs; i++)
-    column[i] = (struct eo_bench_input){.distribution = r->of[i]};
-  EO_TRY(eo_bench_draw(column, r->inputs, FUNCTION_POINTS, input, error));
+  for (int i = 0; i < response->inputs; i++)
+    column[i] = (struct eo_bench_input){.distribution = response->of[i]};
+  EO_TRY(eo_bench_draw(column, response->inputs, FUNCTION_POINTS, input, error));
   for (size_t i = 0; i < FUNCTION_POINTS; i++)
-    value[i] = response_at(r, input + i * (size_t)r->inputs);
+    value[i] = response_at(response, input + i * (size_t)response->inputs);
   return EO_OK;
 }
 
-static void check_indices(struct eo_verification *v, struct eo_case *expected, const struct response *r,
-                          const double first[], const double total[], double within)
+static void check_indices(struct eo_verification *verification, struct eo_case *expected,
+                          const struct response *response, const double first[], const double total[], double within)
 {
   if (eo_case_find(expected, "sobol_first"))
-    eo_verify_list(v, eo_case_find(expected, "sobol_first"), r->inputs, first, 1, 0, within);
+    eo_verify_list(verification, eo_case_find(expected, "sobol_first"), response->inputs, first, 1, 0, within);
   if (eo_case_find(expected, "sobol_total"))
-    eo_verify_list(v, eo_case_find(expected, "sobol_total"), r->inputs, total, 1, 0, within);
+    eo_verify_list(verification, eo_case_find(expected, "sobol_total"), response->inputs, total, 1, 0, within);
 }
 
 /* Indices of the quadratic surface where it carries, of the response itself where it says that it does not. */
-static enum eo_code check_response_indices(struct eo_verification *v, struct eo_case *item, struct eo_case *expected,
-                                           struct response *r, const double *input, const double *value,
-                                           struct eo_error *error)
+static enum eo_code check_response_indices(struct eo_verification *verification, struct eo_case *item,
+                                           struct eo_case *expected, struct response *response, const double *input,
+                                           const double *value, struct eo_error *error)
 {
   double first[EO_BENCH_INPUTS], total[EO_BENCH_INPUTS];
   struct eo_moments moments[EO_BENCH_INPUTS];
   struct eo_surface surface;
   struct eo_case *tolerance = eo_case_find(item, "tolerance"), *sampled = eo_case_find(tolerance, "sobol");
-  for (int i = 0; i < r->inputs; i++)
-    moments[i] = eo_distribution_moments(&r->of[i]);
-  enum eo_code code = eo_surface_fit(&surface, SURFACE_POINTS, r->inputs, moments, input, value, error);
+  for (int i = 0; i < response->inputs; i++)
+    moments[i] = eo_distribution_moments(&response->of[i]);
+  enum eo_code code = eo_surface_fit(&surface, SURFACE_POINTS, response->inputs, moments, input, value, error);
   bool carries = !code && surface.q2 > 0.99;
   if (carries)
     eo_surface_indices(&surface, first, total);
   eo_surface_done(&surface);
   if (!code && !carries)
-    code = eo_sobol_indices(response_of_unit, r, r->inputs, INDEX_POINTS, 1, first, total, error);
+    code = eo_sobol_indices(response_of_unit, response, response->inputs, INDEX_POINTS, 1, first, total, error);
   if (code)
     return code;
   bool number = sampled && !eo_case_is_text(sampled);
-  eo_verify_fact(v, item, "a quadratic surface says whether it carries", carries != number);
-  check_indices(v, expected, r, first, total, number ? eo_case_real(sampled) : OF_RESPONSE);
+  eo_verify_fact(verification, item, "a quadratic surface says whether it carries", carries != number);
+  check_indices(verification, expected, response, first, total, number ? eo_case_real(sampled) : OF_RESPONSE);
   return EO_OK;
 }
 
-static enum eo_code check_response(struct eo_verification *v, struct eo_case *item, struct eo_case *expected,
-                                   struct eo_case *law, struct response *r, struct eo_error *error)
+static enum eo_code check_response(struct eo_verification *verification, struct eo_case *item, struct eo_case *expected,
+                                   struct eo_case *law, struct response *response, struct eo_error *error)
 {
-  double *input = malloc(sizeof *input * FUNCTION_POINTS * (size_t)(r->inputs + 1)), coefficient[EO_BENCH_INPUTS];
+  double *input = malloc(sizeof *input * FUNCTION_POINTS * (size_t)(response->inputs + 1)),
+         coefficient[EO_BENCH_INPUTS];
   if (!input)
     return eo_error_memory(error);
-  double *value = input + (size_t)FUNCTION_POINTS * (size_t)r->inputs;
+  double *value = input + (size_t)FUNCTION_POINTS * (size_t)response->inputs;
   struct eo_regression regression = {.coefficient = coefficient};
-  enum eo_code code = draw_response(r, input, value, error);
-  struct known known = {v, FUNCTION_POINTS, value, 0};
+  enum eo_code code = draw_response(response, input, value, error);
+  struct known known = {verification, FUNCTION_POINTS, value, 0};
   if (!code)
     code = check_law(&known, law, error);
   if (!code && eo_case_find(expected, "standardised_regression")) {
-    code = eo_regression_run(&regression, FUNCTION_POINTS, r->inputs, input, value, error);
+    code = eo_regression_run(&regression, FUNCTION_POINTS, response->inputs, input, value, error);
     if (!code)
-      eo_verify_list(v, eo_case_find(expected, "standardised_regression"), r->inputs, coefficient, 1, 0, OF_RESPONSE);
+      eo_verify_list(verification, eo_case_find(expected, "standardised_regression"), response->inputs, coefficient, 1,
+                     0, OF_RESPONSE);
   }
   if (!code && eo_case_find(expected, "sobol_first"))
-    code = check_response_indices(v, item, expected, r, input, value, error);
+    code = check_response_indices(verification, item, expected, response, input, value, error);
   free(input);
   return code;
 }
 
-static enum eo_code run_function_case(struct eo_verification *v, struct eo_case *item, struct eo_error *error)
+static enum eo_code run_function_case(struct eo_verification *verification, struct eo_case *item,
+                                      struct eo_error *error)
 {
   struct eo_case *expected = eo_case_need(item, "expected");
   const char *what = eo_case_peek_text(item, "what");
@@ -519,14 +531,14 @@ static enum eo_code run_function_case(struct eo_verification *v, struct eo_case 
     eo_case_remark(expected, "sobol_note");
   for (int i = 0; i < (many ? eo_case_size(expected) : 1) && !eo_case_faulty(item); i++) {
     struct eo_case *own = many ? eo_case_at(expected, i) : expected, *law = many ? own : eo_case_need(own, "y");
-    struct response r = {0};
+    struct response response = {0};
     const char *text = many ? eo_case_word(own, "y") : what;
-    if (!read_quadratic(item, &r) && !(text && read_response_text(text, &r)))
+    if (!read_quadratic(item, &response) && !(text && read_response_text(text, &response)))
       eo_case_fault(own, "The response cannot be read.");
-    if (!what || !read_inputs_text(what, &r))
+    if (!what || !read_inputs_text(what, &response))
       eo_case_fault(item, "\"what\" says how x is distributed.");
     if (!eo_case_faulty(item))
-      EO_TRY(check_response(v, item, own, law, &r, error));
+      EO_TRY(check_response(verification, item, own, law, &response, error));
   }
   return EO_OK;
 }

@@ -47,41 +47,41 @@ struct curves {
   double x[EO_PLOT_SERIES][MOST_POINTS], y[EO_PLOT_SERIES][MOST_POINTS];
 };
 
-static void add_curve(struct curves *c, const json_t *load_case, const char *x, const char *y, const char *suffix)
+static void add_curve(struct curves *curves, const json_t *load_case, const char *x, const char *y, const char *suffix)
 {
-  int i = c->plot.series;
+  int i = curves->plot.series;
   const json_t *column = eo_json_find(load_case, y);
   if (i == EO_PLOT_SERIES || !json_array_size(column))
     return;
-  int points = read_column(eo_json_find(load_case, x), c->x[i]), values = read_column(column, c->y[i]);
-  snprintf(c->name[i], sizeof c->name[i], "%.5g N m, %.5g rpm%s", eo_json_find_number(load_case, "torque_Nm"),
+  int points = read_column(eo_json_find(load_case, x), curves->x[i]), values = read_column(column, curves->y[i]);
+  snprintf(curves->name[i], sizeof curves->name[i], "%.5g N m, %.5g rpm%s", eo_json_find_number(load_case, "torque_Nm"),
            eo_json_find_number(load_case, "speed_rpm"), suffix);
-  c->plot.line[i] = (struct eo_plot_series){
-      .name = c->name[i], .count = points < values ? points : values, .x = c->x[i], .y = c->y[i]};
-  c->plot.series++;
+  curves->plot.line[i] = (struct eo_plot_series){
+      .name = curves->name[i], .count = points < values ? points : values, .x = curves->x[i], .y = curves->y[i]};
+  curves->plot.series++;
 }
 
 static void draw_cases(const json_t *result, const struct eo_plot *frame, const char *x, const char *const y[2],
                        struct eo_text *text)
 {
-  struct curves *c = calloc(1, sizeof *c);
+  struct curves *curves = calloc(1, sizeof *curves);
   size_t chosen[MOST_CASES];
   int count = choose_cases(result, chosen);
-  if (!c) {
+  if (!curves) {
     text->failed = true;
     return;
   }
-  c->plot = *frame;
+  curves->plot = *frame;
   for (int i = 0; i < count; i++) {
     const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), chosen[i]);
     bool two = y[1] && eo_json_find(load_case, y[1]);
-    add_curve(c, load_case, x, y[0], two ? ", left" : "");
+    add_curve(curves, load_case, x, y[0], two ? ", left" : "");
     if (two)
-      add_curve(c, load_case, x, y[1], ", right");
+      add_curve(curves, load_case, x, y[1], ", right");
   }
-  if (c->plot.series)
-    eo_plot_svg(&c->plot, text);
-  free(c);
+  if (curves->plot.series)
+    eo_plot_svg(&curves->plot, text);
+  free(curves);
 }
 
 void eo_figure_transmission(const json_t *result, struct eo_text *text)

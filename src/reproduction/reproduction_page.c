@@ -167,10 +167,10 @@ static void write_figure(const json_t *figure, struct eo_text *text)
   json_array_foreach(json_object_get(figure, "series"), i,
                      series) for (size_t j = 0; j < json_array_size(json_object_get(series, "x")); j++)
   {
-    const json_t *y = json_array_get(json_object_get(series, "y"), j);
+    const json_t *value = json_array_get(json_object_get(series, "y"), j);
     eo_text_table_string(&sheet, find_text(series, "name"));
     eo_text_table_number(&sheet, json_number_value(json_array_get(json_object_get(series, "x"), j)), NULL, 0);
-    eo_text_table_number(&sheet, json_is_number(y) ? json_number_value(y) : NAN, NULL, 0);
+    eo_text_table_number(&sheet, json_is_number(value) ? json_number_value(value) : NAN, NULL, 0);
   }
   eo_text_table_csv(&sheet, text);
   eo_text_table_done(&sheet);

@@ -18,27 +18,28 @@ static const double POINTS = 10, LEVEL = 0.1;
 static json_t *four(double a, double left, double right, const char *key, json_t *own_a, json_t *own_left,
                     json_t *own_right)
 {
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "parameter", json_string(key));
-  eo_object_put(&o, "printed_case_a", json_real(a));
-  eo_object_put(&o, "printed_case_b_left", json_real(left));
-  eo_object_put(&o, "printed_case_b_right", json_real(right));
-  eo_object_put(&o, "ours_case_a", own_a);
-  eo_object_put(&o, "ours_case_b_left", own_left);
-  eo_object_put(&o, "ours_case_b_right", own_right);
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "parameter", json_string(key));
+  eo_object_put(&object, "printed_case_a", json_real(a));
+  eo_object_put(&object, "printed_case_b_left", json_real(left));
+  eo_object_put(&object, "printed_case_b_right", json_real(right));
+  eo_object_put(&object, "ours_case_a", own_a);
+  eo_object_put(&object, "ours_case_b_left", own_left);
+  eo_object_put(&object, "ours_case_b_right", own_right);
+  return eo_object_close(&object);
 }
 
-static json_t *value_of(const struct reproduction *r, int variant, int end, int row)
+static json_t *value_of(const struct reproduction *reproduction, int variant, int end, int row)
 {
-  const struct eo_flank_modification *f = &r->design[variant]->modification.flank[EO_PINION][end];
-  const double value[5] = {1e6 * f->tip_relief, 1e6 * f->root_relief, 1e3 * f->tip_relief_start,
-                           1e3 * f->root_relief_start,
-                           1e-6 * eo_modification_lead_coefficient(&r->pair->geometry, f->lead_crowning)};
+  const struct eo_flank_modification *modification = &reproduction->design[variant]->modification.flank[EO_PINION][end];
+  const double value[5] = {
+      1e6 * modification->tip_relief, 1e6 * modification->root_relief, 1e3 * modification->tip_relief_start,
+      1e3 * modification->root_relief_start,
+      1e-6 * eo_modification_lead_coefficient(&reproduction->pair->geometry, modification->lead_crowning)};
   return eo_json_quantity(value[row], NULL);
 }
 
-json_t *eo_reproduction_table(const struct reproduction *r)
+json_t *eo_reproduction_table(const struct reproduction *reproduction)
 {
   static const struct {
     const char *key;
@@ -50,8 +51,9 @@ json_t *eo_reproduction_table(const struct reproduction *r)
               {"lead_coefficient_per_um", 1.35e-8, 1.03e-8, 1.79e-8}};
   json_t *array = json_array();
   for (int i = 0; i < 5; i++)
-    json_array_append_new(array, four(row[i].a, row[i].left, row[i].right, row[i].key, value_of(r, OWN_A, EO_LEFT, i),
-                                      value_of(r, OWN_B, EO_LEFT, i), value_of(r, OWN_B, EO_RIGHT, i)));
+    json_array_append_new(
+        array, four(row[i].a, row[i].left, row[i].right, row[i].key, value_of(reproduction, OWN_A, EO_LEFT, i),
+                    value_of(reproduction, OWN_B, EO_LEFT, i), value_of(reproduction, OWN_B, EO_RIGHT, i)));
   return array;
 }
 
@@ -79,53 +81,56 @@ static int agrees(double paper, double ours, bool level)
 static void compare(json_t *array, const char *figure, const char *quantity, const char *unit, double paper,
                     double ours, double secant, int trend, bool level)
 {
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "figure", json_string(figure));
-  eo_object_put(&o, "quantity", json_string(quantity));
-  eo_object_put(&o, "unit", json_string(unit));
-  eo_object_put(&o, "paper", eo_json_quantity(paper, NULL));
-  eo_object_put(&o, "ours", eo_json_quantity(ours, NULL));
-  eo_object_put(&o, "ours_secant_law", eo_json_quantity(secant, NULL));
-  eo_object_put(&o, "trend_agrees", verdict(trend));
-  eo_object_put(&o, "value_agrees", verdict(agrees(paper, ours, level)));
-  eo_object_put(&o, "value_agrees_secant_law", verdict(agrees(paper, secant, level)));
-  json_array_append_new(array, eo_object_close(&o));
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "figure", json_string(figure));
+  eo_object_put(&object, "quantity", json_string(quantity));
+  eo_object_put(&object, "unit", json_string(unit));
+  eo_object_put(&object, "paper", eo_json_quantity(paper, NULL));
+  eo_object_put(&object, "ours", eo_json_quantity(ours, NULL));
+  eo_object_put(&object, "ours_secant_law", eo_json_quantity(secant, NULL));
+  eo_object_put(&object, "trend_agrees", verdict(trend));
+  eo_object_put(&object, "value_agrees", verdict(agrees(paper, ours, level)));
+  eo_object_put(&object, "value_agrees_secant_law", verdict(agrees(paper, secant, level)));
+  json_array_append_new(array, eo_object_close(&object));
 }
 
-static void compare_rms(json_t *array, const struct reproduction *r)
+static void compare_rms(json_t *array, const struct reproduction *reproduction)
 {
   static const char *const figure[TORQUES] = {"10", "11", "12"}, *const name[3] = {"unmodified", "Table 3, case A",
                                                                                    "Table 3, case B"};
   for (int k = 0; k < TORQUES; k++)
     for (int i = 0; i < 3; i++) {
       char text[120];
-      double paper = printed_rms[i][k], ours = r->raw[LAW_OURS][i][k].rms, secant = r->raw[LAW_PAPER][i][k].rms;
+      double paper = printed_rms[i][k], ours = reproduction->raw[LAW_OURS][i][k].rms,
+             secant = reproduction->raw[LAW_PAPER][i][k].rms;
       snprintf(text, sizeof text, "RMS, %s, %.0f N m", name[i], torque[k]);
       compare(array, figure[k], text, "m/s2", paper, ours, secant, OPEN, true);
     }
 }
 
-static void compare_reductions(json_t *array, const struct reproduction *r)
+static void compare_reductions(json_t *array, const struct reproduction *reproduction)
 {
   static const char *const figure[TORQUES] = {"10", "11", "12"}, *const name[2] = {"A", "B"};
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < TORQUES; k++) {
       char text[120];
       double paper = reduction(printed_rms[0][k], printed_rms[1 + i][k]);
-      double ours = reduction(r->raw[LAW_OURS][UNMODIFIED][k].rms, r->raw[LAW_OURS][PAPER_A + i][k].rms);
-      double secant = reduction(r->raw[LAW_PAPER][UNMODIFIED][k].rms, r->raw[LAW_PAPER][PAPER_A + i][k].rms);
+      double ours = reduction(reproduction->raw[LAW_OURS][UNMODIFIED][k].rms,
+                              reproduction->raw[LAW_OURS][PAPER_A + i][k].rms);
+      double secant = reduction(reproduction->raw[LAW_PAPER][UNMODIFIED][k].rms,
+                                reproduction->raw[LAW_PAPER][PAPER_A + i][k].rms);
       snprintf(text, sizeof text, "reduction of RMS, Table 3, case %s, %.0f N m", name[i], torque[k]);
       compare(array, figure[k], text, "%", paper, ours, secant, ours > 0, false);
     }
 }
 
 /* "The maximum vibration reduction of case A and case B are obtained under the torques of 828 N m." */
-static int largest(const struct reproduction *r, int law, int variant)
+static int largest(const struct reproduction *reproduction, int law, int variant)
 {
   int best = 0;
   double most = -INFINITY;
   for (int k = 0; k < TORQUES; k++) {
-    double value = reduction(r->raw[law][UNMODIFIED][k].rms, r->raw[law][variant][k].rms);
+    double value = reduction(reproduction->raw[law][UNMODIFIED][k].rms, reproduction->raw[law][variant][k].rms);
     if (value > most) {
       most = value;
       best = k;
@@ -134,46 +139,50 @@ static int largest(const struct reproduction *r, int law, int variant)
   return best;
 }
 
-static void compare_trends(json_t *array, const struct reproduction *r)
+static void compare_trends(json_t *array, const struct reproduction *reproduction)
 {
-  const struct eo_objective_case *plain = r->raw[LAW_OURS][UNMODIFIED], *secant = r->raw[LAW_PAPER][UNMODIFIED];
+  const struct eo_objective_case *plain = reproduction->raw[LAW_OURS][UNMODIFIED],
+                                 *secant = reproduction->raw[LAW_PAPER][UNMODIFIED];
   static const char *const name[2] = {"A", "B"};
   compare(array, "10-12", "RMS of the unmodified pair at 1035 over that at 621 N m", "",
           printed_rms[0][2] / printed_rms[0][0], plain[2].rms / plain[0].rms, secant[2].rms / secant[0].rms,
           plain[2].rms > plain[0].rms, true);
   for (int i = 0; i < 2; i++) {
     char text[120];
-    int ours = largest(r, LAW_OURS, PAPER_A + i), theirs = largest(r, LAW_PAPER, PAPER_A + i);
+    int ours = largest(reproduction, LAW_OURS, PAPER_A + i), theirs = largest(reproduction, LAW_PAPER, PAPER_A + i);
     snprintf(text, sizeof text, "torque of the largest RMS reduction, Table 3, case %s", name[i]);
     compare(array, "10-12", text, "N m", 828, torque[ours], torque[theirs], ours == 1, true);
   }
-  compare(array, "8", "share of 207..1242 N m with less LTE, Table 3, case A", "%", 100, 100 * r->torques_better[0],
-          NAN, r->torques_better[0] > 0.5, false);
-  compare(array, "9", "share of 207..1242 N m with less impact, Table 3, case A", "%", 100, 100 * r->torques_better[1],
-          NAN, r->torques_better[1] > 0.5, false);
+  compare(array, "8", "share of 207..1242 N m with less LTE, Table 3, case A", "%", 100,
+          100 * reproduction->torques_better[0], NAN, reproduction->torques_better[0] > 0.5, false);
+  compare(array, "9", "share of 207..1242 N m with less impact, Table 3, case A", "%", 100,
+          100 * reproduction->torques_better[1], NAN, reproduction->torques_better[1] > 0.5, false);
   compare(array, "17", "RMS at 414 N m, case A over unmodified (\"a little higher\")", "", NAN,
-          r->rms_414[LAW_OURS][1] / r->rms_414[LAW_OURS][0], r->rms_414[LAW_PAPER][1] / r->rms_414[LAW_PAPER][0],
-          r->rms_414[LAW_OURS][1] > r->rms_414[LAW_OURS][0], true);
-  compare(array, "18", "RMS at 3000 over that at 400 rpm, unmodified (\"increases\")", "", NAN, r->speed_slope[0], NAN,
-          r->speed_slope[0] > 1, true);
+          reproduction->rms_414[LAW_OURS][1] / reproduction->rms_414[LAW_OURS][0],
+          reproduction->rms_414[LAW_PAPER][1] / reproduction->rms_414[LAW_PAPER][0],
+          reproduction->rms_414[LAW_OURS][1] > reproduction->rms_414[LAW_OURS][0], true);
+  compare(array, "18", "RMS at 3000 over that at 400 rpm, unmodified (\"increases\")", "", NAN,
+          reproduction->speed_slope[0], NAN, reproduction->speed_slope[0] > 1, true);
   compare(array, "18", "share of 400..3000 rpm at which case A is quieter (\"a wide range\")", "%", NAN,
-          100 * r->speeds_better, NAN, r->speeds_better > 0.5, false);
+          100 * reproduction->speeds_better, NAN, reproduction->speeds_better > 0.5, false);
 }
 
-static void compare_search(json_t *array, const struct reproduction *r)
+static void compare_search(json_t *array, const struct reproduction *reproduction)
 {
   static const char *const name[CASES] = {"A", "B"};
   for (int i = 0; i < CASES; i++) {
     char text[120];
     snprintf(text, sizeof text, "PFC of fpga, case %s", name[i]);
-    compare(array, "13", text, "%", printed_pfc[i], r->pfc[i], NAN, r->evaluations[i][0] < r->evaluations[i][1], false);
+    compare(array, "13", text, "%", printed_pfc[i], reproduction->pfc[i], NAN,
+            reproduction->evaluations[i][0] < reproduction->evaluations[i][1], false);
   }
-  double a = r->value[LAW_OURS][OWN_A].objective, b = r->value[LAW_OURS][OWN_B].objective;
+  double a = reproduction->value[LAW_OURS][OWN_A].objective, b = reproduction->value[LAW_OURS][OWN_B].objective;
   compare(array, "13", "J of our case B over that of our case A (\"similar\")", "", NAN, b / a, NAN,
           b / a > 0.7 && b / a < 1.02, true);
   for (int i = 0; i < CASES; i++) {
     char text[120];
-    const struct eo_objective_value *table = &r->value[LAW_OURS][PAPER_A + i], *own = &r->value[LAW_OURS][OWN_A + i];
+    const struct eo_objective_value *table = &reproduction->value[LAW_OURS][PAPER_A + i],
+                                    *own = &reproduction->value[LAW_OURS][OWN_A + i];
     snprintf(text, sizeof text, "J of our optimum over that of Table 3, case %s", name[i]);
     compare(array, "Table 3", text, "", NAN, own->objective / table->objective, NAN, own->objective <= table->objective,
             true);
@@ -182,30 +191,30 @@ static void compare_search(json_t *array, const struct reproduction *r)
 
 /* Largest less smallest stress of a loaded tooth while it carries: the largest of the history is what fluctuates from
    zero. */
-static double root_peak(const struct reproduction *r, int variant, int k)
+static double root_peak(const struct reproduction *reproduction, int variant, int k)
 {
-  return eo_json_find_number(json_array_get(json_object_get(r->result[variant], "load_cases"), (size_t)k),
+  return eo_json_find_number(json_array_get(json_object_get(reproduction->result[variant], "load_cases"), (size_t)k),
                              "root_stress/pinion/max_MPa");
 }
 
-static void compare_root(json_t *array, const struct reproduction *r)
+static void compare_root(json_t *array, const struct reproduction *reproduction)
 {
   for (int k = 0; k < TORQUES; k++) {
     char text[120];
-    double ours = reduction(root_peak(r, UNMODIFIED, k), root_peak(r, PAPER_A, k));
+    double ours = reduction(root_peak(reproduction, UNMODIFIED, k), root_peak(reproduction, PAPER_A, k));
     snprintf(text, sizeof text, "reduction of the root stress amplitude, case A, %.0f N m", torque[k]);
     compare(array, "14-15", text, "%", NAN, ours, NAN, ours > 0, false);
   }
 }
 
-json_t *eo_reproduction_comparisons(const struct reproduction *r)
+json_t *eo_reproduction_comparisons(const struct reproduction *reproduction)
 {
   json_t *array = json_array();
-  compare_rms(array, r);
-  compare_reductions(array, r);
-  compare_trends(array, r);
-  compare_search(array, r);
-  compare_root(array, r);
+  compare_rms(array, reproduction);
+  compare_reductions(array, reproduction);
+  compare_trends(array, reproduction);
+  compare_search(array, reproduction);
+  compare_root(array, reproduction);
   return array;
 }
 

@@ -32,28 +32,28 @@ struct reproduction {
 };
 
 /* Of fpga and ga. */
-int eo_reproduction_generations(const struct reproduction *r);
+int eo_reproduction_generations(const struct reproduction *reproduction);
 
 /* Reports the work between two fractions; EO_ERROR_CANCELLED when a stop was asked for. */
-enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction,
+enum eo_code eo_reproduction_report(const struct reproduction *reproduction, const char *what, double fraction,
                                     struct eo_error *error);
 
 /* Both cases with each algorithm; fills design[OWN_A], design[OWN_B]. */
-enum eo_code eo_reproduction_optimize(struct reproduction *r, struct eo_error *error);
+enum eo_code eo_reproduction_optimize(struct reproduction *reproduction, struct eo_error *error);
 
 /* Figures 8 to 12, 14, 15, 17 and 18. */
-enum eo_code eo_reproduction_figures(struct reproduction *r, struct eo_error *error);
+enum eo_code eo_reproduction_figures(struct reproduction *reproduction, struct eo_error *error);
 
 /* A figure without series; a series on it. x, y: [count]. Both may be given a NULL figure. */
 json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
                                bool from_zero);
 void eo_reproduction_series(json_t *figure, const char *name, int count, const double *x, const double *y, bool dots);
 
-json_t *eo_reproduction_table(const struct reproduction *r); /* Table 3 */
-json_t *eo_reproduction_comparisons(const struct reproduction *r);
+json_t *eo_reproduction_table(const struct reproduction *reproduction); /* Table 3 */
+json_t *eo_reproduction_comparisons(const struct reproduction *reproduction);
 json_t *eo_reproduction_readings(void);
 
 /* One assumption changed at a time; NULL on failure, with the code. */
-enum eo_code eo_reproduction_sensitivity(struct reproduction *r, json_t **rows, struct eo_error *error);
+enum eo_code eo_reproduction_sensitivity(struct reproduction *reproduction, json_t **rows, struct eo_error *error);
 
 #endif

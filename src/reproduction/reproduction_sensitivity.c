@@ -15,91 +15,91 @@ struct alternative {
   double compliance; /* factor; 0: 1 */
 };
 
-static void nothing(struct eo_design *d)
+static void nothing(struct eo_design *design)
 {
-  (void)d;
+  (void)design;
 }
-static void aligned(struct eo_design *d)
+static void aligned(struct eo_design *design)
 {
-  d->alignment.shaft_angle_in_plane = 0;
+  design->alignment.shaft_angle_in_plane = 0;
 }
-static void half_error(struct eo_design *d)
+static void half_error(struct eo_design *design)
 {
-  d->alignment.shaft_angle_in_plane = 0.05 * DEGREE;
+  design->alignment.shaft_angle_in_plane = 0.05 * DEGREE;
 }
-static void more_error(struct eo_design *d)
+static void more_error(struct eo_design *design)
 {
-  d->alignment.shaft_angle_in_plane = 0.12 * DEGREE;
+  design->alignment.shaft_angle_in_plane = 0.12 * DEGREE;
 }
-static void arc_minute(struct eo_design *d)
+static void arc_minute(struct eo_design *design)
 {
-  d->alignment.shaft_angle_in_plane = 0.1 / 60 * DEGREE;
+  design->alignment.shaft_angle_in_plane = 0.1 / 60 * DEGREE;
 }
-static void out_of_plane(struct eo_design *d)
+static void out_of_plane(struct eo_design *design)
 {
-  d->alignment.shaft_angle_in_plane = 0;
-  d->alignment.shaft_angle_out_of_plane = 0.1 * DEGREE;
+  design->alignment.shaft_angle_in_plane = 0;
+  design->alignment.shaft_angle_out_of_plane = 0.1 * DEGREE;
 }
-static void secant(struct eo_design *d)
+static void secant(struct eo_design *design)
 {
-  d->resolution.mesh_law = EO_LAW_SECANT;
+  design->resolution.mesh_law = EO_LAW_SECANT;
 }
-static void table(struct eo_design *d)
+static void table(struct eo_design *design)
 {
-  d->resolution.mesh_law = EO_LAW_TABLE;
+  design->resolution.mesh_law = EO_LAW_TABLE;
 }
-static void pulses(struct eo_design *d)
+static void pulses(struct eo_design *design)
 {
-  d->resolution.impact_in_dynamics = EO_IMPACT_PAPER;
+  design->resolution.impact_in_dynamics = EO_IMPACT_PAPER;
 }
-static void scale_bearings(struct eo_design *d, double factor)
+static void scale_bearings(struct eo_design *design, double factor)
 {
   for (int i = 0; i < 2; i++) {
-    d->supports.bearing_stiffness[i] *= factor;
-    d->supports.gear_axial_stiffness[i] *= factor;
+    design->supports.bearing_stiffness[i] *= factor;
+    design->supports.gear_axial_stiffness[i] *= factor;
   }
 }
-static void soft_bearings(struct eo_design *d)
+static void soft_bearings(struct eo_design *design)
 {
-  scale_bearings(d, 0.5);
+  scale_bearings(design, 0.5);
 }
-static void stiff_bearings(struct eo_design *d)
+static void stiff_bearings(struct eo_design *design)
 {
-  scale_bearings(d, 2);
+  scale_bearings(design, 2);
 }
-static void less_damping(struct eo_design *d)
+static void less_damping(struct eo_design *design)
 {
-  d->supports.mesh_damping_ratio *= 0.5;
+  design->supports.mesh_damping_ratio *= 0.5;
 }
-static void more_damping(struct eo_design *d)
+static void more_damping(struct eo_design *design)
 {
-  d->supports.mesh_damping_ratio *= 1.5;
+  design->supports.mesh_damping_ratio *= 1.5;
 }
-static void small_patch(struct eo_design *d)
+static void small_patch(struct eo_design *design)
 {
-  d->resolution.impact_patch = 2e-3;
+  design->resolution.impact_patch = 2e-3;
 }
-static void large_patch(struct eo_design *d)
+static void large_patch(struct eo_design *design)
 {
-  d->resolution.impact_patch = 20e-3;
+  design->resolution.impact_patch = 20e-3;
 }
-static void no_edges(struct eo_design *d)
+static void no_edges(struct eo_design *design)
 {
-  d->resolution.tip_edge_contact = false;
+  design->resolution.tip_edge_contact = false;
 }
-static void held_ring(struct eo_design *d)
+static void held_ring(struct eo_design *design)
 {
-  d->resolution.body_support = EO_SUPPORT_HELD;
+  design->resolution.body_support = EO_SUPPORT_HELD;
 }
-static void sector(struct eo_design *d)
+static void sector(struct eo_design *design)
 {
-  d->resolution.body = EO_BODY_SECTOR;
+  design->resolution.body = EO_BODY_SECTOR;
 }
-static void small_sector(struct eo_design *d)
+static void small_sector(struct eo_design *design)
 {
-  d->resolution.body = EO_BODY_SECTOR;
-  d->resolution.sector_teeth = 3;
-  d->resolution.neighbour_coupling = false;
+  design->resolution.body = EO_BODY_SECTOR;
+  design->resolution.sector_teeth = 3;
+  design->resolution.neighbour_coupling = false;
 }
 
 static const struct alternative alternatives[] = {
@@ -133,17 +133,17 @@ static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_des
 {
   const struct eo_scenario scenario = {design->alignment.shaft_angle_in_plane,
                                        design->alignment.shaft_angle_out_of_plane, compliance, 1};
-  const struct eo_evaluation *e;
-  enum eo_code code = eo_evaluator_run(evaluator, design, compliance > 0 ? &scenario : NULL, 0, &e, error);
+  const struct eo_evaluation *evaluation;
+  enum eo_code code = eo_evaluator_run(evaluator, design, compliance > 0 ? &scenario : NULL, 0, &evaluation, error);
   for (int k = 0; k < TORQUES && !code; k++)
-    raw[k] = e->objective[k];
+    raw[k] = evaluation->objective[k];
   return code;
 }
 
-static json_t *encode_row(const struct alternative *a, const struct eo_design *design,
+static json_t *encode_row(const struct alternative *alternative, const struct eo_design *design,
                           const struct eo_objective_case raw[2][TORQUES])
 {
-  struct eo_object o = eo_object_open();
+  struct eo_object object = eo_object_open();
   struct eo_objective_value value;
   json_t *unmodified = json_array(), *modified = json_array(), *reduction = json_array(), *transmission = json_array(),
          *impact = json_array();
@@ -159,54 +159,55 @@ static json_t *encode_row(const struct alternative *a, const struct eo_design *d
       json_array_append_new(force[i], eo_json_quantity(raw[i][k].impact, NULL));
     json_array_append_new(impact, eo_json_quantity(100 * (1 - raw[1][k].impact / raw[0][k].impact), NULL));
   }
-  eo_object_put(&o, "assumption", json_string(a->assumption));
-  eo_object_put(&o, "value", json_string(a->value));
-  eo_object_put(&o, "rms_unmodified_m_per_s2", unmodified);
-  eo_object_put(&o, "rms_case_a_m_per_s2", modified);
-  eo_object_put(&o, "impact_unmodified_N", force[0]);
-  eo_object_put(&o, "impact_case_a_N", force[1]);
-  eo_object_put(&o, "rms_reduction_percent", reduction);
-  eo_object_put(&o, "lte_reduction_percent", transmission);
-  eo_object_put(&o, "impact_reduction_percent", impact);
-  eo_object_put(&o, "J_case_a", eo_json_quantity(value.objective, NULL));
-  return eo_object_close(&o);
+  eo_object_put(&object, "assumption", json_string(alternative->assumption));
+  eo_object_put(&object, "value", json_string(alternative->value));
+  eo_object_put(&object, "rms_unmodified_m_per_s2", unmodified);
+  eo_object_put(&object, "rms_case_a_m_per_s2", modified);
+  eo_object_put(&object, "impact_unmodified_N", force[0]);
+  eo_object_put(&object, "impact_case_a_N", force[1]);
+  eo_object_put(&object, "rms_reduction_percent", reduction);
+  eo_object_put(&object, "lte_reduction_percent", transmission);
+  eo_object_put(&object, "impact_reduction_percent", impact);
+  eo_object_put(&object, "J_case_a", eo_json_quantity(value.objective, NULL));
+  return eo_object_close(&object);
 }
 
 /* The pair at hand where it serves, else one made for this alternative. */
-static enum eo_code try_alternative(struct reproduction *r, const struct alternative *a, struct eo_design *design,
-                                    json_t *rows, struct eo_error *error)
+static enum eo_code try_alternative(struct reproduction *reproduction, const struct alternative *alternative,
+                                    struct eo_design *design, json_t *rows, struct eo_error *error)
 {
   struct eo_objective_case raw[2][TORQUES];
-  const struct eo_pair_options options = {.cache_directory = r->plan->cache_directory};
+  const struct eo_pair_options options = {.cache_directory = reproduction->plan->cache_directory};
   struct eo_pair *own = NULL;
   struct eo_evaluator *evaluator = NULL;
   enum eo_code code = EO_OK;
-  *design = *r->design[UNMODIFIED];
-  a->apply(design);
-  if (!eo_pair_serves(r->pair, design))
+  *design = *reproduction->design[UNMODIFIED];
+  alternative->apply(design);
+  if (!eo_pair_serves(reproduction->pair, design))
     code = eo_pair_new(&own, design, &options, NULL, error);
   if (!code)
-    code = eo_evaluator_new(&evaluator, own ? own : r->pair, TORQUES, error);
+    code = eo_evaluator_new(&evaluator, own ? own : reproduction->pair, TORQUES, error);
   for (int i = 0; i < 2 && !code; i++) {
-    design->modification = r->design[i ? PAPER_A : UNMODIFIED]->modification;
-    code = evaluate(evaluator, design, a->compliance, raw[i], error);
+    design->modification = reproduction->design[i ? PAPER_A : UNMODIFIED]->modification;
+    code = evaluate(evaluator, design, alternative->compliance, raw[i], error);
   }
-  if (!code && json_array_append_new(rows, encode_row(a, design, (const struct eo_objective_case(*)[TORQUES])raw)))
+  if (!code &&
+      json_array_append_new(rows, encode_row(alternative, design, (const struct eo_objective_case(*)[TORQUES])raw)))
     code = eo_error_memory(error);
   eo_evaluator_free(evaluator);
   eo_pair_free(own);
   return code;
 }
 
-enum eo_code eo_reproduction_sensitivity(struct reproduction *r, json_t **result, struct eo_error *error)
+enum eo_code eo_reproduction_sensitivity(struct reproduction *reproduction, json_t **result, struct eo_error *error)
 {
   struct eo_design *design = malloc(sizeof *design);
   json_t *rows = json_array();
   enum eo_code code = design && rows ? EO_OK : eo_error_memory(error);
   for (int i = 0; i < ALTERNATIVES && !code; i++) {
-    code = eo_reproduction_report(r, "assumptions", 0.92 + 0.08 * i / ALTERNATIVES, error);
+    code = eo_reproduction_report(reproduction, "assumptions", 0.92 + 0.08 * i / ALTERNATIVES, error);
     if (!code)
-      code = try_alternative(r, &alternatives[i], design, rows, error);
+      code = try_alternative(reproduction, &alternatives[i], design, rows, error);
   }
   free(design);
   if (code)

@@ -5,10 +5,10 @@
 const char *const eo_reproduction_variant[VARIANTS] = {"unmodified", "Table 3, case A", "Table 3, case B",
                                                        "our optimum, case A", "our optimum, case B"};
 
-enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction,
+enum eo_code eo_reproduction_report(const struct reproduction *reproduction, const char *what, double fraction,
                                     struct eo_error *error)
 {
-  if (eo_progress_report(r->plan->progress, what, fraction))
+  if (eo_progress_report(reproduction->plan->progress, what, fraction))
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   return EO_OK;
 }

@@ -53,10 +53,10 @@ void eo_events_free(struct eo_events *events)
   free(events);
 }
 
-static void tell(const struct subscriber *s, const struct eo_service_event *event)
+static void tell(const struct subscriber *subscriber, const struct eo_service_event *event)
 {
-  if (!s->job || s->job == event->job)
-    s->listener(s->context, event);
+  if (!subscriber->job || subscriber->job == event->job)
+    subscriber->listener(subscriber->context, event);
 }
 
 static struct eo_service_event kept_event(const struct eo_events *events, int64_t number)
@@ -95,13 +95,13 @@ bool eo_events_reach(struct eo_events *events, int64_t after)
 }
 
 /* With the mutex held. */
-static void replay(const struct eo_events *events, const struct subscriber *s, int64_t after)
+static void replay(const struct eo_events *events, const struct subscriber *subscriber, int64_t after)
 {
   int64_t oldest = events->newest - EO_EVENTS_KEPT + 1;
   oldest = oldest > events->first ? oldest : events->first + 1;
   for (int64_t number = after + 1 > oldest ? after + 1 : oldest; number <= events->newest; number++) {
     const struct eo_service_event event = kept_event(events, number);
-    tell(s, &event);
+    tell(subscriber, &event);
   }
 }
 
@@ -109,18 +109,18 @@ enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t 
                                  int count, eo_service_listener *listener, void *context, int64_t *subscription,
                                  struct eo_error *error)
 {
-  struct subscriber *s = calloc(1, sizeof *s);
-  if (!s)
+  struct subscriber *subscriber = calloc(1, sizeof *subscriber);
+  if (!subscriber)
     return eo_error_memory(error);
   pthread_mutex_lock(&events->mutex);
-  *s = (struct subscriber){events->subscriber, ++events->subscriptions, job, listener, context};
+  *subscriber = (struct subscriber){events->subscriber, ++events->subscriptions, job, listener, context};
   for (int i = 0; i < count; i++) {
     first[i].number = after;
-    tell(s, &first[i]);
+    tell(subscriber, &first[i]);
   }
-  replay(events, s, after);
-  events->subscriber = s;
-  *subscription = s->number;
+  replay(events, subscriber, after);
+  events->subscriber = subscriber;
+  *subscription = subscriber->number;
   pthread_mutex_unlock(&events->mutex);
   return EO_OK;
 }
@@ -128,14 +128,14 @@ enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t 
 void eo_events_unsubscribe(struct eo_events *events, int64_t subscription)
 {
   pthread_mutex_lock(&events->mutex);
-  struct subscriber **link = &events->subscriber, *s;
+  struct subscriber **link = &events->subscriber, *subscriber;
   while (*link && (*link)->number != subscription)
     link = &(*link)->next;
-  s = *link;
-  if (s)
-    *link = s->next;
+  subscriber = *link;
+  if (subscriber)
+    *link = subscriber->next;
   pthread_mutex_unlock(&events->mutex);
-  free(s);
+  free(subscriber);
 }
 
 int eo_events_subscribers(struct eo_events *events)

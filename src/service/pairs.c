@@ -145,11 +145,11 @@ struct preparation {
 
 static int report(void *context, const char *what, double fraction)
 {
-  struct preparation *p = context;
-  pthread_mutex_lock(&p->pairs->mutex);
-  p->held->fraction = fraction;
-  pthread_mutex_unlock(&p->pairs->mutex);
-  return eo_progress_report(p->progress, what, fraction);
+  struct preparation *preparation = context;
+  pthread_mutex_lock(&preparation->pairs->mutex);
+  preparation->held->fraction = fraction;
+  pthread_mutex_unlock(&preparation->pairs->mutex);
+  return eo_progress_report(preparation->progress, what, fraction);
 }
 
 /* *held is in the list without a pair, so that nobody else prepares it. */

@@ -86,71 +86,71 @@ static enum eo_code make(struct eo_work *work, struct eo_rig_points *points, str
   return EO_OK;
 }
 
-static void leave_out(struct work *w, int64_t id, const char *reason)
+static void leave_out(struct work *work, int64_t id, const char *reason)
 {
-  struct eo_left_out *left_out = &w->selection.left_out[w->selection.left_outs++];
+  struct eo_left_out *left_out = &work->selection.left_out[work->selection.left_outs++];
   left_out->id = id;
   snprintf(left_out->reason, sizeof left_out->reason, "%s", reason);
 }
 
-static void read_point(struct work *w, const struct eo_rig_point *point, const char *pair)
+static void read_point(struct work *work, const struct eo_rig_point *point, const char *pair)
 {
   struct eo_error error;
-  struct eo_rig_selection *selection = &w->selection;
+  struct eo_rig_selection *selection = &work->selection;
   if (strcmp(point->pair, pair) != 0)
-    leave_out(w, point->id,
+    leave_out(work, point->id,
               "It was measured with other tooth numbers or base radii than the design has now; upload its file again.");
-  else if (eo_rig_measured_read(point->summary, &w->measured[selection->count], &error))
-    leave_out(w, point->id, error.text);
+  else if (eo_rig_measured_read(point->summary, &work->measured[selection->count], &error))
+    leave_out(work, point->id, error.text);
   else
     selection->id[selection->count++] = point->id;
 }
 
-static bool reserve(struct work *w, int count)
+static bool reserve(struct work *work, int count)
 {
   size_t size = (size_t)count + 1;
-  w->measured = calloc(size, sizeof *w->measured);
-  w->selection.id = calloc(size, sizeof *w->selection.id);
-  w->selection.left_out = calloc(size, sizeof *w->selection.left_out);
-  return w->measured && w->selection.id && w->selection.left_out;
+  work->measured = calloc(size, sizeof *work->measured);
+  work->selection.id = calloc(size, sizeof *work->selection.id);
+  work->selection.left_out = calloc(size, sizeof *work->selection.left_out);
+  return work->measured && work->selection.id && work->selection.left_out;
 }
 
-static enum eo_code compare(struct work *w, const struct order *order, const struct eo_pair *pair,
+static enum eo_code compare(struct work *work, const struct order *order, const struct eo_pair *pair,
                             const struct eo_design *design, const struct eo_progress *progress, struct eo_error *error)
 {
   char key[EO_HASH_LENGTH + 1];
   struct eo_evaluator *evaluator = NULL;
-  if (!reserve(w, order->points.count))
+  if (!reserve(work, order->points.count))
     return eo_error_memory(error);
   eo_rig_pair_hash(&pair->geometry, key);
   for (int i = 0; i < order->points.count; i++)
-    read_point(w, &order->points.point[i], key);
+    read_point(work, &order->points.point[i], key);
   EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
-  enum eo_code code = eo_comparison_run(&w->comparison, evaluator, design, w->selection.count, w->measured, progress,
-                                        error);
+  enum eo_code code = eo_comparison_run(&work->comparison, evaluator, design, work->selection.count, work->measured,
+                                        progress, error);
   eo_evaluator_free(evaluator);
   return code;
 }
 
-static void work_done(struct work *w)
+static void work_done(struct work *work)
 {
-  eo_comparison_done(&w->comparison);
-  free(w->measured);
-  free(w->selection.id);
-  free(w->selection.left_out);
+  eo_comparison_done(&work->comparison);
+  free(work->measured);
+  free(work->selection.id);
+  free(work->selection.left_out);
 }
 
 static enum eo_code run_comparison(void *data, const struct eo_pair *pair, const struct eo_design *design,
                                    const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   const struct order *order = data;
-  struct work w = {0};
-  enum eo_code code = compare(&w, order, pair, design, progress, error);
+  struct work work = {0};
+  enum eo_code code = compare(&work, order, pair, design, progress, error);
   if (!code && order->csv)
-    eo_comparison_csv(&w.comparison, w.measured, text);
+    eo_comparison_csv(&work.comparison, work.measured, text);
   else if (!code)
-    eo_rig_comparison_write(&w.selection, &w.comparison, w.measured, design, text);
-  work_done(&w);
+    eo_rig_comparison_write(&work.selection, &work.comparison, work.measured, design, text);
+  work_done(&work);
   return code;
 }
 
@@ -165,16 +165,16 @@ enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *point
   return EO_OK;
 }
 
-static void drop_outliers(struct work *w)
+static void drop_outliers(struct work *work)
 {
-  struct eo_rig_selection *selection = &w->selection;
+  struct eo_rig_selection *selection = &work->selection;
   int kept = 0;
   for (int i = 0; i < selection->count; i++) {
-    if (w->comparison.point[i].outlier) {
-      leave_out(w, selection->id[i], w->comparison.point[i].reason);
+    if (work->comparison.point[i].outlier) {
+      leave_out(work, selection->id[i], work->comparison.point[i].reason);
       continue;
     }
-    w->measured[kept] = w->measured[i];
+    work->measured[kept] = work->measured[i];
     selection->id[kept++] = selection->id[i];
   }
   selection->count = kept;
@@ -184,18 +184,18 @@ static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct
                             const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   const struct order *order = data;
-  struct work w = {0};
+  struct work work = {0};
   struct eo_update update;
   struct eo_design updated;
-  enum eo_code code = compare(&w, order, pair, design, progress, error);
+  enum eo_code code = compare(&work, order, pair, design, progress, error);
   if (!code) {
-    drop_outliers(&w);
-    code = eo_update_run(&update, pair, design, w.selection.count, w.measured, &order->settings, &updated, progress,
-                         error);
+    drop_outliers(&work);
+    code = eo_update_run(&update, pair, design, work.selection.count, work.measured, &order->settings, &updated,
+                         progress, error);
   }
   if (!code)
-    eo_rig_fit_write(&w.selection, &update, order->given, design, &updated, text);
-  work_done(&w);
+    eo_rig_fit_write(&work.selection, &update, order->given, design, &updated, text);
+  work_done(&work);
   return code;
 }
 

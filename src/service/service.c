@@ -48,187 +48,193 @@ static bool resolve(struct eo_service_settings *own, const struct eo_service_set
          (own->launcher || !settings->launcher || !*settings->launcher) && own->worker;
 }
 
-struct eo_preparation_settings eo_service_preparation(const struct eo_service *s)
+struct eo_preparation_settings eo_service_preparation(const struct eo_service *service)
 {
-  const struct eo_service_limits *limits = &s->settings.limits;
+  const struct eo_service_limits *limits = &service->settings.limits;
   double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-  return (struct eo_preparation_settings){.program = s->settings.cache ? s->settings.program : NULL,
-                                          .cache = s->settings.cache,
+  return (struct eo_preparation_settings){.program = service->settings.cache ? service->settings.program : NULL,
+                                          .cache = service->settings.cache,
                                           .memory = isnan(limits->pair_memory_MB) ? 0.5 * machine
                                                                                   : 1e6 * limits->pair_memory_MB,
                                           .seconds = 60 * limits->pair_minutes};
 }
 
-static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
+static enum eo_code open_store(struct eo_service *service, struct eo_error *error)
 {
   bool taken = false;
   int64_t queued;
-  EO_TRY(eo_store_open(&s->store, s->settings.data, EO_STORE_WRITE, error));
-  EO_TRY(eo_store_claim_server(s->store, &taken, error));
+  EO_TRY(eo_store_open(&service->store, service->settings.data, EO_STORE_WRITE, error));
+  EO_TRY(eo_store_claim_server(service->store, &taken, error));
   if (!taken)
-    return eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.", s->settings.data);
+    return eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.",
+                        service->settings.data);
   struct eo_error why = {0};
   struct eo_text fault = {0};
   eo_error_set(
       &why, EO_ERROR_NUMERIC, "",
       "The server ended %d times in the middle of this job, which came no further: it may take more memory than "
       "there is. It can be tried again.",
-      s->settings.limits.attempts);
+      service->settings.limits.attempts);
   eo_job_error_write(&why, &fault);
-  enum eo_code code = fault.failed
-                          ? eo_error_memory(error)
-                          : eo_queue_recover(s->store, s->settings.limits.attempts, fault.data, &queued, error);
+  enum eo_code code = fault.failed ? eo_error_memory(error)
+                                   : eo_queue_recover(service->store, service->settings.limits.attempts, fault.data,
+                                                      &queued, error);
   eo_text_done(&fault);
-  eo_store_wait(s->store, LOCK_MS);
+  eo_store_wait(service->store, LOCK_MS);
   return code;
 }
 
-static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
+static enum eo_code make_lanes(struct eo_service *service, struct eo_error *error)
 {
-  struct eo_lane_settings settings = {.threads = s->settings.analysis_threads,
-                                      .most = s->settings.limits.waiting_questions,
+  struct eo_lane_settings settings = {.threads = service->settings.analysis_threads,
+                                      .most = service->settings.limits.waiting_questions,
                                       .function = eo_service_run_task,
                                       .release = eo_service_release_task,
-                                      .context = s};
-  EO_TRY(eo_lane_new(&s->analyses, &settings, error));
+                                      .context = service};
+  EO_TRY(eo_lane_new(&service->analyses, &settings, error));
   settings.threads = 1;
   settings.overtakes_running = true;
   settings.nice = SWEEP_NICE;
-  EO_TRY(eo_lane_new(&s->sweeps, &settings, error));
-  return eo_lane_new(&s->works, &settings, error);
+  EO_TRY(eo_lane_new(&service->sweeps, &settings, error));
+  return eo_lane_new(&service->works, &settings, error);
 }
 
-static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
+static enum eo_code make_workers(struct eo_service *service, struct eo_error *error)
 {
   for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
-    struct eo_service_worker *w = &s->worker[kind];
-    w->service = s;
-    w->kind = (enum eo_job_kind)kind;
-    EO_TRY(eo_store_open(&w->store, s->settings.data, EO_STORE_WRITE, error));
-    w->running = pthread_create(&w->thread, NULL, eo_service_work, w) == 0;
-    if (!w->running)
+    struct eo_service_worker *worker = &service->worker[kind];
+    worker->service = service;
+    worker->kind = (enum eo_job_kind)kind;
+    EO_TRY(eo_store_open(&worker->store, service->settings.data, EO_STORE_WRITE, error));
+    worker->running = pthread_create(&worker->thread, NULL, eo_service_work, worker) == 0;
+    if (!worker->running)
       return eo_error_memory(error);
   }
   return EO_OK;
 }
 
-static void make_mutexes(struct eo_service *s)
+static void make_mutexes(struct eo_service *service)
 {
   pthread_condattr_t attributes;
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex,
-                                    &s->note_mutex,      &s->work_mutex,    &s->timing_mutex};
+  pthread_mutex_t *const mutex[] = {&service->preparing_mutex, &service->publish_mutex, &service->store_mutex,
+                                    &service->live_mutex,      &service->note_mutex,    &service->work_mutex,
+                                    &service->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_init(mutex[i], NULL);
   pthread_condattr_init(&attributes);
   pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-  pthread_cond_init(&s->work, &attributes);
+  pthread_cond_init(&service->work, &attributes);
   pthread_condattr_destroy(&attributes);
 }
 
-static enum eo_code begin(struct eo_service *s, const struct eo_service_settings *settings, struct eo_error *error)
+static enum eo_code begin(struct eo_service *service, const struct eo_service_settings *settings,
+                          struct eo_error *error)
 {
-  if (!resolve(&s->settings, settings))
+  if (!resolve(&service->settings, settings))
     return eo_error_memory(error);
   /* workers, an analysis and its second thread, sweeps, works, the members of a pair */
-  EO_TRY(eo_threads_reserve(3 * s->settings.threads + 2 * s->settings.analysis_threads + OTHER_THREADS, error));
-  EO_TRY(open_store(s, error));
-  const struct eo_service_limits *limits = &s->settings.limits;
-  const struct eo_pairs_settings pairs = {
-      .preparation = eo_service_preparation(s), .most = limits->prepared_pairs, .cache_bytes = 1e9 * limits->cache_GB};
-  EO_TRY(eo_pairs_new(&s->pairs, &pairs, error));
-  EO_TRY(eo_events_new(&s->events, error));
-  EO_TRY(make_lanes(s, error));
-  return make_workers(s, error);
+  EO_TRY(eo_threads_reserve(3 * service->settings.threads + 2 * service->settings.analysis_threads + OTHER_THREADS,
+                            error));
+  EO_TRY(open_store(service, error));
+  const struct eo_service_limits *limits = &service->settings.limits;
+  const struct eo_pairs_settings pairs = {.preparation = eo_service_preparation(service),
+                                          .most = limits->prepared_pairs,
+                                          .cache_bytes = 1e9 * limits->cache_GB};
+  EO_TRY(eo_pairs_new(&service->pairs, &pairs, error));
+  EO_TRY(eo_events_new(&service->events, error));
+  EO_TRY(make_lanes(service, error));
+  return make_workers(service, error);
 }
 
 enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_settings *settings,
                             struct eo_error *error)
 {
-  struct eo_service *s = calloc(1, sizeof *s);
-  if (!s)
+  struct eo_service *service = calloc(1, sizeof *service);
+  if (!service)
     return eo_error_memory(error);
-  make_mutexes(s);
-  s->cores = eo_parallel_cores();
-  enum eo_code code = begin(s, settings, error);
+  make_mutexes(service);
+  service->cores = eo_parallel_cores();
+  enum eo_code code = begin(service, settings, error);
   if (code)
-    eo_service_free(s);
+    eo_service_free(service);
   else
-    *result = s;
+    *result = service;
   return code;
 }
 
-void eo_service_stop(struct eo_service *s)
+void eo_service_stop(struct eo_service *service)
 {
-  pthread_mutex_lock(&s->work_mutex);
-  atomic_store(&s->stopping, true);
-  pthread_cond_broadcast(&s->work);
-  pthread_mutex_unlock(&s->work_mutex);
-  if (s->analyses)
-    eo_lane_stop(s->analyses);
-  if (s->sweeps)
-    eo_lane_stop(s->sweeps);
-  if (s->works)
-    eo_lane_stop(s->works);
+  pthread_mutex_lock(&service->work_mutex);
+  atomic_store(&service->stopping, true);
+  pthread_cond_broadcast(&service->work);
+  pthread_mutex_unlock(&service->work_mutex);
+  if (service->analyses)
+    eo_lane_stop(service->analyses);
+  if (service->sweeps)
+    eo_lane_stop(service->sweeps);
+  if (service->works)
+    eo_lane_stop(service->works);
 }
 
-void eo_service_free(struct eo_service *s)
+void eo_service_free(struct eo_service *service)
 {
-  if (!s)
+  if (!service)
     return;
-  eo_service_stop(s);
+  eo_service_stop(service);
   for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
-    if (s->worker[kind].running)
-      pthread_join(s->worker[kind].thread, NULL);
-    eo_job_live_done(&s->worker[kind].live);
-    eo_store_close(s->worker[kind].store);
+    if (service->worker[kind].running)
+      pthread_join(service->worker[kind].thread, NULL);
+    eo_job_live_done(&service->worker[kind].live);
+    eo_store_close(service->worker[kind].store);
   }
-  eo_lane_free(s->analyses);
-  eo_lane_free(s->sweeps);
-  eo_lane_free(s->works);
-  eo_pairs_free(s->pairs);
-  eo_events_free(s->events);
-  eo_store_close(s->store);
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex,
-                                    &s->note_mutex,      &s->work_mutex,    &s->timing_mutex};
+  eo_lane_free(service->analyses);
+  eo_lane_free(service->sweeps);
+  eo_lane_free(service->works);
+  eo_pairs_free(service->pairs);
+  eo_events_free(service->events);
+  eo_store_close(service->store);
+  pthread_mutex_t *const mutex[] = {&service->preparing_mutex, &service->publish_mutex, &service->store_mutex,
+                                    &service->live_mutex,      &service->note_mutex,    &service->work_mutex,
+                                    &service->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_destroy(mutex[i]);
-  pthread_cond_destroy(&s->work);
-  free((char *)s->settings.data);
-  free((char *)s->settings.cache);
-  free((char *)s->settings.program);
-  free((char *)s->settings.launcher);
-  free((char *)s->settings.worker);
-  free(s);
+  pthread_cond_destroy(&service->work);
+  free((char *)service->settings.data);
+  free((char *)service->settings.cache);
+  free((char *)service->settings.program);
+  free((char *)service->settings.launcher);
+  free((char *)service->settings.worker);
+  free(service);
 }
 
-void eo_service_tell(struct eo_service *s, eo_service_note *note, void *context)
+void eo_service_tell(struct eo_service *service, eo_service_note *note, void *context)
 {
-  pthread_mutex_lock(&s->note_mutex);
-  s->note = note;
-  s->note_context = context;
-  pthread_mutex_unlock(&s->note_mutex);
+  pthread_mutex_lock(&service->note_mutex);
+  service->note = note;
+  service->note_context = context;
+  pthread_mutex_unlock(&service->note_mutex);
 }
 
-void eo_service_wake(struct eo_service *s)
+void eo_service_wake(struct eo_service *service)
 {
-  pthread_mutex_lock(&s->work_mutex);
-  s->calls++;
-  pthread_cond_broadcast(&s->work);
-  pthread_mutex_unlock(&s->work_mutex);
+  pthread_mutex_lock(&service->work_mutex);
+  service->calls++;
+  pthread_cond_broadcast(&service->work);
+  pthread_mutex_unlock(&service->work_mutex);
 }
 
 /* From before a job's row is read until it is copied: a job that ends in between would show its end with what was
    noted of it a while before. */
-static void lock_jobs(struct eo_service *s)
+static void lock_jobs(struct eo_service *service)
 {
-  pthread_mutex_lock(&s->store_mutex);
-  pthread_mutex_lock(&s->live_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  pthread_mutex_lock(&service->live_mutex);
 }
 
-static void unlock_jobs(struct eo_service *s)
+static void unlock_jobs(struct eo_service *service)
 {
-  pthread_mutex_unlock(&s->live_mutex);
-  pthread_mutex_unlock(&s->store_mutex);
+  pthread_mutex_unlock(&service->live_mutex);
+  pthread_mutex_unlock(&service->store_mutex);
 }
 
 /* Where a job is copied to. */
@@ -241,45 +247,45 @@ struct copying {
 
 static enum eo_code copy(void *context, const struct eo_stored_job *row, struct eo_error *error)
 {
-  const struct copying *c = context;
+  const struct copying *copying = context;
   struct eo_stored_job shown = *row;
   const struct eo_job_live *live = NULL;
-  if (c->only && row->id != c->only)
+  if (copying->only && row->id != copying->only)
     return EO_OK;
   for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
-    const struct eo_service_worker *w = &c->service->worker[kind];
-    if (w->live.id != row->id)
+    const struct eo_service_worker *worker = &copying->service->worker[kind];
+    if (worker->live.id != row->id)
       continue;
-    if (!w->launched)
-      live = &w->live;
+    if (!worker->launched)
+      live = &worker->live;
     else if (row->state > EO_JOB_RUNNING) /* its process has still to write the result, and to end */
       shown.state = EO_JOB_RUNNING;
   }
-  return eo_job_view_init(c->job, &shown, live, c->with_design, error);
+  return eo_job_view_init(copying->job, &shown, live, copying->with_design, error);
 }
 
 /* Without the design and the result, which may be long. False: there is no such job, or an error. */
-static bool find_brief(struct eo_service *s, int64_t id, struct eo_job_view *job)
+static bool find_brief(struct eo_service *service, int64_t id, struct eo_job_view *job)
 {
-  struct copying copying = {.service = s, .only = id, .job = job};
+  struct copying copying = {.service = service, .only = id, .job = job};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .before = id + 1, .limit = 1};
   *job = (struct eo_job_view){0};
-  lock_jobs(s);
-  eo_queue_list(s->store, &filter, copy, &copying, NULL);
-  unlock_jobs(s);
+  lock_jobs(service);
+  eo_queue_list(service->store, &filter, copy, &copying, NULL);
+  unlock_jobs(service);
   return job->texts;
 }
 
-void eo_service_publish(struct eo_service *s, int64_t id)
+void eo_service_publish(struct eo_service *service, int64_t id)
 {
   struct eo_text text = {0};
   struct eo_job_view job;
-  pthread_mutex_lock(&s->publish_mutex);
-  if (find_brief(s, id, &job))
+  pthread_mutex_lock(&service->publish_mutex);
+  if (find_brief(service, id, &job))
     eo_job_view_write(&job, &text);
   if (text.size && !text.failed)
-    eo_events_publish(s->events, id, &text);
-  pthread_mutex_unlock(&s->publish_mutex);
+    eo_events_publish(service->events, id, &text);
+  pthread_mutex_unlock(&service->publish_mutex);
   eo_text_done(&text);
   eo_job_view_done(&job);
 }
@@ -321,42 +327,42 @@ static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *r
   return EO_OK;
 }
 
-enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t after, eo_service_listener *listener,
+enum eo_code eo_service_subscribe(struct eo_service *service, int64_t job, int64_t after, eo_service_listener *listener,
                                   void *context, int64_t *subscription, struct eo_error *error)
 {
-  struct snapshot snapshot = {.service = s};
+  struct snapshot snapshot = {.service = service};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
-  int64_t newest = eo_events_newest(s->events); /* before the snapshot: what happens from now on comes after it */
+  int64_t newest = eo_events_newest(service->events); /* before the snapshot: what happens from now on comes after it */
   enum eo_code code = EO_OK;
-  if (after > 0 && !eo_events_reach(s->events, after)) {
-    lock_jobs(s);
-    code = eo_queue_list(s->store, &filter, add_to_snapshot, &snapshot, error);
-    unlock_jobs(s);
+  if (after > 0 && !eo_events_reach(service->events, after)) {
+    lock_jobs(service);
+    code = eo_queue_list(service->store, &filter, add_to_snapshot, &snapshot, error);
+    unlock_jobs(service);
     after = newest;
   } else if (after <= 0)
     after = newest;
   if (!code)
-    code = eo_events_subscribe(s->events, job, after, snapshot.event, snapshot.count, listener, context, subscription,
-                               error);
+    code = eo_events_subscribe(service->events, job, after, snapshot.event, snapshot.count, listener, context,
+                               subscription, error);
   for (int i = 0; i < snapshot.count; i++)
     free((char *)snapshot.event[i].text);
   free(snapshot.event);
   return code;
 }
 
-void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
+void eo_service_unsubscribe(struct eo_service *service, int64_t subscription)
 {
-  eo_events_unsubscribe(s->events, subscription);
+  eo_events_unsubscribe(service->events, subscription);
 }
 
-enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+enum eo_code eo_service_job(struct eo_service *service, int64_t id, bool with_design, enum eo_job_outcome *outcome,
                             struct eo_job_view *job, struct eo_error *error)
 {
-  struct copying copying = {.service = s, .with_design = with_design, .job = job};
+  struct copying copying = {.service = service, .with_design = with_design, .job = job};
   *job = (struct eo_job_view){0};
-  lock_jobs(s);
-  enum eo_code code = eo_queue_find(s->store, id, copy, &copying, outcome, error);
-  unlock_jobs(s);
+  lock_jobs(service);
+  enum eo_code code = eo_queue_find(service->store, id, copy, &copying, outcome, error);
+  unlock_jobs(service);
   return code;
 }
 
@@ -380,17 +386,17 @@ static enum eo_code add_to_page(void *context, const struct eo_stored_job *row, 
   return EO_OK;
 }
 
-enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit,
+enum eo_code eo_service_jobs(struct eo_service *service, int state, int kind, int64_t before, int limit,
                              struct eo_job_page *page, struct eo_error *error)
 {
-  struct paging paging = {s, page, limit};
+  struct paging paging = {service, page, limit};
   const struct eo_queue_filter filter = {.state = state, .kind = kind, .before = before, .limit = limit + 1};
   *page = (struct eo_job_page){.job = calloc((size_t)limit, sizeof *page->job)};
   if (!page->job)
     return eo_error_memory(error);
-  lock_jobs(s);
-  enum eo_code code = eo_queue_list(s->store, &filter, add_to_page, &paging, error);
-  unlock_jobs(s);
+  lock_jobs(service);
+  enum eo_code code = eo_queue_list(service->store, &filter, add_to_page, &paging, error);
+  unlock_jobs(service);
   if (code)
     eo_job_page_done(page);
   return code;
@@ -417,41 +423,41 @@ static enum eo_code read_result(void *context, const struct eo_stored_job *job, 
   return reading->text->failed ? eo_error_memory(error) : EO_OK;
 }
 
-enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_text *text,
-                               struct eo_error *error)
+enum eo_code eo_service_result(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                               struct eo_text *text, struct eo_error *error)
 {
   struct reading reading = {.text = text};
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_find(s->store, id, read_result, &reading, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_find(service->store, id, read_result, &reading, outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
   if (!code && *outcome == EO_JOB_OUTCOME_DONE && !reading.there)
     *outcome = EO_JOB_OUTCOME_STATE;
   return code;
 }
 
 /* Of a job that is being worked on; false: it is another one. */
-static bool copy_live(struct eo_service *s, int64_t id, struct eo_job_convergence *convergence, enum eo_code *code,
-                      struct eo_error *error)
+static bool copy_live(struct eo_service *service, int64_t id, struct eo_job_convergence *convergence,
+                      enum eo_code *code, struct eo_error *error)
 {
-  const struct eo_job_live *live = &s->worker[EO_JOB_OPTIMIZE].live;
-  pthread_mutex_lock(&s->live_mutex);
+  const struct eo_job_live *live = &service->worker[EO_JOB_OPTIMIZE].live;
+  pthread_mutex_lock(&service->live_mutex);
   bool is_live = live->id == id;
   if (is_live)
     *code = eo_job_convergence_copy(convergence, live, error);
-  pthread_mutex_unlock(&s->live_mutex);
+  pthread_mutex_unlock(&service->live_mutex);
   return is_live;
 }
 
-enum eo_code eo_service_convergence(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome,
+enum eo_code eo_service_convergence(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
                                     struct eo_job_convergence *convergence, struct eo_error *error)
 {
   struct eo_text text = {0};
   enum eo_code code;
   *convergence = (struct eo_job_convergence){0};
   *outcome = EO_JOB_OUTCOME_DONE;
-  if (copy_live(s, id, convergence, &code, error))
+  if (copy_live(service, id, convergence, &code, error))
     return code;
-  code = eo_service_result(s, id, outcome, &text, error);
+  code = eo_service_result(service, id, outcome, &text, error);
   if (!code && *outcome != EO_JOB_OUTCOME_MISSING) {
     *outcome = EO_JOB_OUTCOME_DONE;
     code = eo_job_convergence_read(convergence, text.size ? text.data : "", error);
@@ -460,42 +466,43 @@ enum eo_code eo_service_convergence(struct eo_service *s, int64_t id, enum eo_jo
   return code;
 }
 
-static bool is_closed(struct eo_service *s, enum eo_job_outcome *outcome)
+static bool is_closed(struct eo_service *service, enum eo_job_outcome *outcome)
 {
   *outcome = EO_JOB_OUTCOME_CLOSED;
-  return atomic_load(&s->stopping);
+  return atomic_load(&service->stopping);
 }
 
 /* Everybody is told of a job that was changed, and whoever changed it gets it. */
-static enum eo_code show(struct eo_service *s, int64_t id, struct eo_job_view *job, struct eo_error *error)
+static enum eo_code show(struct eo_service *service, int64_t id, struct eo_job_view *job, struct eo_error *error)
 {
   enum eo_job_outcome outcome;
-  eo_service_publish(s, id);
-  return eo_service_job(s, id, true, &outcome, job, error);
+  eo_service_publish(service, id);
+  return eo_service_job(service, id, true, &outcome, job, error);
 }
 
 /* In this order, so that a job is seen waiting before it is seen running. */
-static enum eo_code publish_then_wake(struct eo_service *s, int64_t id, struct eo_job_view *job, struct eo_error *error)
+static enum eo_code publish_then_wake(struct eo_service *service, int64_t id, struct eo_job_view *job,
+                                      struct eo_error *error)
 {
-  enum eo_code code = show(s, id, job, error);
-  eo_service_wake(s);
+  enum eo_code code = show(service, id, job, error);
+  eo_service_wake(service);
   return code;
 }
 
 static void hash_request(const struct eo_job_order *order, const struct eo_text *design, char hash[EO_HASH_LENGTH + 1])
 {
-  struct eo_hash h;
-  eo_hash_init(&h);
-  eo_hash_add_number(&h, "kind", order->kind);
-  eo_hash_add_number(&h, "priority", order->priority);
-  eo_hash_add_number(&h, "fresh", order->fresh);
-  eo_hash_add_text(&h, "design", design->data);
+  struct eo_hash this_hash;
+  eo_hash_init(&this_hash);
+  eo_hash_add_number(&this_hash, "kind", order->kind);
+  eo_hash_add_number(&this_hash, "priority", order->priority);
+  eo_hash_add_number(&this_hash, "fresh", order->fresh);
+  eo_hash_add_text(&this_hash, "design", design->data);
   if (order->spec)
-    eo_hash_add_text(&h, "spec", order->spec);
-  eo_hash_finish(&h, hash);
+    eo_hash_add_text(&this_hash, "spec", order->spec);
+  eo_hash_finish(&this_hash, hash);
 }
 
-static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *order, const struct eo_text *design,
+static enum eo_code add_job(struct eo_service *service, const struct eo_job_order *order, const struct eo_text *design,
                             int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
   char pair[EO_HASH_LENGTH + 1], request[EO_HASH_LENGTH + 1];
@@ -514,94 +521,96 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
                                        .request = keyed ? request : NULL,
                                        .fresh = order->fresh,
                                        .priority = order->priority};
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_add(s->store, &entry, s->settings.limits.queued_jobs, id, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_add(service->store, &entry, service->settings.limits.queued_jobs, id, outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
   return code;
 }
 
 /* Queues; nobody is told yet, nor begins. */
-static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order, int64_t *id,
+static enum eo_code queue(struct eo_service *service, const struct eo_job_order *order, int64_t *id,
                           enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_text design = {0};
-  const struct eo_preparation_settings preparation = eo_service_preparation(s);
+  const struct eo_preparation_settings preparation = eo_service_preparation(service);
   EO_TRY(eo_preparation_admit(&preparation, order->design, error));
   eo_design_write(order->design, &design);
-  enum eo_code code = design.failed ? eo_error_memory(error) : add_job(s, order, &design, id, outcome, error);
+  enum eo_code code = design.failed ? eo_error_memory(error) : add_job(service, order, &design, id, outcome, error);
   eo_text_done(&design);
   if (!code && *outcome == EO_JOB_OUTCOME_FULL)
-    atomic_fetch_add(&s->refused, 1);
+    atomic_fetch_add(&service->refused, 1);
   return code;
 }
 
-enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *order, enum eo_job_outcome *outcome,
-                               struct eo_job_view *job, struct eo_error *error)
+enum eo_code eo_service_submit(struct eo_service *service, const struct eo_job_order *order,
+                               enum eo_job_outcome *outcome, struct eo_job_view *job, struct eo_error *error)
 {
   int64_t id;
   *job = (struct eo_job_view){0};
-  if (is_closed(s, outcome))
+  if (is_closed(service, outcome))
     return EO_OK;
-  enum eo_code code = queue(s, order, &id, outcome, error);
+  enum eo_code code = queue(service, order, &id, outcome, error);
   if (code || (*outcome != EO_JOB_OUTCOME_DONE && *outcome != EO_JOB_OUTCOME_REPEATED))
     return code;
-  return publish_then_wake(s, id, job, error);
+  return publish_then_wake(service, id, job, error);
 }
 
-enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_job_view *job,
-                               struct eo_error *error)
+enum eo_code eo_service_cancel(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                               struct eo_job_view *job, struct eo_error *error)
 {
   *job = (struct eo_job_view){0};
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_cancel(s->store, id, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_cancel(service->store, id, outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
   if (code || *outcome)
     return code;
-  pthread_mutex_lock(&s->live_mutex);
+  pthread_mutex_lock(&service->live_mutex);
   for (int kind = 0; kind < EO_JOB_KINDS; kind++)
-    if (s->worker[kind].live.id == id)
-      atomic_store(&s->worker[kind].cancelled, true);
-  pthread_mutex_unlock(&s->live_mutex);
-  return show(s, id, job, error);
+    if (service->worker[kind].live.id == id)
+      atomic_store(&service->worker[kind].cancelled, true);
+  pthread_mutex_unlock(&service->live_mutex);
+  return show(service, id, job, error);
 }
 
-enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_job_view *job,
-                              struct eo_error *error)
+enum eo_code eo_service_retry(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                              struct eo_job_view *job, struct eo_error *error)
 {
   *job = (struct eo_job_view){0};
-  if (is_closed(s, outcome))
+  if (is_closed(service, outcome))
     return EO_OK;
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_retry(s->store, id, s->settings.limits.queued_jobs, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
-  return code || *outcome ? code : publish_then_wake(s, id, job, error);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_retry(service->store, id, service->settings.limits.queued_jobs, outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
+  return code || *outcome ? code : publish_then_wake(service, id, job, error);
 }
 
-enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome,
+enum eo_code eo_service_clone(struct eo_service *service, int64_t id, const int *priority, enum eo_job_outcome *outcome,
                               struct eo_job_view *job, struct eo_error *error)
 {
   int64_t clone;
   *job = (struct eo_job_view){0};
-  if (is_closed(s, outcome))
+  if (is_closed(service, outcome))
     return EO_OK;
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.limits.queued_jobs, &clone, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
-  return code || *outcome ? code : publish_then_wake(s, clone, job, error);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_clone(service->store, id, priority, service->settings.limits.queued_jobs, &clone,
+                                     outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
+  return code || *outcome ? code : publish_then_wake(service, clone, job, error);
 }
 
-enum eo_code eo_service_remove(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
+enum eo_code eo_service_remove(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                               struct eo_error *error)
 {
-  pthread_mutex_lock(&s->live_mutex);
+  pthread_mutex_lock(&service->live_mutex);
   bool live = false;
   for (int kind = 0; kind < EO_JOB_KINDS; kind++)
-    live = live || s->worker[kind].live.id == id;
-  pthread_mutex_unlock(&s->live_mutex);
+    live = live || service->worker[kind].live.id == id;
+  pthread_mutex_unlock(&service->live_mutex);
   *outcome = EO_JOB_OUTCOME_STATE;
   if (live)
     return EO_OK;
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_remove(s->store, id, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_remove(service->store, id, outcome, error);
+  pthread_mutex_unlock(&service->store_mutex);
   return code;
 }

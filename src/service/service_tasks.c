@@ -70,18 +70,18 @@ static void note_parts(struct eo_answer *answer, double start, double computed)
 
 static enum eo_code run_analysis(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
 {
-  struct eo_service *s = asked->service;
+  struct eo_service *service = asked->service;
   uint64_t user = user_of(asked->task.token);
   struct eo_analysis *analysis;
   double start = eo_clock_milliseconds();
-  EO_TRY(eo_pairs_borrow(s->pairs, held, user, &analysis, &answer->error));
-  analysis->threads = s->cores > 1 ? 2 : 1;
+  EO_TRY(eo_pairs_borrow(service->pairs, held, user, &analysis, &answer->error));
+  analysis->threads = service->cores > 1 ? 2 : 1;
   enum eo_code code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
   double computed = eo_clock_milliseconds();
   if (!code)
     code = write_analysis(asked, analysis, answer);
   note_parts(answer, start, computed);
-  eo_pairs_give_back(s->pairs, held, user, analysis);
+  eo_pairs_give_back(service->pairs, held, user, analysis);
   return code;
 }
 
@@ -127,7 +127,7 @@ static enum eo_code run_work(struct asked *asked, struct eo_held_pair *held, str
   return code;
 }
 
-static struct asked *copy_question(struct eo_service *s, const struct eo_question *q, run_function *run,
+static struct asked *copy_question(struct eo_service *service, const struct eo_question *question, run_function *run,
                                    struct eo_error *error)
 {
   struct asked *asked = calloc(1, sizeof *asked);
@@ -135,26 +135,26 @@ static struct asked *copy_question(struct eo_service *s, const struct eo_questio
     eo_error_memory(error);
     return NULL;
   }
-  asked->service = s;
+  asked->service = service;
   asked->run = run;
-  asked->design = *q->design;
-  if (q->warnings)
-    asked->warnings = *q->warnings;
-  asked->format = q->format;
-  asked->answer = q->answer;
-  asked->context = q->context;
-  snprintf(asked->task.token, sizeof asked->task.token, "%s", q->token ? q->token : "");
+  asked->design = *question->design;
+  if (question->warnings)
+    asked->warnings = *question->warnings;
+  asked->format = question->format;
+  asked->answer = question->answer;
+  asked->context = question->context;
+  snprintf(asked->task.token, sizeof asked->task.token, "%s", question->token ? question->token : "");
   return asked;
 }
 
 /* The job that prepares the pair: a new one, or the one that is at it. *job 0: admission says why there is none. */
-static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *design, enum eo_admission *admission,
-                                 int64_t *job, struct eo_error *error)
+static enum eo_code ask_for_pair(struct eo_service *service, const struct eo_design *design,
+                                 enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   const struct eo_job_order order = {.kind = EO_JOB_PREPARE, .design = design, .priority = EO_MOST_PRIORITY};
   enum eo_job_outcome outcome;
   struct eo_job_view made;
-  enum eo_code code = eo_service_submit(s, &order, &outcome, &made, error);
+  enum eo_code code = eo_service_submit(service, &order, &outcome, &made, error);
   *job = made.row.id;
   *admission = outcome == EO_JOB_OUTCOME_CLOSED ? EO_ADMISSION_CLOSED
                : outcome == EO_JOB_OUTCOME_FULL ? EO_ADMISSION_FULL
@@ -163,47 +163,47 @@ static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *d
   return code;
 }
 
-static bool is_ready(struct eo_service *s, const struct eo_design *design)
+static bool is_ready(struct eo_service *service, const struct eo_design *design)
 {
-  struct eo_held_pair *held = eo_pairs_find(s->pairs, design);
-  eo_pairs_release(s->pairs, held);
+  struct eo_held_pair *held = eo_pairs_find(service->pairs, design);
+  eo_pairs_release(service->pairs, held);
   return held != NULL;
 }
 
 /* Puts it into the lane; where the pair is missing, behind its preparation if the question wants to wait. */
-static enum eo_code admit(struct eo_service *s, struct eo_lane *lane, struct asked *asked, double wait,
+static enum eo_code admit(struct eo_service *service, struct eo_lane *lane, struct asked *asked, double wait,
                           enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   bool closed = false, taken = false;
   *job = 0;
-  pthread_mutex_lock(&s->preparing_mutex);
-  bool ready = is_ready(s, &asked->design);
+  pthread_mutex_lock(&service->preparing_mutex);
+  bool ready = is_ready(service, &asked->design);
   if (!ready)
-    code = ask_for_pair(s, &asked->design, admission, job, error);
+    code = ask_for_pair(service, &asked->design, admission, job, error);
   if (!code && (ready || (*job && wait > 0))) {
     asked->task.awaits = *job;
     asked->task.patience = eo_clock_milliseconds() + 1e3 * wait;
     taken = eo_lane_push(lane, &asked->task, &closed);
     *admission = taken ? EO_ADMISSION_ACCEPTED : closed ? EO_ADMISSION_CLOSED : EO_ADMISSION_FULL;
   }
-  pthread_mutex_unlock(&s->preparing_mutex);
+  pthread_mutex_unlock(&service->preparing_mutex);
   if (!code && !taken && *admission == EO_ADMISSION_FULL)
-    atomic_fetch_add(&s->refused, 1);
+    atomic_fetch_add(&service->refused, 1);
   if (!taken)
     eo_service_release_task(&asked->task);
   return code;
 }
 
-enum eo_code eo_service_analyze(struct eo_service *s, const struct eo_analysis_question *q,
+enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_analysis_question *question,
                                 enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, &q->common, run_analysis, error);
+  struct asked *asked = copy_question(service, &question->common, run_analysis, error);
   if (!asked)
     return EO_ERROR_MEMORY;
-  asked->want = q->want;
-  asked->left_out = q->left_out;
-  return admit(s, s->analyses, asked, q->common.wait, admission, job, error);
+  asked->want = question->want;
+  asked->left_out = question->left_out;
+  return admit(service, service->analyses, asked, question->common.wait, admission, job, error);
 }
 
 static enum eo_code copy_axis(const double *from, int count, double **to, struct eo_error *error)
@@ -217,10 +217,11 @@ static enum eo_code copy_axis(const double *from, int count, double **to, struct
   return EO_OK;
 }
 
-enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q, const struct eo_sweep_axes *axes,
-                              enum eo_admission *admission, int64_t *job, struct eo_error *error)
+enum eo_code eo_service_sweep(struct eo_service *service, const struct eo_question *question,
+                              const struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
+                              struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, q, run_sweep, error);
+  struct asked *asked = copy_question(service, question, run_sweep, error);
   if (!asked)
     return EO_ERROR_MEMORY;
   asked->axes.torques = axes->torques;
@@ -229,36 +230,37 @@ enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q,
   if (!code)
     code = copy_axis(axes->speed, axes->speeds, &asked->axes.speed, error);
   if (!code)
-    return admit(s, s->sweeps, asked, q->wait, admission, job, error);
+    return admit(service, service->sweeps, asked, question->wait, admission, job, error);
   eo_service_release_task(&asked->task);
   return code;
 }
 
-enum eo_code eo_service_compute(struct eo_service *s, const struct eo_question *q, const struct eo_work *work,
-                                enum eo_admission *admission, int64_t *job, struct eo_error *error)
+enum eo_code eo_service_compute(struct eo_service *service, const struct eo_question *question,
+                                const struct eo_work *work, enum eo_admission *admission, int64_t *job,
+                                struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, q, run_work, error);
+  struct asked *asked = copy_question(service, question, run_work, error);
   if (!asked) {
     work->release(work->data);
     return EO_ERROR_MEMORY;
   }
   asked->work = *work;
-  return admit(s, s->works, asked, q->wait, admission, job, error);
+  return admit(service, service->works, asked, question->wait, admission, job, error);
 }
 
-bool eo_service_is_prepared(struct eo_service *s, const struct eo_design *design)
+bool eo_service_is_prepared(struct eo_service *service, const struct eo_design *design)
 {
-  return is_ready(s, design);
+  return is_ready(service, design);
 }
 
 /* What a fate other than running means; false: it runs. */
-static bool answer_at_once(struct eo_service *s, const struct asked *asked, enum eo_lane_fate fate,
+static bool answer_at_once(struct eo_service *service, const struct asked *asked, enum eo_lane_fate fate,
                            struct eo_answer *answer)
 {
   switch (fate) {
   case EO_LANE_OVERTAKEN:
     answer->kind = EO_ANSWER_OVERTAKEN;
-    atomic_fetch_add(&s->overtaken, 1);
+    atomic_fetch_add(&service->overtaken, 1);
     return true;
   case EO_LANE_EXPIRED:
     answer->kind = EO_ANSWER_PREPARING;
@@ -278,14 +280,14 @@ static bool answer_at_once(struct eo_service *s, const struct asked *asked, enum
 }
 
 /* The pair; NULL with the answer: it went out of memory before its turn came. */
-static struct eo_held_pair *hold_pair(struct eo_service *s, const struct asked *asked, struct eo_answer *answer)
+static struct eo_held_pair *hold_pair(struct eo_service *service, const struct asked *asked, struct eo_answer *answer)
 {
-  struct eo_held_pair *held = eo_pairs_find(s->pairs, &asked->design);
+  struct eo_held_pair *held = eo_pairs_find(service->pairs, &asked->design);
   enum eo_admission admission;
   if (held)
     return held;
   answer->kind = EO_ANSWER_PREPARING;
-  if (ask_for_pair(s, &asked->design, &admission, &answer->job, &answer->error))
+  if (ask_for_pair(service, &asked->design, &admission, &answer->job, &answer->error))
     answer->kind = EO_ANSWER_FAILED;
   else if (!answer->job) {
     answer->kind = admission == EO_ADMISSION_CLOSED ? EO_ANSWER_STOPPED : EO_ANSWER_FAILED;
@@ -295,77 +297,77 @@ static struct eo_held_pair *hold_pair(struct eo_service *s, const struct asked *
 }
 
 /* What the code of a computation makes of its answer. */
-static void conclude(struct eo_service *s, enum eo_code code, struct eo_answer *answer)
+static void conclude(struct eo_service *service, enum eo_code code, struct eo_answer *answer)
 {
   if (!code && answer->text.failed)
     code = eo_error_memory(&answer->error);
   if (!code)
     return;
-  answer->kind = code != EO_ERROR_CANCELLED  ? EO_ANSWER_FAILED
-                 : atomic_load(&s->stopping) ? EO_ANSWER_STOPPED
-                                             : EO_ANSWER_OVERTAKEN;
+  answer->kind = code != EO_ERROR_CANCELLED        ? EO_ANSWER_FAILED
+                 : atomic_load(&service->stopping) ? EO_ANSWER_STOPPED
+                                                   : EO_ANSWER_OVERTAKEN;
   if (!answer->error.code)
     eo_error_set(&answer->error, code, "", "The computation failed.");
   eo_text_done(&answer->text);
 }
 
-static void note_time(struct eo_service *s, const struct eo_answer *answer)
+static void note_time(struct eo_service *service, const struct eo_answer *answer)
 {
   double ms = answer->waited_ms + answer->computed_ms + answer->written_ms;
-  atomic_fetch_add(&s->analyses_done, 1);
-  pthread_mutex_lock(&s->timing_mutex);
-  s->total_ms += ms;
-  s->most_ms = ms > s->most_ms ? ms : s->most_ms;
+  atomic_fetch_add(&service->analyses_done, 1);
+  pthread_mutex_lock(&service->timing_mutex);
+  service->total_ms += ms;
+  service->most_ms = ms > service->most_ms ? ms : service->most_ms;
   for (int i = 0; i < EO_SERVICE_BUCKETS; i++)
-    s->bucket[i] += i == EO_SERVICE_BUCKETS - 1 || ms <= bucket_ms[i];
-  pthread_mutex_unlock(&s->timing_mutex);
+    service->bucket[i] += i == EO_SERVICE_BUCKETS - 1 || ms <= bucket_ms[i];
+  pthread_mutex_unlock(&service->timing_mutex);
 }
 
-static void note_done(struct eo_service *s, const struct asked *asked, const struct eo_answer *answer)
+static void note_done(struct eo_service *service, const struct asked *asked, const struct eo_answer *answer)
 {
   if (asked->run == run_analysis)
-    note_time(s, answer);
+    note_time(service, answer);
   else if (asked->run == run_sweep)
-    atomic_fetch_add(&s->sweeps_done, 1);
+    atomic_fetch_add(&service->sweeps_done, 1);
 }
 
 void eo_service_run_task(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
 {
-  struct eo_service *s = context;
+  struct eo_service *service = context;
   struct asked *asked = (struct asked *)task;
   struct eo_answer answer = {.kind = EO_ANSWER_DONE, .waited_ms = eo_clock_milliseconds() - task->queued};
   struct eo_held_pair *held = NULL;
-  if (!answer_at_once(s, asked, fate, &answer) && (held = hold_pair(s, asked, &answer)))
-    conclude(s, asked->run(asked, held, &answer), &answer);
-  eo_pairs_release(s->pairs, held);
+  if (!answer_at_once(service, asked, fate, &answer) && (held = hold_pair(service, asked, &answer)))
+    conclude(service, asked->run(asked, held, &answer), &answer);
+  eo_pairs_release(service->pairs, held);
   if (answer.kind == EO_ANSWER_DONE)
-    note_done(s, asked, &answer);
+    note_done(service, asked, &answer);
   asked->answer(asked->context, &answer);
   eo_text_done(&answer.text);
 }
 
-enum eo_code eo_service_status(struct eo_service *s, struct eo_service_status *status, struct eo_error *error)
+enum eo_code eo_service_status(struct eo_service *service, struct eo_service_status *status, struct eo_error *error)
 {
-  *status = (struct eo_service_status){.analyses_waiting = eo_lane_waiting(s->analyses),
-                                       .sweeps_waiting = eo_lane_waiting(s->sweeps),
-                                       .pairs = eo_pairs_count(s->pairs),
-                                       .subscribers = eo_events_subscribers(s->events),
-                                       .analyses = atomic_load(&s->analyses_done),
-                                       .overtaken = atomic_load(&s->overtaken),
-                                       .sweeps = atomic_load(&s->sweeps_done),
-                                       .refused = atomic_load(&s->refused),
-                                       .true_evaluations = atomic_load(&s->true_evaluations),
-                                       .reused_evaluations = atomic_load(&s->reused_evaluations),
-                                       .events = eo_events_published(s->events),
-                                       .cache_bytes = eo_cached_pairs_size(s->settings.cache)};
-  pthread_mutex_lock(&s->timing_mutex);
-  status->analysis_ms_total = s->total_ms;
-  status->analysis_ms_most = s->most_ms;
-  memcpy(status->analysis_ms_bucket, s->bucket, sizeof s->bucket);
-  pthread_mutex_unlock(&s->timing_mutex);
-  pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_count(s->store, status->jobs, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  *status = (struct eo_service_status){.analyses_waiting = eo_lane_waiting(service->analyses),
+                                       .sweeps_waiting = eo_lane_waiting(service->sweeps),
+                                       .pairs = eo_pairs_count(service->pairs),
+                                       .subscribers = eo_events_subscribers(service->events),
+                                       .analyses = atomic_load(&service->analyses_done),
+                                       .overtaken = atomic_load(&service->overtaken),
+                                       .sweeps = atomic_load(&service->sweeps_done),
+                                       .refused = atomic_load(&service->refused),
+                                       .true_evaluations = atomic_load(&service->true_evaluations),
+                                       .reused_evaluations = atomic_load(&service->reused_evaluations),
+                                       .events = eo_events_published(service->events),
+                                       .cache_bytes = eo_cached_pairs_size(service->settings.cache)};
+  pthread_mutex_lock(&service->timing_mutex);
+  status->analysis_ms_total = service->total_ms;
+  status->analysis_ms_most = service->most_ms;
+  memcpy(status->analysis_ms_bucket, service->bucket, sizeof service->bucket);
+  pthread_mutex_unlock(&service->timing_mutex);
+  pthread_mutex_lock(&service->store_mutex);
+  enum eo_code code = eo_queue_count(service->store, status->jobs, error);
+  pthread_mutex_unlock(&service->store_mutex);
   status->database = !code;
   return code;
 }

@@ -18,22 +18,22 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
 }
 
 /* Hands every row over; *rows: how many there were. */
-static enum eo_code visit_all(struct eo_statement s, eo_store_visit_design *visit, void *context, int *rows,
+static enum eo_code visit_all(struct eo_statement statement, eo_store_visit_design *visit, void *context, int *rows,
                               struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   *rows = 0;
-  while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_design design = {.id = eo_column_integer(&s, 0),
-                                            .revision = eo_column_integer(&s, 1),
-                                            .name = eo_column_text(&s, 2),
-                                            .document = eo_column_text(&s, 3),
-                                            .created = eo_column_text(&s, 4),
-                                            .updated = eo_column_text(&s, 5)};
+  while (!code && eo_statement_step(&statement)) {
+    const struct eo_stored_design design = {.id = eo_column_integer(&statement, 0),
+                                            .revision = eo_column_integer(&statement, 1),
+                                            .name = eo_column_text(&statement, 2),
+                                            .document = eo_column_text(&statement, 3),
+                                            .created = eo_column_text(&statement, 4),
+                                            .updated = eo_column_text(&statement, 5)};
     ++*rows;
     code = visit ? visit(context, &design, error) : EO_OK;
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
@@ -75,11 +75,11 @@ enum eo_code eo_store_add_design(struct eo_store *store, const char *name, const
 static enum eo_code check(struct eo_store *store, int64_t id, int64_t expected, enum eo_design_outcome *outcome,
                           struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT revision FROM design WHERE id = ?", "i", id);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT revision FROM design WHERE id = ?", "i", id);
   *outcome = EO_DESIGN_MISSING;
-  if (eo_statement_step(&s))
-    *outcome = !expected || eo_column_integer(&s, 0) == expected ? EO_DESIGN_DONE : EO_DESIGN_STALE;
-  return eo_statement_end(&s, error);
+  if (eo_statement_step(&statement))
+    *outcome = !expected || eo_column_integer(&statement, 0) == expected ? EO_DESIGN_DONE : EO_DESIGN_STALE;
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code change(struct eo_store *store, int64_t id, int64_t expected, const char *name, const char *document,
@@ -110,10 +110,11 @@ enum eo_code eo_store_change_design(struct eo_store *store, int64_t id, int64_t 
 static enum eo_code check_measurements(struct eo_store *store, int64_t id, enum eo_design_outcome *outcome,
                                        struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE design = ? LIMIT 1", "i", id);
-  if (eo_statement_step(&s))
+  struct eo_statement statement = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE design = ? LIMIT 1", "i",
+                                                     id);
+  if (eo_statement_step(&statement))
     *outcome = EO_DESIGN_USED;
-  return eo_statement_end(&s, error);
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code remove_design(struct eo_store *store, int64_t id, int64_t expected, enum eo_design_outcome *outcome,

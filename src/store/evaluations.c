@@ -28,51 +28,51 @@ static enum eo_evaluation_outcome find_outcome(const char *name)
 enum { CURVE = EO_OBJECTIVE_SAMPLES + 2 };
 
 /* Fills curve[CURVE]; false when it is not there. */
-static bool copy_curve(const struct eo_objective_case *c, double *curve)
+static bool copy_curve(const struct eo_objective_case *objective_case, double *curve)
 {
   bool finite = true;
-  memcpy(curve, c->transmission, sizeof c->transmission);
-  memcpy(curve + EO_OBJECTIVE_SAMPLES, c->end_impact, sizeof c->end_impact);
+  memcpy(curve, objective_case->transmission, sizeof objective_case->transmission);
+  memcpy(curve + EO_OBJECTIVE_SAMPLES, objective_case->end_impact, sizeof objective_case->end_impact);
   for (int i = 0; i < CURVE; i++)
     finite = finite && isfinite(curve[i]);
   return finite;
 }
 
-static void read_curve(const struct eo_statement *s, int column, struct eo_objective_case *c)
+static void read_curve(const struct eo_statement *statement, int column, struct eo_objective_case *objective_case)
 {
   double value[CURVE];
-  const void *bytes = sqlite3_column_blob(s->handle, column);
-  const bool there = bytes && sqlite3_column_bytes(s->handle, column) == (int)sizeof value;
+  const void *bytes = sqlite3_column_blob(statement->handle, column);
+  const bool there = bytes && sqlite3_column_bytes(statement->handle, column) == (int)sizeof value;
   for (int i = 0; i < CURVE; i++)
     value[i] = NAN;
   if (there)
     memcpy(value, bytes, sizeof value);
-  memcpy(c->transmission, value, sizeof c->transmission);
-  memcpy(c->end_impact, value + EO_OBJECTIVE_SAMPLES, sizeof c->end_impact);
+  memcpy(objective_case->transmission, value, sizeof objective_case->transmission);
+  memcpy(objective_case->end_impact, value + EO_OBJECTIVE_SAMPLES, sizeof objective_case->end_impact);
 }
 
-static void add_raw(struct eo_hash *hash, const struct eo_objective_case *c)
+static void add_raw(struct eo_hash *hash, const struct eo_objective_case *objective_case)
 {
-  eo_hash_add_number(hash, "peak_to_peak", c->peak_to_peak);
-  eo_hash_add_number(hash, "impact", c->impact);
-  eo_hash_add_number(hash, "rms", c->rms);
-  eo_hash_add_number(hash, "contact_pressure", c->contact_pressure);
-  eo_hash_add_number(hash, "root_stress", c->root_stress);
-  eo_hash_add_number(hash, "edge_load_share", c->edge_load_share);
-  eo_hash_add_number(hash, "contact_loss", c->contact_loss);
-  eo_hash_add_number(hash, "failed", c->failed);
+  eo_hash_add_number(hash, "peak_to_peak", objective_case->peak_to_peak);
+  eo_hash_add_number(hash, "impact", objective_case->impact);
+  eo_hash_add_number(hash, "rms", objective_case->rms);
+  eo_hash_add_number(hash, "contact_pressure", objective_case->contact_pressure);
+  eo_hash_add_number(hash, "root_stress", objective_case->root_stress);
+  eo_hash_add_number(hash, "edge_load_share", objective_case->edge_load_share);
+  eo_hash_add_number(hash, "contact_loss", objective_case->contact_loss);
+  eo_hash_add_number(hash, "failed", objective_case->failed);
   const struct {
     const char *name;
     double value;
-  } rating[] = {{"flank_safety", c->flank_safety},
-                {"root_safety", c->root_safety},
-                {"film_ratio", c->film_ratio},
-                {"contact_temperature", c->contact_temperature}};
+  } rating[] = {{"flank_safety", objective_case->flank_safety},
+                {"root_safety", objective_case->root_safety},
+                {"film_ratio", objective_case->film_ratio},
+                {"contact_temperature", objective_case->contact_temperature}};
   for (size_t i = 0; i < sizeof rating / sizeof rating[0]; i++)
     if (!isnan(rating[i].value)) /* rows of before there was a rating have the check sum they had */
       eo_hash_add_number(hash, rating[i].name, rating[i].value);
   double curve[CURVE];
-  const bool there = copy_curve(c, curve);
+  const bool there = copy_curve(objective_case, curve);
   for (int i = 0; i < CURVE && there; i++) /* likewise */
     eo_hash_add_number(hash, "curve", curve[i]);
 }
@@ -108,85 +108,88 @@ enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_store
       "tttnnn", problem->hash, problem->spec, problem->name, problem->evaluator, problem->scenarios, problem->cases);
   if (code)
     return code;
-  struct eo_statement s = eo_statement_begin(store, "SELECT id FROM problem WHERE hash = ?", "t", problem->hash);
-  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT id FROM problem WHERE hash = ?", "t",
+                                                     problem->hash);
+  *id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_each_problem(struct eo_store *store, eo_store_visit_problem *visit, void *context,
                                    struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT p.id, p.hash, p.spec, p.name, p.created, p.evaluator, p.scenarios, p.cases, count(e.id),"
       " coalesce(sum(e.outcome <> 'converged'), 0), coalesce(sum(e.cost_s), 0)"
       " FROM problem p LEFT JOIN evaluation e ON e.problem = p.id GROUP BY p.id ORDER BY p.id",
       "");
   enum eo_code code = EO_OK;
-  while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_problem problem = {.id = eo_column_integer(&s, 0),
-                                              .hash = eo_column_text(&s, 1),
-                                              .spec = eo_column_text(&s, 2),
-                                              .name = eo_column_text(&s, 3),
-                                              .created = eo_column_text(&s, 4),
-                                              .evaluator = (int)eo_column_integer(&s, 5),
-                                              .scenarios = (int)eo_column_integer(&s, 6),
-                                              .cases = (int)eo_column_integer(&s, 7),
-                                              .evaluations = eo_column_integer(&s, 8),
-                                              .failed = eo_column_integer(&s, 9),
-                                              .cost = eo_column_number(&s, 10)};
+  while (!code && eo_statement_step(&statement)) {
+    const struct eo_stored_problem problem = {.id = eo_column_integer(&statement, 0),
+                                              .hash = eo_column_text(&statement, 1),
+                                              .spec = eo_column_text(&statement, 2),
+                                              .name = eo_column_text(&statement, 3),
+                                              .created = eo_column_text(&statement, 4),
+                                              .evaluator = (int)eo_column_integer(&statement, 5),
+                                              .scenarios = (int)eo_column_integer(&statement, 6),
+                                              .cases = (int)eo_column_integer(&statement, 7),
+                                              .evaluations = eo_column_integer(&statement, 8),
+                                              .failed = eo_column_integer(&statement, 9),
+                                              .cost = eo_column_number(&statement, 10)};
     code = visit(context, &problem, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
 /* Columns from first: scenario, load case, then the values. Rows come in order. */
-static bool read_raw(const struct eo_statement *s, int first, int expected, const struct eo_stored_evaluation *row)
+static bool read_raw(const struct eo_statement *statement, int first, int expected,
+                     const struct eo_stored_evaluation *row)
 {
-  if (eo_column_integer(s, first) != expected / row->cases || eo_column_integer(s, first + 1) != expected % row->cases)
+  if (eo_column_integer(statement, first) != expected / row->cases ||
+      eo_column_integer(statement, first + 1) != expected % row->cases)
     return false;
-  row->raw[expected] = (struct eo_objective_case){.peak_to_peak = eo_column_number(s, first + 2),
-                                                  .impact = eo_column_number(s, first + 3),
-                                                  .rms = eo_column_number(s, first + 4),
-                                                  .contact_pressure = eo_column_number(s, first + 5),
-                                                  .root_stress = eo_column_number(s, first + 6),
-                                                  .edge_load_share = eo_column_number(s, first + 7),
-                                                  .contact_loss = eo_column_number(s, first + 8),
-                                                  .failed = eo_column_integer(s, first + 9) != 0,
-                                                  .flank_safety = eo_column_number(s, first + 10),
-                                                  .root_safety = eo_column_number(s, first + 11),
-                                                  .film_ratio = eo_column_number(s, first + 12),
-                                                  .contact_temperature = eo_column_number(s, first + 13)};
-  read_curve(s, first + 14, &row->raw[expected]);
+  row->raw[expected] = (struct eo_objective_case){.peak_to_peak = eo_column_number(statement, first + 2),
+                                                  .impact = eo_column_number(statement, first + 3),
+                                                  .rms = eo_column_number(statement, first + 4),
+                                                  .contact_pressure = eo_column_number(statement, first + 5),
+                                                  .root_stress = eo_column_number(statement, first + 6),
+                                                  .edge_load_share = eo_column_number(statement, first + 7),
+                                                  .contact_loss = eo_column_number(statement, first + 8),
+                                                  .failed = eo_column_integer(statement, first + 9) != 0,
+                                                  .flank_safety = eo_column_number(statement, first + 10),
+                                                  .root_safety = eo_column_number(statement, first + 11),
+                                                  .film_ratio = eo_column_number(statement, first + 12),
+                                                  .contact_temperature = eo_column_number(statement, first + 13)};
+  read_curve(statement, first + 14, &row->raw[expected]);
   return true;
 }
 
 static enum eo_code read_all_raw(struct eo_store *store, struct eo_stored_evaluation *row, struct eo_error *error)
 {
   int count = 0, size = row->scenarios * row->cases;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2, contact_pressure_Pa, root_stress_Pa,"
       " edge_load_share, contact_loss, failed, flank_safety, root_safety, film_ratio, contact_temperature_C, curve"
       " FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
       "i", row->id);
   bool good = true;
-  while (good && eo_statement_step(&s)) {
-    good = count < size && read_raw(&s, 0, count, row);
+  while (good && eo_statement_step(&statement)) {
+    good = count < size && read_raw(&statement, 0, count, row);
     count++;
   }
-  enum eo_code code = eo_statement_end(&s, error);
+  enum eo_code code = eo_statement_end(&statement, error);
   return code || (good && count == size) ? code : damaged(store, row->id, error);
 }
 
 /* Columns id, outcome, reason, cost. */
-static void read_head(const struct eo_statement *s, struct eo_stored_evaluation *row)
+static void read_head(const struct eo_statement *statement, struct eo_stored_evaluation *row)
 {
-  row->id = eo_column_integer(s, 0);
-  row->outcome = find_outcome(eo_column_text(s, 1));
-  snprintf(row->reason, sizeof row->reason, "%s", eo_column_text(s, 2));
-  row->cost = eo_column_number(s, 3);
+  row->id = eo_column_integer(statement, 0);
+  row->outcome = find_outcome(eo_column_text(statement, 1));
+  snprintf(row->reason, sizeof row->reason, "%s", eo_column_text(statement, 2));
+  row->cost = eo_column_number(statement, 3);
 }
 
 static enum eo_code verify(struct eo_store *store, const struct eo_stored_evaluation *row, const char *expected,
@@ -202,16 +205,16 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
 {
   char digest[EO_HASH_LENGTH + 1] = "";
   struct eo_stored_evaluation found = *row;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT id, outcome, reason, cost_s, digest FROM evaluation WHERE problem = ? AND modification = ?", "it",
       problem, modification);
   found.id = 0;
   found.modification = modification;
-  if (eo_statement_step(&s)) {
-    read_head(&s, &found);
-    snprintf(digest, sizeof digest, "%s", eo_column_text(&s, 4));
+  if (eo_statement_step(&statement)) {
+    read_head(&statement, &found);
+    snprintf(digest, sizeof digest, "%s", eo_column_text(&statement, 4));
   }
-  enum eo_code code = eo_statement_end(&s, error);
+  enum eo_code code = eo_statement_end(&statement, error);
   if (!code && found.id)
     code = read_all_raw(store, &found, error);
   if (!code && found.id)
@@ -229,15 +232,15 @@ enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct 
   char digest[EO_HASH_LENGTH + 1] = "";
   size_t start = modification->size;
   struct eo_stored_evaluation found = *row;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT id, outcome, reason, cost_s, digest, modification FROM evaluation WHERE id = ?", "i", id);
   found.id = 0;
-  if (eo_statement_step(&s)) {
-    read_head(&s, &found);
-    snprintf(digest, sizeof digest, "%s", eo_column_text(&s, 4));
-    eo_text_add(modification, eo_column_text(&s, 5));
+  if (eo_statement_step(&statement)) {
+    read_head(&statement, &found);
+    snprintf(digest, sizeof digest, "%s", eo_column_text(&statement, 4));
+    eo_text_add(modification, eo_column_text(&statement, 5));
   }
-  enum eo_code code = eo_statement_end(&s, error);
+  enum eo_code code = eo_statement_end(&statement, error);
   if (!code && modification->failed)
     code = eo_error_memory(error);
   if (!code && !found.id)
@@ -256,13 +259,15 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
-    const struct eo_objective_case *c = &row->raw[i];
+    const struct eo_objective_case *objective_case = &row->raw[i];
     double curve[CURVE];
-    const bool there = copy_curve(c, curve);
+    const bool there = copy_curve(objective_case, curve);
     code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                            "innrrrrrrrnrrrrb", row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact,
-                            c->rms, c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss,
-                            (int)c->failed, c->flank_safety, c->root_safety, c->film_ratio, c->contact_temperature,
+                            "innrrrrrrrnrrrrb", row->id, i / row->cases, i % row->cases, objective_case->peak_to_peak,
+                            objective_case->impact, objective_case->rms, objective_case->contact_pressure,
+                            objective_case->root_stress, objective_case->edge_load_share, objective_case->contact_loss,
+                            (int)objective_case->failed, objective_case->flank_safety, objective_case->root_safety,
+                            objective_case->film_ratio, objective_case->contact_temperature,
                             there ? (const void *)curve : NULL, sizeof curve);
   }
   return code;
@@ -310,9 +315,9 @@ enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, st
 
 enum eo_code eo_store_last_evaluation(struct eo_store *store, int64_t *last, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT coalesce(max(id), 0) FROM evaluation", "");
-  *last = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT coalesce(max(id), 0) FROM evaluation", "");
+  *last = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 struct walk {
@@ -327,46 +332,47 @@ struct walk {
 };
 
 /* The row collected last is complete: hand it over. */
-static enum eo_code hand_over(struct walk *w, struct eo_error *error)
+static enum eo_code hand_over(struct walk *walk, struct eo_error *error)
 {
-  if (!w->row.id)
+  if (!walk->row.id)
     return EO_OK;
-  enum eo_code code = w->count == w->row.scenarios * w->row.cases ? verify(w->store, &w->row, w->digest, error)
-                                                                  : damaged(w->store, w->row.id, error);
-  return code ? code : w->visit(w->context, &w->row, w->x, w->size, error);
+  enum eo_code code = walk->count == walk->row.scenarios * walk->row.cases
+                          ? verify(walk->store, &walk->row, walk->digest, error)
+                          : damaged(walk->store, walk->row.id, error);
+  return code ? code : walk->visit(walk->context, &walk->row, walk->x, walk->size, error);
 }
 
-static enum eo_code start_row(struct walk *w, const struct eo_statement *s, struct eo_error *error)
+static enum eo_code start_row(struct walk *walk, const struct eo_statement *statement, struct eo_error *error)
 {
-  const void *x = sqlite3_column_blob(s->handle, 6);
-  w->size = x ? (int)((size_t)sqlite3_column_bytes(s->handle, 6) / sizeof *w->x) : 0;
-  free(w->modification);
-  free(w->x);
-  read_head(s, &w->row);
-  w->row.modification = w->modification = strdup(eo_column_text(s, 4));
-  w->x = w->size ? malloc((size_t)w->size * sizeof *w->x) : NULL;
-  snprintf(w->digest, sizeof w->digest, "%s", eo_column_text(s, 5));
-  w->count = 0;
-  if (!w->modification || (w->size && !w->x))
+  const void *x = sqlite3_column_blob(statement->handle, 6);
+  walk->size = x ? (int)((size_t)sqlite3_column_bytes(statement->handle, 6) / sizeof *walk->x) : 0;
+  free(walk->modification);
+  free(walk->x);
+  read_head(statement, &walk->row);
+  walk->row.modification = walk->modification = strdup(eo_column_text(statement, 4));
+  walk->x = walk->size ? malloc((size_t)walk->size * sizeof *walk->x) : NULL;
+  snprintf(walk->digest, sizeof walk->digest, "%s", eo_column_text(statement, 5));
+  walk->count = 0;
+  if (!walk->modification || (walk->size && !walk->x))
     return eo_error_memory(error);
-  if (w->size)
-    memcpy(w->x, x, (size_t)w->size * sizeof *w->x);
+  if (walk->size)
+    memcpy(walk->x, x, (size_t)walk->size * sizeof *walk->x);
   return EO_OK;
 }
 
-static enum eo_code take_row(struct walk *w, const struct eo_statement *s, struct eo_error *error)
+static enum eo_code take_row(struct walk *walk, const struct eo_statement *statement, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  if (eo_column_integer(s, 0) != w->row.id) {
-    code = hand_over(w, error);
+  if (eo_column_integer(statement, 0) != walk->row.id) {
+    code = hand_over(walk, error);
     if (!code)
-      code = start_row(w, s, error);
+      code = start_row(walk, statement, error);
   }
   if (code)
     return code;
-  if (w->count >= w->row.scenarios * w->row.cases || !read_raw(s, 7, w->count, &w->row))
-    return damaged(w->store, w->row.id, error);
-  w->count++;
+  if (walk->count >= walk->row.scenarios * walk->row.cases || !read_raw(statement, 7, walk->count, &walk->row))
+    return damaged(walk->store, walk->row.id, error);
+  walk->count++;
   return EO_OK;
 }
 
@@ -374,11 +380,12 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
                                       int scenarios, int cases, eo_store_visit *visit, void *context,
                                       struct eo_error *error)
 {
-  struct walk w = {.store = store, .row = {.scenarios = scenarios, .cases = cases}, .visit = visit, .context = context};
-  w.row.raw = calloc((size_t)scenarios * (size_t)cases, sizeof *w.row.raw);
-  if (!w.row.raw)
+  struct walk walk = {
+      .store = store, .row = {.scenarios = scenarios, .cases = cases}, .visit = visit, .context = context};
+  walk.row.raw = calloc((size_t)scenarios * (size_t)cases, sizeof *walk.row.raw);
+  if (!walk.row.raw)
     return eo_error_memory(error);
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store,
                          "SELECT e.id, e.outcome, e.reason, e.cost_s, e.modification, e.digest,"
                          " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
@@ -390,38 +397,41 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
                          "OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",
                          "iit", problem, upto, space);
   enum eo_code code = EO_OK;
-  while (!code && eo_statement_step(&s))
-    code = take_row(&w, &s, error);
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  while (!code && eo_statement_step(&statement))
+    code = take_row(&walk, &statement, error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   if (!code)
     code = end;
   if (!code)
-    code = hand_over(&w, error);
-  free(w.row.raw);
-  free(w.modification);
-  free(w.x);
+    code = hand_over(&walk, error);
+  free(walk.row.raw);
+  free(walk.modification);
+  free(walk.x);
   return code;
 }
 
 enum eo_code eo_store_remove_problem(struct eo_store *store, int64_t problem, int64_t *removed, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT count(*) FROM evaluation WHERE problem = ?", "i", problem);
-  *removed = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  enum eo_code code = eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT count(*) FROM evaluation WHERE problem = ?", "i",
+                                                     problem);
+  *removed = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  enum eo_code code = eo_statement_end(&statement, error);
   return code ? code : EO_STATEMENT_RUN(store, error, "DELETE FROM problem WHERE id = ?", "i", problem);
 }
 
 /* Columns id, problem, scenarios, cases, modification. */
-static enum eo_code is_damaged(struct eo_store *store, const struct eo_statement *s, bool *answer,
+static enum eo_code is_damaged(struct eo_store *store, const struct eo_statement *statement, bool *answer,
                                struct eo_error *error)
 {
-  struct eo_stored_evaluation row = {.scenarios = (int)eo_column_integer(s, 2), .cases = (int)eo_column_integer(s, 3)};
+  struct eo_stored_evaluation row = {.scenarios = (int)eo_column_integer(statement, 2),
+                                     .cases = (int)eo_column_integer(statement, 3)};
   struct eo_error found;
   row.raw = calloc((size_t)row.scenarios * (size_t)row.cases, sizeof *row.raw);
   if (!row.raw)
     return eo_error_memory(error);
-  *answer = eo_store_find_evaluation(store, eo_column_integer(s, 1), eo_column_text(s, 4), &row, &found) ||
-            row.id != eo_column_integer(s, 0);
+  *answer = eo_store_find_evaluation(store, eo_column_integer(statement, 1), eo_column_text(statement, 4), &row,
+                                     &found) ||
+            row.id != eo_column_integer(statement, 0);
   free(row.raw);
   return EO_OK;
 }
@@ -434,17 +444,17 @@ static enum eo_code look_at_all(struct eo_store *store, bool removes, int64_t *r
   int64_t last = 0;
   *rows = *damaged_rows = 0;
   for (;;) {
-    struct eo_statement s = eo_statement_begin(
+    struct eo_statement statement = eo_statement_begin(
         store,
         "SELECT e.id, p.id, p.scenarios, p.cases, e.modification FROM evaluation e JOIN problem p ON p.id = e.problem"
         " WHERE e.id > ? ORDER BY e.id LIMIT 1",
         "i", last);
-    bool more = eo_statement_step(&s), wrong = false;
+    bool more = eo_statement_step(&statement), wrong = false;
     if (more) {
-      last = eo_column_integer(&s, 0);
-      code = is_damaged(store, &s, &wrong, error);
+      last = eo_column_integer(&statement, 0);
+      code = is_damaged(store, &statement, &wrong, error);
     }
-    enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+    enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
     code = code ? code : end;
     if (!code && wrong && removes)
       code = EO_STATEMENT_RUN(store, error, "DELETE FROM evaluation WHERE id = ?", "i", last);

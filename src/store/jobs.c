@@ -39,37 +39,37 @@ int eo_store_job_kind_find(const char *name)
   return find_name(eo_store_job_kinds, EO_JOB_KINDS, name);
 }
 
-struct eo_stored_job eo_job_row_read(const struct eo_statement *s)
+struct eo_stored_job eo_job_row_read(const struct eo_statement *statement)
 {
-  return (struct eo_stored_job){.id = eo_column_integer(s, 0),
-                                .problem = eo_column_integer(s, 1),
-                                .study = eo_column_text(s, 2),
-                                .space = eo_column_text(s, 3),
-                                .design = eo_column_text(s, 4),
-                                .name = eo_column_text(s, 5),
-                                .algorithm = eo_column_text(s, 6),
-                                .fresh = eo_column_integer(s, 7) != 0,
-                                .import_upto = eo_column_integer(s, 8),
-                                .state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(s, 9)),
-                                .stopped = eo_column_text(s, 10),
-                                .true_evaluations = (int)eo_column_integer(s, 11),
-                                .individuals = (int)eo_column_integer(s, 12),
-                                .best = eo_column_integer(s, 13),
-                                .best_value = eo_column_number(s, 14),
-                                .result = eo_column_text(s, 15),
-                                .created = eo_column_text(s, 16),
-                                .updated = eo_column_text(s, 17),
-                                .kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(s, 18)),
-                                .pair = eo_column_text(s, 19),
-                                .served = eo_column_integer(s, 20) != 0,
-                                .priority = (int)eo_column_integer(s, 21),
-                                .stop = eo_column_integer(s, 22) != 0,
-                                .attempts = (int)eo_column_integer(s, 23),
-                                .error = eo_column_text(s, 24),
-                                .progress = eo_column_text(s, 25),
-                                .started = eo_column_text(s, 26),
-                                .finished = eo_column_text(s, 27),
-                                .spec = eo_column_text(s, 28)};
+  return (struct eo_stored_job){.id = eo_column_integer(statement, 0),
+                                .problem = eo_column_integer(statement, 1),
+                                .study = eo_column_text(statement, 2),
+                                .space = eo_column_text(statement, 3),
+                                .design = eo_column_text(statement, 4),
+                                .name = eo_column_text(statement, 5),
+                                .algorithm = eo_column_text(statement, 6),
+                                .fresh = eo_column_integer(statement, 7) != 0,
+                                .import_upto = eo_column_integer(statement, 8),
+                                .state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(statement, 9)),
+                                .stopped = eo_column_text(statement, 10),
+                                .true_evaluations = (int)eo_column_integer(statement, 11),
+                                .individuals = (int)eo_column_integer(statement, 12),
+                                .best = eo_column_integer(statement, 13),
+                                .best_value = eo_column_number(statement, 14),
+                                .result = eo_column_text(statement, 15),
+                                .created = eo_column_text(statement, 16),
+                                .updated = eo_column_text(statement, 17),
+                                .kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(statement, 18)),
+                                .pair = eo_column_text(statement, 19),
+                                .served = eo_column_integer(statement, 20) != 0,
+                                .priority = (int)eo_column_integer(statement, 21),
+                                .stop = eo_column_integer(statement, 22) != 0,
+                                .attempts = (int)eo_column_integer(statement, 23),
+                                .error = eo_column_text(statement, 24),
+                                .progress = eo_column_text(statement, 25),
+                                .started = eo_column_text(statement, 26),
+                                .finished = eo_column_text(statement, 27),
+                                .spec = eo_column_text(statement, 28)};
 }
 
 enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error)
@@ -89,7 +89,7 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
 enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job,
                                  struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled', 'done')"
       " ORDER BY id DESC",
@@ -97,12 +97,12 @@ enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool
   enum eo_code code = EO_OK;
   bool taken = false;
   job->id = 0;
-  while (!code && !taken && eo_statement_step(&s)) {
-    job->id = eo_column_integer(&s, 0);
-    job->import_upto = eo_column_integer(&s, 1);
+  while (!code && !taken && eo_statement_step(&statement)) {
+    job->id = eo_column_integer(&statement, 0);
+    job->import_upto = eo_column_integer(&statement, 1);
     code = eo_store_claim_job(store, job->id, &taken, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   if (!taken)
     job->id = 0;
   code = code ? code : end;
@@ -130,13 +130,13 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
                                 struct eo_error *error)
 {
   bool there = false, same = false, taken = false;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT study IS ?2, import_upto IS NOT NULL FROM job WHERE id = ?1", "it", job->id, job->study);
-  if ((there = eo_statement_step(&s))) {
-    same = eo_column_integer(&s, 0) != 0;
-    *resumed = same && eo_column_integer(&s, 1);
+  if ((there = eo_statement_step(&statement))) {
+    same = eo_column_integer(&statement, 0) != 0;
+    *resumed = same && eo_column_integer(&statement, 1);
   }
-  enum eo_code code = eo_statement_end(&s, error);
+  enum eo_code code = eo_statement_end(&statement, error);
   if (!code && !there)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job->id);
   if (!code)
@@ -147,15 +147,15 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
     code = forget_path(store, job->id, error);
   if (code)
     return code;
-  s = eo_statement_begin(
+  statement = eo_statement_begin(
       store,
       "UPDATE job SET state = 'running', problem = nullif(?, 0), study = ?, space = ?, updated = " EO_NOW ","
       " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id "
       "= ? RETURNING import_upto",
       "itti", job->problem, job->study, job->space, job->id);
-  while (eo_statement_step(&s))
-    job->import_upto = eo_column_integer(&s, 0);
-  return eo_statement_end(&s, error);
+  while (eo_statement_step(&statement))
+    job->import_upto = eo_column_integer(&statement, 0);
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error)
@@ -172,9 +172,9 @@ enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_
 
 enum eo_code eo_store_job_shall_stop(struct eo_store *store, int64_t job, bool *stop, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT stop FROM job WHERE id = ?", "i", job);
-  *stop = eo_statement_step(&s) && eo_column_integer(&s, 0) != 0;
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT stop FROM job WHERE id = ?", "i", job);
+  *stop = eo_statement_step(&statement) && eo_column_integer(&statement, 0) != 0;
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error)
@@ -183,56 +183,60 @@ enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const cha
 }
 
 /* The point belongs to the evaluation: it outlives the job. */
-static enum eo_code keep_point(struct eo_store *store, const struct eo_stored_candidate *c, struct eo_error *error)
+static enum eo_code keep_point(struct eo_store *store, const struct eo_stored_candidate *candidate,
+                               struct eo_error *error)
 {
   return EO_STATEMENT_RUN(store, error,
                           "INSERT OR IGNORE INTO point (evaluation, space, x) SELECT ?, space, ? FROM job WHERE id = ? "
                           "AND space IS NOT NULL",
-                          "ibi", c->evaluation, (const void *)c->x, (size_t)c->size * sizeof *c->x, c->job);
+                          "ibi", candidate->evaluation, (const void *)candidate->x,
+                          (size_t)candidate->size * sizeof *candidate->x, candidate->job);
 }
 
-enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
+enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *candidate,
+                                    struct eo_error *error)
 {
   enum eo_code code =
       EO_STATEMENT_RUN(store, error,
                        "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
                        " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING",
-                       "innninb", c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused,
-                       (const void *)c->x, (size_t)c->size * sizeof *c->x);
+                       "innninb", candidate->job, candidate->ordinal, candidate->generation, candidate->individual,
+                       candidate->evaluation, (int)candidate->reused, (const void *)candidate->x,
+                       (size_t)candidate->size * sizeof *candidate->x);
   if (code)
     return code;
   if (sqlite3_changes(store->handle))
-    return c->reused ? EO_OK : keep_point(store, c, error);
-  struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in",
-                                             c->job, c->ordinal);
-  if (eo_statement_step(&s))
-    c->reused = eo_column_integer(&s, 0) != 0;
-  return eo_statement_end(&s, error);
+    return candidate->reused ? EO_OK : keep_point(store, candidate, error);
+  struct eo_statement statement = eo_statement_begin(
+      store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in", candidate->job, candidate->ordinal);
+  if (eo_statement_step(&statement))
+    candidate->reused = eo_column_integer(&statement, 0) != 0;
+  return eo_statement_end(&statement, error);
 }
 
-enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *p,
+enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *prediction,
                                      struct eo_error *error)
 {
   return EO_STATEMENT_RUN(
       store, error,
       "INSERT INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)"
       " ON CONFLICT (job, generation, individual) DO NOTHING",
-      "innrrb", p->job, p->generation, p->individual, p->fitness, p->credibility, (const void *)p->x,
-      (size_t)p->size * sizeof *p->x);
+      "innrrb", prediction->job, prediction->generation, prediction->individual, prediction->fitness,
+      prediction->credibility, (const void *)prediction->x, (size_t)prediction->size * sizeof *prediction->x);
 }
 
 enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context,
                                struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id",
       "i", problem);
   enum eo_code code = EO_OK;
-  while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_job job = eo_job_row_read(&s);
+  while (!code && eo_statement_step(&statement)) {
+    const struct eo_stored_job job = eo_job_row_read(&statement);
     code = visit(context, &job, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
@@ -242,10 +246,10 @@ struct point {
   int size;
 };
 
-static void read_point(const struct eo_statement *s, int column, struct point *point)
+static void read_point(const struct eo_statement *statement, int column, struct point *point)
 {
-  size_t bytes = (size_t)sqlite3_column_bytes(s->handle, column);
-  const void *x = sqlite3_column_blob(s->handle, column);
+  size_t bytes = (size_t)sqlite3_column_bytes(statement->handle, column);
+  const void *x = sqlite3_column_blob(statement->handle, column);
   if (!x || bytes > sizeof point->x)
     bytes = 0;
   point->size = (int)(bytes / sizeof point->x[0]);
@@ -256,26 +260,26 @@ static void read_point(const struct eo_statement *s, int column, struct point *p
 enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit,
                                       eo_store_visit_candidate *visit, void *context, struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store,
                          "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate"
                          " WHERE job = ? AND ordinal > ? ORDER BY ordinal LIMIT ?",
                          "inn", job, after, limit);
   enum eo_code code = EO_OK;
   struct point point;
-  while (!code && eo_statement_step(&s)) {
-    read_point(&s, 5, &point);
+  while (!code && eo_statement_step(&statement)) {
+    read_point(&statement, 5, &point);
     const struct eo_stored_candidate candidate = {.job = job,
-                                                  .evaluation = eo_column_integer(&s, 0),
-                                                  .ordinal = (int)eo_column_integer(&s, 1),
-                                                  .generation = (int)eo_column_integer(&s, 2),
-                                                  .individual = (int)eo_column_integer(&s, 3),
-                                                  .reused = eo_column_integer(&s, 4) != 0,
+                                                  .evaluation = eo_column_integer(&statement, 0),
+                                                  .ordinal = (int)eo_column_integer(&statement, 1),
+                                                  .generation = (int)eo_column_integer(&statement, 2),
+                                                  .individual = (int)eo_column_integer(&statement, 3),
+                                                  .reused = eo_column_integer(&statement, 4) != 0,
                                                   .x = point.x,
                                                   .size = point.size};
     code = visit(context, &candidate, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
@@ -288,25 +292,25 @@ enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_sto
 enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit,
                                       void *context, struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store,
                          "SELECT generation, individual, fitness, credibility, x FROM prediction WHERE job = ?"
                          " ORDER BY generation, individual",
                          "i", job);
   enum eo_code code = EO_OK;
   struct point point;
-  while (!code && eo_statement_step(&s)) {
-    read_point(&s, 4, &point);
+  while (!code && eo_statement_step(&statement)) {
+    read_point(&statement, 4, &point);
     const struct eo_stored_prediction prediction = {.job = job,
-                                                    .generation = (int)eo_column_integer(&s, 0),
-                                                    .individual = (int)eo_column_integer(&s, 1),
-                                                    .fitness = eo_column_number(&s, 2),
-                                                    .credibility = eo_column_number(&s, 3),
+                                                    .generation = (int)eo_column_integer(&statement, 0),
+                                                    .individual = (int)eo_column_integer(&statement, 1),
+                                                    .fitness = eo_column_number(&statement, 2),
+                                                    .credibility = eo_column_number(&statement, 3),
                                                     .x = point.x,
                                                     .size = point.size};
     code = visit(context, &prediction, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 

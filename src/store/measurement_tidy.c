@@ -98,9 +98,9 @@ static struct entry classify(const char *root, const char *name)
 
 static enum eo_code has_row(struct eo_store *store, int64_t id, bool *there, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE id = ?", "i", id);
-  *there = eo_statement_step(&s);
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE id = ?", "i", id);
+  *there = eo_statement_step(&statement);
+  return eo_statement_end(&statement, error);
 }
 
 /* DATA/measurements/lost+found/NAME, or NAME-2, NAME-3, ... when that is taken. A folder renamed onto one that holds
@@ -161,10 +161,10 @@ static enum eo_code settle(struct eo_store *store, const char *root, const char 
 static enum eo_code expect_own_database(struct eo_store *store, const char *root, int recordings,
                                         struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT 1 FROM sqlite_sequence WHERE name IN ('design', 'measurement') AND seq > 0 LIMIT 1", "");
-  bool used = eo_statement_step(&s);
-  enum eo_code code = eo_statement_end(&s, error);
+  bool used = eo_statement_step(&statement);
+  enum eo_code code = eo_statement_end(&statement, error);
   if (code || used || !recordings)
     return code;
   return eo_error_set(error, EO_ERROR_FILE, "",

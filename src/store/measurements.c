@@ -19,43 +19,46 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
   return code;
 }
 
-static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurement *m, struct eo_error *error)
+static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurement *measurement,
+                               struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
-      store, "SELECT name, size, sha256 FROM measurement_file WHERE measurement = ? ORDER BY ordinal", "i", m->id);
-  for (m->files = 0; m->files < EO_MEASUREMENT_FILES && eo_statement_step(&s); m->files++) {
-    struct eo_measurement_file *file = &m->file[m->files];
-    snprintf(file->name, sizeof file->name, "%s", eo_column_text(&s, 0));
-    file->size = eo_column_integer(&s, 1);
-    snprintf(file->sha256, sizeof file->sha256, "%s", eo_column_text(&s, 2));
+  struct eo_statement statement = eo_statement_begin(
+      store, "SELECT name, size, sha256 FROM measurement_file WHERE measurement = ? ORDER BY ordinal", "i",
+      measurement->id);
+  for (measurement->files = 0; measurement->files < EO_MEASUREMENT_FILES && eo_statement_step(&statement);
+       measurement->files++) {
+    struct eo_measurement_file *file = &measurement->file[measurement->files];
+    snprintf(file->name, sizeof file->name, "%s", eo_column_text(&statement, 0));
+    file->size = eo_column_integer(&statement, 1);
+    snprintf(file->sha256, sizeof file->sha256, "%s", eo_column_text(&statement, 2));
   }
-  return eo_statement_end(&s, error);
+  return eo_statement_end(&statement, error);
 }
 
 /* Hands every row over; *rows: how many there were. */
-static enum eo_code visit_all(struct eo_statement s, eo_store_visit_measurement *visit, void *context, int *rows,
-                              struct eo_error *error)
+static enum eo_code visit_all(struct eo_statement statement, eo_store_visit_measurement *visit, void *context,
+                              int *rows, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   *rows = 0;
-  while (!code && eo_statement_step(&s)) {
-    struct eo_stored_measurement m = {.id = eo_column_integer(&s, 0),
-                                      .design = eo_column_integer(&s, 1),
-                                      .digest = eo_column_text(&s, 2),
-                                      .unmodified = strcmp(eo_column_text(&s, 3), "unmodified") == 0,
-                                      .torque = eo_column_number(&s, 4),
-                                      .speed = eo_column_number(&s, 5),
-                                      .layout = eo_column_text(&s, 6),
-                                      .pair = eo_column_text(&s, 7),
-                                      .summary = eo_column_text(&s, 8),
-                                      .created = eo_column_text(&s, 9),
-                                      .result = eo_column_text(&s, 10)};
+  while (!code && eo_statement_step(&statement)) {
+    struct eo_stored_measurement measurement = {.id = eo_column_integer(&statement, 0),
+                                                .design = eo_column_integer(&statement, 1),
+                                                .digest = eo_column_text(&statement, 2),
+                                                .unmodified = strcmp(eo_column_text(&statement, 3), "unmodified") == 0,
+                                                .torque = eo_column_number(&statement, 4),
+                                                .speed = eo_column_number(&statement, 5),
+                                                .layout = eo_column_text(&statement, 6),
+                                                .pair = eo_column_text(&statement, 7),
+                                                .summary = eo_column_text(&statement, 8),
+                                                .created = eo_column_text(&statement, 9),
+                                                .result = eo_column_text(&statement, 10)};
     ++*rows;
-    code = read_files(s.store, &m, error);
+    code = read_files(statement.store, &measurement, error);
     if (!code && visit)
-      code = visit(context, &m, error);
+      code = visit(context, &measurement, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
@@ -96,33 +99,33 @@ enum eo_code eo_store_list_measurements(struct eo_store *store, int64_t design, 
 
 enum eo_code eo_store_measured_bytes(struct eo_store *store, int64_t *bytes, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT ifnull(sum(size), 0) FROM measurement_file", "");
-  *bytes = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT ifnull(sum(size), 0) FROM measurement_file", "");
+  *bytes = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code has_design(struct eo_store *store, int64_t design, bool *there, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT 1 FROM design WHERE id = ?", "i", design);
-  *there = eo_statement_step(&s);
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT 1 FROM design WHERE id = ?", "i", design);
+  *there = eo_statement_step(&statement);
+  return eo_statement_end(&statement, error);
 }
 
 /* Above every number that was ever given and every folder that bears one: after an older database was put back there
    are folders that it knows nothing of. */
 static enum eo_code next_number(struct eo_store *store, int64_t *id, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT max(?, ifnull((SELECT seq FROM sqlite_sequence WHERE name = 'measurement'), 0)) + 1", "i",
       eo_measurement_folder_highest(store));
-  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  enum eo_code code = eo_statement_end(&s, error);
+  *id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  enum eo_code code = eo_statement_end(&statement, error);
   while (!code && eo_measurement_folder_is_there(store, *id))
     ++*id;
   return code;
 }
 
-static enum eo_code insert(struct eo_store *store, const struct eo_stored_measurement *m, int64_t *id,
+static enum eo_code insert(struct eo_store *store, const struct eo_stored_measurement *measurement, int64_t *id,
                            struct eo_error *error)
 {
   enum eo_code code = next_number(store, id, error);
@@ -131,32 +134,34 @@ static enum eo_code insert(struct eo_store *store, const struct eo_stored_measur
         store, error,
         "INSERT INTO measurement (id, design, digest, label, torque_Nm, speed_rad_s, layout, pair, summary, result) "
         "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        "iittrrtttt", *id, m->design, m->digest, m->unmodified ? "unmodified" : "modified", m->torque, m->speed,
-        *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
-  for (int i = 0; i < m->files && !code; i++)
+        "iittrrtttt", *id, measurement->design, measurement->digest,
+        measurement->unmodified ? "unmodified" : "modified", measurement->torque, measurement->speed,
+        *measurement->layout ? measurement->layout : NULL, measurement->pair, measurement->summary,
+        measurement->result);
+  for (int i = 0; i < measurement->files && !code; i++)
     code = EO_STATEMENT_RUN(
         store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)",
-        "intit", *id, i, m->file[i].name, m->file[i].size, m->file[i].sha256);
+        "intit", *id, i, measurement->file[i].name, measurement->file[i].size, measurement->file[i].sha256);
   return code;
 }
 
 /* *kept: the number that the folder bears from then on. */
-static enum eo_code add(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder,
+static enum eo_code add(struct eo_store *store, const struct eo_stored_measurement *measurement, const char *folder,
                         int64_t *kept, eo_store_visit_measurement *visit, void *context,
                         enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int64_t id;
   bool design;
-  enum eo_code code = has_design(store, m->design, &design, error);
+  enum eo_code code = has_design(store, measurement->design, &design, error);
   *outcome = EO_MEASUREMENT_NO_DESIGN;
   if (code || !design)
     return code;
-  code = eo_store_find_measurement_digest(store, m->digest, visit, context, outcome, error);
+  code = eo_store_find_measurement_digest(store, measurement->digest, visit, context, outcome, error);
   if (code || *outcome == EO_MEASUREMENT_DONE) {
     *outcome = EO_MEASUREMENT_KNOWN;
     return code;
   }
-  code = insert(store, m, &id, error);
+  code = insert(store, measurement, &id, error);
   if (!code)
     code = eo_measurement_folder_keep(store, folder, id, error);
   if (!code)
@@ -164,17 +169,17 @@ static enum eo_code add(struct eo_store *store, const struct eo_stored_measureme
   return code ? code : eo_store_find_measurement(store, id, visit, context, outcome, error);
 }
 
-enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder,
-                                      eo_store_visit_measurement *visit, void *context,
+enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_stored_measurement *measurement,
+                                      const char *folder, eo_store_visit_measurement *visit, void *context,
                                       enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int64_t kept = 0;
-  enum eo_code code = eo_measurement_folder_flush(folder, m->files, error);
+  enum eo_code code = eo_measurement_folder_flush(folder, measurement->files, error);
   if (!code)
     code = eo_store_begin_lasting(store, error);
   if (code)
     return code;
-  code = close(store, add(store, m, folder, &kept, visit, context, outcome, error), error);
+  code = close(store, add(store, measurement, folder, &kept, visit, context, outcome, error), error);
   if (code && kept)
     eo_measurement_folder_give_back(store, folder, kept);
   return code;

@@ -20,34 +20,34 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
 static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
                                   enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, request = ?2 FROM job WHERE idempotency = ?1", "tt",
-                                             entry->key, entry->request);
-  if (eo_statement_step(&s)) {
-    *id = eo_column_integer(&s, 0);
-    *outcome = eo_column_integer(&s, 1) ? EO_JOB_OUTCOME_REPEATED : EO_JOB_OUTCOME_CONFLICT;
+  struct eo_statement statement = eo_statement_begin(store, "SELECT id, request = ?2 FROM job WHERE idempotency = ?1",
+                                                     "tt", entry->key, entry->request);
+  if (eo_statement_step(&statement)) {
+    *id = eo_column_integer(&statement, 0);
+    *outcome = eo_column_integer(&statement, 1) ? EO_JOB_OUTCOME_REPEATED : EO_JOB_OUTCOME_CONFLICT;
   }
-  return eo_statement_end(&s, error);
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code find_preparation(struct eo_store *store, const char *pair, int64_t *id, struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store,
                          "SELECT id FROM job WHERE pair = ? AND kind = 'prepare' AND served = 1 AND stop = 0"
                          " AND state IN ('queued', 'preparing', 'running')",
                          "t", pair);
-  if (eo_statement_step(&s))
-    *id = eo_column_integer(&s, 0);
-  return eo_statement_end(&s, error);
+  if (eo_statement_step(&statement))
+    *id = eo_column_integer(&statement, 0);
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code count_waiting(struct eo_store *store, enum eo_job_kind kind, int64_t *count, struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store, "SELECT count(*) FROM job WHERE state = 'queued' AND served = 1 AND kind = ?", "t",
                          eo_store_job_kind_name(kind));
-  *count = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  *count = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code insert(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
@@ -97,15 +97,15 @@ enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64
   enum eo_code code = eo_store_begin(store, error);
   if (code)
     return code;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "UPDATE job SET state = 'preparing', attempts = attempts + 1, started = coalesce(started, " EO_NOW "),"
       " finished = NULL, error = NULL, updated = " EO_NOW " WHERE id = (SELECT id FROM job WHERE kind = ?"
       " AND state = 'queued' AND served = 1 ORDER BY priority DESC, id LIMIT 1) RETURNING id",
       "t", eo_store_job_kind_name(kind));
-  while (eo_statement_step(&s))
-    *id = eo_column_integer(&s, 0);
-  code = close(store, eo_statement_end(&s, error), error);
+  while (eo_statement_step(&statement))
+    *id = eo_column_integer(&statement, 0);
+  code = close(store, eo_statement_end(&statement, error), error);
   if (code)
     *id = 0;
   return code;
@@ -146,15 +146,15 @@ static enum eo_code recover_one(struct eo_store *store, int64_t id, int attempts
   if (eo_store_job_is_taken(store, id))
     return EO_OK;
   EO_TRY(count_unclean(store, id, error));
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "UPDATE job SET state = CASE WHEN stop = 1 THEN 'cancelled' WHEN unclean >= ?2 THEN 'failed' ELSE 'queued' END,"
       " error = CASE WHEN stop = 0 AND unclean >= ?2 THEN ?3 ELSE error END, updated = " EO_NOW ","
       " finished = CASE WHEN stop = 1 OR unclean >= ?2 THEN " EO_NOW " END WHERE id = ?1 RETURNING state = 'failed'",
       "int", id, attempts, fault);
-  while (eo_statement_step(&s))
-    *queued += !eo_column_integer(&s, 0);
-  return eo_statement_end(&s, error);
+  while (eo_statement_step(&statement))
+    *queued += !eo_column_integer(&statement, 0);
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *fault, int64_t *queued,
@@ -168,14 +168,14 @@ enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *
   /* cancelled without anybody wanting it: parked in the moment the process ended. Done without a result: ended before
      it was written. */
   for (bool more = true; more && !code;) {
-    struct eo_statement s = eo_statement_begin(
+    struct eo_statement statement = eo_statement_begin(
         store,
         "SELECT id FROM job WHERE id > ? AND served = 1 AND (state IN ('preparing', 'running') OR (stop = 0 AND"
         " state = 'cancelled') OR (state = 'done' AND kind = 'optimize' AND result IS NULL)) ORDER BY id LIMIT 1",
         "i", id);
-    more = eo_statement_step(&s);
-    id = more ? eo_column_integer(&s, 0) : 0;
-    code = eo_statement_end(&s, error);
+    more = eo_statement_step(&statement);
+    id = more ? eo_column_integer(&statement, 0) : 0;
+    code = eo_statement_end(&statement, error);
     if (!code && more)
       code = recover_one(store, id, attempts, fault, queued, error);
   }
@@ -185,13 +185,13 @@ enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *
 static enum eo_code find_state(struct eo_store *store, int64_t id, enum eo_job_state *state, enum eo_job_kind *kind,
                                enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT state, kind FROM job WHERE id = ?", "i", id);
-  *outcome = eo_statement_step(&s) ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_MISSING;
+  struct eo_statement statement = eo_statement_begin(store, "SELECT state, kind FROM job WHERE id = ?", "i", id);
+  *outcome = eo_statement_step(&statement) ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_MISSING;
   if (*outcome == EO_JOB_OUTCOME_DONE) {
-    *state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(&s, 0));
-    *kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(&s, 1));
+    *state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(&statement, 0));
+    *kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(&statement, 1));
   }
-  return eo_statement_end(&s, error);
+  return eo_statement_end(&statement, error);
 }
 
 static bool has_ended(enum eo_job_state state)
@@ -328,14 +328,14 @@ enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *er
 /* The oldest job beyond those that are kept; 0: none. */
 static enum eo_code find_surplus(struct eo_store *store, int keep, int64_t *id, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT min(id) FROM job WHERE kind <> 'prepare' AND served = 1 AND state IN ('done', 'failed', 'cancelled')"
       " AND id NOT IN (SELECT id FROM job WHERE kind <> 'prepare' AND served = 1 AND state IN ('done', 'failed',"
       " 'cancelled') ORDER BY id DESC LIMIT ?)",
       "n", keep);
-  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  *id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code remove_old_generation(struct eo_store *store, double days, struct eo_error *error)
@@ -366,23 +366,23 @@ enum eo_code eo_queue_retain(struct eo_store *store, int keep, double prediction
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context,
                            enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "spec", "result") " FROM job WHERE id = ?", "i", id);
   enum eo_code code = EO_OK;
   *outcome = EO_JOB_OUTCOME_MISSING;
-  if (eo_statement_step(&s)) {
-    const struct eo_stored_job job = eo_job_row_read(&s);
+  if (eo_statement_step(&statement)) {
+    const struct eo_stored_job job = eo_job_row_read(&statement);
     *outcome = EO_JOB_OUTCOME_DONE;
     code = visit(context, &job, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
 enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter *filter, eo_store_visit_job *visit,
                            void *context, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT " EO_JOB_COLUMNS(
           "''", "''",
@@ -395,19 +395,19 @@ enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter 
       filter->kind < 0 ? NULL : eo_store_job_kind_name((enum eo_job_kind)filter->kind), (int)filter->active,
       filter->limit);
   enum eo_code code = EO_OK;
-  while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_job job = eo_job_row_read(&s);
+  while (!code && eo_statement_step(&statement)) {
+    const struct eo_stored_job job = eo_job_row_read(&statement);
     code = visit(context, &job, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 
 enum eo_code eo_queue_count(struct eo_store *store, int64_t count[EO_JOB_STATES], struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT state, count(*) FROM job GROUP BY state", "");
+  struct eo_statement statement = eo_statement_begin(store, "SELECT state, count(*) FROM job GROUP BY state", "");
   memset(count, 0, sizeof *count * EO_JOB_STATES);
-  while (eo_statement_step(&s))
-    count[eo_store_job_state_find(eo_column_text(&s, 0))] = eo_column_integer(&s, 1);
-  return eo_statement_end(&s, error);
+  while (eo_statement_step(&statement))
+    count[eo_store_job_state_find(eo_column_text(&statement, 0))] = eo_column_integer(&statement, 1);
+  return eo_statement_end(&statement, error);
 }

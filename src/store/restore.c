@@ -157,11 +157,11 @@ struct merging {
 static enum eo_code find_same(struct eo_store *store, const struct eo_stored_design *design, int64_t *id,
                               struct eo_error *error)
 {
-  struct eo_statement s =
+  struct eo_statement statement =
       eo_statement_begin(store, "SELECT id FROM design WHERE name = ? AND document = ? ORDER BY id LIMIT 1", "tt",
                          design->name, design->document);
-  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  *id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 static enum eo_code take_id(void *context, const struct eo_stored_design *design, struct eo_error *error)
@@ -173,24 +173,24 @@ static enum eo_code take_id(void *context, const struct eo_stored_design *design
 
 static enum eo_code add_recording(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
 {
-  struct merging *m = context;
+  struct merging *merging = context;
   struct eo_stored_measurement own = *row;
   char folder[EO_STORE_PATH], digest[EO_HASH_LENGTH + 1];
   enum eo_measurement_outcome outcome;
   struct eo_hash hash;
-  if (own.design != m->design) { /* the digest says of which design: another one has another */
+  if (own.design != merging->design) { /* the digest says of which design: another one has another */
     eo_hash_init(&hash);
     eo_hash_add_text(&hash, "restored", row->digest);
-    eo_hash_add_number(&hash, "design", (double)m->design);
+    eo_hash_add_number(&hash, "design", (double)merging->design);
     eo_hash_finish(&hash, digest);
     own.digest = digest;
-    own.design = m->design;
+    own.design = merging->design;
   }
-  if (!eo_measurement_folder_path(m->from, "", row->id, folder, sizeof folder))
+  if (!eo_measurement_folder_path(merging->from, "", row->id, folder, sizeof folder))
     return eo_error_set(error, EO_ERROR_FILE, "", "The path of the data folder is too long.");
-  EO_TRY(eo_store_add_measurement(m->to, &own, folder, NULL, NULL, &outcome, error));
-  m->report->recordings += outcome == EO_MEASUREMENT_DONE;
-  m->report->known += outcome == EO_MEASUREMENT_KNOWN;
+  EO_TRY(eo_store_add_measurement(merging->to, &own, folder, NULL, NULL, &outcome, error));
+  merging->report->recordings += outcome == EO_MEASUREMENT_DONE;
+  merging->report->known += outcome == EO_MEASUREMENT_KNOWN;
   return EO_OK;
 }
 
@@ -207,13 +207,13 @@ static enum eo_code see_recording(void *context, const struct eo_stored_measurem
   return eo_store_find_measurement(one->merging->from, row->id, add_recording, one->merging, &outcome, error);
 }
 
-static enum eo_code add_recordings(struct merging *m, int64_t design, struct eo_error *error)
+static enum eo_code add_recordings(struct merging *merging, int64_t design, struct eo_error *error)
 {
-  struct one one = {.merging = m};
+  struct one one = {.merging = merging};
   enum eo_code code = EO_OK;
   for (int64_t before = 0; !code; before = one.id) {
     one.id = 0;
-    code = eo_store_list_measurements(m->from, design, before, 1, see_recording, &one, error);
+    code = eo_store_list_measurements(merging->from, design, before, 1, see_recording, &one, error);
     if (!one.id)
       break;
   }
@@ -222,30 +222,30 @@ static enum eo_code add_recordings(struct merging *m, int64_t design, struct eo_
 
 static enum eo_code add_design(void *context, const struct eo_stored_design *design, struct eo_error *error)
 {
-  struct merging *m = context;
+  struct merging *merging = context;
   enum eo_design_outcome outcome;
-  EO_TRY(find_same(m->to, design, &m->design, error));
-  m->report->known += m->design != 0;
-  if (m->design)
+  EO_TRY(find_same(merging->to, design, &merging->design, error));
+  merging->report->known += merging->design != 0;
+  if (merging->design)
     return EO_OK;
-  EO_TRY(
-      eo_store_add_design(m->to, design->name, design->document, MOST_DESIGNS, take_id, &m->design, &outcome, error));
-  m->report->designs += outcome == EO_DESIGN_DONE;
+  EO_TRY(eo_store_add_design(merging->to, design->name, design->document, MOST_DESIGNS, take_id, &merging->design,
+                             &outcome, error));
+  merging->report->designs += outcome == EO_DESIGN_DONE;
   return outcome == EO_DESIGN_DONE
              ? EO_OK
              : eo_error_set(error, EO_ERROR_FULL, "", "%d designs are stored already.", MOST_DESIGNS);
 }
 
-static enum eo_code merge_all(struct merging *m, struct eo_error *error)
+static enum eo_code merge_all(struct merging *merging, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(m->from, "SELECT coalesce(max(id), 0) FROM design", "");
-  int64_t last = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  enum eo_code code = eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(merging->from, "SELECT coalesce(max(id), 0) FROM design", "");
+  int64_t last = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  enum eo_code code = eo_statement_end(&statement, error);
   for (int64_t id = 1; id <= last && !code; id++) {
     enum eo_design_outcome outcome;
-    code = eo_store_find_design(m->from, id, add_design, m, &outcome, error);
+    code = eo_store_find_design(merging->from, id, add_design, merging, &outcome, error);
     if (!code && outcome == EO_DESIGN_DONE)
-      code = add_recordings(m, id, error);
+      code = add_recordings(merging, id, error);
   }
   return code;
 }
@@ -253,14 +253,14 @@ static enum eo_code merge_all(struct merging *m, struct eo_error *error)
 static enum eo_code merge(const char *directory, const char *folder, struct eo_backup_report *report,
                           struct eo_error *error)
 {
-  struct merging m = {.report = report};
-  enum eo_code code = eo_store_open(&m.from, folder, EO_STORE_WRITE, error);
+  struct merging merging = {.report = report};
+  enum eo_code code = eo_store_open(&merging.from, folder, EO_STORE_WRITE, error);
   if (!code)
-    code = eo_store_open(&m.to, directory, EO_STORE_WRITE, error);
+    code = eo_store_open(&merging.to, directory, EO_STORE_WRITE, error);
   if (!code)
-    code = merge_all(&m, error);
-  eo_store_close(m.from);
-  eo_store_close(m.to);
+    code = merge_all(&merging, error);
+  eo_store_close(merging.from);
+  eo_store_close(merging.to);
   return code;
 }
 
@@ -268,15 +268,15 @@ static enum eo_code count_whole(const char *directory, struct eo_backup_report *
 {
   struct eo_store *store = NULL;
   EO_TRY(eo_store_open(&store, directory, EO_STORE_WRITE, error));
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT (SELECT count(*) FROM design), (SELECT count(*) FROM measurement), (SELECT count(*) FROM job)",
       "");
-  if (eo_statement_step(&s)) {
-    report->designs = eo_column_integer(&s, 0);
-    report->recordings = eo_column_integer(&s, 1);
-    report->jobs = eo_column_integer(&s, 2);
+  if (eo_statement_step(&statement)) {
+    report->designs = eo_column_integer(&statement, 0);
+    report->recordings = eo_column_integer(&statement, 1);
+    report->jobs = eo_column_integer(&statement, 2);
   }
-  enum eo_code code = eo_statement_end(&s, error);
+  enum eo_code code = eo_statement_end(&statement, error);
   eo_store_close(store);
   return code;
 }

@@ -51,9 +51,9 @@ bool eo_spare_give(struct eo_store *store)
 enum eo_code eo_store_probe(struct eo_store *store, struct eo_error *error)
 {
   enum { PATIENCE = 100 };
-  struct eo_statement s = eo_statement_begin(store, "PRAGMA application_id", "");
-  int64_t id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  enum eo_code code = eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "PRAGMA application_id", "");
+  int64_t id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  enum eo_code code = eo_statement_end(&statement, error);
   if (code)
     return code;
   char same[60];

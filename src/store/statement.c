@@ -63,74 +63,76 @@ static int bind_number(sqlite3_stmt *handle, int i, double value)
 
 struct eo_statement eo_statement_begin(struct eo_store *store, const char *sql, const char *values, ...)
 {
-  struct eo_statement s = {.store = store};
+  struct eo_statement statement = {.store = store};
   va_list list;
-  s.fault = prepare(store, sql, &s.handle);
+  statement.fault = prepare(store, sql, &statement.handle);
   va_start(list, values);
-  for (int i = 1; values[i - 1] && !s.fault; i++) {
+  for (int i = 1; values[i - 1] && !statement.fault; i++) {
     const void *data;
     switch (values[i - 1]) {
     case 'i':
-      s.fault = sqlite3_bind_int64(s.handle, i, va_arg(list, int64_t));
+      statement.fault = sqlite3_bind_int64(statement.handle, i, va_arg(list, int64_t));
       break;
     case 'n':
-      s.fault = sqlite3_bind_int(s.handle, i, va_arg(list, int));
+      statement.fault = sqlite3_bind_int(statement.handle, i, va_arg(list, int));
       break;
     case 'r':
-      s.fault = bind_number(s.handle, i, va_arg(list, double));
+      statement.fault = bind_number(statement.handle, i, va_arg(list, double));
       break;
     case 't':
-      s.fault = sqlite3_bind_text(s.handle, i, va_arg(list, const char *), -1, SQLITE_TRANSIENT);
+      statement.fault = sqlite3_bind_text(statement.handle, i, va_arg(list, const char *), -1, SQLITE_TRANSIENT);
       break;
     case 'b':
       data = va_arg(list, const void *);
-      s.fault = sqlite3_bind_blob64(s.handle, i, data, va_arg(list, size_t), SQLITE_TRANSIENT);
+      statement.fault = sqlite3_bind_blob64(statement.handle, i, data, va_arg(list, size_t), SQLITE_TRANSIENT);
       break;
     }
   }
   va_end(list);
-  return s;
+  return statement;
 }
 
-bool eo_statement_step(struct eo_statement *s)
+bool eo_statement_step(struct eo_statement *statement)
 {
-  if (s->fault)
+  if (statement->fault)
     return false;
-  int code = sqlite3_step(s->handle);
+  int code = sqlite3_step(statement->handle);
   if (code != SQLITE_ROW && code != SQLITE_DONE)
-    s->fault = code;
+    statement->fault = code;
   return code == SQLITE_ROW;
 }
 
-enum eo_code eo_statement_end(struct eo_statement *s, struct eo_error *error)
+enum eo_code eo_statement_end(struct eo_statement *statement, struct eo_error *error)
 {
-  enum eo_code code = s->fault ? eo_store_fault(s->store, s->fault, error) : EO_OK;
-  if (s->handle) {
-    sqlite3_reset(s->handle);
-    sqlite3_clear_bindings(s->handle);
+  enum eo_code code = statement->fault ? eo_store_fault(statement->store, statement->fault, error) : EO_OK;
+  if (statement->handle) {
+    sqlite3_reset(statement->handle);
+    sqlite3_clear_bindings(statement->handle);
   }
   return code;
 }
 
-enum eo_code eo_statement_finish(struct eo_statement s, struct eo_error *error)
+enum eo_code eo_statement_finish(struct eo_statement statement, struct eo_error *error)
 {
-  while (eo_statement_step(&s))
+  while (eo_statement_step(&statement))
     ;
-  return eo_statement_end(&s, error);
+  return eo_statement_end(&statement, error);
 }
 
-int64_t eo_column_integer(const struct eo_statement *s, int column)
+int64_t eo_column_integer(const struct eo_statement *statement, int column)
 {
-  return sqlite3_column_int64(s->handle, column);
+  return sqlite3_column_int64(statement->handle, column);
 }
 
-double eo_column_number(const struct eo_statement *s, int column)
+double eo_column_number(const struct eo_statement *statement, int column)
 {
-  return sqlite3_column_type(s->handle, column) == SQLITE_NULL ? NAN : sqlite3_column_double(s->handle, column);
+  return sqlite3_column_type(statement->handle, column) == SQLITE_NULL
+             ? NAN
+             : sqlite3_column_double(statement->handle, column);
 }
 
-const char *eo_column_text(const struct eo_statement *s, int column)
+const char *eo_column_text(const struct eo_statement *statement, int column)
 {
-  const unsigned char *text = sqlite3_column_text(s->handle, column);
+  const unsigned char *text = sqlite3_column_text(statement->handle, column);
   return text ? (const char *)text : "";
 }

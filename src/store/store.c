@@ -26,10 +26,10 @@ static enum eo_code execute(struct eo_store *store, const char *sql, struct eo_e
 
 static enum eo_code read_integer(struct eo_store *store, const char *sql, int *value, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, sql, "");
-  if (eo_statement_step(&s))
-    *value = (int)eo_column_integer(&s, 0);
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, sql, "");
+  if (eo_statement_step(&statement))
+    *value = (int)eo_column_integer(&statement, 0);
+  return eo_statement_end(&statement, error);
 }
 
 /* A new database is one page. More pages or a schema's number without a table: the first page is damaged, and writing a
@@ -87,9 +87,9 @@ static enum eo_code apply_steps(struct eo_store *store, struct eo_error *error)
 
 static enum eo_code check_references(struct eo_store *store, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "PRAGMA foreign_key_check", "");
-  bool broken = eo_statement_step(&s);
-  enum eo_code code = eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "PRAGMA foreign_key_check", "");
+  bool broken = eo_statement_step(&statement);
+  enum eo_code code = eo_statement_end(&statement, error);
   return code || !broken ? code
                          : eo_error_set(error, EO_ERROR_FILE, "",
                                         "%.150s is damaged: a row refers to one that is not there.", store->path);
@@ -407,8 +407,8 @@ enum eo_code eo_store_compact(struct eo_store *store, struct eo_error *error)
 
 enum eo_code eo_store_copy(struct eo_store *store, const char *path, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "VACUUM INTO ?", "t", path);
-  enum eo_code code = eo_statement_finish(s, error);
+  struct eo_statement statement = eo_statement_begin(store, "VACUUM INTO ?", "t", path);
+  enum eo_code code = eo_statement_finish(statement, error);
   if (!code && has_sums(store) && eo_page_sums_renew(path) < 0) /* SQLite wrote pages before the first one, which says
                                                                    that they have sums */
     code = eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
@@ -420,11 +420,12 @@ enum eo_code eo_store_copy(struct eo_store *store, const char *path, struct eo_e
 enum eo_code eo_store_inspect(struct eo_store *store, bool quickly, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  struct eo_statement s = quickly ? eo_statement_begin(store, "PRAGMA quick_check(1)", "")
-                                  : eo_statement_begin(store, "PRAGMA integrity_check(1)", "");
-  if (eo_statement_step(&s) && strcmp(eo_column_text(&s, 0), "ok") != 0)
-    code = eo_error_set(error, EO_ERROR_DAMAGED, "", "%.150s is damaged: %.200s.", store->path, eo_column_text(&s, 0));
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  struct eo_statement statement = quickly ? eo_statement_begin(store, "PRAGMA quick_check(1)", "")
+                                          : eo_statement_begin(store, "PRAGMA integrity_check(1)", "");
+  if (eo_statement_step(&statement) && strcmp(eo_column_text(&statement, 0), "ok") != 0)
+    code = eo_error_set(error, EO_ERROR_DAMAGED, "", "%.150s is damaged: %.200s.", store->path,
+                        eo_column_text(&statement, 0));
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   return code ? code : end;
 }
 

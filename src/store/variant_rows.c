@@ -38,60 +38,61 @@ static enum eo_code damaged(const struct eo_store *store, int64_t id, struct eo_
 }
 
 /* Columns as above; row->number has room for row->numbers. */
-static enum eo_code read_row(const struct eo_store *store, const struct eo_statement *s, struct eo_stored_variant *row,
-                             struct eo_error *error)
+static enum eo_code read_row(const struct eo_store *store, const struct eo_statement *statement,
+                             struct eo_stored_variant *row, struct eo_error *error)
 {
   char digest[EO_HASH_LENGTH + 1];
   int outcome = 0;
-  row->id = eo_column_integer(s, 0);
-  while (outcome < EO_EVALUATION_REFUSED && strcmp(eo_store_outcomes[outcome], eo_column_text(s, 1)) != 0)
+  row->id = eo_column_integer(statement, 0);
+  while (outcome < EO_EVALUATION_REFUSED && strcmp(eo_store_outcomes[outcome], eo_column_text(statement, 1)) != 0)
     outcome++;
   row->outcome = (enum eo_evaluation_outcome)outcome;
-  snprintf(row->reason, sizeof row->reason, "%s", eo_column_text(s, 2));
-  row->cost = eo_column_number(s, 3);
-  row->design = eo_column_text(s, 6);
-  row->evaluator = (int)eo_column_integer(s, 7);
-  row->columns = eo_column_integer(s, 8);
+  snprintf(row->reason, sizeof row->reason, "%s", eo_column_text(statement, 2));
+  row->cost = eo_column_number(statement, 3);
+  row->design = eo_column_text(statement, 6);
+  row->evaluator = (int)eo_column_integer(statement, 7);
+  row->columns = eo_column_integer(statement, 8);
   if (!row->number)
     return EO_OK;
-  const void *numbers = sqlite3_column_blob(s->handle, 4);
-  if ((size_t)sqlite3_column_bytes(s->handle, 4) != sizeof *row->number * (size_t)row->numbers)
+  const void *numbers = sqlite3_column_blob(statement->handle, 4);
+  if ((size_t)sqlite3_column_bytes(statement->handle, 4) != sizeof *row->number * (size_t)row->numbers)
     return damaged(store, row->id, error);
   if (row->numbers)
     memcpy(row->number, numbers, sizeof *row->number * (size_t)row->numbers);
   find_digest(row, digest);
-  return strcmp(digest, eo_column_text(s, 5)) == 0 ? EO_OK : damaged(store, row->id, error);
+  return strcmp(digest, eo_column_text(statement, 5)) == 0 ? EO_OK : damaged(store, row->id, error);
 }
 
 enum eo_code eo_store_variant_columns(struct eo_store *store, const char *names, int64_t *id, struct eo_error *error)
 {
   EO_TRY(EO_STATEMENT_RUN(store, error, "INSERT INTO variant_columns (names) VALUES (?) ON CONFLICT (names) DO NOTHING",
                           "t", names));
-  struct eo_statement s = eo_statement_begin(store, "SELECT id FROM variant_columns WHERE names = ?", "t", names);
-  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
-  return eo_statement_end(&s, error);
+  struct eo_statement statement = eo_statement_begin(store, "SELECT id FROM variant_columns WHERE names = ?", "t",
+                                                     names);
+  *id = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_has_variants(struct eo_store *store, int evaluator, int64_t columns, bool *there,
                                    struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT 1 FROM variant_row WHERE evaluator = ? AND columns = ? LIMIT 1", "ni", evaluator, columns);
-  *there = eo_statement_step(&s);
-  return eo_statement_end(&s, error);
+  *there = eo_statement_step(&statement);
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_find_variant(struct eo_store *store, struct eo_stored_variant *row, struct eo_error *error)
 {
   struct eo_stored_variant found = *row;
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store, "SELECT " COLUMNS " FROM variant_row r WHERE design = ? AND evaluator = ? AND columns = ?", "tni",
       row->design, row->evaluator, row->columns);
   enum eo_code code = EO_OK;
   found.id = 0;
-  if (eo_statement_step(&s))
-    code = read_row(store, &s, &found, error);
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  if (eo_statement_step(&statement))
+    code = read_row(store, &statement, &found, error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   if (code || end)
     return code ? code : end;
   found.design = row->design;
@@ -120,12 +121,12 @@ enum eo_code eo_store_add_variant(struct eo_store *store, struct eo_stored_varia
 
 enum eo_code eo_store_mean_cost(struct eo_store *store, double *seconds, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(
+  struct eo_statement statement = eo_statement_begin(
       store,
       "SELECT avg(cost_s) FROM (SELECT cost_s FROM variant_row WHERE outcome <> 'refused' ORDER BY id DESC LIMIT 1000)",
       "");
-  *seconds = eo_statement_step(&s) ? eo_column_number(&s, 0) : NAN;
-  return eo_statement_end(&s, error);
+  *seconds = eo_statement_step(&statement) ? eo_column_number(&statement, 0) : NAN;
+  return eo_statement_end(&statement, error);
 }
 
 enum eo_code eo_store_log_variant(struct eo_store *store, int64_t job, int ordinal, int64_t row, bool reused,
@@ -143,21 +144,21 @@ enum eo_code eo_store_each_variant(struct eo_store *store, int64_t job, int ordi
   double *number = numbers >= 0 ? malloc(sizeof *number * (size_t)(numbers + 1)) : NULL;
   if (numbers >= 0 && !number)
     return eo_error_memory(error);
-  struct eo_statement s = eo_statement_begin(store,
-                                             "SELECT " COLUMNS ", v.ordinal, v.reused FROM variant v"
-                                             " JOIN variant_row r ON r.id = v.row WHERE v.job = ?1"
-                                             " AND (?2 < 0 OR v.ordinal = ?2) ORDER BY v.ordinal",
-                                             "in", job, ordinal);
+  struct eo_statement statement = eo_statement_begin(store,
+                                                     "SELECT " COLUMNS ", v.ordinal, v.reused FROM variant v"
+                                                     " JOIN variant_row r ON r.id = v.row WHERE v.job = ?1"
+                                                     " AND (?2 < 0 OR v.ordinal = ?2) ORDER BY v.ordinal",
+                                                     "in", job, ordinal);
   enum eo_code code = EO_OK;
-  while (!code && eo_statement_step(&s)) {
+  while (!code && eo_statement_step(&statement)) {
     struct eo_stored_variant row = {.numbers = numbers, .number = number};
-    code = read_row(store, &s, &row, error);
-    row.ordinal = (int)eo_column_integer(&s, 9);
-    row.reused = eo_column_integer(&s, 10) != 0;
+    code = read_row(store, &statement, &row, error);
+    row.ordinal = (int)eo_column_integer(&statement, 9);
+    row.reused = eo_column_integer(&statement, 10) != 0;
     if (!code)
       code = visit(context, &row, error);
   }
-  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  enum eo_code end = eo_statement_end(&statement, code ? NULL : error);
   free(number);
   return code ? code : end;
 }

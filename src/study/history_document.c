@@ -102,10 +102,10 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
                                        : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
-  struct eo_object o = eo_object_open_as(&eo_records_outline);
-  eo_object_put(&o, "problems", problems);
-  eo_object_put(&o, "jobs", jobs);
-  json_t *all = eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&eo_records_outline);
+  eo_object_put(&object, "problems", problems);
+  eo_object_put(&object, "jobs", jobs);
+  json_t *all = eo_object_close(&object);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)
@@ -121,13 +121,13 @@ struct wanted_job {
   struct eo_text result;
 };
 
-static enum eo_code take_result(void *context, const struct eo_stored_job *j, struct eo_error *error)
+static enum eo_code take_result(void *context, const struct eo_stored_job *stored_job, struct eo_error *error)
 {
   struct wanted_job *wanted = context;
-  if (j->id != wanted->job)
+  if (stored_job->id != wanted->job)
     return EO_OK;
   wanted->found = true;
-  eo_text_add(&wanted->result, j->result);
+  eo_text_add(&wanted->result, stored_job->result);
   return wanted->result.failed ? eo_error_memory(error) : EO_OK;
 }
 
@@ -152,15 +152,15 @@ struct row_list {
   struct eo_load_case load_case[EO_MAX_LOAD_CASES];
 };
 
-static enum eo_code take_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
+static enum eo_code take_problem(void *context, const struct eo_stored_problem *problem, struct eo_error *error)
 {
   struct row_list *list = context;
-  if (p->id != list->problem)
+  if (problem->id != list->problem)
     return EO_OK;
-  list->scenarios = p->scenarios;
-  list->cases = p->cases;
-  list->spec = eo_json_parse(p->spec, strlen(p->spec), error);
-  for (int k = 0; k < p->cases && k < EO_MAX_LOAD_CASES; k++) {
+  list->scenarios = problem->scenarios;
+  list->cases = problem->cases;
+  list->spec = eo_json_parse(problem->spec, strlen(problem->spec), error);
+  for (int k = 0; k < problem->cases && k < EO_MAX_LOAD_CASES; k++) {
     const json_t *row = json_array_get(json_object_get(list->spec, "load_cases"), (size_t)k);
     list->load_case[k].torque = eo_unit_in(&eo_unit_Nm, eo_json_find_number(row, "torque_Nm"));
     list->load_case[k].speed = eo_unit_in(&eo_unit_rpm, eo_json_find_number(row, "speed_rpm"));
@@ -190,20 +190,21 @@ static json_t *encode_scenarios(const struct row_list *list, const struct eo_obj
   return array;
 }
 
-static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e, const double *x, int size,
+static enum eo_code add_row(void *context, const struct eo_stored_evaluation *evaluation, const double *x, int size,
                             struct eo_error *error)
 {
   struct row_list *list = context;
-  struct eo_object o = eo_object_open();
+  struct eo_object object = eo_object_open();
   (void)x;
   (void)size;
-  eo_object_put(&o, "id", json_integer(e->id));
-  eo_object_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
-  eo_object_put(&o, "reason", json_string(e->reason));
-  eo_object_put(&o, "cost_s", eo_json_quantity(e->cost, NULL));
-  eo_object_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
-  eo_object_put(&o, "scenarios", encode_scenarios(list, e->raw));
-  return append(list->rows, eo_object_close(&o), error);
+  eo_object_put(&object, "id", json_integer(evaluation->id));
+  eo_object_put(&object, "outcome", json_string(eo_store_outcome_name(evaluation->outcome)));
+  eo_object_put(&object, "reason", json_string(evaluation->reason));
+  eo_object_put(&object, "cost_s", eo_json_quantity(evaluation->cost, NULL));
+  eo_object_put(&object, "modification",
+                eo_json_parse(evaluation->modification, strlen(evaluation->modification), error));
+  eo_object_put(&object, "scenarios", encode_scenarios(list, evaluation->raw));
+  return append(list->rows, eo_object_close(&object), error);
 }
 
 enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **document, struct eo_error *error)
@@ -214,10 +215,10 @@ enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **d
     code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)problem);
   if (!code)
     code = eo_store_each_evaluation(store, problem, 0, NULL, list.scenarios, list.cases, add_row, &list, error);
-  struct eo_object o = eo_object_open();
-  eo_object_put(&o, "problem", list.spec ? list.spec : json_null());
-  eo_object_put(&o, "rows", list.rows);
-  json_t *all = eo_object_close(&o);
+  struct eo_object object = eo_object_open();
+  eo_object_put(&object, "problem", list.spec ? list.spec : json_null());
+  eo_object_put(&object, "rows", list.rows);
+  json_t *all = eo_object_close(&object);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)
@@ -265,9 +266,9 @@ static void add_headings(const json_t *paths, const json_t *cases, char **headin
   for (size_t k = 0; k < json_array_size(cases); k++)
     for (int v = 0; v < VALUES; v++) {
       char text[100];
-      const json_t *c = json_array_get(cases, k);
-      snprintf(text, sizeof text, "%s at %.6g Nm %.6g rpm", value_keys[v], eo_json_find_number(c, "torque_Nm"),
-               eo_json_find_number(c, "speed_rpm"));
+      const json_t *value_of = json_array_get(cases, k);
+      snprintf(text, sizeof text, "%s at %.6g Nm %.6g rpm", value_keys[v], eo_json_find_number(value_of, "torque_Nm"),
+               eo_json_find_number(value_of, "speed_rpm"));
       heading[i++] = strdup(text);
     }
 }
@@ -356,35 +357,36 @@ static void write_point(struct eo_text *text, const double *x, int size)
   eo_text_add(text, "\r\n");
 }
 
-static enum eo_code write_candidate(void *context, const struct eo_stored_candidate *c, struct eo_error *error)
+static enum eo_code write_candidate(void *context, const struct eo_stored_candidate *candidate, struct eo_error *error)
 {
   struct path_list *list = context;
-  write_head(list, c->size);
-  eo_text_print(list->text, "%d,%d,%s,%lld,,", c->generation, c->individual, c->reused ? "known" : "computed",
-                (long long)c->evaluation);
-  write_point(list->text, c->x, c->size);
+  write_head(list, candidate->size);
+  eo_text_print(list->text, "%d,%d,%s,%lld,,", candidate->generation, candidate->individual,
+                candidate->reused ? "known" : "computed", (long long)candidate->evaluation);
+  write_point(list->text, candidate->x, candidate->size);
   return list->text->failed ? eo_error_memory(error) : EO_OK;
 }
 
-static enum eo_code write_prediction(void *context, const struct eo_stored_prediction *p, struct eo_error *error)
+static enum eo_code write_prediction(void *context, const struct eo_stored_prediction *prediction,
+                                     struct eo_error *error)
 {
   struct path_list *list = context;
   char fitness[40], credibility[40];
-  write_head(list, p->size);
-  eo_json_number(fitness, sizeof fitness, p->fitness);
-  eo_json_number(credibility, sizeof credibility, p->credibility);
-  eo_text_print(list->text, "%d,%d,predicted,,%s,%s", p->generation, p->individual, fitness, credibility);
-  write_point(list->text, p->x, p->size);
+  write_head(list, prediction->size);
+  eo_json_number(fitness, sizeof fitness, prediction->fitness);
+  eo_json_number(credibility, sizeof credibility, prediction->credibility);
+  eo_text_print(list->text, "%d,%d,predicted,,%s,%s", prediction->generation, prediction->individual, fitness,
+                credibility);
+  write_point(list->text, prediction->x, prediction->size);
   return list->text->failed ? eo_error_memory(error) : EO_OK;
 }
 
 enum eo_code eo_records_path_csv(struct eo_store *store, int64_t job, struct eo_text *text, struct eo_error *error)
 {
   struct path_list list = {.text = text};
-  enum eo_code code = eo_store_each_candidate(store, job, write_candidate, &list, error);
-  if (!code)
-    code = eo_store_each_prediction(store, job, write_prediction, &list, error);
-  if (!code && !list.size)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no path of a job %lld.", (long long)job);
-  return code;
+  EO_TRY(eo_store_each_candidate(store, job, write_candidate, &list, error));
+  EO_TRY(eo_store_each_prediction(store, job, write_prediction, &list, error));
+  if (!list.size)
+    EO_TRY(eo_error_set(error, EO_ERROR_INPUT, "", "There is no path of a job %lld.", (long long)job));
+  return EO_OK;
 }

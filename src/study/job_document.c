@@ -46,10 +46,13 @@ static void follow_generations(struct eo_job_live *live, const struct eo_study_r
     live->capacity = capacity;
   }
   for (int i = live->generations; i < report->generation; i++) {
-    const struct eo_generation *g = &report->history[i];
-    live->history[i] = (struct eo_job_generation){
-        .best = g->best_value, .mean = NAN, .true_count = g->true_count, .predicted = g->predicted_count};
-    count_on(&live->history[i], i ? &live->history[i - 1] : NULL, g->true_count + g->predicted_count + g->reused_count);
+    const struct eo_generation *generation = &report->history[i];
+    live->history[i] = (struct eo_job_generation){.best = generation->best_value,
+                                                  .mean = NAN,
+                                                  .true_count = generation->true_count,
+                                                  .predicted = generation->predicted_count};
+    count_on(&live->history[i], i ? &live->history[i - 1] : NULL,
+             generation->true_count + generation->predicted_count + generation->reused_count);
   }
   live->generations = report->generation;
 }
@@ -426,14 +429,14 @@ enum eo_code eo_job_convergence_copy(struct eo_job_convergence *convergence, con
 }
 
 static void read_generation(struct eo_job_generation *generation, const struct eo_job_generation *before,
-                            const json_t *g)
+                            const json_t *value)
 {
-  *generation = (struct eo_job_generation){.best = eo_json_find_number(g, "best"),
-                                           .mean = eo_json_find_number(g, "mean"),
-                                           .true_count = (int)eo_json_find_number(g, "true"),
-                                           .predicted = (int)eo_json_find_number(g, "predicted")};
+  *generation = (struct eo_job_generation){.best = eo_json_find_number(value, "best"),
+                                           .mean = eo_json_find_number(value, "mean"),
+                                           .true_count = (int)eo_json_find_number(value, "true"),
+                                           .predicted = (int)eo_json_find_number(value, "predicted")};
   count_on(generation, before,
-           generation->true_count + generation->predicted + (int)eo_json_find_number(g, "repeated"));
+           generation->true_count + generation->predicted + (int)eo_json_find_number(value, "repeated"));
 }
 
 enum eo_code eo_job_convergence_read(struct eo_job_convergence *convergence, const char *result, struct eo_error *error)

@@ -26,47 +26,48 @@ struct history {
   json_t *items;                              /* owned */
 };
 
-static void done(struct history *h)
+static void done(struct history *history)
 {
-  free(h->unmodified);
-  free(h->raw);
-  json_decref(h->items);
-  free(h);
+  free(history->unmodified);
+  free(history->raw);
+  json_decref(history->items);
+  free(history);
 }
 
 static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
-  struct history *h = context;
-  h->problem = job->problem;
-  return eo_design_read(job->design, strlen(job->design), &h->design, &h->geometry, NULL, error);
+  struct history *history = context;
+  history->problem = job->problem;
+  return eo_design_read(job->design, strlen(job->design), &history->design, &history->geometry, NULL, error);
 }
 
-static enum eo_code reserve(struct history *h, struct eo_error *error)
+static enum eo_code reserve(struct history *history, struct eo_error *error)
 {
-  h->scenarios = eo_evaluator_scenarios(&h->design);
-  h->cases = h->design.load_cases;
-  size_t size = (size_t)h->scenarios * (size_t)h->cases;
-  h->unmodified = calloc(size, sizeof *h->unmodified);
-  h->raw = calloc(size, sizeof *h->raw);
-  h->items = json_array();
-  return h->unmodified && h->raw && h->items ? EO_OK : eo_error_memory(error);
+  history->scenarios = eo_evaluator_scenarios(&history->design);
+  history->cases = history->design.load_cases;
+  size_t size = (size_t)history->scenarios * (size_t)history->cases;
+  history->unmodified = calloc(size, sizeof *history->unmodified);
+  history->raw = calloc(size, sizeof *history->raw);
+  history->items = json_array();
+  return history->unmodified && history->raw && history->items ? EO_OK : eo_error_memory(error);
 }
 
-static enum eo_code find_unmodified(struct history *h, struct eo_error *error)
+static enum eo_code find_unmodified(struct history *history, struct eo_error *error)
 {
-  struct eo_stored_evaluation row = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->unmodified};
-  enum eo_code code = eo_store_find_evaluation(h->store, h->problem, "{}", &row, error);
-  for (int i = 0; !code && !row.id && i < h->scenarios * h->cases; i++)
-    h->unmodified[i].failed = true;
+  struct eo_stored_evaluation row = {
+      .scenarios = history->scenarios, .cases = history->cases, .raw = history->unmodified};
+  enum eo_code code = eo_store_find_evaluation(history->store, history->problem, "{}", &row, error);
+  for (int i = 0; !code && !row.id && i < history->scenarios * history->cases; i++)
+    history->unmodified[i].failed = true;
   return code;
 }
 
-static enum eo_code weigh(struct history *h, const char *modification, struct eo_objective_value *value,
+static enum eo_code weigh(struct history *history, const char *modification, struct eo_objective_value *value,
                           struct eo_error *error)
 {
-  enum eo_code code = eo_modification_read(modification, &h->design.modification, error);
+  enum eo_code code = eo_modification_read(modification, &history->design.modification, error);
   if (!code)
-    eo_evaluator_combine(&h->design, &h->geometry, h->raw, h->unmodified, value);
+    eo_evaluator_combine(&history->design, &history->geometry, history->raw, history->unmodified, value);
   return code;
 }
 
@@ -96,45 +97,46 @@ static const struct eo_outline_row history_rows[] = {
 };
 const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
 
-static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *candidate, struct eo_text *text,
+static enum eo_code add_row(struct history *history, const struct eo_stored_candidate *candidate, struct eo_text *text,
                             struct eo_error *error)
 {
   struct row row = {.candidate = *candidate,
-                    .evaluation = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->raw}};
-  EO_TRY(eo_store_get_evaluation(h->store, candidate->evaluation, &row.evaluation, text, error));
-  EO_TRY(weigh(h, row.evaluation.modification, &row.value, error));
-  return json_array_append_new(h->items, eo_outline_encode(&eo_job_history_outline, &row)) ? eo_error_memory(error)
-                                                                                           : EO_OK;
+                    .evaluation = {.scenarios = history->scenarios, .cases = history->cases, .raw = history->raw}};
+  EO_TRY(eo_store_get_evaluation(history->store, candidate->evaluation, &row.evaluation, text, error));
+  EO_TRY(weigh(history, row.evaluation.modification, &row.value, error));
+  return json_array_append_new(history->items, eo_outline_encode(&eo_job_history_outline, &row))
+             ? eo_error_memory(error)
+             : EO_OK;
 }
 
-static enum eo_code take_candidate(void *context, const struct eo_stored_candidate *c, struct eo_error *error)
+static enum eo_code take_candidate(void *context, const struct eo_stored_candidate *candidate, struct eo_error *error)
 {
-  struct history *h = context;
+  struct history *history = context;
   struct eo_text text = {0};
-  if ((int)json_array_size(h->items) == h->limit) {
-    h->more = true;
+  if ((int)json_array_size(history->items) == history->limit) {
+    history->more = true;
     return EO_OK;
   }
-  enum eo_code code = add_row(h, c, &text, error);
-  h->last = c->ordinal;
+  enum eo_code code = add_row(history, candidate, &text, error);
+  history->last = candidate->ordinal;
   eo_text_done(&text);
   return code;
 }
 
-static enum eo_code collect(struct history *h, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
+static enum eo_code collect(struct history *history, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
                             struct eo_error *error)
 {
-  enum eo_code code = eo_queue_find(h->store, job, take_job, h, outcome, error);
+  enum eo_code code = eo_queue_find(history->store, job, take_job, history, outcome, error);
   if (code || *outcome != EO_JOB_OUTCOME_DONE)
     return code;
-  code = reserve(h, error);
-  if (code || !h->problem) /* it has not begun */
+  code = reserve(history, error);
+  if (code || !history->problem) /* it has not begun */
     return code;
-  h->limit = limit;
-  code = find_unmodified(h, error);
+  history->limit = limit;
+  code = find_unmodified(history, error);
   if (!code)
-    code = eo_store_page_candidates(h->store, job, after, limit < INT_MAX ? limit + 1 : limit, take_candidate, h,
-                                    error);
+    code = eo_store_page_candidates(history->store, job, after, limit < INT_MAX ? limit + 1 : limit, take_candidate,
+                                    history, error);
   return code;
 }
 
@@ -150,18 +152,18 @@ static enum eo_code begin(struct history **history, struct eo_store *store, stru
 enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
                             json_t **page, struct eo_error *error)
 {
-  struct history *h;
-  enum eo_code code = begin(&h, store, error);
+  struct history *history;
+  enum eo_code code = begin(&history, store, error);
   if (code)
     return code;
   *page = NULL;
-  code = collect(h, job, after, limit, outcome, error);
+  code = collect(history, job, after, limit, outcome, error);
   if (!code && *outcome == EO_JOB_OUTCOME_DONE) {
-    json_t *next = h->more ? json_sprintf("%d", h->last) : json_null();
-    *page = json_pack("{s:O, s:o}", "items", h->items, "next", next);
+    json_t *next = history->more ? json_sprintf("%d", history->last) : json_null();
+    *page = json_pack("{s:O, s:o}", "items", history->items, "next", next);
     code = *page ? EO_OK : eo_error_memory(error);
   }
-  done(h);
+  done(history);
   return code;
 }
 
@@ -234,13 +236,13 @@ static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct 
 enum eo_code eo_job_history_csv(struct eo_store *store, int64_t job, enum eo_job_outcome *outcome, struct eo_text *text,
                                 struct eo_error *error)
 {
-  struct history *h;
-  enum eo_code code = begin(&h, store, error);
+  struct history *history;
+  enum eo_code code = begin(&history, store, error);
   if (code)
     return code;
-  code = collect(h, job, -1, INT_MAX, outcome, error);
+  code = collect(history, job, -1, INT_MAX, outcome, error);
   if (!code && *outcome == EO_JOB_OUTCOME_DONE)
-    code = write_csv(h->items, text, error);
-  done(h);
+    code = write_csv(history->items, text, error);
+  done(history);
   return code;
 }

@@ -94,18 +94,18 @@ const struct eo_crew_trade eo_study_trade = {"search", open, work, close};
 
 static enum eo_code write_item(void *context, int item, struct eo_text *text, struct eo_error *error)
 {
-  const struct study *s = context;
+  const struct study *study = context;
   (void)error;
-  eo_text_add(text, eo_rows_at(&s->row, s->missing[item])->text.data);
+  eo_text_add(text, eo_rows_at(&study->row, study->missing[item])->text.data);
   return EO_OK;
 }
 
 static enum eo_code take_answer(void *context, int item, const char *answer, size_t size, struct eo_error *error)
 {
-  struct study *s = context;
-  struct eo_row_data *row = eo_rows_at(&s->row, s->missing[item]);
+  struct study *study = context;
+  struct eo_row_data *row = eo_rows_at(&study->row, study->missing[item]);
   struct head head;
-  size_t raw = sizeof *row->point.raw * (size_t)s->row.values;
+  size_t raw = sizeof *row->point.raw * (size_t)study->row.values;
   if (size != sizeof head + raw)
     return eo_error_set(error, EO_ERROR_FILE, "", "A rank sent an answer of the wrong length.");
   memcpy(&head, answer, sizeof head);
@@ -114,26 +114,26 @@ static enum eo_code take_answer(void *context, int item, const char *answer, siz
   row->outcome = (enum eo_evaluation_outcome)head.outcome;
   row->cost = head.cost;
   row->computed = true;
-  s->computed_of_batch = item + 1;
+  study->computed_of_batch = item + 1;
   return EO_OK;
 }
 
 static int watch(void *context)
 {
-  struct study *s = context;
-  return eo_study_tell_progress(s, s->batch.count - s->missing_count + s->computed_of_batch);
+  struct study *study = context;
+  return eo_study_tell_progress(study, study->batch.count - study->missing_count + study->computed_of_batch);
 }
 
-enum eo_code eo_study_compute_on_crew(struct study *s, struct eo_error *error)
+enum eo_code eo_study_compute_on_crew(struct study *study, struct eo_error *error)
 {
   const struct eo_crew_task task = {.trade = &eo_study_trade,
-                                    .order = s->design.data,
-                                    .size = s->design.size,
-                                    .items = s->missing_count,
+                                    .order = study->design.data,
+                                    .size = study->design.size,
+                                    .items = study->missing_count,
                                     .write = write_item,
                                     .take = take_answer,
                                     .watch = watch,
-                                    .context = s};
-  s->computed_of_batch = 0;
-  return eo_crew_run(s->plan->crew, &task, error);
+                                    .context = study};
+  study->computed_of_batch = 0;
+  return eo_crew_run(study->plan->crew, &task, error);
 }

@@ -11,6 +11,6 @@
 extern const struct eo_crew_trade eo_study_trade;
 
 /* Computes the missing rows of the pending batch; they come back in its order. Errors: of the crew. */
-enum eo_code eo_study_compute_on_crew(struct study *s, struct eo_error *error);
+enum eo_code eo_study_compute_on_crew(struct study *study, struct eo_error *error);
 
 #endif

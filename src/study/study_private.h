@@ -40,29 +40,29 @@ struct study {
 };
 
 /* J, fitness and what is minimised, from raw values: any weighting serves any row. */
-void eo_study_weigh(struct study *s, struct eo_study_point *point);
+void eo_study_weigh(struct study *study, struct eo_study_point *point);
 
 /* What a modification does to the model is an outcome; only what would befall any other row too is an error. One worker
    per thread. */
-enum eo_code eo_study_compute_row(struct study *s, struct worker *worker, struct eo_row_data *row,
+enum eo_code eo_study_compute_row(struct study *study, struct worker *worker, struct eo_row_data *row,
                                   struct eo_error *error);
 
 /* point.evaluation stays 0 when the history does not have the row. */
-enum eo_code eo_study_look_up(struct study *s, struct eo_row_data *row, struct eo_error *error);
+enum eo_code eo_study_look_up(struct study *study, struct eo_row_data *row, struct eo_error *error);
 
 /* Somebody else may have saved the same row meanwhile; then theirs counts. */
-enum eo_code eo_study_save_row(struct study *s, struct eo_row_data *row, struct eo_error *error);
+enum eo_code eo_study_save_row(struct study *study, struct eo_row_data *row, struct eo_error *error);
 
 /* What the history knows of a row but its raw values. */
 void eo_study_take(struct eo_row_data *row, const struct eo_stored_evaluation *stored);
 
 /* What the optimizer is told. objectives: the three, in the unmodified pair's. The parts are valid until the next. */
-struct eo_outcome eo_study_outcome(struct study *s, const struct eo_row_data *row, double objectives[3]);
+struct eo_outcome eo_study_outcome(struct study *study, const struct eo_row_data *row, double objectives[3]);
 
 /* Everything before the first ask: hashes, job, unmodified pair, rows of other jobs. */
-enum eo_code eo_study_begin(struct study *s, struct eo_error *error);
+enum eo_code eo_study_begin(struct study *study, struct eo_error *error);
 
 /* Reports; extra: evaluations of the batch in work that are known. Non-zero: stop. */
-int eo_study_tell_progress(struct study *s, int extra);
+int eo_study_tell_progress(struct study *study, int extra);
 
 #endif

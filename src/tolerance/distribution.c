@@ -27,63 +27,64 @@ double eo_normal_quantile(double p)
 }
 
 /* q(u) = mean + sigma Phi^-1(Phi(-c) + u (Phi(c) - Phi(-c))): theory (A1). */
-static double normal_quantile(const struct eo_distribution *d, double u)
+static double normal_quantile(const struct eo_distribution *distribution, double u)
 {
-  double below = isinf(d->cut) ? 0 : eo_normal_probability(-d->cut);
-  return d->mean + d->sigma * eo_normal_quantile(below + u * (1 - 2 * below));
+  double below = isinf(distribution->cut) ? 0 : eo_normal_probability(-distribution->cut);
+  return distribution->mean + distribution->sigma * eo_normal_quantile(below + u * (1 - 2 * below));
 }
 
-double eo_distribution_quantile(const struct eo_distribution *d, double u)
+double eo_distribution_quantile(const struct eo_distribution *distribution, double u)
 {
-  switch (d->kind) {
+  switch (distribution->kind) {
   case EO_DISTRIBUTION_UNIFORM:
-    return d->low + u * (d->high - d->low);
+    return distribution->low + u * (distribution->high - distribution->low);
   case EO_DISTRIBUTION_LIST: {
-    int i = (int)(u * d->values);
-    return d->values > 0 ? d->value[i < d->values ? i : d->values - 1] : 0;
+    int i = (int)(u * distribution->values);
+    return distribution->values > 0 ? distribution->value[i < distribution->values ? i : distribution->values - 1] : 0;
   }
   default:
-    return d->sigma > 0 ? normal_quantile(d, u) : d->mean;
+    return distribution->sigma > 0 ? normal_quantile(distribution, u) : distribution->mean;
   }
 }
 
 /* With phi the density at the cut c and w = 2 Phi(c) - 1 what is left: mu2 = 1 - 2 c phi/w,
    mu4 = 3 - 2 c (c^2 + 3) phi/w. */
-static struct eo_moments normal_moments(const struct eo_distribution *d)
+static struct eo_moments normal_moments(const struct eo_distribution *distribution)
 {
-  struct eo_moments m = {.mean = d->mean, .deviation = d->sigma, .fourth = 3};
-  if (isinf(d->cut) || !(d->sigma > 0))
-    return m;
-  double ends = density(d->cut) / (1 - 2 * eo_normal_probability(-d->cut));
-  double square = 1 - 2 * d->cut * ends;
-  m.deviation = d->sigma * sqrt(square);
-  m.fourth = (3 - 2 * d->cut * (d->cut * d->cut + 3) * ends) / (square * square);
-  return m;
+  struct eo_moments moments = {.mean = distribution->mean, .deviation = distribution->sigma, .fourth = 3};
+  if (isinf(distribution->cut) || !(distribution->sigma > 0))
+    return moments;
+  double ends = density(distribution->cut) / (1 - 2 * eo_normal_probability(-distribution->cut));
+  double square = 1 - 2 * distribution->cut * ends;
+  moments.deviation = distribution->sigma * sqrt(square);
+  moments.fourth = (3 - 2 * distribution->cut * (distribution->cut * distribution->cut + 3) * ends) / (square * square);
+  return moments;
 }
 
-static struct eo_moments list_moments(const struct eo_distribution *d)
+static struct eo_moments list_moments(const struct eo_distribution *distribution)
 {
   double sum[5] = {0};
-  for (int i = 0; i < d->values; i++)
-    sum[1] += d->value[i] / d->values;
-  for (int i = 0; i < d->values; i++)
+  for (int i = 0; i < distribution->values; i++)
+    sum[1] += distribution->value[i] / distribution->values;
+  for (int i = 0; i < distribution->values; i++)
     for (int k = 2; k < 5; k++)
-      sum[k] += pow(d->value[i] - sum[1], k) / d->values;
-  struct eo_moments m = {.mean = sum[1], .deviation = sqrt(sum[2]), .fourth = 3};
+      sum[k] += pow(distribution->value[i] - sum[1], k) / distribution->values;
+  struct eo_moments moments = {.mean = sum[1], .deviation = sqrt(sum[2]), .fourth = 3};
   if (sum[2] > 0) {
-    m.third = sum[3] / pow(sum[2], 1.5);
-    m.fourth = sum[4] / (sum[2] * sum[2]);
+    moments.third = sum[3] / pow(sum[2], 1.5);
+    moments.fourth = sum[4] / (sum[2] * sum[2]);
   }
-  return m;
+  return moments;
 }
 
-struct eo_moments eo_distribution_moments(const struct eo_distribution *d)
+struct eo_moments eo_distribution_moments(const struct eo_distribution *distribution)
 {
-  if (d->kind == EO_DISTRIBUTION_LIST)
-    return list_moments(d);
-  if (d->kind == EO_DISTRIBUTION_NORMAL)
-    return normal_moments(d);
+  if (distribution->kind == EO_DISTRIBUTION_LIST)
+    return list_moments(distribution);
+  if (distribution->kind == EO_DISTRIBUTION_NORMAL)
+    return normal_moments(distribution);
   const double flat = 1.8; /* fourth moment of a uniform distribution: (1/5) / (1/3)^2 */
-  return (struct eo_moments){
-      .mean = (d->low + d->high) / 2, .deviation = (d->high - d->low) / sqrt(12), .fourth = flat};
+  return (struct eo_moments){.mean = (distribution->low + distribution->high) / 2,
+                             .deviation = (distribution->high - distribution->low) / sqrt(12),
+                             .fourth = flat};
 }

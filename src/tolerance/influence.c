@@ -21,11 +21,11 @@ static int standardise(int n, int k, const double *input, const double *output, 
     double *own = column + (size_t)varying * (size_t)n;
     for (int row = 0; row < n; row++)
       own[row] = i < k ? input[(size_t)row * (size_t)k + (size_t)i] : output[row];
-    struct eo_summary s = eo_summary_of(n, own);
-    if (i < k && !(s.largest > s.least))
+    struct eo_summary summary = eo_summary_of(n, own);
+    if (i < k && !(summary.largest > summary.least))
       continue;
     for (int row = 0; row < n; row++)
-      own[row] = s.largest > s.least ? (own[row] - s.mean) / s.deviation : 0;
+      own[row] = summary.largest > summary.least ? (own[row] - summary.mean) / summary.deviation : 0;
     of[varying++] = i;
   }
   return varying - 1;

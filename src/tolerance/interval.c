@@ -37,10 +37,11 @@ static int binomial_quantile(int n, double p, double share)
 /* X values lie below the quantile, X binomial: x_(low) <= quantile < x_(high) when low <= X < high: theory (A4). */
 struct eo_rank_interval eo_order_statistic_ranks(int n, double p, double level)
 {
-  struct eo_rank_interval r = {.low = binomial_quantile(n, p, (1 - level) / 2),
-                               .high = binomial_quantile(n, p, (1 + level) / 2) + 1};
-  r.coverage = eo_binomial_probability(n, r.high - 1, p) - eo_binomial_probability(n, r.low - 1, p);
-  return r;
+  struct eo_rank_interval interval = {.low = binomial_quantile(n, p, (1 - level) / 2),
+                                      .high = binomial_quantile(n, p, (1 + level) / 2) + 1};
+  interval.coverage = eo_binomial_probability(n, interval.high - 1, p) -
+                      eo_binomial_probability(n, interval.low - 1, p);
+  return interval;
 }
 
 /* The p at which at most k of n are seen with the given probability: it falls as p grows. */

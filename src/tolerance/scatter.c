@@ -113,13 +113,13 @@ void eo_scatter_apply(const struct eo_scatter *scatter, const double *value, voi
 struct eo_moments eo_scatter_moments(const struct eo_scatter *scatter, int i)
 {
   const struct eo_scatter_input *input = &scatter->input[i];
-  struct eo_moments m = eo_distribution_moments(&input->deviation);
-  m.mean += input->nominal;
+  struct eo_moments moments = eo_distribution_moments(&input->deviation);
+  moments.mean += input->nominal;
   if (input->fixed_sum > 0) {
     double variances = sum_of_variances(scatter, input->fixed_sum), own = input->deviation.sigma;
-    m.deviation = own * sqrt(fmax(0, 1 - own * own / variances));
+    moments.deviation = own * sqrt(fmax(0, 1 - own * own / variances));
   }
-  return m;
+  return moments;
 }
 
 bool eo_scatter_is_independent(const struct eo_scatter *scatter)

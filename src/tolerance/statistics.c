@@ -11,17 +11,17 @@ enum { STREAM_BOOTSTRAP = 905 }; /* of the counter generator */
 
 struct eo_summary eo_summary_of(int n, const double *value)
 {
-  struct eo_summary s = {.least = INFINITY, .largest = -INFINITY};
+  struct eo_summary summary = {.least = INFINITY, .largest = -INFINITY};
   double squares = 0;
   for (int i = 0; i < n; i++) {
-    s.mean += value[i] / n;
-    s.least = fmin(s.least, value[i]);
-    s.largest = fmax(s.largest, value[i]);
+    summary.mean += value[i] / n;
+    summary.least = fmin(summary.least, value[i]);
+    summary.largest = fmax(summary.largest, value[i]);
   }
   for (int i = 0; i < n; i++)
-    squares += (value[i] - s.mean) * (value[i] - s.mean);
-  s.deviation = n > 1 ? sqrt(squares / (n - 1)) : 0;
-  return s;
+    squares += (value[i] - summary.mean) * (value[i] - summary.mean);
+  summary.deviation = n > 1 ? sqrt(squares / (n - 1)) : 0;
+  return summary;
 }
 
 static int ascending(const void *a, const void *b)
@@ -70,9 +70,9 @@ enum eo_code eo_bootstrap_run(struct eo_bootstrap *bootstrap, int n, const doubl
     struct eo_random random = eo_random_at(seed, STREAM_BOOTSTRAP, 0, r);
     for (int i = 0; i < n; i++)
       own[i] = value[eo_random_index(random, (uint64_t)i, n)];
-    struct eo_summary s = eo_summary_of(n, own);
-    drawn[r] = s.mean;
-    drawn[each + r] = s.deviation;
+    struct eo_summary summary = eo_summary_of(n, own);
+    drawn[r] = summary.mean;
+    drawn[each + r] = summary.deviation;
     if (percents > 0)
       eo_sort_numbers(n, own);
     for (int k = 0; k < percents; k++)

@@ -28,8 +28,8 @@ static int terms_of(int inputs, int leading)
 
 static double standard(const struct eo_surface *surface, int i, const double *input)
 {
-  const struct eo_moments *m = &surface->moments[i];
-  return m->deviation > 0 ? (input[i] - m->mean) / m->deviation : 0;
+  const struct eo_moments *moments = &surface->moments[i];
+  return moments->deviation > 0 ? (input[i] - moments->mean) / moments->deviation : 0;
 }
 
 static void set_terms(const struct eo_surface *surface, const double *input, double *term)
@@ -101,7 +101,7 @@ static enum eo_code solve(struct fit *fit, const double *output, struct eo_error
   if (eo_dense_factor(p, fit->normal, fit->pivot))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The inputs depend on each other: no surface.");
   eo_dense_substitute(p, fit->normal, fit->pivot, n + 1, fit->right);
-  struct eo_summary s = eo_summary_of(n, output);
+  struct eo_summary summary = eo_summary_of(n, output);
   for (int i = 0; i < n; i++) {
     const double *row = fit->row + (size_t)i * terms, *solved = fit->right + (size_t)(i + 1) * terms;
     double fitted = 0, leverage = 0;
@@ -113,7 +113,8 @@ static enum eo_code solve(struct fit *fit, const double *output, struct eo_error
     left_out += error_i * error_i;
   }
   fit->surface->residual = sqrt(left_out / n);
-  fit->surface->q2 = s.largest > s.least ? 1 - left_out / (s.deviation * s.deviation * (n - 1)) : NAN;
+  fit->surface->q2 = summary.largest > summary.least ? 1 - left_out / (summary.deviation * summary.deviation * (n - 1))
+                                                     : NAN;
   return EO_OK;
 }
 
@@ -201,10 +202,10 @@ void eo_surface_indices(const struct eo_surface *surface, double *first, double 
     first[i] = surface->moments[i].deviation > 0 ? surface->slope[i] * surface->slope[i] : 0;
   for (int i = 0; i < surface->leading; i++) {
     int k = surface->lead[i];
-    const struct eo_moments *m = &surface->moments[k];
+    const struct eo_moments *moments = &surface->moments[k];
     double q = surface->square[i * surface->leading + i];
-    if (m->deviation > 0)
-      first[k] += 2 * surface->slope[k] * q * m->third + q * q * (m->fourth - 1);
+    if (moments->deviation > 0)
+      first[k] += 2 * surface->slope[k] * q * moments->third + q * q * (moments->fourth - 1);
   }
   for (int i = 0; i < surface->inputs; i++) {
     total[i] = first[i];

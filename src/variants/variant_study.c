@@ -30,21 +30,21 @@ enum eo_code eo_variant_scalars(const struct eo_variant_plan *plan, struct eo_sc
 }
 
 /* Only what is computed tells how long the rest takes. */
-static double time_left(const struct variant_study *s, double now)
+static double time_left(const struct variant_study *study, double now)
 {
-  const struct eo_variant_result *result = s->result;
-  if (!(s->computing > 0) || !result->computed)
+  const struct eo_variant_result *result = study->result;
+  if (!(study->computing > 0) || !result->computed)
     return NAN;
-  return (now - s->computing) * (result->rows - result->done) / result->computed;
+  return (now - study->computing) * (result->rows - result->done) / result->computed;
 }
 
-int eo_variant_report(struct variant_study *s, const char *what)
+int eo_variant_report(struct variant_study *study, const char *what)
 {
-  const struct eo_variant_result *result = s->result;
+  const struct eo_variant_result *result = study->result;
   double now = eo_variant_clock();
-  if (!s->run->watch)
+  if (!study->run->watch)
     return 0;
-  const struct eo_variant_report report = {.job = s->job.id,
+  const struct eo_variant_report report = {.job = study->job.id,
                                            .rows = result->rows,
                                            .done = result->done,
                                            .reused = result->reused,
@@ -52,106 +52,106 @@ int eo_variant_report(struct variant_study *s, const char *what)
                                            .refused = result->refused,
                                            .not_converged = result->not_converged,
                                            .fraction = result->rows ? (double)result->done / result->rows : 1,
-                                           .seconds = now - s->started,
-                                           .seconds_left = time_left(s, now),
+                                           .seconds = now - study->started,
+                                           .seconds_left = time_left(study, now),
                                            .what = what};
-  return s->run->watch(s->run->context, &report);
+  return study->run->watch(study->run->context, &report);
 }
 
 /* Keeping rows: */
 
-enum eo_code eo_variant_open(struct variant_study *s, struct eo_error *error)
+enum eo_code eo_variant_open(struct variant_study *study, struct eo_error *error)
 {
-  if (s->open)
+  if (study->open)
     return EO_OK;
-  EO_TRY(eo_store_begin(s->run->store, error));
-  s->open = true;
-  s->unsaved = 0;
-  s->committed = eo_variant_clock();
+  EO_TRY(eo_store_begin(study->run->store, error));
+  study->open = true;
+  study->unsaved = 0;
+  study->committed = eo_variant_clock();
   return EO_OK;
 }
 
-static void sum_up(struct variant_study *s, enum eo_job_state state, const char *stopped)
+static void sum_up(struct variant_study *study, enum eo_job_state state, const char *stopped)
 {
-  s->job.state = state;
-  s->job.stopped = stopped;
-  s->job.true_evaluations = s->result->done;
-  s->job.individuals = s->result->rows;
-  s->job.best_value = NAN;
+  study->job.state = state;
+  study->job.stopped = stopped;
+  study->job.true_evaluations = study->result->done;
+  study->job.individuals = study->result->rows;
+  study->job.best_value = NAN;
 }
 
-enum eo_code eo_variant_commit(struct variant_study *s, bool now, struct eo_error *error)
+enum eo_code eo_variant_commit(struct variant_study *study, bool now, struct eo_error *error)
 {
-  if (!s->open || (!now && s->unsaved < MOST_UNSAVED && eo_variant_clock() - s->committed < MOST_SECONDS))
+  if (!study->open || (!now && study->unsaved < MOST_UNSAVED && eo_variant_clock() - study->committed < MOST_SECONDS))
     return EO_OK;
-  sum_up(s, EO_JOB_RUNNING, "");
-  EO_TRY(eo_store_update_job(s->run->store, &s->job, error));
-  EO_TRY(eo_store_commit(s->run->store, error));
-  s->open = false;
+  sum_up(study, EO_JOB_RUNNING, "");
+  EO_TRY(eo_store_update_job(study->run->store, &study->job, error));
+  EO_TRY(eo_store_commit(study->run->store, error));
+  study->open = false;
   return EO_OK;
 }
 
-enum eo_code eo_variant_keep(struct variant_study *s, int variant, struct eo_stored_variant *row, bool reused,
+enum eo_code eo_variant_keep(struct variant_study *study, int variant, struct eo_stored_variant *row, bool reused,
                              struct eo_error *error)
 {
-  EO_TRY(eo_store_log_variant(s->run->store, s->job.id, variant, row->id, reused, error));
-  s->unsaved++;
-  s->result->done++;
-  s->result->reused += reused;
-  s->result->refused += row->outcome == EO_EVALUATION_REFUSED;
-  s->result->not_converged += row->outcome == EO_EVALUATION_NOT_CONVERGED;
+  EO_TRY(eo_store_log_variant(study->run->store, study->job.id, variant, row->id, reused, error));
+  study->unsaved++;
+  study->result->done++;
+  study->result->reused += reused;
+  study->result->refused += row->outcome == EO_EVALUATION_REFUSED;
+  study->result->not_converged += row->outcome == EO_EVALUATION_NOT_CONVERGED;
   return EO_OK;
 }
 
 /* What searches may use. */
-static enum eo_code keep_evaluation(struct variant_study *s, const struct eo_variant_answer *answer,
+static enum eo_code keep_evaluation(struct variant_study *study, const struct eo_variant_answer *answer,
                                     struct eo_error *error)
 {
-  if (!s->shared || !answer->cases)
+  if (!study->shared || !answer->cases)
     return EO_OK;
-  memcpy(s->raw, answer->raw, sizeof *s->raw * (size_t)answer->cases);
+  memcpy(study->raw, answer->raw, sizeof *study->raw * (size_t)answer->cases);
   struct eo_stored_evaluation row = {.modification = answer->modification,
                                      .outcome = answer->outcome,
                                      .cost = answer->cost,
                                      .scenarios = 1,
                                      .cases = answer->cases,
-                                     .raw = s->raw};
+                                     .raw = study->raw};
   memcpy(row.reason, answer->reason, sizeof row.reason);
-  return eo_store_add_evaluation(s->run->store, s->problem, &row, error);
+  return eo_store_add_evaluation(study->run->store, study->problem, &row, error);
 }
 
-static enum eo_code keep_answer(struct variant_study *s, int variant, const struct eo_variant_answer *answer,
+static enum eo_code keep_answer(struct variant_study *study, int variant, const struct eo_variant_answer *answer,
                                 struct eo_error *error)
 {
   char hash[EO_HASH_LENGTH + 1];
-  json_t *values = eo_variant_values(s->run->plan, variant);
-  enum eo_code code = values ? eo_variant_hash(s->run->plan, values, hash, error) : eo_error_memory(error);
+  json_t *values = eo_variant_values(study->run->plan, variant);
+  enum eo_code code = values ? eo_variant_hash(study->run->plan, values, hash, error) : eo_error_memory(error);
   json_decref(values);
-  for (int i = 0; i < s->scalars.count; i++)
-    s->number[i] = i < answer->numbers ? answer->number[i] : NAN;
+  for (int i = 0; i < study->scalars.count; i++)
+    study->number[i] = i < answer->numbers ? answer->number[i] : NAN;
   struct eo_stored_variant row = {.design = hash,
                                   .evaluator = EO_EVALUATOR_VERSION,
-                                  .columns = s->columns,
+                                  .columns = study->columns,
                                   .outcome = answer->outcome,
                                   .cost = answer->cost,
-                                  .numbers = s->scalars.count,
-                                  .number = s->number};
+                                  .numbers = study->scalars.count,
+                                  .number = study->number};
   memcpy(row.reason, answer->reason, sizeof row.reason);
   if (!code)
-    code = eo_variant_open(s, error);
+    code = eo_variant_open(study, error);
   if (!code)
-    code = eo_store_add_variant(s->run->store, &row, error);
+    code = eo_store_add_variant(study->run->store, &row, error);
   if (!code)
-    code = keep_evaluation(s, answer, error);
-  return code ? code : eo_variant_keep(s, variant, &row, false, error);
+    code = keep_evaluation(study, answer, error);
+  return code ? code : eo_variant_keep(study, variant, &row, false, error);
 }
 
 /* The crew: */
 
 static enum eo_code write_item(void *context, int item, struct eo_text *text, struct eo_error *error)
 {
-  struct variant_study *s = context;
-  json_t *wrapped = json_pack("{s:o}", "values", eo_variant_values(s->run->plan, s->missing[item]));
+  struct variant_study *study = context;
+  json_t *wrapped = json_pack("{s:o}", "values", eo_variant_values(study->run->plan, study->missing[item]));
   if (!wrapped)
     return eo_error_memory(error);
   eo_json_write(text, wrapped, EO_JSON_COMPACT);
@@ -159,57 +159,60 @@ static enum eo_code write_item(void *context, int item, struct eo_text *text, st
   return EO_OK;
 }
 
-static enum eo_code keep_waiting(struct variant_study *s, const struct waiting_answer *waiting, struct eo_error *error)
+static enum eo_code keep_waiting(struct variant_study *study, const struct waiting_answer *waiting,
+                                 struct eo_error *error)
 {
   struct eo_variant_answer answer;
   void *room;
   if (!eo_variant_answer_read(&answer, waiting->bytes.data, waiting->bytes.size, &room))
     return eo_error_memory(error);
-  s->result->computed++;
-  s->result->cost += answer.cost;
-  enum eo_code code = keep_answer(s, waiting->variant, &answer, error);
+  study->result->computed++;
+  study->result->cost += answer.cost;
+  enum eo_code code = keep_answer(study, waiting->variant, &answer, error);
   free(room);
   return code;
 }
 
 /* Writes what waits, in its order. */
-static enum eo_code flush(struct variant_study *s, struct eo_error *error)
+static enum eo_code flush(struct variant_study *study, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   double start = eo_variant_clock();
-  for (int i = 0; i < s->waiting_count; i++) {
+  for (int i = 0; i < study->waiting_count; i++) {
     if (!code)
-      code = keep_waiting(s, &s->waiting[i], error);
+      code = keep_waiting(study, &study->waiting[i], error);
     if (!code)
-      code = eo_variant_commit(s, false, error);
-    eo_text_done(&s->waiting[i].bytes);
+      code = eo_variant_commit(study, false, error);
+    eo_text_done(&study->waiting[i].bytes);
   }
-  s->waiting_count = 0;
+  study->waiting_count = 0;
   if (!code)
-    code = eo_variant_commit(s, true, error);
-  s->result->store_seconds += eo_variant_clock() - start;
+    code = eo_variant_commit(study, true, error);
+  study->result->store_seconds += eo_variant_clock() - start;
   return code;
 }
 
 static enum eo_code take_answer(void *context, int item, const char *bytes, size_t size, struct eo_error *error)
 {
-  struct variant_study *s = context;
-  struct waiting_answer *waiting = &s->waiting[s->waiting_count++];
-  *waiting = (struct waiting_answer){.variant = s->missing[item]};
+  struct variant_study *study = context;
+  struct waiting_answer *waiting = &study->waiting[study->waiting_count++];
+  *waiting = (struct waiting_answer){.variant = study->missing[item]};
   eo_text_add_bytes(&waiting->bytes, bytes, size);
-  if (s->waiting_count == 1)
-    s->waits_since = eo_variant_clock();
+  if (study->waiting_count == 1)
+    study->waits_since = eo_variant_clock();
   if (waiting->bytes.failed)
     return eo_error_memory(error);
-  return s->waiting_count == MOST_WAITING || eo_variant_clock() - s->waits_since > MOST_WAIT ? flush(s, error) : EO_OK;
+  return study->waiting_count == MOST_WAITING || eo_variant_clock() - study->waits_since > MOST_WAIT
+             ? flush(study, error)
+             : EO_OK;
 }
 
 static int watch_crew(void *context)
 {
-  struct variant_study *s = context;
-  if (s->waiting_count && eo_variant_clock() - s->waits_since > MOST_WAIT && flush(s, &s->fault))
+  struct variant_study *study = context;
+  if (study->waiting_count && eo_variant_clock() - study->waits_since > MOST_WAIT && flush(study, &study->fault))
     return 1; /* told when the crew has stopped */
-  return eo_variant_report(s, "");
+  return eo_variant_report(study, "");
 }
 
 static enum eo_code first_of(enum eo_code one, enum eo_code other)
@@ -217,45 +220,45 @@ static enum eo_code first_of(enum eo_code one, enum eo_code other)
   return other ? other : one;
 }
 
-static enum eo_code compute(struct variant_study *s, struct eo_error *error)
+static enum eo_code compute(struct variant_study *study, struct eo_error *error)
 {
   struct eo_text order = {0};
   struct eo_crew_task task = {.trade = &eo_variant_trade,
-                              .items = s->missing_count,
+                              .items = study->missing_count,
                               .write = write_item,
                               .take = take_answer,
                               .watch = watch_crew,
-                              .context = s};
-  if (!s->missing_count)
+                              .context = study};
+  if (!study->missing_count)
     return EO_OK;
-  enum eo_code code = eo_variant_trade_order(s->run->plan, &order, error);
-  s->computing = eo_variant_clock();
+  enum eo_code code = eo_variant_trade_order(study->run->plan, &order, error);
+  study->computing = eo_variant_clock();
   task.order = order.data;
   task.size = order.size;
   if (!code)
-    code = eo_crew_run(s->run->crew, &task, error);
+    code = eo_crew_run(study->run->crew, &task, error);
   eo_text_done(&order);
-  if (s->fault.code) {
-    *error = s->fault;
-    return s->fault.code;
+  if (study->fault.code) {
+    *error = study->fault;
+    return study->fault.code;
   }
-  return code && code != EO_ERROR_CANCELLED ? code : first_of(code, flush(s, error));
+  return code && code != EO_ERROR_CANCELLED ? code : first_of(code, flush(study, error));
 }
 
 /* The end: what came is kept, of a run that was cut short too. */
-static enum eo_code finish(struct variant_study *s, enum eo_code code, struct eo_error *error)
+static enum eo_code finish(struct variant_study *study, enum eo_code code, struct eo_error *error)
 {
   struct eo_error later;
   bool cancelled = code == EO_ERROR_CANCELLED;
-  s->result->cancelled = cancelled;
-  if (!s->job.id)
+  study->result->cancelled = cancelled;
+  if (!study->job.id)
     return code;
-  enum eo_code end = eo_variant_commit(s, true, &later);
+  enum eo_code end = eo_variant_commit(study, true, &later);
   if (end)
-    eo_store_rollback(s->run->store);
+    eo_store_rollback(study->run->store);
   if (!end && (!code || cancelled)) {
-    sum_up(s, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, cancelled ? "cancelled" : "");
-    end = eo_store_update_job(s->run->store, &s->job, &later);
+    sum_up(study, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, cancelled ? "cancelled" : "");
+    end = eo_store_update_job(study->run->store, &study->job, &later);
   }
   if (end && (!code || cancelled)) {
     *error = later;
@@ -267,30 +270,30 @@ static enum eo_code finish(struct variant_study *s, enum eo_code code, struct eo
 enum eo_code eo_variant_study_run(const struct eo_variant_run *run, struct eo_variant_result *result,
                                   struct eo_error *error)
 {
-  struct variant_study *s = calloc(1, sizeof *s);
+  struct variant_study *study = calloc(1, sizeof *study);
   *result = (struct eo_variant_result){.rows = run->plan->rows};
-  if (!s)
+  if (!study)
     return eo_error_memory(error);
-  s->run = run;
-  s->result = result;
-  s->started = eo_variant_clock();
-  enum eo_code code = eo_variant_study_begin(s, error);
+  study->run = run;
+  study->result = result;
+  study->started = eo_variant_clock();
+  enum eo_code code = eo_variant_study_begin(study, error);
   if (!code)
-    code = eo_variant_look_up(s, error);
-  result->look_up_seconds = eo_variant_clock() - s->started;
+    code = eo_variant_look_up(study, error);
+  result->look_up_seconds = eo_variant_clock() - study->started;
   if (!code)
-    code = compute(s, error);
-  code = finish(s, code, error);
-  result->seconds = eo_variant_clock() - s->started;
-  if (s->job.id)
-    eo_store_release_job(run->store, s->job.id);
-  eo_scalars_done(&s->scalars);
-  for (int i = 0; i < s->waiting_count; i++)
-    eo_text_done(&s->waiting[i].bytes);
-  free(s->missing);
-  free(s->number);
-  free(s->raw);
-  free(s->unmodified);
-  free(s);
+    code = compute(study, error);
+  code = finish(study, code, error);
+  result->seconds = eo_variant_clock() - study->started;
+  if (study->job.id)
+    eo_store_release_job(run->store, study->job.id);
+  eo_scalars_done(&study->scalars);
+  for (int i = 0; i < study->waiting_count; i++)
+    eo_text_done(&study->waiting[i].bytes);
+  free(study->missing);
+  free(study->number);
+  free(study->raw);
+  free(study->unmodified);
+  free(study);
   return code;
 }

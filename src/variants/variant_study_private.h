@@ -39,20 +39,20 @@ struct variant_study {
 double eo_variant_clock(void); /* s */
 
 /* Columns, job, which variants have no row yet. */
-enum eo_code eo_variant_study_begin(struct variant_study *s, struct eo_error *error);
+enum eo_code eo_variant_study_begin(struct variant_study *study, struct eo_error *error);
 
 /* Gives what is known its place, and leaves the rest in s->missing. */
-enum eo_code eo_variant_look_up(struct variant_study *s, struct eo_error *error);
+enum eo_code eo_variant_look_up(struct variant_study *study, struct eo_error *error);
 
 /* A row for a variant, in the transaction that is open. */
-enum eo_code eo_variant_keep(struct variant_study *s, int variant, struct eo_stored_variant *row, bool reused,
+enum eo_code eo_variant_keep(struct variant_study *study, int variant, struct eo_stored_variant *row, bool reused,
                              struct eo_error *error);
 
 /* Opens a transaction when none is; commits when it has grown enough, or `now`. */
-enum eo_code eo_variant_open(struct variant_study *s, struct eo_error *error);
-enum eo_code eo_variant_commit(struct variant_study *s, bool now, struct eo_error *error);
+enum eo_code eo_variant_open(struct variant_study *study, struct eo_error *error);
+enum eo_code eo_variant_commit(struct variant_study *study, bool now, struct eo_error *error);
 
 /* Non-zero: stop. */
-int eo_variant_report(struct variant_study *s, const char *what);
+int eo_variant_report(struct variant_study *study, const char *what);
 
 #endif

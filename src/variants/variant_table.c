@@ -217,14 +217,14 @@ static json_t *encode_keys(const struct eo_variant_plan *plan)
   json_t *keys = json_array();
   for (int i = 0; i < plan->axes; i++) {
     const struct eo_variant_axis *axis = &plan->axis[i];
-    struct eo_object o = eo_object_open_as(&key_outline);
+    struct eo_object object = eo_object_open_as(&key_outline);
     json_t *paths = json_array();
     for (int k = 0; k < axis->paths; k++)
       json_array_append_new(paths, json_string(axis->path[k]));
-    eo_object_put(&o, "name", json_string(axis->name));
-    eo_object_put(&o, "unit", json_string(strchr(axis->name, '[') ? "" : unit_of(axis)));
-    eo_object_put(&o, "paths", paths);
-    json_array_append_new(keys, eo_object_close(&o));
+    eo_object_put(&object, "name", json_string(axis->name));
+    eo_object_put(&object, "unit", json_string(strchr(axis->name, '[') ? "" : unit_of(axis)));
+    eo_object_put(&object, "paths", paths);
+    json_array_append_new(keys, eo_object_close(&object));
   }
   return keys;
 }
@@ -244,22 +244,22 @@ const struct eo_outline eo_variant_columns_outline = EO_OUTLINE("StudyColumns", 
 
 json_t *eo_variant_columns_encode(const struct eo_scalars *scalars)
 {
-  struct eo_object o = eo_object_open_as(&eo_variant_columns_outline);
-  eo_object_put(&o, "items", encode_columns(scalars));
-  return eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&eo_variant_columns_outline);
+  eo_object_put(&object, "items", encode_columns(scalars));
+  return eo_object_close(&object);
 }
 
 static enum eo_code add_item(void *context, const struct eo_stored_variant *row, const json_t *values,
                              struct eo_error *error)
 {
   json_t *items = context;
-  struct eo_object o = eo_object_open_as(&item_outline);
-  eo_object_put(&o, "variant", json_integer(row->ordinal));
-  eo_object_put(&o, "outcome", json_string(eo_store_outcome_name(row->outcome)));
-  eo_object_put(&o, "reason", json_string(row->reason));
-  eo_object_put(&o, "values", json_incref((json_t *)values));
-  eo_object_put(&o, "numbers", eo_json_reals(row->numbers, row->number, 1, NULL, 0));
-  json_t *item = eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&item_outline);
+  eo_object_put(&object, "variant", json_integer(row->ordinal));
+  eo_object_put(&object, "outcome", json_string(eo_store_outcome_name(row->outcome)));
+  eo_object_put(&object, "reason", json_string(row->reason));
+  eo_object_put(&object, "values", json_incref((json_t *)values));
+  eo_object_put(&object, "numbers", eo_json_reals(row->numbers, row->number, 1, NULL, 0));
+  json_t *item = eo_object_close(&object);
   return item && json_array_append_new(items, item) == 0 ? EO_OK : eo_error_memory(error);
 }
 
@@ -273,17 +273,17 @@ enum eo_code eo_variant_table_encode(const struct eo_variant_table *table, struc
     json_decref(items);
     return code;
   }
-  struct eo_object o = eo_object_open_as(&eo_variant_table_outline);
-  eo_object_put(&o, "job", json_integer(table->job));
-  eo_object_put(&o, "name", json_string(table->plan.name));
-  eo_object_put(&o, "keys", encode_keys(&table->plan));
-  eo_object_put(&o, "columns", encode_columns(&table->scalars));
-  eo_object_put(&o, "variants", json_integer(table->plan.rows));
-  eo_object_put(&o, "done", json_integer(table->done));
-  eo_object_put(&o, "fits", json_integer(table->fits));
-  eo_object_put(&o, "items", items);
-  eo_object_put(&o, "next", next < table->fits ? json_sprintf("%d", next) : json_null());
-  *document = eo_object_close(&o);
+  struct eo_object object = eo_object_open_as(&eo_variant_table_outline);
+  eo_object_put(&object, "job", json_integer(table->job));
+  eo_object_put(&object, "name", json_string(table->plan.name));
+  eo_object_put(&object, "keys", encode_keys(&table->plan));
+  eo_object_put(&object, "columns", encode_columns(&table->scalars));
+  eo_object_put(&object, "variants", json_integer(table->plan.rows));
+  eo_object_put(&object, "done", json_integer(table->done));
+  eo_object_put(&object, "fits", json_integer(table->fits));
+  eo_object_put(&object, "items", items);
+  eo_object_put(&object, "next", next < table->fits ? json_sprintf("%d", next) : json_null());
+  *document = eo_object_close(&object);
   return *document ? EO_OK : eo_error_memory(error);
 }
 
