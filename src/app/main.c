@@ -9,11 +9,11 @@
 #include "numerics/threads.h"
 
 static const struct eo_command *const commands[] = {
-    &eo_command_serve,     &eo_command_example, &eo_command_design,   &eo_command_analyze, &eo_command_sweep,
-    &eo_command_study,     &eo_command_prepare, &eo_command_optimize, &eo_command_history, &eo_command_measure,
-    &eo_command_rig,       &eo_command_import,  &eo_command_export,   &eo_command_report,  &eo_command_reproduce,
-    &eo_command_verify,    &eo_command_stage,   &eo_command_backup,   &eo_command_restore, &eo_command_doctor,
-    &eo_command_tolerance,
+    &eo_command_serve,     &eo_command_example, &eo_command_design,  &eo_command_analyze,  &eo_command_sweep,
+    &eo_command_tolerance, &eo_command_study,   &eo_command_prepare, &eo_command_optimize, &eo_command_history,
+    &eo_command_measure,   &eo_command_rig,     &eo_command_import,  &eo_command_export,   &eo_command_report,
+    &eo_command_reproduce, &eo_command_verify,  &eo_command_stage,   &eo_command_backup,   &eo_command_restore,
+    &eo_command_doctor,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
