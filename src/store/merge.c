@@ -41,10 +41,10 @@ static enum eo_code add_evaluations(struct eo_store *store, int64_t *count, stru
       store, error,
       "INSERT INTO main.raw (evaluation, scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2,"
       " contact_pressure_Pa, root_stress_Pa, edge_load_share, contact_loss, failed, flank_safety, root_safety,"
-      " film_ratio, contact_temperature_C)"
+      " film_ratio, contact_temperature_C, curve)"
       " SELECT m.id, r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, r.contact_pressure_Pa,"
       " r.root_stress_Pa, r.edge_load_share, r.contact_loss, r.failed, r.flank_safety, r.root_safety, r.film_ratio,"
-      " r.contact_temperature_C FROM " SAME_EVALUATION " JOIN other.raw r ON r.evaluation = e.id WHERE true"
+      " r.contact_temperature_C, r.curve FROM " SAME_EVALUATION " JOIN other.raw r ON r.evaluation = e.id WHERE true"
       " ON CONFLICT (evaluation, scenario, load_case) DO NOTHING",
       "");
 }
