@@ -4,18 +4,20 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/crew_start.h"
 #include "app/data.h"
 #include "app/number.h"
 #include "app/watch.h"
-#include "base/parallel.h"
 #include "document/pair_log.h"
 #include "document/tolerance_document.h"
 #include "format/json.h"
+#include "study/scatter_crew.h"
 
 struct request {
-  const char *file, *pairs, *grade, *seed, *threads, *csv, *worst, *keep, *data;
+  const char *file, *pairs, *grade, *seed, *csv, *worst, *keep;
+  const char *data, *cache, *threads; /* read by eo_app_crew_begin(), like --no-cache */
   bool json, no_cache, no_vibration;
-  int thread_count;
+  struct eo_app_crew *crew;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
@@ -38,8 +40,7 @@ static bool read_options(struct request *request, int *status)
 {
   struct eo_tolerance_settings *tolerance_settings = &request->design.tolerance;
   int seed = -1;
-  if (!read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, status) ||
-      !read_whole(request->pairs, "--pairs", 1, EO_SCATTER_MOST_PAIRS, &tolerance_settings->pairs, status) ||
+  if (!read_whole(request->pairs, "--pairs", 1, EO_SCATTER_MOST_PAIRS, &tolerance_settings->pairs, status) ||
       !read_whole(request->grade, "--class", 0, 12, &tolerance_settings->grade, status) ||
       !read_whole(request->seed, "--seed", 0, 2147483647, &seed, status))
     return false;
@@ -50,17 +51,6 @@ static bool read_options(struct request *request, int *status)
   if (request->no_vibration)
     tolerance_settings->vibration = false;
   return true;
-}
-
-static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
-                            struct eo_error *error)
-{
-  struct eo_text directory = {0};
-  bool cached = !request->no_cache && eo_app_cache_directory(request->data, &directory);
-  struct eo_pair_options options = {.cache_directory = cached ? directory.data : NULL};
-  enum eo_code code = eo_pair_new(pair, &request->design, &options, progress, error);
-  eo_text_done(&directory);
-  return code;
 }
 
 static enum eo_code save(struct eo_text *text, const char *path, struct eo_error *error)
@@ -99,24 +89,34 @@ static int show(const struct request *request, const struct eo_tolerance_report 
 
 static enum eo_code open_log(const struct request *request, struct eo_pair_log **log, struct eo_error *error)
 {
-  int scalars = 0;
-  while (eo_scalar_at(scalars))
-    scalars++;
-  return request->keep
-             ? eo_pair_log_open(log, request->keep, &request->design, scalars * request->design.load_cases, error)
-             : EO_OK;
+  const struct eo_design *design = &request->design;
+  return request->keep ? eo_pair_log_open(log, request->keep, design, eo_scatter_outputs(design), error) : EO_OK;
 }
 
-/* The rows, from the log as far as it has them. */
-static enum eo_code run_pairs(struct request *request, const struct eo_pair *pair, const struct eo_progress *progress,
-                              struct eo_scatter_run *run, struct eo_error *error)
+static enum eo_code run_here(const struct request *request, const struct eo_scatter_plan *plan,
+                             const struct eo_progress *progress, struct eo_scatter_run *run, struct eo_error *error)
+{
+  const struct eo_pair_options options = {.cache_directory = request->crew->cache.data};
+  struct eo_pair *pair = NULL;
+  EO_TRY(eo_pair_new(&pair, &request->design, &options, progress, error));
+  enum eo_code code = eo_scatter_run_pairs(run, pair, &request->design, &request->scatter, plan, progress, error);
+  eo_pair_free(pair);
+  return code;
+}
+
+/* The rows, from the log as far as it has them; with other ranks these prepare the pair and evaluate. */
+static enum eo_code run_pairs(struct request *request, const struct eo_progress *progress, struct eo_scatter_run *run,
+                              struct eo_error *error)
 {
   struct eo_scatter_plan plan = eo_tolerance_plan(&request->design.tolerance);
+  struct eo_crew *crew = &request->crew->crew;
   struct eo_pair_log *log = NULL;
   EO_TRY(open_log(request, &log, error));
-  plan.threads = request->thread_count;
+  plan.threads = crew->place.threads;
   plan.log = eo_pair_log_of(log);
-  enum eo_code code = eo_scatter_run_pairs(run, pair, &request->design, &request->scatter, &plan, progress, error);
+  enum eo_code code = crew->size > 1 ? eo_scatter_run_on_crew(run, crew, &request->design, &request->scatter, &plan,
+                                                              progress, error)
+                                     : run_here(request, &plan, progress, run, error);
   eo_pair_log_close(log);
   return code;
 }
@@ -125,15 +125,12 @@ static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
-  struct eo_pair *pair = NULL;
   struct eo_scatter_run run = {0};
   struct eo_tolerance_report *report = NULL;
   eo_watch_start(&watch);
   enum eo_code code = eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, &error);
   if (!code)
-    code = prepare(request, &watch.progress, &pair, &error);
-  if (!code)
-    code = run_pairs(request, pair, &watch.progress, &run, &error);
+    code = run_pairs(request, &watch.progress, &run, &error);
   if (!code)
     code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed, &error);
   eo_watch_clear(&watch);
@@ -146,53 +143,56 @@ static int run_request(struct request *request)
   eo_watch_end(&watch);
   eo_tolerance_report_free(report);
   eo_scatter_run_done(&run);
-  eo_pair_free(pair);
   return status;
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request *request = calloc(1, sizeof *request);
-  struct eo_error error;
-  int operands, status;
-  if (!request) {
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
+  struct eo_app_crew crew;
+  int operands, status = EO_EXIT_FAILED;
+  if (!request || !eo_app_crew_begin(&crew, argc, argv, &status)) {
+    free(request);
+    return status;
   }
-  const struct eo_option options[] = {
-      {.name = "--pairs", .value = &request->pairs},     {.name = "--class", .value = &request->grade},
-      {.name = "--seed", .value = &request->seed},       {.name = "--no-vibration", .flag = &request->no_vibration},
-      {.name = "--worst", .value = &request->worst},     {.name = "--keep", .value = &request->keep},
-      {.name = "--json", .flag = &request->json},        {.name = "--csv", .value = &request->csv},
-      {.name = "--data", .value = &request->data},       {.name = "--no-cache", .flag = &request->no_cache},
-      {.name = "--threads", .value = &request->threads}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--pairs", .value = &request->pairs},
+                                      {.name = "--class", .value = &request->grade},
+                                      {.name = "--seed", .value = &request->seed},
+                                      {.name = "--no-vibration", .flag = &request->no_vibration},
+                                      {.name = "--worst", .value = &request->worst},
+                                      {.name = "--keep", .value = &request->keep},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = "--threads", .value = &request->threads},
+                                      {.name = "--cache", .value = &request->cache},
+                                      {.name = NULL}};
+  request->crew = &crew;
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
       eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
       read_options(request, &status))
     status = run_request(request);
   free(request);
+  eo_app_crew_end(&crew);
   return status;
 }
 
-const struct eo_command eo_command_tolerance = {"tolerance",
-                                                "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] "
-                                                "[--worst FILE] [--keep FILE] [--json] [--csv FILE] "
-                                                "[--threads N] [--data DIR] [--no-cache]",
-                                                "many pairs as they are made: percentiles, what decides, yield",
-                                                "The design's block \"tolerance\" says what scatters: a preset, inputs "
-                                                "by their keys, limits that a good pair meets;\n"
-                                                "\"tolerance\": {\"preset\": \"iso_class\", \"class\": 5} is enough, "
-                                                "and without a block class 5 of ISO 1328-1:2013 is "
-                                                "taken.\n"
-                                                "Percentiles come with the interval in which they lie with 95 %. R2 "
-                                                "says how much of the variance the inputs explain "
-                                                "linearly,\n"
-                                                "Q2 how much a quadratic surface does for pairs that it was not fitted "
-                                                "to. --worst writes the worst pair as a design, "
-                                                "--csv a line\n"
-                                                "per pair. --keep FILE keeps every pair as it is computed: the same "
-                                                "command goes on from there. All cores work unless "
-                                                "--threads\n"
-                                                "says otherwise; the numbers do not depend on it.\n\n" EO_APP_DATA_HELP
-                                                "--no-cache neither reads nor keeps it.\n",
-                                                run};
+const struct eo_command eo_command_tolerance = {
+    "tolerance",
+    "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] [--worst FILE] [--keep FILE] [--json] "
+    "[--csv FILE] [--threads N] [--data DIR] [--cache DIR] [--no-cache]",
+    "many pairs as they are made: percentiles, what decides, yield",
+    "The design's block \"tolerance\" says what scatters: a preset, inputs by their keys, limits that a good pair "
+    "meets;\n"
+    "\"tolerance\": {\"preset\": \"iso_class\", \"class\": 5} is enough, and without a block class 5 of ISO "
+    "1328-1:2013 is taken.\n"
+    "Percentiles come with the interval in which they lie with 95 %. R2 says how much of the variance the inputs "
+    "explain linearly,\n"
+    "Q2 how much a quadratic surface does for pairs that it was not fitted to. --worst writes the worst pair as a "
+    "design, --csv a line\n"
+    "per pair. --keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work "
+    "unless --threads\n"
+    "says otherwise; the numbers do not depend on it.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n",
+    run};

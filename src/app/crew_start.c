@@ -9,11 +9,12 @@
 #include "app/data.h"
 #include "app/number.h"
 #include "base/parallel.h"
+#include "study/scatter_crew.h"
 #include "study/study_crew.h"
 #include "variants/variant_trade.h"
 
 /* What a rank can be asked for. */
-static const struct eo_crew_trade *const trades[] = {&eo_variant_trade, &eo_study_trade, NULL};
+static const struct eo_crew_trade *const trades[] = {&eo_variant_trade, &eo_study_trade, &eo_scatter_trade, NULL};
 
 /* The last value of an option; NULL: it is not given. Whether the arguments are right is told by rank 0 alone. */
 static const char *find_option(const char *name, int argc, char **argv)
@@ -26,6 +27,14 @@ static const char *find_option(const char *name, int argc, char **argv)
     else if (strcmp(argv[i], name) == 0 && i + 1 < argc)
       value = argv[++i];
   return value;
+}
+
+static bool has_flag(const char *name, int argc, char **argv)
+{
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    if (strcmp(argv[i], name) == 0)
+      return true;
+  return false;
 }
 
 /* A stop is rank 0's to make of it what is right; METIS, whose handlers would come first, must not run them. */
@@ -58,9 +67,10 @@ bool eo_app_crew_begin(struct eo_app_crew *crew, int argc, char **argv, int *sta
   const char *threads = find_option("--threads", argc, argv), *cache = find_option("--cache", argc, argv);
   *crew = (struct eo_app_crew){0};
   *status = EO_EXIT_DONE;
-  if (cache)
+  bool keeps = !has_flag("--no-cache", argc, argv);
+  if (keeps && cache)
     eo_text_add(&crew->cache, cache);
-  else
+  else if (keeps)
     eo_app_cache_directory(find_option("--data", argc, argv), &crew->cache);
   place.cache = crew->cache.data;
   if (threads && !eo_app_read_whole(threads, "--threads", 1, EO_MAX_THREADS, &place.threads, &error)) {

@@ -7,6 +7,7 @@
 #include "tolerance/scatter.h"
 
 enum { EO_SCATTER_MOST_PAIRS = 100000 };
+#define EO_SCATTER_PROGRESS "pairs as made"
 
 /* A row that is known from before is not computed again; each new one is handed over once, from several threads, one at
    a time. */
@@ -32,6 +33,28 @@ struct eo_scatter_run {
   double *output;                                      /* [pairs][outputs], in the units of the scalars; NaN: none */
   double *nominal;                                     /* [outputs], of the design itself */
 };
+
+/* Numbers of a row of the design. */
+int eo_scatter_outputs(const struct eo_design *design);
+
+/* Evaluates pairs as made, one after the other; a row depends on the values alone, not on what came before. */
+struct eo_scatter_bench;
+
+/* pair, design (resolved, served by the pair) and scatter are borrowed. Errors: memory, of the evaluator. */
+enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **bench, const struct eo_pair *pair,
+                                  const struct eo_design *design, const struct eo_scatter *scatter, bool vibration,
+                                  bool root_stress, struct eo_error *error);
+/* input[inputs] in the units of the keys; NULL: the design itself. output[eo_scatter_outputs()]. Errors: of the
+   evaluator. */
+enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *input, double *output,
+                                  struct eo_error *error);
+void eo_scatter_bench_free(struct eo_scatter_bench *bench); /* NULL is fine */
+
+/* Draws the pairs and makes room for their rows, which whoever evaluates them fills in. Errors: EO_ERROR_INPUT
+   (pairs), memory. eo_scatter_run_done() also after an error. */
+enum eo_code eo_scatter_run_draw(struct eo_scatter_run *run, const struct eo_design *design,
+                                 const struct eo_scatter *scatter, const struct eo_scatter_plan *plan,
+                                 struct eo_error *error);
 
 /* design: resolved, served by the pair. The same bytes for any number of threads. Errors: EO_ERROR_INPUT (pairs,
    supports), memory, cancelled, of the log. eo_scatter_run_done() also after an error. */

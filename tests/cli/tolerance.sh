@@ -77,6 +77,70 @@ same "$folder/out" "$folder/one.json" "the same bytes after a stop"
 result $? "every pair once in the file"
 tolerance --pairs 24 --json --keep "$folder/cut"
 same "$folder/out" "$folder/one.json" "and from the file alone"
+
+# ---- and for MPI ranks, where mpirun is ----
+
+# pid of a rank; empty: it is not there yet
+rank()
+{
+  for comm in $(grep -lx easeoff /proc/[0-9]*/comm 2>/dev/null); do
+    process=${comm%/comm}
+    variables=$(tr '\0' '\n' 2>/dev/null <"$process/environ") || continue
+    case $variables in *"EASEOFF_TEST=$folder"*) ;; *) continue ;; esac
+    case $variables in *"OMPI_COMM_WORLD_RANK=$1"*) echo "${process#/proc/}" && return ;; esac
+  done 2>/dev/null
+}
+
+ranked() # RANKS ARGUMENTS...: output in $folder/out
+{
+  ranks=$1
+  shift
+  mpirun --oversubscribe -n "$ranks" "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" "$@" >"$folder/out" 2>"$folder/err"
+}
+
+kept() # rows of a run on ranks, 0 before it begins
+{
+  cat "$folder/ranked" 2>/dev/null | grep -c ';$'
+}
+
+if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 EASEOFF_TEST="$folder"
+  tolerance --pairs 24 --csv "$folder/one.csv"
+  for ranks in 1 2 3; do
+    ranked $ranks --pairs 24 --json --csv "$folder/ranks.csv"
+    same "$folder/out" "$folder/one.json" "the same bytes with $ranks ranks"
+    same "$folder/ranks.csv" "$folder/one.csv" "and the same lines"
+  done
+  ranked 2 --pairs 24 --json --threads 2 --cache "$folder/node"
+  same "$folder/out" "$folder/one.json" "the same bytes with threads of a rank, and a folder of pairs of its own"
+  [ -n "$(ls "$folder/node")" ]
+  result $? "which has the pair"
+  tolerance --pairs 400 --json
+  cp "$folder/out" "$folder/many.json"
+  for victim in 0 2; do
+    rm -f "$folder/ranked"
+    ranked 3 --pairs 400 --json --keep "$folder/ranked" &
+    pid='' found=0 looks=0
+    while [ $looks -lt 400 ] && [ "$found" -lt 10 ]; do
+      [ -n "$pid" ] || pid=$(rank $victim)
+      found=$(kept)
+      looks=$((looks + 1))
+    done
+    [ -z "$pid" ] || kill -9 "$pid" 2>/dev/null
+    wait
+    found=$(kept)
+    [ "$found" -ge 10 ] && [ "$found" -lt 400 ]
+    result $? "rank $victim is killed after $found of 400 pairs, and the run ends"
+    ranked 3 --pairs 400 --json --keep "$folder/ranked"
+    same "$folder/out" "$folder/many.json" "and the next start goes on with the same bytes"
+    [ "$(kept)" -eq 400 ]
+    result $? "every pair once in the file"
+  done
+else
+  count=$((count + 1))
+  echo "ok $count - MPI ranks # SKIP no mpirun, or built without MPI"
+fi
+
 write_design '{"preset": "iso_class", "class": 6}'
 "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs 24 --keep "$folder/cut" >"$folder/out" 2>"$folder/err"
 [ $? -eq 1 ] && grep -q "no pairs of this design" "$folder/err"
