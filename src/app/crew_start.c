@@ -37,20 +37,30 @@ static bool has_flag(const char *name, int argc, char **argv)
   return false;
 }
 
-/* A stop is rank 0's to make of it what is right; METIS, whose handlers would come first, must not run them. */
-static void leave_signals_to_rank_0(void)
+/* Signals that ask for a stop, out of the way of this thread and of those it starts. before: may be NULL. */
+static void block_stops(sigset_t *before)
 {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, NULL);
+  pthread_sigmask(SIG_BLOCK, &signals, before);
+}
+
+/* MPI starts threads of its own: a stop must not end the process through one of them, watch.h waits for it. */
+static enum eo_code begin_quietly(struct eo_crew *crew, const struct eo_crew_place *place, struct eo_error *error)
+{
+  sigset_t before;
+  block_stops(&before);
+  enum eo_code code = eo_crew_begin(crew, place, error);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  return code;
 }
 
 static int serve(struct eo_app_crew *crew)
 {
   struct eo_error error;
-  leave_signals_to_rank_0();
+  block_stops(NULL); /* a stop is rank 0's to make of it what is right; METIS's handlers must not run */
   if (!eo_crew_serve(&crew->crew, trades, &error)) {
     eo_app_crew_end(crew);
     return EO_EXIT_DONE;
@@ -80,7 +90,7 @@ bool eo_app_crew_begin(struct eo_app_crew *crew, int argc, char **argv, int *sta
   }
   bool own = !threads; /* a rank shares its machine with others, a process alone does not */
   place.threads = threads ? place.threads : 1;
-  if (eo_crew_begin(&crew->crew, &place, &error)) {
+  if (begin_quietly(&crew->crew, &place, &error)) {
     *status = eo_app_fail(NULL, &error);
     eo_app_crew_end(crew);
     return false;

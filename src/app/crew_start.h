@@ -17,8 +17,8 @@ struct eo_app_crew {
   struct eo_text cache; /* folder of prepared pairs; without data: none */
 };
 
-/* Reads --data, --cache, --no-cache and --threads out of the arguments and begins. False: the command is over with
-   *status set (a rank that has served, or a fault that was told). eo_app_crew_end() otherwise, after the last use. */
+/* Reads --data, --cache, --no-cache and --threads out of the arguments and begins. False: the command is over and has
+   its status (a rank that has served, or a fault that was told). eo_app_crew_end() otherwise, after the last use. */
 bool eo_app_crew_begin(struct eo_app_crew *crew, int argc, char **argv, int *status);
 void eo_app_crew_end(struct eo_app_crew *crew);
 

@@ -117,7 +117,8 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
   result $? "which has the pair"
   tolerance --pairs 400 --json
   cp "$folder/out" "$folder/many.json"
-  for victim in 0 2; do
+  for end in 'KILL 0' 'KILL 2' 'TERM 0'; do
+    victim=${end#* }
     rm -f "$folder/ranked"
     ranked 3 --pairs 400 --json --keep "$folder/ranked" &
     pid='' found=0 looks=0
@@ -126,11 +127,13 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
       found=$(kept)
       looks=$((looks + 1))
     done
-    [ -z "$pid" ] || kill -9 "$pid" 2>/dev/null
+    [ -z "$pid" ] || kill -s "${end% *}" "$pid" 2>/dev/null
     wait
     found=$(kept)
     [ "$found" -ge 10 ] && [ "$found" -lt 400 ]
-    result $? "rank $victim is killed after $found of 400 pairs, and the run ends"
+    result $? "SIG${end% *} to rank $victim after $found of 400 pairs ends the run"
+    [ "${end% *}" = KILL ] || grep -q "Stopped. The same command goes on from here." "$folder/err"
+    result $? "with a word where there is one"
     ranked 3 --pairs 400 --json --keep "$folder/ranked"
     same "$folder/out" "$folder/many.json" "and the next start goes on with the same bytes"
     [ "$(kept)" -eq 400 ]
