@@ -158,8 +158,8 @@ struct eo_solution {
   struct eo_loaded_end *result; /* borrowed */
 };
 
-/* Solves them at the compliance of the run, on both threads where there are two; those with the same gaps stand together.
-   Each is as it would be alone. */
+/* Solves them at the compliance of the run, on both threads where there are two; those with the same gaps stand
+   together. Each is as it would be alone. */
 void eo_evaluator_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int solutions,
                         const struct eo_solution *solution);
 

@@ -392,8 +392,8 @@ static void check_share(const struct trial *trial, struct eo_case *block, int in
 static void check_yield(const struct trial *trial, struct eo_case *block)
 {
   struct eo_case *limits = eo_case_need(block, "limits");
-  int count = eo_case_size(limits), column[16], inside[17] = {0};
-  double limit[16];
+  int count = eo_case_size(limits), column[16] = {0}, inside[17] = {0};
+  double limit[16] = {0};
   if (count < 1 || count > 16)
     eo_case_fault(block, "1 to 16 limits are expected here.");
   for (int k = 0; k < count && !eo_case_faulty(block); k++) {

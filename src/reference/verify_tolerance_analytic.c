@@ -97,7 +97,7 @@ static void find_slopes(struct model_case *model_case)
 static enum eo_code sample(struct model_case *model_case, struct eo_error *error)
 {
   struct eo_tolerance_bench *bench = model_case->bench;
-  double least[EO_BENCH_OUTPUTS], most[EO_BENCH_OUTPUTS];
+  double least[EO_BENCH_OUTPUTS] = {0}, most[EO_BENCH_OUTPUTS] = {0};
   EO_TRY(eo_bench_draw(bench->input, bench->inputs, MODEL_POINTS, model_case->input, error));
   for (int i = 0; i < MODEL_POINTS; i++) {
     double output[EO_BENCH_OUTPUTS] = {0};

@@ -79,7 +79,8 @@ await chapter('its table', async () => {
   const numbers = values.map(Number);
   ok(numbers.every((value, i) => !i || value >= numbers[i - 1]), 'a click on a heading sorts');
   const table = page.locator('.variant-table');
-  for (let i = 0; i < 10; i++) await table.evaluate((element, to) => (element.scrollTop = to * element.scrollHeight), i / 10);
+  for (let i = 0; i < 10; i++)
+    await table.evaluate((element, to) => (element.scrollTop = to * element.scrollHeight), i / 10);
 });
 
 await chapter('a brush', async () => {
@@ -89,7 +90,10 @@ await chapter('a brush', async () => {
   await page.mouse.down();
   await page.mouse.move(box.x + 46, box.y + 90, { steps: 4 });
   await page.mouse.up();
-  await page.waitForFunction(text => document.querySelector('.study-detail > .figure-note').textContent !== text, before);
+  await page.waitForFunction(
+    text => document.querySelector('.study-detail > .figure-note').textContent !== text,
+    before,
+  );
   note(await count.textContent());
   await page.waitForFunction(() => document.querySelector('.variant-table tbody:not(.space) tr'));
   const kept = await rows.count();

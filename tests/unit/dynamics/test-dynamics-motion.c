@@ -308,7 +308,8 @@ static void sweeps(void)
     }
   }
   ok(unsteady == 0, "where teeth separate, states that no motion keeps to: %d", unsteady);
-  /* How far a sweep keeps to the upper state where its multiplier is about 1 is decided by rounding: 10 to 15 speeds. */
+  /* How far a sweep keeps to the upper state where its multiplier is about 1 is decided by rounding: 10 to 15 speeds.
+   */
   ok(lost > 20 && bistable > 5, "teeth separate at %d speeds, two states exist at %d of them", lost, bistable);
   ok(!memcmp(&alone, &together[0], sizeof alone) && !memcmp(&alone, &together[1], sizeof alone),
      "two threads give the same bytes as one");
