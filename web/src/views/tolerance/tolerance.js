@@ -59,13 +59,14 @@ class ToleranceView {
     this.yields = h('section', { 'aria-label': 'Yield' });
     this.inputs = h('section', { 'aria-label': 'What scatters' });
     this.notes = h('section', { 'aria-label': 'Notes' });
-    this.worst = h('button', { type: 'button', hidden: true, onclick: () => this.#openWorst() }, 'Open the worst pair');
+    this.worst = h('button', { type: 'button', onclick: () => this.#openWorst() }, 'Open the worst pair');
     this.empty = h(
       'p.empty',
       null,
       'Nothing has been drawn yet. Choose how the gears are made on the left: a preset from ISO 1328-1 is enough; ' +
         'inputs of your own stand in the block "tolerance" of the design document.',
     );
+    this.head = h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst);
     this.element = this.#layOut();
     app.store.addEventListener('change', () => this.#note());
     this.#drawLimits();
@@ -86,7 +87,7 @@ class ToleranceView {
         '.figure-pane',
         null,
         this.empty,
-        h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst),
+        this.head,
         this.notes,
         h('.figures', null, this.histogram.element),
         this.percentiles,
@@ -211,8 +212,8 @@ class ToleranceView {
   #draw() {
     const result = this.#result;
     this.empty.hidden = result !== null;
-    this.worst.hidden = result === null;
-    this.output.disabled = result === null;
+    this.head.hidden = result === null;
+    this.histogram.element.hidden = result === null;
     if (!result) return;
     const output = result.outputs[Number(this.output.value) || 0];
     const unit = unitText(unitOfKey(output.key));
