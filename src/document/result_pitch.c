@@ -229,9 +229,9 @@ static json_t *encode_stress(const struct written_case *written_case, int member
 
 static json_t *encode_root(const struct written_case *written_case)
 {
-  struct eo_object object = eo_object_open_as(&root_outline);
   if (!written_case->own->hunting.tooth_stress[0])
     return json_null();
+  struct eo_object object = eo_object_open_as(&root_outline);
   eo_object_put(&object, "pinion", encode_stress(written_case, EO_PINION));
   eo_object_put(&object, "gear", encode_stress(written_case, EO_GEAR));
   return eo_object_close(&object);
@@ -513,9 +513,9 @@ static json_t *encode_cases(const struct eo_result_source *source)
 json_t *eo_result_pitch(const struct eo_result_source *source)
 {
   const struct eo_pitch_analysis *analysis = &source->analysis->pitch;
-  struct eo_object object = eo_object_open_as(&eo_outline_pitch);
   if (analysis->cases == 0)
     return json_null();
+  struct eo_object object = eo_object_open_as(&eo_outline_pitch);
   const struct eo_hunting *hunting = &analysis->load_case[0].hunting;
   eo_object_put(&object, "cycles", json_integer(hunting->cycles));
   eo_object_put_number(&object, "pinion_revolutions", revolutions(&analysis->load_case[0], EO_PINION));
