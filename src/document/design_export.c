@@ -8,6 +8,7 @@
 
 #include "document/flank_grid_document.h"
 #include "document/design_document.h"
+#include "document/dimensions_export.h"
 #include "document/flank_chart.h"
 #include "document/tolerance_export.h"
 #include "format/json.h"
@@ -325,6 +326,8 @@ static const struct eo_export formats[] = {
     {"k-chart-drawing", "the same as drawings", "image/svg+xml", "svg", eo_flank_charts_svg, NULL},
     {"tolerances", "flank tolerances by ISO 1328-1, edition and grade of the rating", "text/csv; charset=utf-8", "csv",
      eo_tolerances_csv, NULL},
+    {"dimensions", "tooth thickness, span, balls and pins, form circles, allowances and backlash, with their symbols",
+     "text/csv; charset=utf-8", "csv", eo_dimensions_csv, NULL},
     {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography,
      write_topography_grid},
     {"flank-grids",

@@ -221,6 +221,8 @@ static const struct command analyses[] = {
      .header = "Content-Disposition", .holds = "filename=\"paper-pair-flank-points.csv\""},
     {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
+    {"dimensions", "POST", API "/export/dimensions", .body = &coarse, .status = 200, .header = "Content-Disposition",
+     .holds = "filename=\"paper-pair-dimensions.csv\""},
     {"topography", "POST", API "/export/topography", .body = &coarse, .status = 200},
     {"topography on a grid", "POST", API "/export/topography?rows=3&columns=4", .body = &coarse, .status = 200},
     {"a grid of one row", "POST", API "/export/topography?rows=1", .body = &coarse, .status = 400},

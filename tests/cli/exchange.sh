@@ -93,6 +93,23 @@ prints "GDE"
 run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-gear
 prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
 
+# Drawing data of a pair: symbols, units, values to six digits and more.
+run 0 "dimensions as a table" "$EASEOFF" export "$folder/single.json" --format dimensions
+prints "member,quantity,symbol,unit,at,value,note"
+prints "pinion,reference diameter,d,mm,,97.24933335," # 31 * 3 mm / cos(17 deg)
+for symbol in s_n,mm s_c,mm W_k,mm M_dK,mm M_dR,mm d_Ff,mm A_sn,um; do
+  prints ",$symbol,upper allowance,"
+  prints ",$symbol,lower allowance,"
+done
+for symbol in j_bn j_wt j_r; do
+  prints ",$symbol,um,smallest,"
+done
+run 0 "ISO 1328-1 as a table" "$EASEOFF" export "$folder/single.json" --format tolerances
+prints "pinion,ISO 1328-1:"
+prints ",f_Halpha,"
+run 1 "dimensions have no rows to choose" "$EASEOFF" export "$folder/single.json" --format dimensions --rows 5
+says "has no rows and columns"
+
 # Hostile files: a sentence, at once.
 deep=$(printf '<model version="1.7">'; seq 1 200 | sed 's/.*/<a>/' | tr -d '\n')
 printf '%s' "$deep" >"$folder/deep.rexs"

@@ -228,6 +228,55 @@ static void test_tolerances(void)
   ok(isnan(tolerance("F_alpha")) && tolerance("F_alphaT") > 5, "the other edition has symbols of its own");
 }
 
+/* The value of a quantity of a member, and its note where it has none. */
+static double dimension(const char *member, const char *symbol, const char *unit, const char *at, char note[200])
+{
+  struct eo_text text = {0};
+  struct eo_error error;
+  char key[80];
+  double value = NAN;
+  eo_export_write(eo_export_find("dimensions"), &design, &geometry, 0, 0, &text, &error);
+  snprintf(key, sizeof key, ",%s,%s,%s,", symbol, unit, at);
+  const char *row = text.data ? strstr(text.data, member) : NULL;
+  row = row ? strstr(row, key) : NULL;
+  *note = 0;
+  if (row && sscanf(row + strlen(key), "%lf", &value) != 1 && sscanf(row + strlen(key), ",\"%199[^\"]", note) != 1)
+    snprintf(note, 200, "neither a number nor a reason");
+  eo_text_done(&text);
+  return value;
+}
+
+/* Against the closed forms of ISO 21771 and DIN 3967, written here another way. */
+static void test_dimensions(void)
+{
+  char note[200];
+  load("shifted", true);
+  double *allowance = design.gear_pair.thickness_allowance[EO_PINION];
+  allowance[0] = -60e-6;
+  allowance[1] = -95e-6;
+  double module = 1e3 * geometry.normal_module, alpha = geometry.normal_pressure_angle,
+         shift = geometry.profile_shift[EO_PINION], z = geometry.teeth[EO_PINION];
+  double transverse = atan(tan(alpha) / cos(geometry.helix_angle));
+  double nominal = dimension("pinion", "s_n", "mm", "nominal", note);
+  close_to(dimension("pinion", "d", "mm", "", note), z * module / cos(geometry.helix_angle), 1e-7, "d, mm");
+  close_to(nominal, module * (M_PI / 2 + 2 * shift * tan(alpha)), 1e-8, "s_n, mm");
+  close_to(dimension("pinion", "s_n", "mm", "lower allowance", note), nominal + 1e3 * allowance[1], 1e-8,
+           "s_n with A_sni, mm");
+  double k = dimension("pinion", "k", "", "", note);
+  double span = module * cos(alpha) * (M_PI * (k - 0.5) + z * (tan(transverse) - transverse)) +
+                2 * shift * module * sin(alpha) + 1e3 * allowance[0] * cos(alpha);
+  close_to(dimension("pinion", "W_k", "mm", "upper allowance", note), span, 1e-7, "W_k with A_sne, mm");
+  double smallest = dimension("pair", "j_bn", "um", "smallest", note),
+         largest = dimension("pair", "j_bn", "um", "largest", note), sum = 0;
+  for (int i = 0; i < 2; i++)
+    sum += design.gear_pair.thickness_allowance[i][0] - design.gear_pair.thickness_allowance[i][1];
+  double apart = 4 * design.gear_pair.centre_distance_allowance * sin(geometry.working_pressure_angle) *
+                 cos(geometry.base_helix_angle);
+  close_to(largest - smallest, 1e6 * (sum * cos(alpha) + apart), 1e-6, "range of j_bn, um");
+  geometry.member_width[EO_GEAR] = 1e-3;
+  ok(isnan(dimension("gear", "W_k", "mm", "nominal", note)) && strstr(note, "face"), "no span: %s", note);
+}
+
 static void test_grid(void)
 {
   struct eo_text text = {0};
@@ -268,9 +317,10 @@ int main(void)
   ok(load("single", true), "a pair with one end");
   ok(read_points(plain) == MOST_POINTS / 2, "has half the points");
   test_mesh(MOST_POINTS / 2);
-  ok(!eo_export_find("picture") && !eo_export_at(8) && eo_export_at(0), "formats");
+  ok(!eo_export_find("picture") && !eo_export_at(9) && eo_export_at(0), "formats");
   test_charts();
   test_grid();
   test_tolerances();
+  test_dimensions();
   return tap_done();
 }
