@@ -79,6 +79,7 @@ static const struct eo_outline_row case_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
     EO_KEY("oil_viscosity_mPa_s", "number", "dynamic, at the temperature of the teeth"),
+    EO_KEY("roughness_um", "number", "R_q of both flanks together, which film ratios are over", .unit = &eo_unit_um),
     EO_KEY("sliding_m_per_s", "[number]", "pinion's flank less the gear's, over s_mm", .unit = &eo_unit_m_per_s),
     EO_KEY("power_loss_W", "number?", "friction of all ends", .unit = &eo_unit_W),
     EO_KEY("efficiency", "number?",
@@ -117,6 +118,7 @@ static json_t *encode_case(const struct eo_result_source *source, int k)
   eo_object_put_number(&object, "torque_Nm", case_result->load_case.torque);
   eo_object_put_number(&object, "speed_rpm", case_result->load_case.speed);
   eo_object_put_number(&object, "oil_viscosity_mPa_s", 1e3 * state.viscosity);
+  eo_object_put_number(&object, "roughness_um", state.roughness);
   eo_object_put(&object, "sliding_m_per_s",
                 eo_json_reals(EO_PATTERN_ROWS, sliding, 1, &eo_unit_m_per_s, EO_DIGITS_CURVE));
   eo_object_put_number(&object, "power_loss_W", loss);

@@ -241,6 +241,38 @@ is(
 );
 ok(/Row 2/.test(readRows('500\t1\n\tx').fault), 'a row without a torque is named');
 
+// ---- tribology over the path of contact ----
+const { overFace, tribologyCurves } = await import('../../web/src/figures/tribology_curves.js');
+const touched = [
+  [null, null, null],
+  [null, 30, 20],
+  [5, 0, null],
+];
+is(overFace(touched, Math.max), [null, 30, 5], 'the most over the face');
+is(overFace(touched, Math.min), [null, 20, 0], 'the least; what does not touch is no zero');
+const side = { flash_K: touched, film_um: touched, max_flash_K: 31, min_film_ratio: 0, max_sliding_m_per_s: 1 };
+const rated = {
+  geometry: { tangent_length_mm: [20, 50] },
+  tribology: {
+    s_mm: [-5, 0, 5],
+    load_cases: [{ roughness_um: 2, sliding_m_per_s: [-1, 0, 1], left: side, right: side }],
+  },
+};
+const path = tribologyCurves(rated, 0, ['left', 'right']);
+is([path.roll, path.pitchPoint], [[15, 20, 25], 20], 'roll length of the pinion');
+is(
+  path.filmRatio.map(({ end, y }) => [end, y]),
+  [
+    ['left', [null, 10, 0]],
+    ['right', [null, 10, 0]],
+  ],
+  'the film over the roughness, of each end',
+);
+is(path.peak, { flash: 31, filmRatio: 0, sliding: 1 }, 'the peaks are those of all points of the contact');
+is(path.sliding, [-1, 0, 1], 'nothing slides at the pitch point');
+is(tribologyCurves(rated, 1, ['left']), null, 'a load case that is not there');
+is(tribologyCurves({ ...rated, tribology: null }, 0, ['left']), null, 'without a rating');
+
 // ---- the lane of requests: whose preparation is waited for, left and asked for again ----
 const { Lane } = await import('../../web/src/base/lane.js');
 

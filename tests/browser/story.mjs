@@ -209,6 +209,13 @@ await chapter('figures', async () => {
   await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
   await page.locator('.figure.wide .uplot').first().waitFor();
   ok(true, 'the speed sweep is drawn');
+  for (const title of ['Flash temperature', 'Specific film thickness', 'Sliding speed']) {
+    const path = page.locator('.figure', { has: page.locator('h3', { hasText: title }) });
+    await path.scrollIntoViewIfNeeded();
+    await path.and(page.locator(':not(.waiting)')).locator('.uplot').waitFor(); // of the design on the table
+    const text = await path.locator('.figure-body').getAttribute('aria-label');
+    ok(/over roll length of the pinion.*: .* to /.test(text), `${title} is drawn: ${text}`);
+  }
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 0));
 });
 

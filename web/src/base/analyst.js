@@ -11,7 +11,8 @@ const ANALYZE = 'analyze?histories=1&rating=0&pitch=0';
  */
 const STROKE =
   'analyze?rating=0&pitch=0&digits=6&parts=design,modification,mesh_stiffness,load_share,pattern,maps,overview';
-const RATE = 'analyze?maps=0&pitch=0'; // with the rating, which takes two more contact analyses
+/** With the rating, which takes two more contact analyses, and the maps of the tribology alone. */
+const RATE = 'analyze?pitch=0&digits=8&parts=design,tribology,maps';
 const TEETH = 'analyze?rating=0&parts=design,pitch'; // single teeth over the hunting period: seconds
 const REST = 900; // ms without a change before the design is rated
 

@@ -97,6 +97,7 @@ class DesignView {
     this.headline.set(context);
     this.results.set(context);
     this.#drawTeeth();
+    this.#drawTribology();
     if (this.#drawn) return;
     this.#drawn = true;
     form.refresh();
@@ -106,6 +107,17 @@ class DesignView {
     const { rated } = this.app.analyst;
     this.results.rating.set(rated);
     this.headline.rate(rated);
+    this.#drawTribology();
+  }
+
+  /** The rating is that of the design on the table, which it follows a second later. */
+  #rated() {
+    const { rated, result } = this.app.analyst;
+    return Boolean(rated && rated.design_hash === result?.design_hash);
+  }
+
+  #drawTribology() {
+    this.results.tribology.set(this.app.analyst.rated, this.#context()?.loadCase ?? 0, this.#rated());
   }
 
   #drawTeeth() {
@@ -154,6 +166,8 @@ class DesignView {
     const late = [this.results.speed, this.results.torque, this.sensitivity].filter(each => !each.settled);
     for (const each of late) each.now();
     const missing = late.map(each => each.chart.frame.title);
+    const old = this.#rated() ? [] : this.results.tribology.frames;
+    missing.push(...old.map(frame => frame.title));
     if (analyst.state === 'preparing') missing.push('the teeth of the pair');
     return {
       title: store.design.name || 'Gear pair',
@@ -163,7 +177,7 @@ class DesignView {
         h('section', null, warningList(context.result.warnings ?? [], true)),
         h('p', null, `Figures of one load case are those of ${caseLong(context.result.load_cases[context.loadCase])}.`),
       ],
-      figures: this.results.frames,
+      figures: this.results.frames.filter(frame => !old.includes(frame)),
       missing,
     };
   }

@@ -11,6 +11,7 @@ import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
 import { Topography } from '../figures/topography.js';
 import { Rating } from '../figures/rating.js';
 import { Transmission } from '../figures/transmission.js';
+import { Tribology } from '../figures/tribology.js';
 import { Vibration } from '../figures/vibration.js';
 import { warningList } from '../verdict.js';
 
@@ -33,6 +34,7 @@ export class Results {
     const topography = new Topography();
     const drawing = new GearDrawing();
     this.rating = new Rating();
+    this.tribology = new Tribology();
     this.speed = new SpeedSweep();
     this.torque = new TorqueSweep();
     this.teeth = new SingleTeeth();
@@ -53,6 +55,7 @@ export class Results {
       sharing.chart.frame,
       root.chart.frame,
       this.rating.frame,
+      ...this.tribology.frames,
       ...this.teeth.frames,
       charts.profile.frame,
       charts.lead.frame,
