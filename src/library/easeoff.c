@@ -8,21 +8,19 @@
 
 #include <config.h>
 
-struct easeoff {
-  struct eo_design design;
-  struct eo_warnings warnings; /* of reading it */
-  struct eo_pair *pair;
-  struct eo_analysis *analysis;
-  char *cache; /* NULL: none */
-};
-
-/* What a new design needs before it takes the place of the last one. */
-struct renewal {
+/* A design and what it came to. The analysis borrows from the design, so they stay together and where they are. */
+struct analysed {
   struct eo_design design;
   struct eo_geometry geometry;
-  struct eo_warnings warnings;
-  struct eo_pair *pair; /* NULL: the handle's serves it */
+  struct eo_warnings warnings; /* of reading it */
+  struct eo_pair *pair;        /* NULL: the handle's serves it */
   struct eo_analysis *analysis;
+};
+
+struct easeoff {
+  struct analysed *last;
+  struct eo_pair *pair;
+  char *cache; /* NULL: none */
 };
 
 static enum easeoff_status status_of(enum eo_code code)
@@ -60,7 +58,7 @@ static enum easeoff_status tell(enum eo_code code, const struct eo_error *own, s
 }
 
 /* A failed run has left the analysis without a last one, so each design has an analysis of its own. */
-static enum eo_code renew(const struct easeoff *gear, const char *text, struct renewal *next, struct eo_error *error)
+static enum eo_code renew(const struct easeoff *gear, const char *text, struct analysed *next, struct eo_error *error)
 {
   struct eo_pair_options options = {.cache_directory = gear->cache};
   EO_TRY(eo_design_read(text, strlen(text), &next->design, &next->geometry, &next->warnings, error));
@@ -71,31 +69,37 @@ static enum eo_code renew(const struct easeoff *gear, const char *text, struct r
                          error);
 }
 
-/* The last analysis borrows the last pair, so it goes first. */
-static void take_over(struct easeoff *gear, struct renewal *next)
+static void discard(struct analysed *analysed)
 {
-  eo_analysis_free(gear->analysis);
-  gear->analysis = next->analysis;
+  if (!analysed)
+    return;
+  eo_analysis_free(analysed->analysis);
+  free(analysed);
+}
+
+/* The last analysis borrows the last pair, so it goes first. */
+static void take_over(struct easeoff *gear, struct analysed *next)
+{
+  discard(gear->last);
+  gear->last = next;
   if (next->pair) {
     eo_pair_free(gear->pair);
     gear->pair = next->pair;
   }
-  gear->design = next->design;
-  gear->warnings = next->warnings;
 }
 
 enum easeoff_status easeoff_analyze(struct easeoff *gear, const char *design, struct easeoff_error *error)
 {
   struct eo_error own;
-  struct renewal *next = calloc(1, sizeof *next);
+  struct analysed *next = calloc(1, sizeof *next);
   enum eo_code code = next ? renew(gear, design, next, &own) : eo_error_memory(&own);
   if (!code)
     take_over(gear, next);
   else if (next) {
-    eo_analysis_free(next->analysis);
-    eo_pair_free(next->pair);
+    struct eo_pair *pair = next->pair;
+    discard(next);
+    eo_pair_free(pair);
   }
-  free(next);
   return tell(code, &own, error);
 }
 
@@ -123,7 +127,7 @@ void easeoff_free(struct easeoff *gear)
 {
   if (!gear)
     return;
-  eo_analysis_free(gear->analysis);
+  discard(gear->last);
   eo_pair_free(gear->pair);
   free(gear->cache);
   free(gear);
@@ -131,12 +135,12 @@ void easeoff_free(struct easeoff *gear)
 
 int easeoff_cases(const struct easeoff *gear)
 {
-  return gear->analysis->cases;
+  return gear->last->analysis->cases;
 }
 
 struct easeoff_case easeoff_case(const struct easeoff *gear, int number)
 {
-  const struct eo_evaluation *evaluation = gear->analysis->evaluation;
+  const struct eo_evaluation *evaluation = gear->last->analysis->evaluation;
   const struct eo_case_result *result = &evaluation->load_case[number];
   const struct eo_objective_case *value = &evaluation->objective[number];
   return (struct easeoff_case){.torque = result->load_case.torque,
@@ -154,14 +158,15 @@ struct easeoff_case easeoff_case(const struct easeoff *gear, int number)
 
 double easeoff_objective(const struct easeoff *gear)
 {
-  return gear->analysis->value.objective;
+  return gear->last->analysis->value.objective;
 }
 
 char *easeoff_result(const struct easeoff *gear)
 {
   struct eo_text text = {0};
   struct eo_error error;
-  if (eo_result_write(gear->analysis, &gear->design, &gear->warnings, 0, &text, &error) || text.failed) {
+  if (eo_result_write(gear->last->analysis, &gear->last->design, &gear->last->warnings, 0, &text, &error) ||
+      text.failed) {
     eo_text_done(&text);
     return NULL;
   }

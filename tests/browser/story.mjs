@@ -228,6 +228,17 @@ await chapter('keep a design', async () => {
   const document = JSON.parse(await readFile(await file.path(), 'utf8'));
   ok(document.gear_pair.pinion_teeth === 17, 'the design as JSON');
   await page.locator('.design-button').click();
+  const [model] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Export rexs zip (zip)' }).click(),
+  ]);
+  const archive = await readFile(await model.path());
+  ok(
+    model.suggestedFilename().endsWith('.rexsz') && archive.subarray(0, 4).equals(Buffer.from('PK\u0003\u0004')),
+    `a file of another program as it is: ${model.suggestedFilename()}`,
+  );
+  ok(archive.includes(Buffer.from('PK\u0005\u0006')), 'to its end, byte for byte');
+  await page.locator('.design-button').click();
   await page.getByRole('button', { name: 'Store as new' }).click();
   await page.waitForFunction(() => /[?&]id=1/.test(location.hash));
   ok(true, 'it is stored');

@@ -11,6 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A design has hundreds of kilobytes: each test has those of its own on the stack, not those of all. */
+#define NOT_INLINE __attribute__((noinline))
+
 enum { MOST_CASES = 4, POSITIONS = 32 };
 
 static struct eo_pair *pair;
@@ -131,7 +134,7 @@ static bool finite_record(const struct record *record)
   return finite;
 }
 
-static void test_equal_ends(void)
+static NOT_INLINE void test_equal_ends(void)
 {
   struct eo_design design = design_of("paper-case-a");
   const struct eo_evaluation *r = run(&design, NULL, 0);
@@ -145,7 +148,7 @@ static void test_equal_ends(void)
 }
 
 /* A single helical pair under half the torque is one end of the herringbone pair. */
-static void test_single_end(void)
+static NOT_INLINE void test_single_end(void)
 {
   struct eo_design design = design_of("paper-case-a"), single = design;
   struct eo_geometry geometry;
@@ -174,7 +177,7 @@ static void test_single_end(void)
 }
 
 /* Left and right flanks and the shaft errors exchanged. */
-static void test_mirror(void)
+static NOT_INLINE void test_mirror(void)
 {
   struct eo_design design = design_of("paper-case-b"), mirrored;
   design.alignment.shaft_angle_in_plane = 1e-3;
@@ -194,7 +197,7 @@ static void test_mirror(void)
   near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "on both ends");
 }
 
-static void test_no_memory(void)
+static NOT_INLINE void test_no_memory(void)
 {
   struct eo_design a = design_of("paper-case-a"), b = design_of("paper-case-b"), plain = design_of("paper");
   a.alignment.shaft_angle_in_plane = 1.7e-3;
@@ -238,7 +241,7 @@ static void *work(void *argument)
   return NULL;
 }
 
-static void test_threads(void)
+static NOT_INLINE void test_threads(void)
 {
   static struct worker worker[2];
   pthread_t thread[2];
@@ -255,7 +258,7 @@ static void test_threads(void)
   }
 }
 
-static void test_scenarios(void)
+static NOT_INLINE void test_scenarios(void)
 {
   struct eo_design plain = design_of("paper");
   double mean = run(&plain, NULL, 0)->load_case[0].mean, force = run(&plain, NULL, 0)->load_case[0].end[0].impact.speed;
@@ -304,7 +307,7 @@ static void check_anatomy(const struct eo_design *given, const struct eo_objecti
   free(anatomy.group);
 }
 
-static void test_robust(void)
+static NOT_INLINE void test_robust(void)
 {
   struct eo_design design = design_of("paper-case-a"), unmodified = design;
   struct eo_objective_case raw[3 * MOST_CASES], before[3 * MOST_CASES];
@@ -356,7 +359,7 @@ static void test_robust(void)
 }
 
 /* Drawn pairs: the same deviations for both designs; a relief that is not there does not scatter. */
-static void test_drawn(void)
+static NOT_INLINE void test_drawn(void)
 {
   static struct eo_design design, made;
   struct eo_geometry geometry;
@@ -400,7 +403,7 @@ static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_so
 
 /* The table is straight between its loads, so that it equals the tangent law to a per cent or two while teeth stay in
    contact; the secant law agrees only without gaps, and then roughly. */
-static void test_laws(void)
+static NOT_INLINE void test_laws(void)
 {
   struct eo_design a = design_of("paper-case-a"), plain = design_of("paper");
   double tangent = rms_with(a, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE),
@@ -412,7 +415,7 @@ static void test_laws(void)
        "time integration and harmonic balance, m/s2");
 }
 
-static void test_band(void)
+static NOT_INLINE void test_band(void)
 {
   struct eo_design design = design_of("paper-case-a");
   design.alignment.shaft_angle_in_plane = 1e-3;
@@ -426,7 +429,7 @@ static void test_band(void)
   ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]), "no band unless asked for");
 }
 
-static void test_curves(void)
+static NOT_INLINE void test_curves(void)
 {
   struct eo_design design = design_of("paper-case-b");
   const struct eo_evaluation *r = run(&design, NULL, EO_WANT_CURVES);
@@ -442,7 +445,7 @@ static void test_curves(void)
   }
 }
 
-static void test_root_stress(void)
+static NOT_INLINE void test_root_stress(void)
 {
   struct eo_design design = design_of("paper");
   const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
@@ -458,7 +461,7 @@ static void test_root_stress(void)
 }
 
 /* Loads that shafts or a held pinion move from what is stored take the root stress with them. */
-static void test_root_stress_moves(void)
+static NOT_INLINE void test_root_stress_moves(void)
 {
   struct eo_evaluator *shared = evaluator, *own;
   for (int i = 0; i < 2; i++) {
@@ -484,7 +487,7 @@ static void test_root_stress_moves(void)
   }
 }
 
-static void test_axial(void)
+static NOT_INLINE void test_axial(void)
 {
   struct eo_design design = design_of("paper-case-a");
   design.alignment.pinion_axial = EO_AXIAL_FIXED;
@@ -523,7 +526,7 @@ static void test_axial(void)
 }
 
 /* The loads of the ends at rest are those of the vibration at a crawl, mean and least and most: one set of springs. */
-static void test_held_share(void)
+static NOT_INLINE void test_held_share(void)
 {
   static const enum eo_axial how[2] = {EO_AXIAL_SPRING, EO_AXIAL_FIXED};
   for (int i = 0; i < 2; i++) {
@@ -556,7 +559,7 @@ static void test_held_share(void)
 }
 
 /* Ends coupled in torsion whose transmission errors differ press on each other: the default law against a table. */
-static void test_coupled_law(void)
+static NOT_INLINE void test_coupled_law(void)
 {
   struct eo_design design = design_of("paper-case-b");
   double tangent[EO_MAX_LOAD_CASES];
@@ -605,7 +608,7 @@ static void ask_for_tangents(struct eo_design *design)
 
 /* Ends that differ have laws that take two more solutions of loaded contact each; an end that has not changed keeps
    them as it keeps its loads, and nothing that comes out depends on it. */
-static void test_kept_laws(void)
+static NOT_INLINE void test_kept_laws(void)
 {
   enum { ALONE = 1, LAW = 2, TABLE = 12 };
   static const struct {

@@ -67,8 +67,9 @@ class Connection extends EventTarget {
 
 export const connection = new Connection();
 
-/** @param {Response} response */
-async function readBody(response) {
+/** @param {Response} response @param {boolean | undefined} whole */
+async function readBody(response, whole) {
+  if (whole && response.ok) return response.blob();
   const type = response.headers.get('content-type') ?? '';
   if (/json/.test(type)) return response.json();
   const text = await response.text();
@@ -77,10 +78,11 @@ async function readBody(response) {
 
 /**
  * @param {string} method @param {string} path below /api/v1/
- * @param {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal }} [options]
+ * @param {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal, whole?: boolean }} [options]
+ *   whole: a file, byte for byte, as a Blob
  * @returns {Promise<Answer>} of a status below 400
  */
-export async function ask(method, path, { body, headers = {}, signal } = {}) {
+export async function ask(method, path, { body, headers = {}, signal, whole } = {}) {
   /** @type {Response} */
   let response;
   let data;
@@ -91,7 +93,7 @@ export async function ask(method, path, { body, headers = {}, signal } = {}) {
       headers: body === undefined ? headers : { 'content-type': 'application/json', ...headers },
       body: body === undefined ? undefined : JSON.stringify(body),
     });
-    data = await readBody(response);
+    data = await readBody(response, whole);
   } catch (error) {
     if (signal?.aborted) throw error;
     if (error instanceof SyntaxError) throw new Refusal(500, { title: 'The answer of the service cannot be read.' });

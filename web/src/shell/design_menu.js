@@ -11,13 +11,23 @@ import { leaves, same } from '../base/pointer.js';
 import { openPopover } from '../base/popover.js';
 import { openOwnGear } from '../welcome/open.js';
 
-const ENDINGS = /** @type {Record<string, string>} */ ({ 'text/csv': 'csv', 'image/svg+xml': 'svg' });
+const KINDS = /** @type {Record<string, string>} */ ({
+  'text/csv': 'CSV',
+  'image/svg+xml': 'SVG',
+  'application/json': 'JSON',
+  'application/xml': 'XML',
+  'application/zip': 'zip',
+  'application/vnd.openxmlformats-officedocument.spreadsheetml.sheet': 'xlsx',
+  'model/step': 'STEP',
+  'model/stl': 'STL',
+});
 const MANY = 6; // stored designs that need a search
 const MOST_DIFFERENCES = 12; // shown of a conflict
 
 /** "k-chart drawing (SVG)" @param {string} name @param {string} type */
 function exportName(name, type) {
-  return `${name.replaceAll('-', ' ')} (${(ENDINGS[type.split(';')[0]] ?? 'json').toUpperCase()})`;
+  const kind = KINDS[type.split(';')[0]];
+  return name.replaceAll('-', ' ') + (kind ? ` (${kind})` : '');
 }
 
 /** @param {unknown} value */
@@ -123,7 +133,7 @@ export class DesignMenu {
         this.#exports
           .filter(({ name }) => name !== 'design')
           .map(({ name, title, type }) =>
-            item(`Export ${exportName(name, type)}`, () => this.#exportAs(name, type), title),
+            item(`Export ${exportName(name, type)}`, () => this.#exportAs(name), title),
           ),
         item('Copy a link to it', () => this.#copyLink()),
         item('Print a report…', () => app.go('report')),
@@ -301,14 +311,11 @@ export class DesignMenu {
     );
   }
 
-  /** @param {string} format @param {string} type */
-  async #exportAs(format, type) {
-    const { design } = this.app.store;
-    const answer = await ask('POST', `export/${format}`, { body: design });
-    const text = typeof answer.data === 'string' ? answer.data : JSON.stringify(answer.data, null, 2);
-    const kind = type.split(';')[0];
-    const name = `${fileName(design.name || 'design')}-${format}.${ENDINGS[kind] ?? 'json'}`;
-    download(name, new Blob([text], { type: kind }));
+  /** Byte for byte what the service answers, under the name that it gives. @param {string} format */
+  async #exportAs(format) {
+    const answer = await ask('POST', `export/${format}`, { body: this.app.store.design, whole: true });
+    const name = /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '');
+    download(name ? name[1] : format, answer.data);
   }
 
   /** The document of the service, which one signs and sends. */
