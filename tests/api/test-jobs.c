@@ -69,7 +69,8 @@ static long long next_event(int connection, json_t **job)
 
 static void test_events(void)
 {
-  int stream = open_stream(API "/events", 0), id = add_job("optimize", "ga", 60, 1), events = 0, rising = 1;
+  /* long enough that it runs for some of the eight snapshots a second */
+  int stream = open_stream(API "/events", 0), id = add_job("optimize", "ga", 600, 1), events = 0, rising = 1;
   long long last = 0, middle = 0, number;
   json_t *job = NULL;
   const char *state = "";
