@@ -54,6 +54,10 @@ wrong=$(grep -oE '^#include "http/[a-z_0-9]+' http/*.[ch] | sed 's/^http\/\([a-z
 [ -z "$wrong" ]
 result $? "no files of http include each other in a circle:$(echo $wrong)"
 
+wrong=$(for file in */*.[ch]; do echo "${file##*/}"; done | sort | uniq -d | tr '\n' ' ')
+[ -z "$wrong" ]
+result $? "no two files have one name: $wrong"
+
 for floor in $core; do
   [ -d "$floor" ] || continue
   wrong=$(grep -lE '\b(printf|fprintf|puts|getenv|rand|srand|exit)\(' "$floor"/*.c)

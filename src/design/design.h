@@ -17,7 +17,7 @@
 #include "optimizer/settings.h"
 #include "rating/pitch_deviation.h"
 #include "rating/rating_settings.h"
-#include "tolerance/settings.h"
+#include "tolerance/tolerance_settings.h"
 
 #include "base/error.h"
 

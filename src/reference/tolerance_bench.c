@@ -8,7 +8,7 @@
 #include "design/resolution.h"
 #include "evaluation/meeting_field.h"
 #include "reference/verify_deviations.h"
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 
 static const char *const end_name[3] = {"left", "right", "single"};
 static const char *const member_name[2] = {"pinion", "gear"};

@@ -8,7 +8,7 @@
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
 #include "tolerance/statistics.h"
-#include "tolerance/surface.h"
+#include "tolerance/response_surface.h"
 
 enum { MODEL_POINTS = 256, FUNCTION_POINTS = 4096, SURFACE_POINTS = 512, INDEX_POINTS = 4096 };
 

@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 #include "numerics/dense.h"
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 #include "tolerance/statistics.h"
 
 enum { STREAM_RESAMPLE = 906 }; /* of the counter generator */

@@ -7,7 +7,7 @@
 
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
-#include "tolerance/surface.h"
+#include "tolerance/response_surface.h"
 
 static const double percents[EO_REPORT_PERCENTS] = {1, 5, 10, 25, 50, 75, 90, 95, 99};
 enum { RESAMPLES = 400 }; /* the ends of an interval to 5 % of its width */

@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 #include "tolerance/distribution.h"
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 
 enum { EO_MAX_SCATTER_INPUTS = 128, EO_SCATTER_NAME = 96, EO_SCATTER_LIST = 200 };
 

@@ -5,7 +5,7 @@
 
 #include "document/design_document.h"
 #include "exchange/design_keys.h"
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 #include "variants/variant_order.h"
 
 struct eo_variant_axis {

@@ -173,8 +173,8 @@ class Client:
         units: str | None = None,
         easeoff_lane: str | None = None,
     ) -> doc.Result:
-        """One true evaluation. parts, curves_of, digits: leave the rest of a long answer out. units: "inch" for lengths in
-        inches. easeoff_lane: a newer question with the same word takes the place of one that waits."""
+        """One true evaluation. parts, curves_of, digits: leave the rest of a long answer out. units: "inch" for lengths
+        in inches. easeoff_lane: a newer question with the same word takes the place of one that waits."""
         flags = {
             "root_stress": root_stress,
             "band": band,

@@ -8,11 +8,11 @@
 #include "tolerance/distribution.h"
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 #include "tolerance/scatter.h"
 #include "tolerance/sobol_sequence.h"
 #include "tolerance/statistics.h"
-#include "tolerance/surface.h"
+#include "tolerance/response_surface.h"
 
 static void test_normal(void)
 {

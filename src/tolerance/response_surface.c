@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tolerance/surface.h"
+#include "tolerance/response_surface.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points of the unit cube for a Monte Carlo: each a function of seed, number and dimension alone, so that threads, the
    order of completion and a resume change nothing. */
-#ifndef EASEOFF_TOLERANCE_SAMPLER_H
-#define EASEOFF_TOLERANCE_SAMPLER_H
+#ifndef EASEOFF_TOLERANCE_PAIR_SAMPLER_H
+#define EASEOFF_TOLERANCE_PAIR_SAMPLER_H
 
 #include <stdint.h>
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a design says about the gears as they are made: which inputs scatter and how, what is asked of the pairs. In the
    document's words: keys and units are those of the design document, so these structs stay as they were read. */
-#ifndef EASEOFF_TOLERANCE_SETTINGS_H
-#define EASEOFF_TOLERANCE_SETTINGS_H
+#ifndef EASEOFF_TOLERANCE_TOLERANCE_SETTINGS_H
+#define EASEOFF_TOLERANCE_TOLERANCE_SETTINGS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "tolerance/sampler.h"
+#include "tolerance/pair_sampler.h"
 
 enum { EO_MAX_SCATTER_ROWS = 48, EO_MAX_TOLERANCE_LIMITS = 16, EO_SCATTER_KEY = 96, EO_SCATTER_TEXT = 512 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A quadratic response fitted to a sample, with its measured error: what it carries and what not. */
-#ifndef EASEOFF_TOLERANCE_SURFACE_H
-#define EASEOFF_TOLERANCE_SURFACE_H
+#ifndef EASEOFF_TOLERANCE_RESPONSE_SURFACE_H
+#define EASEOFF_TOLERANCE_RESPONSE_SURFACE_H
 
 #include "base/error.h"
 #include "tolerance/distribution.h"
