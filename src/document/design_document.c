@@ -43,79 +43,6 @@ void eo_warnings_at(struct eo_warnings *warnings, const char *key, const char *f
   va_end(arguments);
 }
 
-/* T = P / omega. */
-static void settle_power(struct eo_load_case *load_case, int i, struct eo_faults *faults)
-{
-  char pointer[64];
-  double torque = load_case->power / load_case->speed;
-  if (!(load_case->power > 0))
-    return;
-  snprintf(pointer, sizeof pointer, "/load_cases/%d/power_kW", i);
-  if (!isnan(load_case->torque) && !(fabs(torque - load_case->torque) <= 1e-6 * torque))
-    eo_faults_add(faults, pointer,
-                  "%.9g kW at %.9g rpm is a torque of %.9g N m, but %.9g N m is stated: leave one of the two out.",
-                  load_case->power / 1e3, eo_unit_out(&eo_unit_rpm, load_case->speed), torque, load_case->torque);
-  load_case->torque = isnan(load_case->torque) ? torque : load_case->torque;
-  load_case->power = NAN;
-}
-
-/* Shares of load cases that state their hours. */
-static void share_hours(struct eo_load_case *load_case, int count, struct eo_faults *faults)
-{
-  double sum = 0;
-  int stated = 0, shares = 0;
-  for (int i = 0; i < count; i++) {
-    stated += load_case[i].hours > 0 || load_case[i].hours == 0;
-    shares += !isnan(load_case[i].share);
-    sum += load_case[i].hours > 0 ? load_case[i].hours : 0;
-  }
-  if (stated == 0)
-    return;
-  if (stated < count)
-    eo_faults_add(faults, "/load_cases", "Either every load case states its hours or none does; %d of %d do.", stated,
-                  count);
-  else if (sum <= 0)
-    eo_faults_add(faults, "/load_cases", "The hours of operating time sum to 0.");
-  for (int i = 0; i < count && stated == count && sum > 0; i++) {
-    double share = load_case[i].hours / sum;
-    if (shares == count && fabs(load_case[i].share - share) > 1e-6) {
-      eo_faults_add(faults, "/load_cases",
-                    "Load case %d states %.9g hours, %.6g of all, and a share of %.6g: state hours or shares.", i + 1,
-                    load_case[i].hours, share, load_case[i].share);
-      return;
-    }
-    load_case[i].share = share;
-  }
-}
-
-void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
-                          struct eo_faults *faults)
-{
-  double sum = 0;
-  int stated = 0, before = faults->count;
-  share_hours(load_case, count, faults);
-  if (faults->count != before)
-    return;
-  for (int i = 0; i < count; i++) {
-    settle_power(&load_case[i], i, faults);
-    stated += !isnan(load_case[i].share);
-    sum += isnan(load_case[i].share) ? 0 : load_case[i].share;
-  }
-  if (stated && stated < count)
-    eo_faults_add(faults, "/load_cases",
-                  "Either every load case states its share of operating time or none does; %d of %d do.", stated,
-                  count);
-  else if (stated && sum <= 0)
-    eo_faults_add(faults, "/load_cases", "The shares of operating time sum to 0.");
-  else if (stated && fabs(sum - 1) > 1e-9)
-    eo_warnings_add(
-        warnings, "The shares of operating time of the load cases summed to %.9g; they were scaled to sum to 1.", sum);
-  if (stated && fabs(sum - 1) <= 1e-9)
-    return;
-  for (int i = 0; i < count; i++)
-    load_case[i].share = stated ? load_case[i].share / sum : 1. / count;
-}
-
 /* A pair with one end has no right flanks. */
 static void drop_right_end(const json_t *document, struct eo_design *design, struct eo_warnings *warnings)
 {
@@ -193,7 +120,7 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
   memset(&read, 0, sizeof read);
   eo_table_decode(&eo_design_table, document, NULL, &read, faults);
   if (faults->count == before)
-    eo_load_cases_settle(read.load_case, read.load_cases, warnings, faults);
+    eo_load_cases_settle(json_object_get(document, "load_cases"), read.load_case, read.load_cases, warnings, faults);
   if (faults->count == before)
     check_alignments(document, &read, faults);
   if (faults->count == before)

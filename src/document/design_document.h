@@ -38,9 +38,10 @@ void eo_warnings_at(struct eo_warnings *warnings, const char *key, const char *f
 bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
                       struct eo_faults *faults);
 
-/* The load cases as part of another document than a design: the torque follows from a power; all state their share or
-   none does; scaled to the sum 1. */
-void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
+/* The load cases as part of another document than a design: the torque follows from a power; signs of torque and speed
+   become direction and driver, with a warning that says so; all state their share or none does; scaled to the sum 1.
+   rows: the array as the document has it, for the words beside the signs; NULL: none are checked. */
+void eo_load_cases_settle(const json_t *rows, struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
                           struct eo_faults *faults);
 
 /* Adds what can work but is unusual in a complete design, each with number, limit and remedy, at its field; and what a

@@ -99,7 +99,7 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   const struct eo_geometry profile = {.rack_bottom = given->bottom, .rack_top = given->top};
   static const struct eo_modification none = {0};
   struct eo_faults faults = {0};
-  eo_load_cases_settle(design.load_case, design.load_cases, NULL, &faults);
+  eo_load_cases_settle(NULL, design.load_case, design.load_cases, NULL, &faults);
   enum eo_code code = eo_faults_first(&faults, error);
   if (!code)
     code = check_rows(given, design.load_cases * eo_evaluator_scenarios(&design), error);

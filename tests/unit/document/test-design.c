@@ -178,7 +178,7 @@ static void test_all_at_once(void)
 {
   json_t *document = parse(
       "{\"gear_pair\":{\"pinion_teeth\":\"17\",\"gear_teeth\":44.5,\"normal_modul_mm\":6,\"helix_angle_deg\":99},"
-      "\"load_cases\":[{\"torque_Nm\":-1},{\"speed_rpm\":0}],\"alignment\":3,\"nonsense\":{}}");
+      "\"load_cases\":[{\"torque_Nm\":-2e8},{\"speed_rpm\":2e6}],\"alignment\":3,\"nonsense\":{}}");
   static const char *const expected[] = {"/gear_pair/pinion_teeth",
                                          "/gear_pair/gear_teeth",
                                          "/gear_pair/normal_module_mm",

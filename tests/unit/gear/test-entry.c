@@ -577,6 +577,44 @@ static void test_power(void)
      "and contradicts another: %s", error.text);
 }
 
+/* Signs as a drive's table has them, against the same load case in words. */
+static void test_signs(void)
+{
+  static const struct {
+    double torque, speed;
+    const char *direction, *driver;
+  } row[] = {{40, -900, "astern", "gear"}, {-40, 900, "ahead", "gear"}, {-40, -900, "astern", "pinion"}};
+  for (int i = 0; i < 3; i++) {
+    json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
+    json_object_set_new(document, "load_cases",
+                        json_pack("[{s:i,s:i},{s:f,s:f}]", "torque_Nm", 50, "speed_rpm", 1000, "torque_Nm",
+                                  row[i].torque, "speed_rpm", row[i].speed));
+    bool done = complete(document);
+    struct eo_load_case by_sign = design.load_case[1];
+    document = with_pair(TEETH "\"normal_module_mm\":3");
+    json_object_set_new(document, "load_cases",
+                        json_pack("[{s:i,s:i},{s:f,s:f,s:s,s:s}]", "torque_Nm", 50, "speed_rpm", 1000, "torque_Nm",
+                                  fabs(row[i].torque), "speed_rpm", fabs(row[i].speed), "direction", row[i].direction,
+                                  "driver", row[i].driver));
+    done = done && complete(document);
+    const struct eo_load_case *by_word = &design.load_case[1];
+    ok(done && by_sign.torque == by_word->torque && by_sign.speed == by_word->speed &&
+           by_sign.direction == by_word->direction && by_sign.driver == by_word->driver &&
+           by_sign.flank == by_word->flank,
+       "%g N m at %g rpm is %s, the %s drives %s", row[i].torque, row[i].speed, row[i].direction, row[i].driver,
+       error.text);
+  }
+  json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
+  json_object_set_new(document, "load_cases",
+                      json_pack("[{s:f,s:f,s:s}]", "power_kW", -5., "speed_rpm", 1000., "driver", "pinion"));
+  ok(!complete(document) && strcmp(error.pointer, "/load_cases/0/driver") == 0 && strstr(error.text, "gear drives"),
+     "a word that contradicts a sign is refused: %s", error.text);
+  document = with_pair(TEETH "\"normal_module_mm\":3");
+  json_object_set_new(document, "load_cases", json_pack("[{s:f,s:f}]", "torque_Nm", 40., "speed_rpm", -0.05));
+  ok(!complete(document) && strcmp(error.pointer, "/load_cases/0/speed_rpm") == 0 && strstr(error.text, "0.1"),
+     "and so is next to no speed: %s", error.text);
+}
+
 int main(void)
 {
   test_paths(TEETH "\"normal_module_mm\":2.5,\"pinion_profile_shift\":0.35,\"gear_profile_shift\":0.12", "shifted");
@@ -586,6 +624,7 @@ int main(void)
   test_contradictions();
   test_widths();
   test_error_grade();
+  test_signs();
   test_drawn();
   test_first_edit();
   test_migration();
