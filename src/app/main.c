@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,6 +59,7 @@ int main(int argc, char **argv)
   start_without_library_threads(argv);
   prctl(PR_SET_NAME, "easeoff"); /* the kernel has it from the path it started: "exe" */
   eo_threads_limit();
+  gsl_set_error_handler_off(); /* it would end the process where there is no memory: numerics/fft.h */
   const char *name = argc > 1 ? argv[1] : "";
   for (int i = 0; i < COMMANDS; i++)
     if (strcmp(name, commands[i]->name) == 0)

@@ -73,7 +73,7 @@ static enum eo_code resample(const struct response *response, const double *from
   for (int k = 0; k < lines && k <= n / 2 && !code; k++)
     x[k] = conj(line[k]);
   if (!code)
-    eo_fft_forward(response->steps, x);
+    code = eo_fft_forward(response->steps, x, error);
   for (int i = 0; i < response->steps && !code; i++)
     to[(size_t)i * ROWS] = creal(x[i]);
   free(line);

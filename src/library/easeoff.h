@@ -11,7 +11,8 @@
 
    A design is the JSON document that the program and its API know (easeoff example, doc/guide.md); what it does not
    state is derived. Numbers out are SI: m, N, Pa, rad/s. A handle serves one thread at a time; different handles are
-   independent. Nothing is printed, no environment is read. */
+   independent. Nothing is printed, no environment is read. Where there is no memory for a Fourier transform, GSL ends
+   the process unless the program called its gsl_set_error_handler_off(). */
 #ifndef EASEOFF_H
 #define EASEOFF_H
 

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fast Fourier transform: of 2^k samples (Cooley and Tukey 1965), and of any number (Bluestein 1970). */
+/* Fast Fourier transform of any number of samples, by the mixed radices of the GNU Scientific Library: n samples with
+   the prime factors p take n sum p operations. No planner stands behind it, so the bytes depend on the samples alone.
+
+   The library's own answer to a lack of memory is to end the process; main() and whoever else would rather have the
+   error calls gsl_set_error_handler_off(). */
 #ifndef EASEOFF_NUMERICS_FFT_H
 #define EASEOFF_NUMERICS_FFT_H
 
@@ -7,11 +11,8 @@
 
 #include "base/error.h"
 
-/* x_k <- sum_j x_j exp(-2 pi i j k / n) in place, 0 <= k < n; n a power of two. */
-void eo_fft_forward(int n, double complex *x);
-
-/* The same for any n from 1. Errors: memory. */
-enum eo_code eo_fft_any(int n, double complex *x, struct eo_error *error);
+/* x_k <- sum_j x_j exp(-2 pi i j k / n) in place, 0 <= k < n, n from 1. Errors: memory. */
+enum eo_code eo_fft_forward(int n, double complex *x, struct eo_error *error);
 
 /* The one-sided spectrum of n real samples: value_j = line_0 + Re sum_k line_k exp(2 pi i j k / n), 0 <= k <= n/2; the
    mean square is |line_0|^2 + sum |line_k|^2/2, of the last line for even n |line|^2 (Parseval). line[n/2 + 1].

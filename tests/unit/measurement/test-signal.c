@@ -8,26 +8,7 @@
 #include <stdlib.h>
 
 #include "base/random.h"
-#include "numerics/fft.h"
 #include "support/tap.h"
-
-static void test_fft(void)
-{
-  enum { N = 64 };
-  double complex x[N], fast[N];
-  double worst = 0;
-  for (int i = 0; i < N; i++)
-    fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) +
-                     I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
-  eo_fft_forward(N, fast);
-  for (int k = 0; k < N; k++) {
-    double complex sum = 0;
-    for (int i = 0; i < N; i++)
-      sum += x[i] * cexp(-2 * M_PI * I * i * k / N);
-    worst = fmax(worst, cabs(sum - fast[k]));
-  }
-  ok(worst < 1e-12, "the fast transform is the slow one: %.2g", worst);
-}
 
 static void test_ellipse(void)
 {
@@ -180,7 +161,6 @@ static void test_rms(void)
 
 int main(void)
 {
-  test_fft();
   test_ellipse();
   test_axis();
   test_interpolation();

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Periodic spline and harmonics against functions in closed form. */
+/* Periodic spline and harmonics against functions in closed form; the fast transform against the slow one. */
+#include "base/random.h"
+#include "numerics/fft.h"
 #include "numerics/periodic.h"
 #include "support/tap.h"
 
@@ -82,11 +84,36 @@ static void test_harmonics(void)
   close_to(worst, 0, 1e-13, "harmonics of a trigonometric polynomial are exact");
 }
 
+/* Powers of two, teeth with a common factor, a prime number of them, a single sample. */
+static void test_fft(void)
+{
+  enum { MOST = 748 };
+  static const int length[] = {1, 2, 64, 291, 509, MOST};
+  struct eo_error error = {0};
+  for (size_t l = 0; l < sizeof length / sizeof length[0]; l++) {
+    double complex x[MOST], fast[MOST];
+    double worst = 0;
+    int n = length[l];
+    for (int i = 0; i < n; i++)
+      fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) +
+                       I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
+    enum eo_code code = eo_fft_forward(n, fast, &error);
+    for (int k = 0; k < n; k++) {
+      double complex sum = 0;
+      for (int i = 0; i < n; i++)
+        sum += x[i] * cexp(-2 * M_PI * I * ((long long)i * k % n) / n);
+      worst = fmax(worst, cabs(sum - fast[k]));
+    }
+    ok(!code && worst < 1e-12 * n, "the fast transform of %d samples is the slow one: %.2g", n, worst);
+  }
+}
+
 int main(void)
 {
   test_order();
   test_continuity();
   test_flat();
   test_harmonics();
+  test_fft();
   return tap_done();
 }
