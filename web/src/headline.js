@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few large numbers, each with its change against what the design is compared with.
-import { NUMBERS, numbersOf } from './numbers.js';
+import { NUMBERS, numbersBefore, numbersOf, scaled } from './numbers.js';
 import { groupedWarnings } from './verdict.js';
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
 import { verdictText } from './figures/rating.js';
 import { openPopover } from './base/popover.js';
-import { caseLong, caseNames, sameCase } from './figures/context.js';
+import { caseLong, caseNames } from './figures/context.js';
 
+/** @type {Omit<import('./numbers.js').Number_, 'key'>} */
 const TOTAL = {
-  key: 'J',
   name: 'Objective J of the duty cycle',
   label: 'Objective J',
   sub: 'all load cases',
@@ -64,11 +64,10 @@ export class Headline {
     const reference = references[0]?.result;
     const against = references[0]?.label ?? '';
     this.about = `${caseLong(result.load_cases[k])}${against ? `, against ${against}` : ''}`;
-    const at = reference ? reference.load_cases.indexOf(sameCase(reference, result.load_cases[k], k)) : -1;
     const own = numbersOf(result, k);
-    const before = at >= 0 ? numbersOf(reference, at) : {};
+    const before = numbersBefore(reference, result.load_cases[k], k);
     NUMBERS.forEach(({ key, scale = 1 }, i) =>
-      show(this.cells[i], own[key] === null ? null : own[key] * scale, change(own[key], before[key]), against),
+      show(this.cells[i], scaled(own[key], scale), change(own[key], before[key]), against),
     );
     show(this.total, result.objectives?.J, change(result.objectives?.J, reference?.objectives?.J), against);
     this.#drawCases(result, k);
@@ -78,7 +77,7 @@ export class Headline {
     fill(this.list, groupedWarnings(warnings));
   }
 
-  /** The load capacity in short. @param {any} result with its rating */
+  /** The load capacity in short. @param {Page.Result} result with its rating */
   rate({ rating }) {
     const verdict = rating?.outcome === 'rated' ? rating.verdict : null;
     this.capacity.title = verdictText(rating);
@@ -88,15 +87,15 @@ export class Headline {
     this.capacity.classList.toggle('worse', verdict?.passes === false);
   }
 
-  /** @param {any} result @param {number} chosen */
+  /** @param {Page.Result} result @param {number} chosen */
   #drawCases(result, chosen) {
-    const shape = JSON.stringify(result.load_cases.map((/** @type {any} */ c) => [c.torque_Nm, c.speed_rpm, c.name]));
+    const shape = JSON.stringify(result.load_cases.map(c => [c.torque_Nm, c.speed_rpm, c.name]));
     if (shape !== this.#shape) {
       this.#shape = shape;
       const names = caseNames(result.load_cases);
       fill(
         this.cases,
-        result.load_cases.map((/** @type {any} */ c, /** @type {number} */ i) => {
+        result.load_cases.map((c, i) => {
           const mark = h('span.dot');
           mark.style.setProperty('--swatch', `var(--case${(i % 8) + 1})`);
           return h(
@@ -114,7 +113,7 @@ export class Headline {
   }
 }
 
-/** @param {import('./numbers.js').Number_} number @param {() => string} about */
+/** @param {Omit<import('./numbers.js').Number_, 'key'>} number @param {() => string} about */
 function cell({ name, label, sub, unit, help, good }, about) {
   const value = h('span.value', null, '–');
   const delta = h('span.delta');

@@ -5,24 +5,27 @@ import { fill, h } from './base/dom.js';
 import { choiceText, duration, sig } from './base/format.js';
 import { ACTIVE } from './base/jobs.js';
 
-/** @param {any} job */
+/** @param {Api.Job} job */
 export function progressText(job) {
-  const { progress = {}, state, stopping } = job;
+  const { progress, state, stopping } = job;
   if (stopping) return 'stopping';
   if (state === 'queued') return 'waiting';
   if (state === 'preparing') return 'preparing the teeth';
   if (state !== 'running') return state;
   const generations = job.design?.optimization?.generations;
   const parts = [
-    typeof progress.generation === 'number'
+    typeof progress?.generation === 'number'
       ? `gen ${progress.generation + 1}${generations ? `/${generations}` : ''}`
-      : progress.what,
+      : progress?.what,
   ];
-  if (typeof progress.pfc_percent === 'number') parts.push(`PFC ${Math.round(progress.pfc_percent)} %`);
+  if (typeof progress?.pfc_percent === 'number') parts.push(`PFC ${Math.round(progress.pfc_percent)} %`);
   return parts.filter(Boolean).join('  ');
 }
 
-/** A bar; unknown progress is told as such. @param {any} job */
+/**
+ * A bar; unknown progress is told as such.
+ * @param {{ id?: number, name: string, state?: string, progress?: { fraction: number | null } }} job
+ */
 export function progressBar(job) {
   const fraction = job.state === 'done' ? 1 : (job.progress?.fraction ?? 0);
   const bar = h(
@@ -40,7 +43,7 @@ export function progressBar(job) {
   return bar;
 }
 
-/** @param {any} job */
+/** @param {Api.Job} job */
 function leftText(job) {
   if (connection.away) return 'no connection';
   const left = job.progress?.seconds_left;
@@ -95,7 +98,7 @@ export class JobBar {
           type: 'button',
           disabled: Boolean(job.stopping) || connection.away,
           onclick: () =>
-            post(`jobs/${job.id}/cancel`)
+            post(`jobs/${job.id}/cancel`, {})
               .then(answer => this.app.jobs.put(answer))
               .catch(() => this.app.jobs.reload()),
         },

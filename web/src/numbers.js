@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few numbers that a result is judged by, each with what it is and what is good.
+import { sameCase } from './figures/context.js';
 
 /**
- * @typedef {{ key: string, name: string, label: string, sub: string, unit: string, help: string, good: string,
+ * @typedef {'peak_to_peak_um' | 'impact_N' | 'rms_m_per_s2' | 'root_stress_MPa' | 'contact_pressure_MPa'} NumberKey
+ * @typedef {{ key: NumberKey, name: string, label: string, sub: string, unit: string, help: string, good: string,
  *   scale?: number }} Number_
  */
 
@@ -58,17 +60,38 @@ export const NUMBERS = [
 
 /**
  * Numbers of one load case as the objectives list them; the root stress where they leave it out.
- * @param {any} result
+ * @param {Page.Result | null | undefined} result
  * @param {number} k
+ * @returns {Partial<Record<NumberKey, Page.Reading>>}
  */
 export function numbersOf(result, k) {
   const loadCase = result?.load_cases?.[k];
+  /** @type {Partial<Record<NumberKey, Page.Reading>>} */
   const row = { ...(result?.objectives?.load_cases?.[k] ?? {}) };
   if (typeof row.root_stress_MPa !== 'number') {
-    const stresses = ['pinion', 'gear']
-      .map(member => loadCase?.root_stress?.[member]?.max_MPa)
+    const stresses = [loadCase?.root_stress?.pinion, loadCase?.root_stress?.gear]
+      .map(member => member?.max_MPa)
       .filter(value => typeof value === 'number');
     row.root_stress_MPa = stresses.length ? Math.max(...stresses) : null;
   }
   return row;
+}
+
+/**
+ * Numbers of the load case of a reference that stands for this one; none where there is none.
+ * @param {Page.Result | null | undefined} reference
+ * @param {Page.LoadCase} loadCase
+ * @param {number} k
+ */
+export function numbersBefore(reference, loadCase, k) {
+  const twin = sameCase(reference, loadCase, k);
+  return reference && twin ? numbersOf(reference, reference.load_cases.indexOf(twin)) : {};
+}
+
+/**
+ * A number in the unit of the page; null where there is none.
+ * @param {Page.Reading | undefined} value @param {number} scale
+ */
+export function scaled(value, scale) {
+  return typeof value === 'number' ? value * scale : null;
 }

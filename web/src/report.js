@@ -12,7 +12,7 @@ import { tableOf } from './verdict.js';
 /**
  * @typedef {object} Parts what a view gives to its report
  * @property {string} title
- * @property {any} result whose data and assumptions stand at the end
+ * @property {Page.Result | null} result whose data and assumptions stand at the end
  * @property {HTMLElement[]} lead tables before the figures
  * @property {import('./figures/frame.js').Frame[]} figures
  * @property {string[]} missing what is still being computed
@@ -23,7 +23,7 @@ const NARROW = { width: 470, height: 220, foot: false };
 const WIDE = { width: 960, height: 300, foot: false };
 const LOOK = 500; // ms between two looks at what is missing
 
-/** @param {any} value @returns {string} */
+/** @param {unknown} value @returns {string} */
 function valueText(value) {
   if (value === null || value === undefined) return '–';
   if (typeof value === 'number') return plain(Number(value.toPrecision(6)));
@@ -32,23 +32,23 @@ function valueText(value) {
   return typeof value === 'object' ? JSON.stringify(value) : String(value);
 }
 
-/** @param {Field[]} fields @param {any} value @returns {HTMLElement[]} */
+/** @param {Field[]} fields @param {unknown} value @returns {HTMLElement[]} */
 function lines(fields, value) {
   return fields.flatMap(field => {
     if (field.entry || field.kind === 'list') return [];
-    if (field.kind === 'object') return lines(field.fields ?? [], value?.[field.key]);
+    if (field.kind === 'object') return lines(field.fields ?? [], valueAt(value, `/${field.key}`));
     return [
       h(
         'div.report-line',
         null,
         h('dt', null, labelOf(field.key)),
-        h('dd', null, `${valueText(value?.[field.key])} ${unitOf(field)}`.trim()),
+        h('dd', null, `${valueText(valueAt(value, `/${field.key}`))} ${unitOf(field)}`.trim()),
       ),
     ];
   });
 }
 
-/** @param {Field[]} fields @param {any} design */
+/** @param {Field[]} fields @param {Page.Design} design */
 function modification(fields, design) {
   const flanks = ['pinion', 'gear']
     .flatMap(member =>
@@ -68,11 +68,11 @@ function modification(fields, design) {
   );
 }
 
-/** @param {any} design */
+/** @param {Page.Design} design */
 function loadCases(design) {
   return tableOf(
     ['Load case', 'Torque (N m)', 'Speed (rpm)', 'Share of time'],
-    design.load_cases.map((/** @type {any} */ row, /** @type {number} */ k) => [
+    design.load_cases.map((row, k) => [
       row.name || String(k + 1),
       valueText(row.torque_Nm),
       valueText(row.speed_rpm),
@@ -81,7 +81,7 @@ function loadCases(design) {
   );
 }
 
-/** What was not stated, with the value taken and its rule. @param {any[]} assumed */
+/** What was not stated, with the value taken and its rule. @param {Api.Assumption[] | null} assumed */
 function assumptions(assumed) {
   if (!assumed?.length) return null;
   return h(
@@ -95,7 +95,7 @@ function assumptions(assumed) {
   );
 }
 
-/** Every assumption of a result. @param {Field[]} fields @param {any} result */
+/** Every assumption of a result. @param {Field[]} fields @param {Page.Result} result */
 function reportData(fields, result) {
   const { design } = result;
   return h(
@@ -112,7 +112,7 @@ function reportData(fields, result) {
           'section',
           null,
           h('h3', null, labelOf(field.key)),
-          h('dl', null, lines(field.fields ?? [], design[field.key])),
+          h('dl', null, lines(field.fields ?? [], valueAt(design, `/${field.key}`))),
         ),
       ),
   );

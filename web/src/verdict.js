@@ -2,8 +2,8 @@
 // The verdict of a result: before and after for every load case, and what to know about it.
 import { h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
-import { caseLong, sameCase } from './figures/context.js';
-import { NUMBERS, numbersOf } from './numbers.js';
+import { caseLong } from './figures/context.js';
+import { NUMBERS, numbersBefore, numbersOf, scaled } from './numbers.js';
 
 /** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
 export function tableOf(head, rows) {
@@ -36,20 +36,18 @@ export function tableOf(head, rows) {
 
 /**
  * Before and after, for every load case.
- * @param {any} result
+ * @param {Page.Result} result
  * @param {import('./figures/context.js').Reference | undefined} reference
  */
 export function verdict(result, reference) {
-  const rows = result.load_cases.flatMap((/** @type {any} */ row, /** @type {number} */ k) => {
+  const rows = result.load_cases.flatMap((row, k) => {
     const own = numbersOf(result, k);
-    const other = reference?.result;
-    const at = other ? other.load_cases.indexOf(sameCase(other, row, k)) : -1;
-    const before = at >= 0 ? numbersOf(other, at) : {};
+    const before = numbersBefore(reference?.result, row, k);
     return NUMBERS.map(({ key, name, unit, scale = 1 }, i) => [
       i === 0 ? caseLong(row) : '',
       `${name}, ${unit}`,
-      typeof before[key] === 'number' ? sig(before[key] * scale, 3) : '–',
-      sig(own[key] === null ? null : own[key] * scale, 3),
+      sig(scaled(before[key], scale), 3),
+      sig(scaled(own[key], scale), 3),
       changeText(change(own[key], before[key])),
     ]);
   });

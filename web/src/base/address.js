@@ -18,8 +18,8 @@ export function writePlace(view, parameters) {
 
 /**
  * What differs from the base, one parameter for each value.
- * @param {any} base
- * @param {any} design
+ * @param {Api.Design} base
+ * @param {Api.Design} design
  * @param {URLSearchParams} parameters
  */
 export function putDifference(base, design, parameters) {
@@ -33,7 +33,7 @@ export function putDifference(base, design, parameters) {
 
 /**
  * The base with those parameters; texts that are no JSON stay texts.
- * @param {any} base
+ * @param {Api.Design} base
  * @param {URLSearchParams} parameters
  */
 export function takeDifference(base, parameters) {

@@ -16,18 +16,18 @@ const RATE = 'analyze?pitch=0&digits=8&parts=design,tribology,maps';
 const TEETH = 'analyze?rating=0&parts=design,pitch'; // single teeth over the hunting period: seconds
 const REST = 900; // ms without a change before the design is rated
 
-/** What the results of a reference depend on. @param {any} design */
+/** What the results of a reference depend on. @param {Api.Design} design */
 function loadKey(design) {
   const { name, modification, optimization, ...rest } = design;
   return JSON.stringify(rest);
 }
 
 export class Analyst extends EventTarget {
-  /** @type {any} */ result = null;
-  /** @type {any} */ plain = null;
-  /** @type {any} */ pinned = null;
+  /** @type {Page.Result | null} */ result = null;
+  /** @type {Page.Result | null} */ plain = null;
+  /** @type {Page.Result | null} */ pinned = null;
   /** "", "busy", "preparing", "refused" */ state = '';
-  /** @type {any} */ job = null;
+  /** @type {Api.Job | null} */ job = null;
   /** @type {import('./api.js').Fault[]} */ faults = [];
   message = '';
   ms = 0;
@@ -35,8 +35,8 @@ export class Analyst extends EventTarget {
   shown = 0;
   /** The result is a stroke's. */
   partial = false;
-  /** The last result with a rating. @type {any} */ rated = null;
-  /** The result with single teeth, where the design states some. @type {any} */ teeth = null;
+  /** The last result with a rating. @type {Page.Result | null} */ rated = null;
+  /** The result with single teeth, where the design states some. @type {Page.Result | null} */ teeth = null;
   #rest = 0;
   #plainKey = '';
   #pinKey = '';
@@ -45,6 +45,7 @@ export class Analyst extends EventTarget {
   constructor(store) {
     super();
     this.store = store;
+    /** @type {Lane<Page.Result>} */
     this.own = new Lane({
       result: (task, data, ms) => {
         this.result = data;
@@ -68,6 +69,7 @@ export class Analyst extends EventTarget {
         this.#state('refused');
       },
     });
+    /** @type {Lane<Page.Result>} */
     this.reference = new Lane({
       result: (task, data) => {
         this[task.note === 'pin' ? 'pinned' : 'plain'] = data;
@@ -78,12 +80,14 @@ export class Analyst extends EventTarget {
         this[task.note === 'pin' ? 'pinned' : 'plain'] = null;
       },
     });
+    /** @type {Lane<Page.Result>} */
     this.rating = new Lane({
       result: (_task, data) => {
         this.rated = data;
         this.#tell('rating');
       },
     });
+    /** @type {Lane<Page.Result>} */
     this.period = new Lane({
       result: (_task, data) => {
         this.teeth = data;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The public API, and whether it answers.
 
-/** @typedef {{ pointer: string, detail: string }} Fault */
+/** @typedef {Api.ProblemError} Fault */
 
 /** What the service refused, with its reasons. */
 export class Refusal extends Error {
-  /** @param {number} status @param {any} problem */
+  /** @param {number} status @param {Partial<Api.Problem> | null} problem */
   constructor(status, problem) {
     super(problem?.detail || problem?.title || `The service answered ${status}.`);
     this.status = status;
@@ -22,7 +22,18 @@ export class Away extends Error {
   }
 }
 
-/** @typedef {{ status: number, data: any, headers: Headers }} Answer */
+/**
+ * What OpenAPI says that a path answers to a method; the type Api is written from it when the page is built.
+ * @template M, P
+ * @typedef {M extends 'GET' ? Api.GetAnswer<P> : M extends 'POST' ? Api.PostAnswer<P>
+ *   : M extends 'PUT' ? Api.PutAnswer<P> : Api.DeleteAnswer<P>} AnswerTo
+ */
+/**
+ * What a path takes with a method.
+ * @template M, P
+ * @typedef {M extends 'GET' ? Api.GetBody<P> : M extends 'POST' ? Api.PostBody<P>
+ *   : M extends 'PUT' ? Api.PutBody<P> : Api.DeleteBody<P>} BodyOf
+ */
 
 const BASE = new URL('api/v1/', document.baseURI);
 const FIRST_RETRY = 1000;
@@ -77,10 +88,14 @@ async function readBody(response, whole) {
 }
 
 /**
- * @param {string} method @param {string} path below /api/v1/
- * @param {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal, whole?: boolean }} [options]
+ * @template {'GET' | 'POST' | 'PUT' | 'DELETE'} M
+ * @template {string} P
+ * @template {boolean} [W=false]
+ * @param {M} method @param {P} path below /api/v1/
+ * @param {{ body?: BodyOf<M, P>, headers?: Record<string, string>, signal?: AbortSignal, whole?: W }} [options]
  *   whole: a file, byte for byte, as a Blob
- * @returns {Promise<Answer>} of a status below 400
+ * @returns {Promise<{ status: number, data: W extends true ? Blob : AnswerTo<M, P>, headers: Headers }>} of a status
+ *   below 400
  */
 export async function ask(method, path, { body, headers = {}, signal, whole } = {}) {
   /** @type {Response} */
@@ -104,24 +119,35 @@ export async function ask(method, path, { body, headers = {}, signal, whole } = 
   return { status: response.status, data, headers: response.headers };
 }
 
-/** @param {string} path */
+/** @template {string} P @param {P} path @returns {Promise<Api.GetAnswer<P>>} */
 export async function get(path) {
   return (await ask('GET', path)).data;
 }
 
-/** @param {string} path @param {unknown} [body] @param {Record<string, string>} [headers] */
+/**
+ * @template {string} P
+ * @param {P} path @param {Api.PostBody<P>} body @param {Record<string, string>} [headers]
+ * @returns {Promise<Api.PostAnswer<P>>}
+ */
 export async function post(path, body, headers) {
-  return (await ask('POST', path, { body: body ?? {}, headers })).data;
+  return (await ask('POST', path, { body: /** @type {BodyOf<'POST', P>} */ (body), headers })).data;
 }
 
-/** Everything of a paged list. @param {string} path @param {number} [most] */
+/**
+ * One row of what a paged list holds.
+ * @template P
+ * @typedef {Api.GetAnswer<P> extends { items: Array<infer Row> } ? Row : never} RowOf
+ */
+
+/** Everything of a paged list. @template {string} P @param {P} path @param {number} [most] */
 export async function list(path, most = 2000) {
-  /** @type {any[]} */
+  /** @type {RowOf<P>[]} */
   const items = [];
   let cursor = null;
   do {
     const mark = path.includes('?') ? '&' : '?';
-    const page = await get(`${path}${mark}limit=200${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ''}`);
+    const place = `${path}${mark}limit=200${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ''}`;
+    const page = /** @type {{ items: RowOf<P>[], next: string | null }} */ (await get(place));
     items.push(...page.items);
     cursor = page.next;
   } while (cursor && items.length < most);

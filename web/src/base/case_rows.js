@@ -2,16 +2,19 @@
 // Load cases as a spreadsheet has them, copied as text.
 import { readQuantity } from './quantity.js';
 
-const NUMBERS = ['torque_Nm', 'speed_rpm', 'share'];
+/** @typedef {Partial<Record<'torque_Nm' | 'speed_rpm' | 'share', number>> & { name?: string }} CaseRow */
+
+const NUMBERS = /** @type {const} */ (['torque_Nm', 'speed_rpm', 'share']);
 
 /**
  * Rows of a spreadsheet: torque, speed and share in this order or as their headings say; what is no number is a name.
  * @param {string} text
- * @returns {{ rows: Record<string, any>[], fault: string }}
+ * @returns {{ rows: CaseRow[], fault: string }}
  */
 export function readRows(text) {
   const lines = text.split(/\r?\n/).filter(line => line.trim() !== '');
   const cells = lines.map(line => line.split(/\t|;|\s{2,}/).map(cell => cell.trim()));
+  /** @type {readonly (keyof CaseRow)[]} */
   let order = NUMBERS;
   const isHead = cells[0]?.every(cell => readQuantity(cell).value === undefined);
   if (isHead) {
@@ -29,21 +32,22 @@ export function readRows(text) {
   return { rows, fault: '' };
 }
 
-/** @param {string[]} line @param {string[]} order */
+/** @param {string[]} line @param {readonly (keyof CaseRow)[]} order */
 function rowByHead(line, order) {
-  /** @type {Record<string, any>} */
+  /** @type {CaseRow} */
   const row = {};
   line.forEach((cell, i) => {
     const key = order[i];
     if (!key || cell === '') return;
-    row[key] = key === 'name' ? cell : readQuantity(cell, key.split('_')[1] ?? '%').value;
+    if (key === 'name') row.name = cell;
+    else row[key] = readQuantity(cell, key.split('_')[1] ?? '%').value;
   });
   return row;
 }
 
 /** @param {string[]} line */
 function rowByOrder(line) {
-  /** @type {Record<string, any>} */
+  /** @type {CaseRow} */
   const row = {};
   const numbers = line.filter(cell => /\d/.test(cell) && readQuantity(cell, 'any').fault !== 'Not a number.');
   NUMBERS.forEach((key, i) => {

@@ -15,7 +15,7 @@ const radians = degrees => (degrees * Math.PI) / 180;
 
 /**
  * Angle from the tooth's middle to the involute at a radius.
- * @param {any} g
+ * @param {Page.Result['geometry']} g
  * @param {0 | 1} member
  * @param {number} radius
  */
@@ -31,8 +31,8 @@ export function halfAngle(g, member, radius) {
 }
 
 /**
- * @param {any} g
- * @param {any} pair
+ * @param {Page.Result['geometry']} g
+ * @param {Api.ResolvedDesign['gear_pair']} pair
  * @param {0 | 1} member
  * @returns {Point[]} from the lowest point to the form radius
  */
@@ -40,10 +40,14 @@ function fillet(g, pair, member) {
   const module = g.normal_module_mm;
   const pressure = radians(g.normal_pressure_angle_deg);
   const shift = g.profile_shift[member] * module;
-  const radius = pair.fillet_radius_coefficient * module;
+  const [rounding, dedendum] =
+    member === 0
+      ? [pair.pinion_fillet_radius_coefficient, pair.pinion_dedendum_coefficient]
+      : [pair.gear_fillet_radius_coefficient, pair.gear_dedendum_coefficient];
+  const radius = (rounding ?? Number(pair.fillet_radius_coefficient)) * module;
   const reference = g.reference_radius_mm[member];
   const stretch = 1 / Math.cos(radians(g.helix_angle_deg));
-  const up = shift - pair.dedendum_coefficient * module + radius;
+  const up = shift - (dedendum ?? Number(pair.dedendum_coefficient)) * module + radius;
   const across =
     (Math.PI * module) / 4 + shift * Math.tan(pressure) - up * Math.tan(pressure) + radius / Math.cos(pressure);
   /** @type {Point[]} */
@@ -61,7 +65,8 @@ function fillet(g, pair, member) {
 
 /**
  * The right half of a tooth whose middle is the y axis: from the root through fillet and involute to the tip.
- * @param {any} g geometry of a result @param {any} pair gear_pair of its resolved design @param {0 | 1} member
+ * @param {Page.Result['geometry']} g
+ * @param {Api.ResolvedDesign['gear_pair']} pair of its resolved design @param {0 | 1} member
  * @param {(sigma: number) => number} [taken] what is taken off at a path coordinate, + towards the member's tip, mm:
  *   the active involute alone, that much lower
  * @returns {Point[]}

@@ -7,7 +7,7 @@ const CHANNEL = 'easeoff-events';
 export const ACTIVE = ['queued', 'preparing', 'running'];
 
 export class Jobs extends EventTarget {
-  /** @type {Map<string, any>} */ all = new Map();
+  /** @type {Map<number, Api.Job>} */ all = new Map();
   /** The list has been read. */
   known = false;
   /** @type {EventSource | null} */ #source = null;
@@ -79,15 +79,15 @@ export class Jobs extends EventTarget {
     }
   }
 
-  /** @param {any} job */
+  /** @param {Page.JobEvent} job */
   #take(job) {
     if (!job?.id) return;
     if (job.deleted) this.all.delete(job.id);
-    else this.all.set(job.id, { ...this.all.get(job.id), ...job });
+    else this.all.set(job.id, /** @type {Api.Job} */ ({ ...this.all.get(job.id), ...job }));
     this.dispatchEvent(new CustomEvent('change', { detail: job.id }));
   }
 
-  /** @param {any} job what an answer said */
+  /** @param {Api.Job} job what an answer said */
   put(job) {
     this.#channel?.postMessage(job);
     this.#take(job);

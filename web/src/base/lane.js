@@ -17,43 +17,59 @@ function isLastToLeave(id) {
 }
 
 /**
+ * @template [N=any]
  * @typedef {object} Task
  * @property {string} path
- * @property {any} body
+ * @property {unknown} body
  * @property {number} [tries] asked again because somebody else stopped its preparation
- * @property {any} [note] handed back with the result
+ * @property {N} note handed back with the result
  */
 
-/** @typedef {{ result?: (task: Task, data: any, ms: number) => void, refused?: (task: Task, error: Error) => void,
- *   preparing?: (task: Task, job: any) => void }} Listener */
+/**
+ * @template R, N
+ * @typedef {{ result?: (task: Task<N>, data: R, ms: number) => void, refused?: (task: Task<N>, error: Error) => void,
+ *   preparing?: (task: Task<N>, job: Api.Job) => void }} Listener
+ */
 
 /** @param {number} ms */
 const sleep = ms => new Promise(resolve => setTimeout(resolve, ms));
 
+/**
+ * @template R what its questions are answered with
+ * @template [N=string] what is written beside each of them
+ */
 export class Lane {
-  /** @type {Task | null} */ #waiting = null;
-  /** @type {Task | null} */ #interrupted = null;
+  /** @type {Task<N> | null} */ #waiting = null;
+  /** @type {Task<N> | null} */ #interrupted = null;
   #busy = false;
   /** Number of the preparation that the last task waited for; 0: none. */
   #preparation = 0;
   #token = token();
 
-  /** @param {Listener} listener */
+  /** @param {Listener<R, N>} listener */
   constructor(listener) {
     this.listener = listener;
     connection.addEventListener('change', () => {
-      if (!connection.away && this.#interrupted) this.submit(this.#waiting ?? this.#interrupted);
+      if (!connection.away && this.#interrupted) this.#put(this.#waiting ?? this.#interrupted);
     });
   }
 
-  /** @param {Task} task */
+  /** @template {string} P @param {{ path: P, body: Api.PostBody<P>, note?: N }} task */
   submit(task) {
+    this.#put(/** @type {Task<N>} */ (task));
+  }
+
+  /** @param {Task<N>} task */
+  #put(task) {
     this.#waiting = task;
     this.#interrupted = null;
     if (!this.#busy) this.#work();
   }
 
-  /** Ends what is in flight: a smaller question in its place, whose answer nobody takes. @param {Task} task */
+  /**
+   * Ends what is in flight: a smaller question in its place, whose answer nobody takes.
+   * @template {string} P @param {{ path: P, body: Api.PostBody<P> }} task
+   */
   overtake(task) {
     this.#waiting = null;
     ask('POST', task.path, { body: task.body, headers: { 'Easeoff-Lane': this.#token } }).catch(() => {});
@@ -73,7 +89,7 @@ export class Lane {
     this.#busy = false;
   }
 
-  /** @param {Task} task @param {Error} error */
+  /** @param {Task<N>} task @param {Error} error */
   #fail(task, error) {
     if (error instanceof Away) {
       this.#interrupted = task;
@@ -82,17 +98,17 @@ export class Lane {
     }
     if (error instanceof Refusal && error.status === 409 && error.type.endsWith('/overtaken')) return;
     if (error instanceof Refusal && (error.status === 429 || error.status === 503)) {
-      setTimeout(() => !this.#busy && this.submit(task), 1000);
+      setTimeout(() => !this.#busy && this.#put(task), 1000);
       return;
     }
     this.listener.refused?.(task, error);
   }
 
-  /** @param {Task} task */
+  /** @param {Task<N>} task */
   async #run(task) {
     const start = performance.now();
     const answer = await ask('POST', task.path, { body: task.body, headers: { 'Easeoff-Lane': this.#token } });
-    const job = answer.status === 202 ? (answer.data.job ?? answer.data) : null;
+    const job = answer.status === 202 ? /** @type {Api.Preparing} */ (answer.data).job : null;
     this.#leave(job?.id ?? 0);
     if (job) {
       await this.#prepare(task, job);
@@ -100,7 +116,7 @@ export class Lane {
     }
     const ms = performance.now() - start;
     // the next request is on its way while this result is drawn
-    queueMicrotask(() => this.listener.result?.(task, answer.data, ms));
+    queueMicrotask(() => this.listener.result?.(task, /** @type {R} */ (answer.data), ms));
   }
 
   /**
@@ -119,7 +135,7 @@ export class Lane {
   /**
    * Waits for the preparation of the pair, until there is a newer task: that one asks the service for itself.
    * @param {Task} task
-   * @param {any} job
+   * @param {Api.Job} job
    */
   async #prepare(task, job) {
     let state = job;

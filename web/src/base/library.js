@@ -7,7 +7,7 @@ import { Refusal, ask, get } from './api.js';
 
 /** What a design of the service was changed to since it was opened here. */
 export class Conflict extends Error {
-  /** @param {any} theirs @param {string} etag */
+  /** @param {Api.Design} theirs @param {string} etag */
   constructor(theirs, etag) {
     super('Somebody else has stored this design since you opened it.');
     this.theirs = theirs;
@@ -25,7 +25,8 @@ const isDesignKey = key =>
 const FIRST = 'paper-case-a'; // on the table when nobody says anything: a modification beside the unmodified pair
 
 export class Library {
-  /** Documents that addresses start from. @type {Map<string, { design: any, etag: string }>} */ #bases = new Map();
+  /** Documents that addresses start from. @type {Map<string, { design: Api.Design, etag: string }>} */
+  #bases = new Map();
 
   /** @param {Store} store @param {{ name: string, title: string }[]} examples */
   constructor(store, examples) {
@@ -35,7 +36,7 @@ export class Library {
 
   /**
    * @param {{ example?: string, id?: string }} from
-   * @returns {Promise<{ design: any, etag: string }>} a stored design as it is now
+   * @returns {Promise<{ design: Api.Design, etag: string }>} a stored design as it is now
    */
   async #fetch({ example, id }) {
     try {
@@ -108,7 +109,7 @@ export class Library {
     this.store.open(design, { id, etag });
   }
 
-  /** A design that is nobody's yet: from a file, or made here. @param {any} design */
+  /** A design that is nobody's yet: from a file, or made here. @param {Api.Design} design */
   async openNew(design) {
     await this.base({ example: FIRST }); // the address tells the difference from it
     this.store.open(design, {});
@@ -119,7 +120,6 @@ export class Library {
    * @param {File} file
    */
   async openFile(file) {
-    /** @type {any} */
     let document;
     try {
       document = JSON.parse(await file.text());

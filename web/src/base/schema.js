@@ -4,22 +4,14 @@ import { plain, unitText } from './format.js';
 import { shownValue, unitInstead } from './units.js';
 
 /**
- * @typedef {object} Field
- * @property {string} key
- * @property {string} kind number, integer, seed, flag, text, choice, numbers, object, list, series
- * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
- * @property {string[]} [choices] @property {string} [help] @property {boolean} [required]
- * @property {boolean} [nullable]
- * @property {string} [symbol] the unit as it is printed
- * @property {boolean} [entry] another way to state a value: read, never written
- * @property {string} [basis] where a default comes from
- * @property {string} [derived] @property {number} [count] @property {Field[]} [fields]
+ * A row of a field table. `entry`: another way to state a value, read and never written; `symbol`: the unit as it is
+ * printed; `basis`: where a default comes from.
+ * @typedef {Api.Field} Field
  */
 
-/** @param {any} description of GET /schema @returns {Field[]} */
+/** @param {Api.Form} description of GET /schema @returns {Field[]} */
 export function designFields(description) {
-  const design = description.design ?? description;
-  return design.fields ?? design;
+  return description.design.fields;
 }
 
 /** @param {Field[]} fields @param {string} pointer @returns {Field | undefined} */
@@ -62,10 +54,10 @@ const ABSENT = ['gear', 'coast'];
 /**
  * The document with every key that has a default; what the service would assume is written out. Entry keys are other
  * ways to state a value and stand in no document.
- * @param {Field[]} fields @param {any} document
+ * @template D @param {Field[]} fields @param {D} document
  */
 export function complete(fields, document) {
-  const whole = { ...document };
+  const whole = /** @type {Record<string, unknown>} */ ({ ...document });
   for (const field of fields) {
     const missing = whole[field.key] === undefined;
     if (field.entry) continue;
@@ -73,13 +65,13 @@ export function complete(fields, document) {
       if (missing && (ABSENT.includes(field.key) || field.nullable)) continue;
       if (whole[field.key] !== null) whole[field.key] = complete(field.fields, whole[field.key] ?? {});
     } else if (field.kind === 'list') {
-      if (Array.isArray(whole[field.key]))
-        whole[field.key] = whole[field.key].map((/** @type {any} */ row) => complete(field.fields ?? [], row));
+      const rows = whole[field.key];
+      if (Array.isArray(rows)) whole[field.key] = rows.map(row => complete(field.fields ?? [], row));
     } else if (missing && !field.required) {
       whole[field.key] = fallbackOf(field);
     }
   }
-  return whole;
+  return /** @type {D} */ (whole);
 }
 
 /** Why a number cannot be taken, or nothing. @param {Field} field @param {number} value */

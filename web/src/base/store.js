@@ -2,12 +2,12 @@
 // The design on the table, whose it is, what it is compared with, and the way back.
 import { same, valueAt, withValue } from './pointer.js';
 
-/** @typedef {{ label: string, design: any }} Pin */
+/** @typedef {{ label: string, design: Api.Design }} Pin */
 /**
  * Whose a design is: an example's, a stored one's or nobody's yet; and what stands there, to see whether it differs.
  * @typedef {{ example: string, id: string, etag: string, base: any }} Identity
  */
-/** @typedef {{ design: any, from: Identity }} Step what undo brings back */
+/** @typedef {{ design: Api.Design, from: Identity }} Step what undo brings back */
 
 const DEPTH = 200;
 const ENDS = ['left', 'right'];
@@ -18,7 +18,7 @@ function identity({ example = '', id = '', etag = '', base = null } = {}) {
 }
 
 export class DesignStore extends EventTarget {
-  /** @type {any} */ design = {};
+  design = /** @type {Api.Design} */ ({});
   from = identity({ example: 'paper' });
   tied = true;
   /** null: the unmodified pair. @type {Pin | null} */ pin = null;
@@ -30,7 +30,10 @@ export class DesignStore extends EventTarget {
   /** @type {Step[]} */ #future = [];
   #stroke = '';
 
-  /** @param {(design: any) => any} [whole] a design with every default written out, so that equal ones are the same */
+  /**
+   * @param {(design: Api.Design) => Api.Design} [whole] a design with every default written out, so that equal ones
+   *   are the same
+   */
   constructor(whole = design => design) {
     super();
     this.whole = whole;
@@ -53,7 +56,7 @@ export class DesignStore extends EventTarget {
   }
 
   /**
-   * @param {string} pointer @param {any} value
+   * @param {string} pointer @param {unknown} value
    * @param {{ live?: boolean }} [options] live: one of a stroke of changes, which undo takes back as one
    */
   set(pointer, value, { live = false } = {}) {
@@ -69,7 +72,7 @@ export class DesignStore extends EventTarget {
     this.#tell(live ? 'live' : 'design');
   }
 
-  /** Several values as one step. @param {[string, any][]} changes */
+  /** Several values as one step. @param {[string, unknown][]} changes */
   setAll(changes) {
     let { design } = this;
     for (const [pointer, value] of changes) {
@@ -109,7 +112,7 @@ export class DesignStore extends EventTarget {
 
   /**
    * Another design altogether.
-   * @param {any} design
+   * @param {Api.Design} design
    * @param {Partial<Identity>} from base: what stands there, the design itself when it is left out and somebody's
    * @param {{ fresh?: boolean }} [options] fresh: nothing to go back to
    */
@@ -229,7 +232,15 @@ export class DesignStore extends EventTarget {
   }
 }
 
-/** The pair without any modification, under the same load. @param {any} design */
+/** The pair without any modification, under the same load. @template {Page.Design} D @param {D} design */
 export function unmodified(design) {
   return { ...design, modification: {} };
+}
+
+/**
+ * A resolved design as a document: what is null in it is not stated.
+ * @param {Page.Design} design
+ */
+export function documentOf(design) {
+  return /** @type {Api.Design} */ (design);
 }

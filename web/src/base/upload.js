@@ -4,7 +4,7 @@ import { Away, Refusal, address, connection } from './api.js';
 
 /** What a refused recording says about itself. */
 export class RefusedRecording extends Refusal {
-  /** @param {any} problem */
+  /** @param {Api.Problem & Partial<Api.MeasurementOfFile>} problem */
   constructor(problem) {
     super(422, problem);
     this.findings = problem.findings ?? [];
@@ -16,7 +16,7 @@ export class RefusedRecording extends Refusal {
 /**
  * @param {string} path @param {FormData} form @param {(fraction: number) => void} tell
  * @param {AbortSignal} [signal]
- * @returns {Promise<{ status: number, data: any }>}
+ * @returns {Promise<{ status: number, data: Api.Measurement }>}
  */
 export function upload(path, form, tell, signal) {
   return new Promise((resolve, reject) => {
@@ -27,8 +27,7 @@ export function upload(path, form, tell, signal) {
       tell(event.lengthComputable && event.total ? event.loaded / event.total : 0),
     );
     request.addEventListener('load', () => {
-      /** @type {any} */
-      let data = null;
+      let data;
       try {
         data = JSON.parse(request.responseText);
       } catch {

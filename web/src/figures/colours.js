@@ -23,15 +23,16 @@ export function scaleColour(part) {
 
 /**
  * Bilinear value of a regular grid [rows][columns] at fractional indices.
- * @param {number[][]} grid
+ * @param {Page.Curve[]} grid places without a value count as 0
  * @param {number} row
  * @param {number} column
  */
 export function gridValue(grid, row, column) {
+  const at = (/** @type {number} */ i, /** @type {number} */ j) => grid[i][j] ?? 0;
   const i = Math.min(Math.max(Math.floor(row), 0), grid.length - 2);
   const j = Math.min(Math.max(Math.floor(column), 0), grid[0].length - 2);
   const [u, v] = [Math.min(Math.max(row - i, 0), 1), Math.min(Math.max(column - j, 0), 1)];
   return (
-    (grid[i][j] * (1 - v) + grid[i][j + 1] * v) * (1 - u) + (grid[i + 1][j] * (1 - v) + grid[i + 1][j + 1] * v) * u
+    (at(i, j) * (1 - v) + at(i, j + 1) * v) * (1 - u) + (at(i + 1, j) * (1 - v) + at(i + 1, j + 1) * v) * u
   );
 }

@@ -19,7 +19,7 @@ export class Contact {
   /** @type {import('./context.js').Context | null} */ #context = null;
   #most = 1;
   #pictures = { left: document.createElement('canvas'), right: document.createElement('canvas') };
-  /** @type {Record<string, Panel>} */ #panels = {};
+  /** @type {Partial<Record<Page.End, Panel>>} */ #panels = {};
 
   constructor() {
     this.painting = new Painting(
@@ -67,8 +67,10 @@ export class Contact {
     this.painting.repaint();
   }
 
+  /** @returns {Page.Pattern | null} null: not in the answer, or not found */
   #pattern() {
-    return this.#context?.result.load_cases[this.#context.loadCase]?.contact?.pattern;
+    const pattern = this.#context?.result.load_cases[this.#context.loadCase]?.contact?.pattern;
+    return pattern?.s_mm ? /** @type {Page.Pattern} */ (pattern) : null;
   }
 
   /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
@@ -106,14 +108,15 @@ export class Contact {
 
   /** @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {Panel} panel */
   #paintEnd(pen, end, panel) {
-    const pattern = this.#pattern();
+    const side = this.#pattern()?.[end];
+    if (!side) return;
     const picture = this.#pictures[end];
-    paintGrid(picture, pattern[end].pressure_MPa, this.#most, panel.mirrored);
+    paintGrid(picture, side.pressure_MPa, this.#most, panel.mirrored);
     pen.fillStyle = colour('sunken');
     pen.fillRect(panel.left, panel.top, panel.width, panel.height);
     pen.imageSmoothingEnabled = true;
     pen.drawImage(picture, panel.left, panel.top, panel.width, panel.height);
-    this.#paintEdges(pen, pattern[end], panel);
+    this.#paintEdges(pen, side, panel);
     this.#paintOutlines(pen, end, panel);
     this.#paintLines(pen, end, panel);
     pen.strokeStyle = colour('line');
@@ -124,17 +127,17 @@ export class Contact {
   /**
    * The pinion's tip edge above, the gear's (the pinion's root) below.
    * @param {CanvasRenderingContext2D} pen
-   * @param {any} pattern
+   * @param {Page.PatternEnd} pattern
    * @param {Panel} panel
    */
   #paintEdges(pen, pattern, panel) {
     const step = panel.width / pattern.pinion_tip_edge_MPa.length;
-    for (const [key, top] of /** @type {[string, number][]} */ ([
+    for (const [key, top] of /** @type {['pinion_tip_edge_MPa' | 'gear_tip_edge_MPa', number][]} */ ([
       ['pinion_tip_edge_MPa', panel.top],
       ['gear_tip_edge_MPa', panel.top + panel.height - EDGE],
     ])) {
-      pattern[key].forEach((/** @type {number} */ value, /** @type {number} */ j) => {
-        if (!(value > 0)) return;
+      pattern[key].forEach((value, j) => {
+        if (!value || value < 0) return;
         const column = panel.mirrored ? pattern[key].length - 1 - j : j;
         pen.fillStyle = `rgb(${scaleColour(value / this.#most)
           .map(Math.round)
@@ -185,6 +188,7 @@ export class Contact {
     const { result } = /** @type {import('./context.js').Context} */ (this.#context);
     const { geometry } = result;
     const pattern = this.#pattern();
+    if (!pattern) return;
     const [low, high] = [pattern.s_mm[0], pattern.s_mm[pattern.s_mm.length - 1]];
     const half = -faceOf(pattern, end)[0];
     const pitch = geometry.transverse_base_pitch_mm;
@@ -236,10 +240,12 @@ export class Contact {
     const pattern = this.#pattern();
     const context = this.#context;
     if (!pattern || !context) return;
-    for (const [end, panel] of Object.entries(this.#panels)) {
+    for (const end of endsOf(context.result)) {
+      const [panel, side] = [this.#panels[end], pattern[end]];
+      if (!panel || !side) continue;
       const u = (event.offsetX - panel.left) / panel.width;
       const v = 1 - (event.offsetY - panel.top) / panel.height;
-      if (!pattern[end] || u < 0 || u > 1 || v < 0 || v > 1) continue;
+      if (u < 0 || u > 1 || v < 0 || v > 1) continue;
       const across = panel.mirrored ? 1 - u : u;
       const rows = pattern.s_mm.length - 1;
       const face = faceOf(pattern, end);
@@ -255,7 +261,7 @@ export class Contact {
           '.tip-row',
           null,
           h('span', null, 'pressure, MPa'),
-          h('b', null, sig(gridValue(pattern[end].pressure_MPa, v * rows, across * columns), 4)),
+          h('b', null, sig(gridValue(side.pressure_MPa, v * rows, across * columns), 4)),
         ),
         h('.tip-row', null, h('span', null, 'pinion radius, mm'), h('b', null, radius.toFixed(2))),
         h('.tip-row', null, h('span', null, 'from mid face, mm'), h('b', null, eta.toFixed(1))),
@@ -276,7 +282,7 @@ export class Contact {
     /** @type {(string | number | null)[][]} */
     const rows = [['end', 's (mm)', 'eta (mm)', 'pressure (MPa)']];
     for (const end of endsOf(this.#context.result)) {
-      pattern[end].pressure_MPa.forEach((/** @type {number[]} */ line, /** @type {number} */ i) => {
+      pattern[end]?.pressure_MPa.forEach((line, i) => {
         line.forEach((value, j) => rows.push([end, pattern.s_mm[i], faceOf(pattern, end)[j], value]));
       });
     }
@@ -284,12 +290,12 @@ export class Contact {
   }
 }
 
-/** @param {any} loadCase */
+/** @param {Page.LoadCase} loadCase */
 function peak(loadCase) {
   return Math.max(...Object.values(loadCase.contact.max_pressure_MPa).map(Number));
 }
 
-/** @param {HTMLCanvasElement} canvas @param {number[][]} grid @param {number} most @param {boolean} mirrored */
+/** @param {HTMLCanvasElement} canvas @param {Page.Curve[]} grid @param {number} most @param {boolean} mirrored */
 function paintGrid(canvas, grid, most, mirrored) {
   const [width, height] = PIXELS;
   canvas.width = width;
@@ -315,7 +321,7 @@ function paintGrid(canvas, grid, most, mirrored) {
 
 /**
  * Line of equal value (marching squares), in parts 0..1 of the grid.
- * @param {number[][]} grid
+ * @param {Page.Curve[]} grid
  * @param {number} level
  * @param {(row: number, column: number) => [number, number]} place
  * @param {CanvasRenderingContext2D} pen
@@ -334,7 +340,7 @@ function outline(grid, level, place, pen) {
       const crossings = [];
       for (let k = 0; k < 4; k++) {
         const [a, b] = [corner[k], corner[(k + 1) % 4]];
-        const [va, vb] = [grid[a[0]][a[1]] - level, grid[b[0]][b[1]] - level];
+        const [va, vb] = [(grid[a[0]][a[1]] ?? 0) - level, (grid[b[0]][b[1]] ?? 0) - level];
         if (va > 0 === vb > 0) continue;
         const t = va / (va - vb);
         crossings.push(place((a[0] + t * (b[0] - a[0])) / rows, (a[1] + t * (b[1] - a[1])) / columns));

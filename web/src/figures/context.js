@@ -1,22 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the figures show: one result, beside what it is compared with.
 
-/** @typedef {{ label: string, result: any, line: 'dashed' | 'dotted' }} Reference */
-/** @typedef {{ result: any, references: Reference[], loadCase: number }} Context */
+/** @typedef {{ label: string, result: Page.Result, line: 'dashed' | 'dotted' }} Reference */
+/** @typedef {{ result: Page.Result, references: Reference[], loadCase: number }} Context */
 
-/** Index of the load case whose share of time is largest. @param {any} design */
+/** Index of the load case whose share of time is largest. @param {Page.Design} design */
 export function mainCase(design) {
-  const shares = design.load_cases.map((/** @type {any} */ row) => row.share ?? 0);
+  const shares = design.load_cases.map(row => row.share ?? 0);
   return shares.indexOf(Math.max(...shares));
+}
+
+/** On the pinion shaft, N m: stated, or what the power comes to at the speed. @param {Page.Loading} row */
+export function torqueOf({ torque_Nm: torque, power_kW: power, speed_rpm: speed }) {
+  return torque ?? ((power ?? 0) * 1000) / ((2 * Math.PI * speed) / 60);
+}
+
+/** Its torque, or the power that a document states in its place. @param {Page.Loading} row */
+function loadText({ torque_Nm: torque, power_kW: power }) {
+  if (typeof torque !== 'number') return typeof power === 'number' ? `${Number(power.toPrecision(5))} kW` : 'no load';
+  return `${Number(torque.toPrecision(5))} N m`;
 }
 
 /**
  * Names of load cases that tell them apart: their own, else the torque, with the speed where the torque alone does not.
- * @param {any[]} cases
+ * @param {Page.Loading[]} cases
  * @returns {string[]}
  */
 export function caseNames(cases) {
-  const torques = cases.map(row => `${Number(row.torque_Nm.toPrecision(5))} N m`);
+  const torques = cases.map(loadText);
   const full = cases.map((row, i) => `${torques[i]}, ${Number(row.speed_rpm.toPrecision(6))} rpm`);
   return cases.map((row, i) => {
     if (row.name) return row.name;
@@ -26,18 +37,24 @@ export function caseNames(cases) {
   });
 }
 
-/** The torque and the speed of a load case. @param {any} row */
+/** The torque and the speed of a load case. @param {Page.Loading} row */
 export function caseLong(row) {
-  const text = `${Number(row.torque_Nm.toPrecision(5))} N m at ${Number(row.speed_rpm.toPrecision(6))} rpm`;
+  const text = `${loadText(row)} at ${Number(row.speed_rpm.toPrecision(6))} rpm`;
   return row.name ? `${row.name}: ${text}` : text;
 }
 
-/** Places over the face of an end: halves of unequal width have each its own. @param {any} part @param {string} end */
+/**
+ * Places over the face of an end: halves of unequal width have each its own.
+ * @param {{ eta_mm: number[], right_eta_mm?: number[] | null }} part @param {string} end
+ */
 export function faceOf(part, end) {
   return (end === 'right' && part.right_eta_mm) || part.eta_mm;
 }
 
-/** By how much of a mesh cycle the right half's phase is ahead: its width, less the stagger. @param {any} result */
+/**
+ * By how much of a mesh cycle the right half's phase is ahead: its width, less the stagger.
+ * @param {Page.Result} result
+ */
 export function rightPhase({ geometry, design }) {
   const right = design.gear_pair.right_face_width_mm ?? geometry.face_width_mm;
   const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
@@ -45,7 +62,7 @@ export function rightPhase({ geometry, design }) {
   return lag / geometry.transverse_base_pitch_mm - (design.alignment?.stagger ?? 0);
 }
 
-/** Names of the ends that there are. @param {any} result @returns {('left' | 'right')[]} */
+/** Names of the ends that there are. @param {Page.Result} result @returns {('left' | 'right')[]} */
 export function endsOf(result) {
   return (result.design.gear_pair.ends ?? 2) === 1 ? ['left'] : ['left', 'right'];
 }
@@ -57,14 +74,14 @@ export function caseColour(index) {
 
 /**
  * The load case of a reference that stands for the same torque and speed, or the one in the same place.
- * @param {any} result
- * @param {any} loadCase
+ * @param {Page.Result | null | undefined} result
+ * @param {Page.Loading} loadCase
  * @param {number} index
  */
 export function sameCase(result, loadCase, index) {
   const cases = result?.load_cases ?? [];
   return (
-    cases.find((/** @type {any} */ c) => c.torque_Nm === loadCase.torque_Nm && c.speed_rpm === loadCase.speed_rpm) ??
+    cases.find(c => c.torque_Nm === loadCase.torque_Nm && c.speed_rpm === loadCase.speed_rpm) ??
     cases[index]
   );
 }
@@ -72,6 +89,13 @@ export function sameCase(result, loadCase, index) {
 /** Numbers 0 .. count-1 or from the given start. @param {number} count @param {number} [start] */
 export function counting(count, start = 0) {
   return Array.from({ length: count }, (_, i) => i + start);
+}
+
+/** A curve about its mean. @param {Page.Curve | null | undefined} values */
+export function lessMean(values) {
+  const known = (values ?? []).map(value => value ?? NaN);
+  const mean = known.reduce((sum, value) => sum + value, 0) / known.length;
+  return known.map(value => value - mean);
 }
 
 /** Colours of the ends: apart from those of the load cases, everywhere. */

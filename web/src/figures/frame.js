@@ -192,10 +192,11 @@ export class Frame {
 
 /**
  * One of a few choices as buttons.
+ * @template {string} T
  * @param {string} label
- * @param {[string, string][]} choices value and text
- * @param {string} value
- * @param {(value: string) => void} take
+ * @param {[T, string][]} choices value and text
+ * @param {T} value
+ * @param {(value: T) => void} take
  */
 export function switcher(label, choices, value, take) {
   const name = newId('switch');

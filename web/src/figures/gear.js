@@ -13,7 +13,7 @@ const SCALES = [200, 100, 50, 20];
 /** @typedef {{ plain: Point[][], active: Point[][], modified: Point[][] }} Teeth half profiles of both members */
 
 export class GearDrawing {
-  /** @type {any} */ #result = null;
+  /** @type {Page.Result | null} */ #result = null;
   /** @type {Teeth | null} */ #teeth = null;
   #scale = 100;
 
@@ -42,13 +42,14 @@ export class GearDrawing {
   /** Half profiles of both members, without and with the modification of the left end. */
   #profiles() {
     if (this.#teeth) return this.#teeth;
+    if (!this.#result) return null;
     const { geometry: g, design, modification } = this.#result;
     const largest = Math.max(
       1,
       ...[modification?.pinion, modification?.gear].flatMap(member => (member?.left ? member.left.profile_um : [])),
     );
     this.#scale = SCALES.find(scale => (scale * largest) / 1000 < 0.2 * g.normal_module_mm) ?? 10;
-    /** @param {0 | 1} member @param {any} trace */
+    /** @param {0 | 1} member @param {Api.MemberCurves | undefined} trace */
     const modified = (member, trace) =>
       halfTooth(
         g,
@@ -75,6 +76,7 @@ export class GearDrawing {
     const centres = [g.working_radius_mm[0], -g.working_radius_mm[1]];
     const c = (phase.value ?? 0.25) * g.transverse_base_pitch_mm;
     const teeth = this.#profiles();
+    if (!teeth) return;
     for (const member of /** @type {(0 | 1)[]} */ ([1, 0]))
       this.#paintMember(pen, member, teeth, centres[member], pressure, c, place);
     this.#paintAction(pen, pressure, c, place);
@@ -93,6 +95,7 @@ export class GearDrawing {
    * @param {number} pressure @param {number} c @param {(point: Point) => Point} place
    */
   #paintMember(pen, member, teeth, centre, pressure, c, place) {
+    if (!this.#result) return;
     const g = this.#result.geometry;
     const count = member === 0 ? g.pinion_teeth : g.gear_teeth;
     const touch = /** @type {Point} */ ([c * Math.cos(pressure), -c * Math.sin(pressure) - centre]);
@@ -153,6 +156,7 @@ export class GearDrawing {
    * @param {(point: Point) => Point} place
    */
   #paintAction(pen, pressure, c, place) {
+    if (!this.#result) return;
     const g = this.#result.geometry;
     /** @param {number} s @returns {Point} */
     const at = s => place([s * Math.cos(pressure), -s * Math.sin(pressure)]);

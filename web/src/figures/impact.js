@@ -5,7 +5,7 @@ import { change, changeText, sig } from '../base/format.js';
 import { caseNames, endsOf, sameCase } from './context.js';
 import { Frame } from './frame.js';
 
-const COLUMNS = /** @type {[string, string, string][]} */ ([
+const COLUMNS = /** @type {[keyof Omit<Api.ImpactEnd, 'off_line'>, string, string][]} */ ([
   ['general_force_N', 'force', 'N'],
   ['speed_mm_per_s', 'speed', 'mm/s'],
   ['duration_ms', 'time', 'ms'],
@@ -34,12 +34,12 @@ export class Impact {
     const names = caseNames(result.load_cases);
     this.#rows = [['load case', 'end', ...COLUMNS.map(([, text, unit]) => `${text} (${unit})`), 'change (%)']];
     const body = h('tbody');
-    result.load_cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
+    result.load_cases.forEach((loadCase, k) => {
       for (const end of endsOf(result)) {
         const impact = loadCase.impact?.[end];
         const before = sameCase(references[0]?.result, loadCase, k)?.impact?.[end];
         const percent = change(impact?.general_force_N, before?.general_force_N);
-        const values = COLUMNS.map(([key]) => (impact && typeof impact[key] === 'number' ? impact[key] : null));
+        const values = COLUMNS.map(([key]) => impact?.[key] ?? null);
         this.#rows.push([names[k], end, ...values, percent ?? null]);
         body.append(
           h(

@@ -113,19 +113,20 @@ export class Sharing {
 
 /**
  * The share of one pair from where it enters to where it leaves.
- * @param {any} loadCase
+ * @param {Page.LoadCase} loadCase
  * @param {'left' | 'right'} end
  */
 function passage(loadCase, end) {
   const sharing = loadCase?.contact?.load_share;
   const rows = sharing?.[end];
-  if (!rows) return null;
+  const { position } = loadCase;
+  if (!sharing || !rows || !position) return null;
   /** @type {number[]} */ const x = [];
   /** @type {number[]} */ const y = [];
-  sharing.tooth_pair.forEach((/** @type {number} */ pair, /** @type {number} */ row) => {
-    loadCase.position.forEach((/** @type {number} */ at, /** @type {number} */ i) => {
+  sharing.tooth_pair.forEach((pair, row) => {
+    position.forEach((at, i) => {
       x.push(pair + at);
-      y.push(100 * rows[row][i]);
+      y.push(100 * (rows[row][i] ?? NaN));
     });
   });
   return { x, y };
@@ -167,23 +168,28 @@ export class RootStress {
   set({ result, references, loadCase: k }) {
     const loadCase = result.load_cases[k];
     const own = loadCase.root_stress?.[this.#member];
-    this.chart.element.classList.toggle('waiting', Boolean(own) && !own.position);
+    this.chart.element.classList.toggle('waiting', Boolean(own && !own.position));
     if (!own?.position) return;
+    /** @type {import('./chart.js').Curve[]} */
     const curves = [];
     for (const reference of references) {
       const other = sameCase(reference.result, loadCase, k)?.root_stress?.[this.#member];
-      for (const end of endsOf(result))
-        if (other?.[end])
+      for (const end of endsOf(result)) {
+        const y = other?.[end]?.history_MPa;
+        if (y)
           curves.push({
             label: `${end}, ${reference.label}`,
-            x: other.position,
-            y: other[end].history_MPa,
+            x: other?.position ?? undefined,
+            y,
             colour: END_COLOUR[end],
             line: reference.line,
           });
+      }
     }
-    for (const end of endsOf(result))
-      if (own[end]) curves.push({ label: `${end} end`, y: own[end].history_MPa, colour: END_COLOUR[end] });
+    for (const end of endsOf(result)) {
+      const y = own[end]?.history_MPa;
+      if (y) curves.push({ label: `${end} end`, y, colour: END_COLOUR[end] });
+    }
     this.chart.frame.setCase(caseLong(loadCase));
     this.chart.set({ x: own.position, curves });
   }

@@ -86,12 +86,15 @@ export class ModificationCharts {
     this.lead.repaint();
   }
 
-  /** @param {any} result @param {string} end @param {'profile_um' | 'lead_um'} what @returns {Trace | null} */
+  /**
+   * @param {Page.Result} result @param {Page.End} end @param {'profile_um' | 'lead_um'} what @returns {Trace | null}
+   */
   #trace(result, end, what) {
     const modification = result?.modification;
     const member = modification?.[this.#member];
-    if (!member?.[end]) return null;
-    return { at: what === 'profile_um' ? member.u_mm : faceOf(modification, end), value: member[end][what] };
+    const flank = member?.[end];
+    if (!modification || !flank) return null;
+    return { at: what === 'profile_um' ? member.u_mm : faceOf(modification, end), value: flank[what] };
   }
 
   /** Largest value of all that is drawn, at least 10 µm, in steps. @param {'profile_um' | 'lead_um'} what */
@@ -162,11 +165,12 @@ export class ModificationCharts {
     const [bottom, top] = [trace.at[0], trace.at[trace.at.length - 1]];
     pen.strokeStyle = colour('line');
     pen.setLineDash([2, 3]);
-    for (const [amount, u] of [
-      [flank.tip_relief_um, flank.tip_relief_start_mm],
-      [flank.root_relief_um, -flank.root_relief_start_mm],
-    ]) {
-      if (!(amount > 0)) continue;
+    for (const [amount, start, side] of /** @type {const} */ ([
+      [flank.tip_relief_um, flank.tip_relief_start_mm, 1],
+      [flank.root_relief_um, flank.root_relief_start_mm, -1],
+    ])) {
+      if (!amount || amount < 0 || start === null) continue;
+      const u = side * start;
       const y = box.top + box.height * (1 - (u - bottom) / (top - bottom));
       pen.beginPath();
       pen.moveTo(left, y);
@@ -244,7 +248,7 @@ export class ModificationCharts {
    */
   #traces(pen, end, what, place) {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
-    /** @param {any} result @param {number[]} dash @param {number} width */
+    /** @param {Page.Result} result @param {number[]} dash @param {number} width */
     const draw = (result, dash, width) => {
       const trace = this.#trace(result, end, what);
       if (!trace) return;

@@ -6,18 +6,21 @@ import { plain, sig } from '../base/format.js';
 import { caseNames, endsOf } from './context.js';
 import { Frame } from './frame.js';
 
-const MEMBERS = ['pinion', 'gear'];
+const MEMBERS = /** @type {const} */ (['pinion', 'gear']);
 const HEAD = ['load case', 'end', 'S_H', 'S_F', 'K_V', 'K_Hβ', 'K_Hβ, method C', 'K_Hα'];
 
-/** The smaller safety of both members. @param {any} side @param {'S_H' | 'S_F'} key */
+/** The smaller safety of both members. @param {Api.RatedEnd} side @param {'S_H' | 'S_F'} key */
 function least(side, key) {
   return Math.min(...MEMBERS.map(member => side[member]?.[key] ?? Infinity));
 }
 
-/** "3.6e8 h" @param {number} hours */
-const lifeText = hours => (hours > 1e6 ? 'more than 1 000 000 h' : `${plain(Number(hours.toPrecision(3)))} h`);
+/** "3.6e8 h" @param {Page.Reading} hours */
+function lifeText(hours) {
+  if (hours === null) return 'unknown';
+  return hours > 1e6 ? 'more than 1 000 000 h' : `${plain(Number(hours.toPrecision(3)))} h`;
+}
 
-/** One sentence. @param {any} rating */
+/** One sentence. @param {Api.Rating | null} rating */
 export function verdictText(rating) {
   if (!rating) return '';
   if (rating.outcome !== 'rated') return `Not rated: ${rating.reason ?? 'no reason given'}`;
@@ -47,19 +50,20 @@ export class Rating {
     fill(this.frame.body, h('p.figure-note', null, 'It is rated when the design rests.'));
   }
 
-  /** @param {any} result with its rating */
+  /** @param {Page.Result} result with its rating */
   set(result) {
     const { rating } = result;
     if (!rating) return;
-    if (rating.outcome !== 'rated') {
+    if (rating.outcome !== 'rated' || !rating.load_cases) {
       fill(this.frame.body, h('p', null, verdictText(rating)));
       return;
     }
     const names = caseNames(result.load_cases);
-    const rows = rating.load_cases.flatMap((/** @type {any} */ row, /** @type {number} */ k) =>
-      endsOf(result).map(end => {
+    const rows = rating.load_cases.flatMap((row, k) =>
+      endsOf(result).map(/** @returns {[string, Page.End, ...Page.Curve]} */ end => {
         const side = row[end];
-        const { used = {}, method_c: methodC = {} } = side;
+        if (!side) return [names[k], end];
+        const { used, method_c: methodC } = side;
         const numbers = [
           least(side, 'S_H'),
           least(side, 'S_F'),
@@ -76,7 +80,7 @@ export class Rating {
   }
 }
 
-/** @param {any[][]} rows @param {number} ends */
+/** @param {[string, Page.End, ...Page.Curve][]} rows @param {number} ends */
 function table(rows, ends) {
   return h(
     'table.numbers',
@@ -106,7 +110,7 @@ function table(rows, ends) {
   );
 }
 
-/** @param {any} rating */
+/** @param {Api.Rating} rating */
 function unchecked(rating) {
   /** @param {string} title @param {string[]} texts */
   const listed = (title, texts) =>

@@ -33,15 +33,15 @@ const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
 
 /**
  * Of all flanks of an end together.
- * @param {any} result
- * @param {any} loadCase
+ * @param {Page.Result} result
+ * @param {Page.LoadCase} loadCase
  * @param {'left' | 'right'} end
  * @returns {Surface}
  */
 function surfaceOf(result, loadCase, end) {
   const { geometry: g, modification } = result;
-  const { pinion, gear } = modification;
-  const faces = faceOf(modification, end);
+  const faces = modification ? faceOf(modification, end) : [0, g.face_width_mm];
+  const { pinion = null, gear = null } = modification ?? {};
   const width = faces[faces.length - 1] - faces[0];
   const pattern = loadCase.contact?.pattern;
   const lean = Math.tan((g.base_helix_angle_deg * Math.PI) / 180);

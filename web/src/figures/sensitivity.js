@@ -8,7 +8,7 @@ import { valueAt, withValue } from '../base/pointer.js';
 import { unmodified } from '../base/store.js';
 import { numbersOf } from '../numbers.js';
 import { Chart } from './chart.js';
-import { OWN_COLOUR, REFERENCE_COLOUR, mainCase } from './context.js';
+import { OWN_COLOUR, REFERENCE_COLOUR, mainCase, torqueOf } from './context.js';
 
 const REST = 500; // ms without a change
 const ASK = 'analyze?maps=0&root_stress=0&rating=0&pitch=0';
@@ -23,14 +23,14 @@ const [WIDTH, HEIGHT] = [60, 24]; // px of a small curve
 /**
  * @typedef {object} Variation a number of the design and what becomes of it
  * @property {string} name @property {string} unit
- * @property {(design: any) => { at: number, design: any }[]} designs
+ * @property {(design: Api.Design) => { at: number, design: Api.Design }[]} designs
  */
 /** @typedef {{ at: number, value: number }} Point */
 
-/** @param {any} design @param {string} pointer */
+/** @param {Api.Design} design @param {string} pointer */
 const numberAt = (design, pointer) => Number(valueAt(design, pointer) ?? 0);
 
-/** The design with both tip reliefs times a factor. @param {any} design @param {number} factor */
+/** The design with both tip reliefs times a factor. @param {Api.Design} design @param {number} factor */
 function withRelief(design, factor) {
   let next = design;
   for (const member of ['pinion', 'gear'])
@@ -62,9 +62,10 @@ const STRIP = [
         at: 100 * factor,
         design: {
           ...design,
-          load_cases: design.load_cases.map((/** @type {any} */ row) => ({
+          load_cases: design.load_cases.map(row => ({
             ...row,
-            torque_Nm: row.torque_Nm * factor,
+            torque_Nm: torqueOf(row) * factor,
+            power_kW: undefined,
           })),
         },
       })),
@@ -88,6 +89,7 @@ const KEYS = [
   '/alignment/stagger',
   '/supports/mesh_damping_ratio',
 ];
+/** @type {[import('../numbers.js').NumberKey, string, string][]} */
 const MEASURES = [
   ['peak_to_peak_um', 'transmission error', 'µm'],
   ['impact_N', 'entering impact', 'N'],
@@ -97,19 +99,23 @@ const MEASURES = [
 
 /** Asks for one design after the other; a newer row of questions ends the one before. */
 class Series {
-  /** @type {{ at: number, design: any }[]} */ #left = [];
-  /** @type {{ at: number, result: any }[]} */ #found = [];
-  /** @type {((found: { at: number, result: any }[]) => void) | null} */ #done = null;
+  /** @type {{ at: number, design: Api.Design }[]} */ #left = [];
+  /** @type {{ at: number, result: Page.Result }[]} */ #found = [];
+  /** @type {((found: { at: number, result: Page.Result }[]) => void) | null} */ #done = null;
   #turn = 0;
 
   constructor() {
+    /** @type {Lane<Page.Result, { at: number, turn: number }>} */
     this.lane = new Lane({
       result: (task, data) => this.#take(task.note, data),
       refused: task => this.#take(task.note, null),
     });
   }
 
-  /** @param {{ at: number, design: any }[]} designs @param {(found: { at: number, result: any }[]) => void} done */
+  /**
+   * @param {{ at: number, design: Api.Design }[]} designs
+   * @param {(found: { at: number, result: Page.Result }[]) => void} done
+   */
   ask(designs, done) {
     this.#turn += 1;
     this.#left = [...designs];
@@ -130,7 +136,7 @@ class Series {
     else this.#done?.(this.#found);
   }
 
-  /** @param {{ at: number, turn: number }} note @param {any} result */
+  /** @param {{ at: number, turn: number }} note @param {Page.Result | null} result */
   #take({ at, turn }, result) {
     if (turn !== this.#turn) return;
     if (result) this.#found.push({ at, result });
@@ -158,7 +164,7 @@ function pictureOf(points) {
 }
 
 export class Sensitivity {
-  /** @type {any} */ #design = null;
+  /** @type {Api.Design | null} */ #design = null;
   #timer = 0;
   #key = IN_PLANE;
   #measure = MEASURES[0][0];
@@ -198,7 +204,7 @@ export class Sensitivity {
       {
         'aria-label': 'What is shown',
         onchange: () => {
-          this.#measure = measures.value;
+          this.#measure = /** @type {import('../numbers.js').NumberKey} */ (measures.value);
           this.#asked = '';
           this.#later();
         },
@@ -222,7 +228,7 @@ export class Sensitivity {
     this.#drawStrip(STRIP.map(() => []));
   }
 
-  /** @param {any} design */
+  /** @param {Api.Design} design */
   set(design) {
     this.#design = design;
     this.#later();
@@ -266,7 +272,8 @@ export class Sensitivity {
     this.small.ask(flat, found => {
       for (const { at, result } of found) {
         const i = Math.round(at / 1e6);
-        rows[i].push({ at: at - i * 1e6, value: numbersOf(result, 0).peak_to_peak_um });
+        const { peak_to_peak_um: value } = numbersOf(result, 0);
+        if (typeof value === 'number') rows[i].push({ at: at - i * 1e6, value });
       }
       this.#drawStrip(rows);
       this.#askLarge(single);
@@ -294,19 +301,22 @@ export class Sensitivity {
     });
   }
 
-  /** A range round the value: its fault on both sides for angles, half and twice for amounts. @param {any} design */
+  /**
+   * A range round the value: its fault on both sides for angles, half and twice for amounts.
+   * @param {Api.Design} design
+   */
   #range(design) {
     const value = numberAt(design, this.#key);
     if (this.#key.startsWith('/alignment/shaft')) return [Math.min(-0.1, value), Math.max(0.1, value)];
     return value > 0 ? [0, 2 * value] : [0, /_mm$/.test(this.#key) ? 2 : /ratio|stagger/.test(this.#key) ? 0.5 : 20];
   }
 
-  /** @param {any} design with one load case */
+  /** @param {Api.Design} design with one load case */
   #askLarge(design) {
     const [low, high] = this.#range(design);
     const both = [this.#key, this.#key.replace('/left/', '/right/')];
     const values = Array.from({ length: STEPS }, (_, i) => low + ((high - low) * i) / (STEPS - 1));
-    /** @param {any} base */
+    /** @param {Api.Design} base */
     const varied = base =>
       values.map(at => ({ at, design: both.reduce((each, pointer) => withValue(each, pointer, at), base) }));
     const flank = this.#key.startsWith('/modification');
@@ -318,13 +328,16 @@ export class Sensitivity {
     });
   }
 
-  /** @param {{ at: number, result: any }[]} own @param {{ at: number, result: any }[]} before @param {boolean} flank */
+  /**
+   * @param {{ at: number, result: Page.Result }[]} own @param {{ at: number, result: Page.Result }[]} before
+   * @param {boolean} flank
+   */
   #drawLarge(own, before, flank) {
     const measure = MEASURES.find(([key]) => key === this.#measure) ?? MEASURES[0];
     const key = this.#key.split('/').pop() ?? '';
     const unit = unitText(/_(um|mm|deg)$/.exec(key)?.[1]);
     const x = own.map(each => each.at);
-    /** @param {any} result */
+    /** @param {Page.Result} result */
     const read = result => numbersOf(result, 0)[measure[0]] ?? null;
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
@@ -339,6 +352,7 @@ export class Sensitivity {
     curves.push({ label: 'this design', y: own.map(each => read(each.result)), colour: OWN_COLOUR });
     this.chart.name(`${labelOf(key)}${unit ? `, ${unit}` : ''}`, `${measure[1]}, ${measure[2]}`);
     this.#drawn = this.#asked;
+    if (!this.#design) return;
     this.chart.set({ x, curves, marks: [{ x: numberAt(this.#design, this.#key), label: 'now', strong: true }] });
   }
 }

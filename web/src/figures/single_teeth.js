@@ -2,19 +2,19 @@
 // Single teeth over the hunting period: their deviations, the transmission error over whole revolutions, the orders of
 // both shafts and of the mesh with its sidebands, what each tooth carries.
 import { Chart } from './chart.js';
-import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf } from './context.js';
+import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf, lessMean } from './context.js';
 import { switcher } from './frame.js';
 
-const MEMBERS = ['pinion', 'gear'];
+const MEMBERS = /** @type {Page.Member[]} */ (['pinion', 'gear']);
 const LEAST = 1e-5; // of the largest line: smaller ones are left at the bottom
 
-/** @param {string} member @returns {[string, string][]} */
+/** @param {Page.Member} member @returns {[Page.Member, string][]} */
 const named = member => [[member, member]];
 
 export class SingleTeeth {
-  #member = 'pinion';
-  #reading = 'lte_um';
-  /** @type {any} */ #result = null;
+  #member = /** @type {Page.Member} */ ('pinion');
+  #reading = /** @type {keyof Omit<Api.PitchSpectrum, 'step'>} */ ('lte_um');
+  /** @type {Page.Result | null} */ #result = null;
   #loadCase = 0;
 
   constructor() {
@@ -94,7 +94,7 @@ export class SingleTeeth {
     for (const chart of this.charts) chart.element.hidden = hidden;
   }
 
-  /** @param {any} result with its pitch; null: teeth are alike @param {number} loadCase */
+  /** @param {Page.Result | null} result with its pitch; null: teeth are alike @param {number} loadCase */
   set(result, loadCase) {
     this.#result = result;
     this.#loadCase = loadCase;
@@ -102,21 +102,22 @@ export class SingleTeeth {
   }
 
   #draw() {
-    const pitch = this.#result?.pitch;
+    const result = this.#result;
+    const pitch = result?.pitch;
     this.#hide(!pitch);
-    if (!pitch) return;
+    if (!result || !pitch) return;
     const chosen = pitch.load_cases[Math.min(this.#loadCase, pitch.load_cases.length - 1)];
-    this.#drawDeviations(pitch);
-    if (chosen.lte.pair_um) this.#drawPeriod(pitch, chosen);
-    this.#drawSpectrum(pitch);
-    if (chosen.teeth) this.#drawLoads(chosen);
+    this.#drawDeviations(result, pitch);
+    this.#drawPeriod(pitch, chosen);
+    this.#drawSpectrum(result, pitch);
+    this.#drawLoads(result, chosen);
   }
 
-  /** @param {any} pitch */
-  #drawDeviations(pitch) {
-    const curves = endsOf(this.#result).flatMap(end =>
-      ['drive', 'coast'].flatMap(side => {
-        const flank = pitch.deviations[this.#member][end][side];
+  /** @param {Page.Result} result @param {Api.Pitch} pitch */
+  #drawDeviations(result, pitch) {
+    const curves = endsOf(result).flatMap(end =>
+      /** @type {const} */ (['drive', 'coast']).flatMap(side => {
+        const flank = pitch.deviations[this.#member][end]?.[side];
         if (!flank) return [];
         const label = side === 'coast' ? `${end} end, coast` : `${end} end`;
         return [{ label, y: flank.index_um, colour: END_COLOUR[end], ...(side === 'coast' && { line: 'dashed' }) }];
@@ -129,30 +130,33 @@ export class SingleTeeth {
     });
   }
 
-  /** @param {any} pitch @param {any} chosen */
+  /** @param {Api.Pitch} pitch @param {Api.PitchCase} chosen */
   #drawPeriod(pitch, chosen) {
     const y = chosen.lte.pair_um;
-    const { mean_um: mean } = chosen.lte;
+    if (!y) return;
     const perTurn = y.length / pitch.pinion_revolutions;
     this.period.frame.setCase(caseLong(chosen));
     this.period.set({
       x: counting(y.length).map(i => i / perTurn),
-      curves: [{ label: 'pair', y: y.map((/** @type {number} */ value) => value - mean), colour: 'own' }],
+      curves: [{ label: 'pair', y: lessMean(y), colour: 'own' }],
     });
   }
 
-  /** All load cases: lines too small to see are left out, so that the curve stays a light one. @param {any} pitch */
-  #drawSpectrum(pitch) {
-    const names = caseNames(this.#result.load_cases);
+  /**
+   * All load cases: lines too small to see are left out, so that the curve stays a light one.
+   * @param {Page.Result} result @param {Api.Pitch} pitch
+   */
+  #drawSpectrum(result, pitch) {
+    const names = caseNames(result.load_cases);
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
     let step = 1;
     let longest = 0;
-    pitch.load_cases.forEach((/** @type {any} */ row, /** @type {number} */ k) => {
-      const lines = row.spectrum?.[this.#reading];
+    pitch.load_cases.forEach(({ spectrum }, k) => {
+      const lines = spectrum?.[this.#reading];
       if (!lines) return;
       const most = Math.max(...lines.slice(1));
-      step = row.spectrum.step;
+      step = spectrum.step;
       longest = Math.max(longest, lines.length);
       const y = lines.map((/** @type {number} */ value, /** @type {number} */ i) =>
         i > 0 && value > LEAST * most ? value : 0,
@@ -163,13 +167,14 @@ export class SingleTeeth {
     this.spectrum.set({ x: counting(longest).map(i => i * step), curves });
   }
 
-  /** @param {any} chosen */
-  #drawLoads(chosen) {
-    const ends = chosen.teeth[this.#member];
+  /** @param {Page.Result} result @param {Api.PitchCase} chosen */
+  #drawLoads(result, chosen) {
+    const ends = chosen.teeth?.[this.#member];
+    if (!ends) return;
     this.loads.frame.setCase(caseLong(chosen));
     this.loads.set({
       x: counting(ends.left.load_N.length),
-      curves: endsOf(this.#result).map(end => ({ label: `${end} end`, y: ends[end].load_N, colour: END_COLOUR[end] })),
+      curves: endsOf(result).map(end => ({ label: `${end} end`, y: ends[end]?.load_N ?? [], colour: END_COLOUR[end] })),
     });
   }
 }

@@ -2,10 +2,10 @@
 // Whose figures these are: stated on every picture and in every table that leaves the page.
 
 class Subject {
-  /** @type {any} */ #result = null;
+  /** @type {Page.Result | null} */ #result = null;
   #name = '';
 
-  /** @param {string} name of the design @param {any} result */
+  /** @param {string} name of the design @param {Page.Result} result */
   set(name, result) {
     this.#name = name;
     this.#result = result;

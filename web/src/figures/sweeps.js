@@ -5,7 +5,7 @@ import { labelOf, plain } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { readQuantity } from '../base/quantity.js';
 import { Chart } from './chart.js';
-import { OWN_COLOUR, REFERENCE_COLOUR, caseColour } from './context.js';
+import { OWN_COLOUR, REFERENCE_COLOUR, caseColour, torqueOf } from './context.js';
 import { whenSeen } from './frame.js';
 
 const REST = 350; // ms without a change before a sweep in sight is asked for
@@ -16,17 +16,18 @@ const SHOWN_ORDERS = 3; // crossings of higher orders are not marked
 const NAMED_ORDERS = 2;
 
 class Sweep {
-  /** @type {any} */ #design = null;
+  /** @type {Api.Design | null} */ #design = null;
   /** @type {import('../base/store.js').Pin | null} */ #pin = null;
   #timer = 0;
   #seen = false;
   #asked = '';
-  /** @type {any} */ own = null;
-  /** @type {any} */ pinned = null;
+  /** @type {Api.Sweep | null} */ own = null;
+  /** @type {Api.Sweep | null} */ pinned = null;
 
   /** @param {Chart} chart */
   constructor(chart) {
     this.chart = chart;
+    /** @type {Lane<Api.Sweep>} */
     this.lane = new Lane({
       result: (task, data) => {
         this[task.note === 'pin' ? 'pinned' : 'own'] = data;
@@ -48,7 +49,7 @@ class Sweep {
     return this.#design !== null && !waiting && JSON.stringify(this.#body('own')) === this.#asked;
   }
 
-  /** @param {any} design @param {import('../base/store.js').Pin | null} pin */
+  /** @param {Api.Design} design @param {import('../base/store.js').Pin | null} pin */
   set(design, pin) {
     this.#design = design;
     this.#pin = pin;
@@ -73,8 +74,9 @@ class Sweep {
 
   /** @param {'own' | 'pin'} which */
   #body(which) {
-    const design = which === 'own' ? this.#design : { ...this.#pin?.design, load_cases: this.#design.load_cases };
-    return [this.request(design), this.#pin?.label];
+    const own = /** @type {Api.Design} */ (this.#design);
+    const design = which === 'pin' && this.#pin ? { ...this.#pin.design, load_cases: own.load_cases } : own;
+    return { request: this.request(design), pin: this.#pin?.label };
   }
 
   /** @param {'own' | 'pin'} which */
@@ -87,10 +89,10 @@ class Sweep {
       this.chart.element.classList.add('waiting');
     }
     this.chart.frame.say('');
-    this.lane.submit({ path: 'sweep', body: body[0], note: which });
+    this.lane.submit({ path: 'sweep', body: body.request, note: which });
   }
 
-  /** @param {any} design @returns {any} */
+  /** @param {Api.Design} design @returns {Api.SweepRequest} */
   request(design) {
     return { design };
   }
@@ -99,7 +101,7 @@ class Sweep {
 
   /**
    * Curves of what it is compared with, then its own.
-   * @param {(half: any) => number[]} read a curve of one half of an answer
+   * @param {(half: Api.SweepVariant) => Page.Curve} read a curve of one half of an answer
    * @param {'speed_rpm' | 'torque_Nm'} abscissa
    * @param {string} label of the design's own
    * @param {string} colour
@@ -108,6 +110,7 @@ class Sweep {
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
     const { own, pinned } = this;
+    if (!own) return curves;
     if (own.unmodified)
       curves.push({
         label: 'unmodified',
@@ -197,7 +200,7 @@ export class SpeedSweep extends Sweep {
     this.later();
   }
 
-  /** @param {any} design */
+  /** @param {Api.Design} design */
   request(design) {
     const torque = design.load_cases[this.#case]?.torque_Nm ?? design.load_cases[0].torque_Nm;
     return {
@@ -222,14 +225,14 @@ export class SpeedSweep extends Sweep {
       curves.push({ label: 'slowing down', y: own.modified.down.rms_m_per_s2.normal, colour: OWN_COLOUR });
     const { mode = [], order = [], speed_rpm: speed = [] } = own.crossings ?? {};
     const marks = speed
-      .map((/** @type {number} */ x, /** @type {number} */ i) => ({
+      .map((x, i) => ({
         x,
         label: order[i] <= NAMED_ORDERS ? `${order[i]}× mode ${mode[i]}` : '',
         strong: order[i] === 1,
         order: order[i],
       }))
-      .filter((/** @type {any} */ mark) => mark.order <= SHOWN_ORDERS)
-      .sort((/** @type {any} */ a, /** @type {any} */ b) => a.order - b.order || a.x - b.x);
+      .filter(mark => mark.order <= SHOWN_ORDERS)
+      .sort((a, b) => a.order - b.order || a.x - b.x);
     this.chart.set({ x: own.speed_rpm, curves, marks });
   }
 }
@@ -251,9 +254,9 @@ export class TorqueSweep extends Sweep {
     this.elements = [this.chart.element];
   }
 
-  /** @param {any} design */
+  /** @param {Api.Design} design */
   request(design) {
-    const most = Math.max(...design.load_cases.map((/** @type {any} */ row) => row.torque_Nm));
+    const most = Math.max(...design.load_cases.map(torqueOf));
     return { design, torque: { from: most / 20, to: 1.6 * most, points: TORQUES } };
   }
 
@@ -261,8 +264,8 @@ export class TorqueSweep extends Sweep {
     const { own } = this;
     if (!own) return;
     const curves = this.curves(half => half.by_torque.peak_to_peak_um, 'torque_Nm', 'this design', OWN_COLOUR);
-    const marks = own.design.load_cases.map((/** @type {any} */ row) => ({
-      x: row.torque_Nm,
+    const marks = own.design.load_cases.map(row => ({
+      x: Number(row.torque_Nm),
       label: '',
       strong: true,
     }));

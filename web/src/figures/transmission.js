@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded transmission error over the mesh cycle, of the pair or one end, at every torque, and its orders.
 import { Chart } from './chart.js';
-import { caseColour, caseNames, counting, endsOf, sameCase } from './context.js';
+import { caseColour, caseNames, counting, endsOf, lessMean, sameCase } from './context.js';
 import { switcher } from './frame.js';
 
 const ORDERS = 8;
 
-/** @param {number[] | undefined} values */
-function aboutMean(values) {
-  if (!values) return [];
-  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-  return values.map(value => value - mean);
-}
-
 export class Transmission {
-  #which = 'pair';
+  #which = /** @type {'pair' | Page.End} */ ('pair');
 
   /** @param {() => void} again draws again */
   constructor(again) {
@@ -69,14 +62,14 @@ export class Transmission {
     /** @type {import('./chart.js').Curve[]} */
     const bars = [];
     for (const reference of references) {
-      cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
+      cases.forEach((loadCase, k) => {
         const other = sameCase(reference.result, loadCase, k);
         if (!other?.lte) return;
         const label = `${names[k]}, ${reference.label}`;
         curves.push({
           label,
           x: other.position,
-          y: aboutMean(other.lte[`${which}_um`]),
+          y: lessMean(other.lte[`${which}_um`]),
           colour: caseColour(k),
           line: reference.line,
         });
@@ -88,12 +81,12 @@ export class Transmission {
         });
       });
     }
-    cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
+    cases.forEach((loadCase, k) => {
       if (!loadCase.lte) return;
       curves.push({
         label: names[k],
         x: loadCase.position,
-        y: aboutMean(loadCase.lte[`${which}_um`]),
+        y: lessMean(loadCase.lte[`${which}_um`]),
         colour: caseColour(k),
       });
       bars.push({

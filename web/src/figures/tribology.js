@@ -45,7 +45,7 @@ export class Tribology {
   }
 
   /**
-   * @param {any} result with its rating; null before there is one
+   * @param {Page.Result | null} result with its rating; null before there is one
    * @param {number} index of the load case
    * @param {boolean} fresh of the design on the table, not of the one before
    */

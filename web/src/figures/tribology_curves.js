@@ -18,37 +18,39 @@ export function overFace(map, pick) {
 
 /**
  * Of all points of the contact, which lie closer than those of the maps.
- * @param {any[]} sides of the ends
+ * @param {Api.TribologyEnd[]} sides of the ends
  */
 function peaksOf(sides) {
   return {
-    flash: Math.max(...sides.map(side => side.max_flash_K)),
-    filmRatio: Math.min(...sides.map(side => side.min_film_ratio)),
-    sliding: Math.max(...sides.map(side => side.max_sliding_m_per_s)),
+    flash: Math.max(...sides.map(side => side.max_flash_K ?? NaN)),
+    filmRatio: Math.min(...sides.map(side => side.min_film_ratio ?? NaN)),
+    sliding: Math.max(...sides.map(side => side.max_sliding_m_per_s ?? NaN)),
   };
 }
 
 /**
  * Curves of a load case; null where the result has no maps of it.
- * @param {any} result with its tribology
+ * @param {Page.Result} result with its tribology
  * @param {number} index of the load case
  * @param {('left' | 'right')[]} ends
  */
 export function tribologyCurves(result, index, ends) {
   const tribology = result?.tribology;
   const loadCase = tribology?.load_cases?.[index];
-  if (!loadCase || !ends.every(end => loadCase[end]?.flash_K && loadCase[end]?.film_um)) return null;
+  const sides = ends.flatMap(end => loadCase?.[end] ?? []);
+  if (!tribology || !loadCase || sides.length < ends.length) return null;
+  if (!sides.every(side => side.flash_K && side.film_um)) return null;
   const pitchPoint = result.geometry.tangent_length_mm[0];
-  /** @param {(side: any) => (number | null)[]} curve @returns {EndCurve[]} */
-  const each = curve => ends.map(end => ({ end, y: curve(loadCase[end]) }));
+  /** @param {(side: Api.TribologyEnd) => (number | null)[]} curve @returns {EndCurve[]} */
+  const each = curve => ends.map((end, i) => ({ end, y: curve(sides[i]) }));
   return {
     pitchPoint,
-    roll: tribology.s_mm.map((/** @type {number} */ s) => pitchPoint + s),
-    flash: each(side => overFace(side.flash_K, Math.max)),
+    roll: tribology.s_mm.map(s => pitchPoint + s),
+    flash: each(side => overFace(side.flash_K ?? [], Math.max)),
     filmRatio: each(side =>
-      overFace(side.film_um, Math.min).map(film => (film === null ? null : film / loadCase.roughness_um)),
+      overFace(side.film_um ?? [], Math.min).map(film => (film === null ? null : film / loadCase.roughness_um)),
     ),
-    peak: peaksOf(ends.map(end => loadCase[end])),
+    peak: peaksOf(sides),
     sliding: /** @type {number[]} */ (loadCase.sliding_m_per_s),
   };
 }

@@ -4,7 +4,9 @@ import { Chart } from './chart.js';
 import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf, sameCase } from './context.js';
 import { switcher } from './frame.js';
 
-const READINGS = /** @type {[string, string][]} */ ([
+/** @typedef {'normal' | 'transverse' | 'rotational'} Reading */
+
+const READINGS = /** @type {[Reading, string][]} */ ([
   ['normal', 'normal'],
   ['transverse', 'transv.'],
   ['rotational', 'rotat.'],
@@ -12,7 +14,7 @@ const READINGS = /** @type {[string, string][]} */ ([
 const ORDERS = 12;
 
 export class Vibration {
-  #reading = 'normal';
+  #reading = /** @type {Reading} */ ('normal');
 
   /** @param {() => void} again */
   constructor(again) {
@@ -49,7 +51,7 @@ export class Vibration {
   /** @param {import('./context.js').Context} context */
   set({ result, references, loadCase: k }) {
     const loadCase = result.load_cases[k];
-    const reading = `${this.#reading}_m_per_s2`;
+    const reading = /** @type {const} */ (`${this.#reading}_m_per_s2`);
     const names = caseNames(result.load_cases);
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
@@ -62,13 +64,13 @@ export class Vibration {
         if (y)
           curves.push({
             label: `${end}, ${reference.label}`,
-            x: other.position,
+            x: other?.position ?? undefined,
             y,
             colour: END_COLOUR[end],
             line: reference.line,
           });
       }
-      result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
+      result.load_cases.forEach((c, i) => {
         const orders = sameCase(reference.result, c, i)?.vibration?.[`orders_${reading}`];
         if (orders)
           bars.push({
@@ -80,15 +82,16 @@ export class Vibration {
       });
     }
     const own = loadCase.vibration;
-    for (const end of endsOf(result))
-      if (own?.[end]?.history)
-        curves.push({ label: `${end} end`, y: own[end].history[reading], colour: END_COLOUR[end] });
-    result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
+    for (const end of endsOf(result)) {
+      const y = own?.[end]?.history?.[reading];
+      if (y) curves.push({ label: `${end} end`, y, colour: END_COLOUR[end] });
+    }
+    result.load_cases.forEach((c, i) => {
       const orders = c.vibration?.[`orders_${reading}`];
       if (orders) bars.push({ label: names[i], y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
     });
     // a stroke's answers have no histories: the last ones stay until it rests
-    const late = endsOf(result).some(end => own?.[end] && !own[end].history);
+    const late = endsOf(result).some(end => own?.[end] && !own[end]?.history);
     this.cycle.element.classList.toggle('waiting', late);
     this.cycle.frame.setCase(caseLong(loadCase));
     this.orders.frame.about = 'all load cases';

@@ -10,7 +10,7 @@ const PAUSE = 450; // ms after the last key before a typed value counts
  * @property {import('../base/store.js').DesignStore} store
  * @property {string} pointer
  * @property {HTMLInputElement[]} inputs
- * @property {(final: boolean) => { value: any } | { fault: string }} read the typed text as a value
+ * @property {(final: boolean) => { value: unknown } | { fault: string }} read the typed text as a value
  * @property {(value: any) => string[]} write the value as text, one for each input
  */
 
@@ -20,7 +20,7 @@ export class Entry {
   #typed = false;
   /** This entry itself is changing the design. */
   #own = false;
-  /** @type {any} value of the design when the text was last in step with it */ #seen;
+  /** @type {unknown} value of the design when the text was last in step with it */ #seen;
 
   /** @param {Host} host */
   constructor(host) {
@@ -52,12 +52,12 @@ export class Entry {
     this.#own = true;
     store.setFault(pointer, fault);
     this.#own = false;
-    if (fault) return;
-    if (final) this.#put(/** @type {any} */ (found).value);
+    if (!('value' in found)) return;
+    if (final) this.#put(found.value);
     else this.#timer = window.setTimeout(() => this.take(true), PAUSE);
   }
 
-  /** @param {any} value */
+  /** @param {unknown} value */
   #put(value) {
     const { store, pointer } = this.host;
     this.#own = true;

@@ -20,11 +20,12 @@ function stepOf(value) {
   return 10 ** (Math.floor(Math.log10(Math.abs(value))) - 1);
 }
 
-/** @param {string} text @param {Field} field @returns {{ value: any } | { fault: string }} */
+/** @param {string} text @param {Field} field @returns {{ value: number | null } | { fault: string }} */
 function readNumber(text, field) {
   if (text.trim() === '') {
     if (field.nullable) return { value: null };
-    return field.required ? { fault: 'A value is needed here.' } : { value: fallbackOf(field) };
+    if (field.required) return { fault: 'A value is needed here.' };
+    return { value: /** @type {number | null} */ (fallbackOf(field)) };
   }
   const { value, fault } = readQuantity(typedText(text, field.unit), field.unit);
   if (fault !== undefined) return { fault };
@@ -199,14 +200,15 @@ export class FieldSet {
     const inputs = names.map(part =>
       h('input.number', { type: 'text', inputmode: 'decimal', autocomplete: 'off', 'aria-label': `${name}, ${part}` }),
     );
+    /** @type {Field} */
     const one = { ...field, kind: 'number', nullable: false, required: true };
     const read = () => {
       if (field.nullable && inputs.every(input => input.value.trim() === '')) return { value: null };
       const found = inputs.map(input => readNumber(input.value, one));
       const fault = found.find(each => 'fault' in each);
       if (fault) return fault;
-      const values = found.map(each => /** @type {any} */ (each).value);
-      return count === 2 && values[0] >= values[1]
+      const values = found.map(each => ('value' in each ? each.value : null));
+      return count === 2 && Number(values[0]) >= Number(values[1])
         ? { fault: 'The first value must be below the second.' }
         : { value: values };
     };

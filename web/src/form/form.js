@@ -20,7 +20,7 @@ import { unfold } from './group.js';
 
 export class Form {
   /** @type {Set<Control>} */ #controls = new Set();
-  /** What null stands for. @type {any} */ resolved = null;
+  /** What null stands for. @type {Page.Design | null} */ resolved = null;
   /**
    * Brings a field to the page that is not there now: another member, end or view.
    * @type {((pointer: string) => void)[]}

@@ -37,8 +37,8 @@ function valueText(value) {
 }
 
 export class DesignMenu {
-  /** @type {any[] | null} */ #stored = null;
-  /** What the service exports: name, title, type. @type {any[]} */ #exports = [];
+  /** @type {Api.ListedDesign[] | null} */ #stored = null;
+  /** What the service exports: name, title, type. @type {Api.Export[]} */ #exports = [];
   #wanted = '';
 
   /** @param {import('../app.js').App} app */
@@ -188,7 +188,7 @@ export class DesignMenu {
     );
   }
 
-  /** @param {any} design @param {(text: string, act: () => unknown, note?: string) => HTMLElement} item */
+  /** @param {Api.ListedDesign} design @param {(text: string, act: () => unknown, note?: string) => HTMLElement} item */
   #row(design, item) {
     const { app } = this;
     const name = design.name || 'unnamed';
@@ -287,7 +287,7 @@ export class DesignMenu {
     }
   }
 
-  /** @param {any} design */
+  /** @param {Api.ListedDesign} design */
   async #remove(design) {
     const answer = await choose(
       `Delete the stored design “${design.name}”?`,

@@ -4,36 +4,44 @@ import { get, list } from '../base/api.js';
 import { fill, h } from '../base/dom.js';
 import { choiceText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
-import { unmodified } from '../base/store.js';
+import { documentOf, unmodified } from '../base/store.js';
 import { Chart } from '../figures/chart.js';
-import { caseLong, counting, faceOf, mainCase, sameCase } from '../figures/context.js';
+import { caseLong, counting, faceOf, lessMean, mainCase, sameCase } from '../figures/context.js';
 import { switcher } from '../figures/frame.js';
 import { designColour, drawComparison } from './compare_table.js';
 
-/** @typedef {{ key: string, label: string, title?: string, group: string, load: () => Promise<any> }} Candidate */
+/**
+ * @typedef {{ key: string, label: string, title?: string, group: string,
+ *   load: () => Promise<Api.Design | null | undefined> }} Candidate
+ */
 /** @typedef {import('./compare_table.js').Item} Item */
+/** @typedef {Item & { result: Page.Result }} Solved */
+/** @typedef {{ row: Api.Design['load_cases'][number], k: number }} Chosen load case of the design on the table */
+/** @typedef {Page.Curve | null | undefined} Values */
 
 const LIVE = ['current', 'unmodified', 'pin']; // change with the design on the table
 const ORDERS = { te: 8, vibration: 12 };
 
 /** One result at a time for any number of designs; kept as long as the page. */
 class Results {
-  /** @type {Map<string, any>} */ #results = new Map();
-  /** @type {{ key: string, body: any }[]} */ #queue = [];
+  /** @type {Map<string, Page.Result | Error>} */ #results = new Map();
+  /** @type {{ key: string, body: Api.Design }[]} */ #queue = [];
   #busy = '';
 
   /** @param {() => void} tell */
   constructor(tell) {
+    /** @type {Lane<Page.Result>} */
     this.lane = new Lane({
       result: (_task, data) => this.#done(data, tell),
-      refused: (_task, error) => this.#done({ error: error.message }, tell),
+      refused: (_task, error) => this.#done(error, tell),
     });
   }
 
-  /** The result, once it is there. @param {any} design */
+  /** The result, or why there is none, once it is known. @param {Api.Design} design */
   result(design) {
     const key = JSON.stringify(design);
-    if (this.#results.has(key)) return this.#results.get(key);
+    const known = this.#results.get(key);
+    if (known) return known;
     if (this.#busy !== key && !this.#queue.some(each => each.key === key)) this.#queue.push({ key, body: design });
     this.#next();
     return null;
@@ -46,7 +54,7 @@ class Results {
     this.lane.submit({ path: 'analyze?histories=1&maps=0&rating=0&pitch=0', body: first.body });
   }
 
-  /** @param {any} data @param {() => void} tell */
+  /** @param {Page.Result | Error} data @param {() => void} tell */
   #done(data, tell) {
     this.#results.set(this.#busy, data);
     this.#busy = '';
@@ -55,13 +63,10 @@ class Results {
   }
 }
 
-/** @param {number[]} values */
-const lessMean = values => values.map(each => each - values.reduce((sum, other) => sum + other, 0) / values.length);
-
 /** Curves of the chosen designs over one another, of one end. */
 class CompareCurves {
-  #end = 'left';
-  /** @type {[Item[], any] | null} */ #last = null;
+  #end = /** @type {Page.End} */ ('left');
+  /** @type {[Solved[], Chosen] | null} */ #last = null;
 
   constructor() {
     /** @param {string} title @param {string} unit @param {string} xLabel @param {object} [more] */
@@ -105,24 +110,27 @@ class CompareCurves {
     );
   }
 
-  /** @param {Item[]} items with results @param {{ row: any, k: number }} chosen load case */
+  /** @param {Solved[]} items @param {Chosen} chosen */
   draw(items, chosen) {
     this.#last = [items, chosen];
     if (!items.length) return;
     const end = this.#end;
     const { row, k } = chosen;
     const cases = items.map(item => sameCase(item.result, row, k) ?? item.result.load_cases[0]);
-    /** @param {(loadCase: any, result: any) => any} y @param {(loadCase: any, result: any) => any} [x] */
+    /**
+     * @param {(loadCase: Page.LoadCase, result: Page.Result) => Values} y
+     * @param {(loadCase: Page.LoadCase, result: Page.Result) => number[] | null | undefined} [x]
+     */
     const curves = (y, x) =>
-      items
-        .map((item, i) => ({
-          label: item.label,
-          colour: designColour(i),
-          y: y(cases[i], item.result),
-          x: x?.(cases[i], item.result),
-        }))
-        .filter(curve => curve.y);
-    /** @param {Chart} chart @param {any} x @param {ReturnType<typeof curves>} drawn @param {string} about */
+      items.flatMap((item, i) => {
+        const values = y(cases[i], item.result);
+        const places = x?.(cases[i], item.result) ?? undefined;
+        return values ? [{ label: item.label, colour: designColour(i), y: values, x: places }] : [];
+      });
+    /**
+     * @param {Chart} chart @param {number[] | null | undefined} x @param {ReturnType<typeof curves>} drawn
+     * @param {string} about
+     */
     const put = (chart, x, drawn, about) => {
       chart.frame.setCase(about);
       if (x) chart.set({ x, curves: drawn });
@@ -142,14 +150,14 @@ class CompareCurves {
     put(
       this.orders,
       counting(ORDERS.te, 1),
-      curves(c => c.lte.orders_um.slice(1, ORDERS.te + 1)),
+      curves(c => c.lte.orders_um?.slice(1, ORDERS.te + 1)),
       text,
     );
     put(
       this.stiffness,
       first.position,
       curves(
-        c => c.mesh_stiffness[`tangent_${end}_N_per_um`],
+        c => c.mesh_stiffness[/** @type {const} */ (`tangent_${end}_N_per_um`)],
         c => c.position,
       ),
       one,
@@ -181,19 +189,19 @@ class CompareCurves {
     const { modification } = items[0].result;
     put(
       this.profile,
-      modification.pinion.u_mm,
+      modification?.pinion.u_mm,
       curves(
-        (_c, result) => result.modification.pinion[end]?.profile_um,
-        (_c, result) => result.modification.pinion.u_mm,
+        (_c, result) => result.modification?.pinion[end]?.profile_um,
+        (_c, result) => result.modification?.pinion.u_mm,
       ),
       `${end} end`,
     );
     put(
       this.lead,
-      faceOf(modification, end),
+      modification && faceOf(modification, end),
       curves(
-        (_c, result) => result.modification.pinion[end]?.lead_um,
-        (_c, result) => faceOf(result.modification, end),
+        (_c, result) => result.modification?.pinion[end]?.lead_um,
+        (_c, result) => result.modification && faceOf(result.modification, end),
       ),
       `${end} end`,
     );
@@ -203,7 +211,7 @@ class CompareCurves {
 class CompareView {
   /** @type {Candidate[]} */ #candidates = [];
   /** @type {string[]} */ #items = ['unmodified', 'current'];
-  /** @type {Map<string, any>} */ #designs = new Map();
+  /** @type {Map<string, Api.Design>} */ #designs = new Map();
   /** @type {Item[]} */ #chosen = [];
   #turn = 0;
 
@@ -273,8 +281,9 @@ class CompareView {
         group: 'Searches',
         load: async () => {
           const { design } = await get(`jobs/${job.id}`);
-          const best = jobs.all.get(job.id)?.best?.modification ?? job.best.modification;
-          return { ...design, modification: best ?? (await get(`jobs/${job.id}/result`)).best.modification };
+          const best = jobs.all.get(job.id)?.best?.modification ?? job.best?.modification;
+          const modification = best ?? (await get(`jobs/${job.id}/result`)).best?.modification;
+          return design && modification ? documentOf({ ...design, modification }) : null;
         },
       }));
   }
@@ -344,7 +353,9 @@ class CompareView {
         if (!design) return this.#missing(key);
         this.#designs.set(key, design);
         const loaded = this.sameLoad.checked ? { ...design, load_cases: store.design.load_cases } : design;
-        return { ...candidate, design: loaded, result: this.results.result(loaded) };
+        const answer = this.results.result(loaded);
+        if (answer instanceof Error) return { ...candidate, design: loaded, result: null, missing: answer.message };
+        return { ...candidate, design: loaded, result: answer };
       }),
     );
     return found.filter(item => item !== null);
@@ -355,7 +366,7 @@ class CompareView {
     if (key === 'pin' || !this.app.jobs.known) return null;
     const [kind, id] = key.split(':');
     const label = kind === 'job' ? `search ${id}` : kind === 'design' ? `stored design ${id}` : (id ?? key);
-    return { key, label, design: {}, result: null, missing: 'is not on this server' };
+    return { key, label, design: null, result: null, missing: 'is not on this server' };
   }
 
   async #draw() {
@@ -368,7 +379,7 @@ class CompareView {
     drawComparison(this.table, items, cases);
     const k = store.loadCase >= 0 && store.loadCase < cases.length ? store.loadCase : mainCase(store.design);
     this.curves.draw(
-      items.filter(item => item.result && !item.result.error),
+      items.filter(/** @returns {item is Solved} */ item => item.result !== null),
       { row: cases[k], k },
     );
   }

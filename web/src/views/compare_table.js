@@ -4,9 +4,13 @@ import { fill, h } from '../base/dom.js';
 import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
 import { caseLong } from '../figures/context.js';
-import { NUMBERS, numbersOf } from '../numbers.js';
+import { NUMBERS, numbersOf, scaled } from '../numbers.js';
 
-/** @typedef {{ key: string, label: string, title?: string, design: any, result: any, missing?: string }} Item */
+/**
+ * One design of the comparison: without a result while it is computed, with a reason where it has none.
+ * @typedef {{ key: string, label: string, title?: string, design: Api.Design | null, result: Page.Result | null,
+ *   missing?: string }} Item
+ */
 
 const DATA = [
   '/gear_pair/pinion_teeth',
@@ -33,10 +37,10 @@ function sectionRow(items, text) {
  * Numbers of a row; the smallest is marked.
  * @param {Item[]} items
  * @param {HTMLElement[]} head
- * @param {(item: Item) => number | null | undefined} read
+ * @param {(result: Page.Result) => Page.Reading | undefined} read
  */
 function numberRow(items, head, read) {
-  const values = items.map(item => (item.result && !item.result.error ? (read(item) ?? null) : null));
+  const values = items.map(item => (item.result ? (read(item.result) ?? null) : null));
   const known = values.filter(value => value !== null);
   const least = known.length > 1 ? Math.min(...known) : null;
   return h(
@@ -105,7 +109,7 @@ function dataRows(items) {
 
 /** @param {Item} item @param {number} i */
 function headCell(item, i) {
-  const fault = item.missing ?? item.result?.error;
+  const fault = item.missing;
   return h(
     'th',
     { scope: 'col', title: item.title ?? null },
@@ -115,7 +119,10 @@ function headCell(item, i) {
   );
 }
 
-/** @param {HTMLElement} place @param {Item[]} items @param {any[]} cases load cases of the design on the table */
+/**
+ * @param {HTMLElement} place @param {Item[]} items
+ * @param {Api.Design['load_cases']} cases load cases of the design on the table
+ */
 export function drawComparison(place, items, cases) {
   if (!items.length) {
     fill(place, h('p.empty', null, 'Choose at least one design.'));
@@ -123,15 +130,12 @@ export function drawComparison(place, items, cases) {
   }
   /** @param {string} name @param {string} [unit] */
   const head = (name, unit) => [h('span', null, name), unit ? h('span.unit', null, ` ${unit}`) : h('span')];
-  const body = [numberRow(items, head('Objective J, all load cases'), item => item.result.objectives?.J)];
+  const body = [numberRow(items, head('Objective J, all load cases'), result => result.objectives?.J)];
   cases.forEach((row, k) => {
     body.push(sectionRow(items, caseLong(row)));
     for (const { key, name, unit, scale = 1 } of NUMBERS)
       body.push(
-        numberRow(items, head(name, unit), item => {
-          const value = numbersOf(item.result, k)[key];
-          return typeof value === 'number' ? value * scale : null;
-        }),
+numberRow(items, head(name, unit), result => scaled(numbersOf(result, k)[key], scale)),
       );
   });
   body.push(...flankRows(items), sectionRow(items, 'Pair'), ...dataRows(items));

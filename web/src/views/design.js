@@ -91,7 +91,7 @@ class DesignView {
     const context = this.#context();
     if (!context) return;
     const { form, store } = this.app;
-    subject.set(store.design.name, context.result);
+    subject.set(store.design.name ?? '', context.result);
     form.resolved = context.result.design;
     form.showFindings(context.result.findings ?? []);
     this.headline.set(context);
@@ -105,6 +105,7 @@ class DesignView {
 
   #drawRating() {
     const { rated } = this.app.analyst;
+    if (!rated) return;
     this.results.rating.set(rated);
     this.headline.rate(rated);
     this.#drawTribology();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The modification of the flanks: which member, which end, sliders for what is moved most.
 import { fill, h } from '../base/dom.js';
+import { valueAt } from '../base/pointer.js';
 import { fieldAt } from '../base/schema.js';
 import { switcher } from '../figures/frame.js';
 import { more } from '../form/group.js';
@@ -169,8 +170,8 @@ export class Flank {
    * @param {import('../base/schema.js').Field} field
    */
   #range(pointer, field) {
-    const bounds =
-      this.store.get(`/optimization/bounds/${field.key}`) ?? this.form.resolved?.optimization?.bounds?.[field.key];
+    const place = `/optimization/bounds/${field.key}`;
+    const bounds = this.store.get(place) ?? valueAt(this.form.resolved, place);
     const { face_width_mm: width = 10 * USUAL.mm, normal_module_mm: module = USUAL.mm } =
       this.store.design.gear_pair ?? {};
     const negative = typeof field.low === 'number' && field.low < 0;

@@ -42,11 +42,11 @@ export class LoadCases {
     this.#drawShares(rows);
   }
 
-  /** @param {any[]} rows */
+  /** @param {Partial<Api.Design['load_cases'][number]>[]} rows */
   #drawShares(rows) {
     const stated = rows.map(row => row.share).filter(share => typeof share === 'number');
     const sum = stated.reduce((total, share) => total + share, 0);
-    const parts = rows.map(row => `${sig((100 * row.share) / sum, 3)} %`);
+    const parts = rows.map(row => `${sig((100 * (row.share ?? 0)) / sum, 3)} %`);
     const off = stated.length === rows.length && stated.length > 0 && Math.abs(sum - 1) > 1e-6;
     this.note.textContent = off
       ? `The shares add up to ${sig(sum, 4)}; as parts of the whole they are ${parts.join(', ')}.`
@@ -174,7 +174,7 @@ export class LoadCases {
     });
     for (const set of this.#sets) set.release();
     this.#sets = [];
-    const rows = this.store.design.load_cases.filter((/** @type {any} */ _row, /** @type {number} */ i) => i !== index);
+    const rows = this.store.design.load_cases.filter((_row, i) => i !== index);
     if (this.store.loadCase >= rows.length) this.store.loadCase = -1;
     this.#rows = rows.length;
     this.store.set('/load_cases', rows);

@@ -131,7 +131,7 @@ class OptimizeView {
     this.detail.choose(searches.find(job => String(job.id) === this.#chosen) ?? null);
   }
 
-  /** @param {any} job */
+  /** @param {Api.Job} job */
   #row(job) {
     const left = ACTIVE.includes(job.state) ? job.progress?.seconds_left : null;
     return h(

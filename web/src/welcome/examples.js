@@ -11,7 +11,8 @@ import { numbersOf } from '../numbers.js';
 const [WIDTH, HEIGHT] = [200, 96];
 const TEETH = 3; // on either side of the middle one
 
-/** Teeth of the pinion as they are cut. @param {HTMLCanvasElement} canvas @param {any} geometry @param {any} pair */
+/** Teeth of the pinion as they are cut. @param {HTMLCanvasElement} canvas
+ * @param {Page.Result['geometry']} geometry @param {Api.ResolvedDesign['gear_pair']} pair */
 function drawTeeth(canvas, geometry, pair) {
   const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   canvas.width = WIDTH * devicePixelRatio;
@@ -39,23 +40,23 @@ function drawTeeth(canvas, geometry, pair) {
   pen.stroke();
 }
 
-/** @param {any} design */
+/** @param {Api.Design} design */
 function hasModification(design) {
   const { left = {}, right = {} } = design.modification?.pinion ?? {};
-  return [left, right].some(flank => Object.entries(flank).some(([key, value]) => /_um$/.test(key) && value > 0));
+  return [left, right].some(flank => Object.entries(flank).some(([key, value]) => /_um$/.test(key) && Number(value) > 0));
 }
 
-/** What the modification changes at the load case with the largest torque of a result. @param {any} result */
+/** What the modification changes at the load case with the largest torque of a result. @param {Page.Result} result */
 function gainText(result) {
   const before = result.objectives?.unmodified?.load_cases;
   if (!before) return '';
   const k = Math.floor(before.length / 2);
   const own = numbersOf(result, k);
-  return [
+  return /** @type {const} */ ([
     ['transmission error', 'peak_to_peak_um'],
     ['impact', 'impact_N'],
     ['vibration', 'rms_m_per_s2'],
-  ]
+  ])
     .map(([name, key]) => `${name} ${changeText(change(own[key], before[k][key]))}`)
     .join(', ');
 }
@@ -64,7 +65,8 @@ class Examples {
   /** @param {import('../app.js').App} app */
   constructor(app) {
     this.app = app;
-    /** @type {{ design: any, gain: HTMLElement }[]} */ this.waiting = [];
+    /** @type {{ design: Api.Design, gain: HTMLElement }[]} */ this.waiting = [];
+    /** @type {Lane<Page.Result, HTMLElement>} */
     this.lane = new Lane({
       result: (task, data) => {
         task.note.textContent = `Gain at its middle load: ${gainText(data)}.`;
@@ -127,7 +129,7 @@ class Examples {
   async #describe(name, canvas, facts, gain) {
     const design = await this.app.library.example(name);
     const { geometry: g, design: whole, prepared } = await post('check', design);
-    drawTeeth(canvas, g, whole.gear_pair);
+    drawTeeth(canvas, /** @type {Page.Result['geometry']} */ (g), whole.gear_pair);
     facts.textContent = [
       `${g.pinion_teeth}/${g.gear_teeth} teeth`,
       `module ${plain(g.normal_module_mm)} mm`,

@@ -4,6 +4,7 @@
 import { Refusal, post } from '../base/api.js';
 import { fill, h, newId } from '../base/dom.js';
 import { labelOf, plain, sig } from '../base/format.js';
+import { withValue } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
 import { fieldAt, numberFault, unitOf } from '../base/schema.js';
 
@@ -25,40 +26,26 @@ const QUESTIONS = [
 
 /** @param {Record<string, number>} values by pointer @param {number} ends @param {string} name */
 function designOf(values, ends, name) {
-  /** @type {Record<string, number>} */
-  const pair = { ends };
-  /** @type {Record<string, number>} */
-  const load = { share: 1 };
-  for (const [pointer, value] of Object.entries(values)) {
-    const key = pointer.split('/').pop() ?? '';
-    (pointer.startsWith('/gear_pair') ? pair : load)[key] = value;
-  }
-  return { name, gear_pair: pair, load_cases: [load] };
+  /** @type {unknown} */
+  let design = { name, gear_pair: { ends }, load_cases: [{ share: 1 }] };
+  for (const [pointer, value] of Object.entries(values)) design = withValue(design, pointer, value);
+  return /** @type {Api.Design} */ (design);
 }
 
 /**
  * What the service takes for what is not stated: as it lists it, else the defaults of the field tables.
- * @param {any} answer of /check
+ * @param {Api.Check} answer
  * @param {Field[]} fields
  * @returns {[string, string, string][]} name, value, rule
  */
 function assumptionsOf(answer, fields) {
-  if (Array.isArray(answer.assumed))
-    return answer.assumed.map((/** @type {any} */ each) => {
+  return answer.assumed.map(each => {
       const field = fieldAt(fields, each.key);
       return [labelOf(each.key.split('/').pop() ?? ''), valueText(each.value, field), each.rule ?? ''];
     });
-  const group = fieldAt(fields, '/gear_pair')?.fields ?? [];
-  return group
-    .filter(field => !field.required && field.key !== 'ends' && !field.entry)
-    .map(field => [
-      labelOf(field.key),
-      valueText(answer.design?.gear_pair?.[field.key] ?? field.default, field),
-      field.derived ?? 'usual',
-    ]);
 }
 
-/** @param {any} value @param {Field | undefined} field */
+/** @param {unknown} value @param {Field | undefined} field */
 function valueText(value, field) {
   if (value === null || value === undefined) return '–';
   const text = typeof value === 'number' ? plain(Number(value.toPrecision(5))) : String(value);
@@ -68,7 +55,7 @@ function valueText(value, field) {
 class OwnGear {
   #timer = 0;
   #turn = 0;
-  /** @type {any} */ #checked = null;
+  /** @type {Api.Design | null} */ #checked = null;
 
   /** @param {import('../app.js').App} app */
   constructor(app) {
@@ -230,9 +217,10 @@ class OwnGear {
     );
   }
 
-  /** @param {any} answer */
+  /** @param {Api.Check} answer */
   #sayChecked(answer) {
-    const { geometry: g } = answer;
+    const g = /** @type {Page.Result['geometry']} */ (answer.geometry); // of a design that was accepted
+    const turns = Number(answer.design.load_cases[0].speed_rpm) / 60;
     const facts = [
       ['Ratio', sig(g.gear_teeth / g.pinion_teeth, 4)],
       ['Centre distance', `${sig(g.centre_distance_mm, 6)} mm`],
@@ -240,7 +228,7 @@ class OwnGear {
       ['Overlap ratio', sig(g.overlap_ratio, 3)],
       [
         'Pitch line speed',
-        `${sig((g.working_radius_mm[0] * 2 * Math.PI * (answer.design.load_cases[0].speed_rpm / 60)) / 1000, 3)} m/s`,
+        `${sig((g.working_radius_mm[0] * 2 * Math.PI * turns) / 1000, 3)} m/s`,
       ],
     ];
     /** @param {string[][]} rows */
@@ -269,7 +257,7 @@ class OwnGear {
         ? h(
             'ul.findings',
             null,
-            answer.warnings.map((/** @type {string} */ text) => h('li', null, text)),
+            answer.warnings.map(text => h('li', null, text)),
           )
         : null,
       h('h3', null, 'Assumed, until you state it'),

@@ -8,16 +8,19 @@ const REST = 350; // ms without a change before the comparison is asked for
 const SAME_TORQUE = 0.01;
 const SAME_SPEED = 0.02;
 
-/** Measurements of a design with their comparison. */
-/** @param {any} job */
+/** Equal but for a part. @param {Page.Reading} a @param {Page.Reading} b @param {number} part */
+const near = (a, b, part) => a !== null && b !== null && Math.abs(a / b - 1) < part;
+
+/** @param {Api.Job} job */
 function fractionText(job) {
   const fraction = job?.progress?.fraction;
   return typeof fraction === 'number' ? `: ${Math.round(100 * fraction)} %` : '…';
 }
 
+/** Measurements of a design with their comparison. */
 export class Bench extends EventTarget {
-  /** @type {any[]} */ items = [];
-  /** @type {any} */ comparison = null;
+  /** @type {Api.ListedMeasurement[]} */ items = [];
+  /** @type {Api.Comparison | null} */ comparison = null;
   #timer = 0;
   #id = '';
   #asked = '';
@@ -27,6 +30,7 @@ export class Bench extends EventTarget {
     super();
     this.store = store;
     this.note = '';
+    /** @type {Lane<Api.Comparison>} */
     this.lane = new Lane({
       result: (_task, data) => {
         this.comparison = data;
@@ -83,7 +87,7 @@ export class Bench extends EventTarget {
   of(id) {
     const c = this.comparison;
     const at = c ? c.id.indexOf(id) : -1;
-    if (at < 0) return null;
+    if (!c || at < 0) return null;
     const m = c.measurements;
     return {
       predicted: m.predicted_rms_m_per_s2[at],
@@ -91,17 +95,17 @@ export class Bench extends EventTarget {
       outlier: m.outlier[at],
       reason: m.reason[at],
       detail: c.details[at],
-      reduction: c.reductions.find((/** @type {any} */ each) => each.id === id),
+      reduction: c.reductions.find(each => each.id === id),
     };
   }
 
-  /** The measurement of the other pair at the torque and speed of this one. @param {any} item */
+  /** The measurement of the other pair at the torque and speed of this one. @param {Api.ListedMeasurement} item */
   partner(item) {
     return this.items.find(
       each =>
         each.label !== item.label &&
-        Math.abs(each.torque_Nm / item.torque_Nm - 1) < SAME_TORQUE &&
-        Math.abs(each.result.speed_rpm.mean / item.result.speed_rpm.mean - 1) < SAME_SPEED,
+        near(each.torque_Nm, item.torque_Nm, SAME_TORQUE) &&
+        near(each.result.speed_rpm.mean, item.result.speed_rpm.mean, SAME_SPEED),
     );
   }
 
@@ -110,7 +114,7 @@ export class Bench extends EventTarget {
     const found = this.comparison?.left_out ?? [];
     if (!found.length) return '';
     const names = found.map(
-      (/** @type {any} */ item) => `${this.items.find(each => each.id === item.id)?.file ?? item.id}: ${item.reason}`,
+      item => `${this.items.find(each => each.id === item.id)?.file ?? item.id}: ${item.reason}`,
     );
     return `Left out of the comparison: ${names.join(' ')}`;
   }

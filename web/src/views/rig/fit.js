@@ -55,14 +55,14 @@ const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low
   { key: 'impact_patch_mm', unit: 'mm', pointers: ['/resolution/impact_patch_mm'], low: 0.5, high: 10 },
 ]);
 
-/** Why a measurement was left out. @param {any} item */
+/** Why a measurement was left out. @param {Api.LeftOut} item */
 const reasonOf = item => `measurement ${item.id} (${item.reason})`;
 
-/** "12.3 … 14.5" @param {number[]} range */
+/** "12.3 … 14.5" @param {Page.Curve} range */
 const rangeText = range => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
 
 export class FitPanel {
-  /** @type {any} */ #answer = null;
+  /** @type {Api.Fit | null} */ #answer = null;
 
   /** @param {import('../../app.js').App} app @param {() => string} designId */
   constructor(app, designId) {
@@ -78,6 +78,7 @@ export class FitPanel {
       this.note,
     ]);
     this.result = h('section.figure.with-table.wide', { 'aria-label': 'Fit', hidden: true });
+    /** @type {Lane<Api.Fit>} */
     this.lane = new Lane({
       result: (_task, data) => {
         this.#answer = data;
@@ -137,7 +138,8 @@ export class FitPanel {
 
   #draw() {
     const answer = this.#answer;
-    const rows = answer.unknowns.map((/** @type {any} */ unknown) => {
+    if (!answer) return;
+    const rows = answer.unknowns.map(unknown => {
       const unit = UNKNOWNS.find(each => each.key === unknown.key)?.unit ?? '';
       return h(
         'tr',
@@ -203,7 +205,7 @@ export class FitPanel {
         ? h(
             'ul.findings',
             null,
-            answer.warnings.map((/** @type {string} */ text) =>
+            answer.warnings.map(text =>
               h('li', null, h('span.severity.warning', null, 'doubtful'), ' ', text),
             ),
           )
@@ -214,9 +216,10 @@ export class FitPanel {
 
   #apply() {
     const { store } = this.app;
+    if (!this.#answer) return;
     const { design, unknowns } = this.#answer;
     /** @type {string[]} */
-    const keys = unknowns.map((/** @type {any} */ unknown) => unknown.key);
+    const keys = unknowns.map(unknown => unknown.key);
     const pointers = UNKNOWNS.filter(({ key }) => keys.includes(key)).flatMap(unknown => unknown.pointers);
     for (const pointer of [
       ...pointers,

@@ -25,7 +25,7 @@ const SEVERITY = /** @type {Record<string, string>} */ ({
   note: 'note',
 });
 
-/** Findings in plain words, the gravest first. @param {any[]} findings */
+/** Findings in plain words, the gravest first. @param {(Api.BriefFinding & { line?: Page.Reading })[]} findings */
 export function findingList(findings) {
   const order = ['refused', 'warning', 'repaired', 'note'];
   const sorted = [...findings].sort((a, b) => order.indexOf(a.severity) - order.indexOf(b.severity));
@@ -106,7 +106,7 @@ class LayoutForm {
 
   /** JSON, or nothing when all is open. */
   value() {
-    /** @type {any} */
+    /** @type {Api.AskedLayout} */
     const layout = {};
     /** @param {string} text */
     const column = text => (/^\d+$/.test(text) ? Number(text) : text);
@@ -123,7 +123,7 @@ class LayoutForm {
     if (this.timeUnit.value) layout.time_unit = this.timeUnit.value;
     const rate = parseNumber(this.rate.value);
     if (rate !== undefined) layout.sample_rate_Hz = rate;
-    for (const [member, field] of /** @type {[string, HTMLInputElement][]} */ ([
+    for (const [member, field] of /** @type {[Page.Member, HTMLInputElement][]} */ ([
       ['pinion', this.pinion],
       ['gear', this.gear],
     ])) {
@@ -138,10 +138,10 @@ class LayoutForm {
     return Object.keys(layout).length ? layout : null;
   }
 
-  /** Shows what the service made of a file. @param {any} layout */
+  /** Shows what the service made of a file. @param {Api.Layout | null} layout */
   show(layout) {
     if (!layout) return;
-    /** @param {any} value */
+    /** @param {unknown} value */
     const text = value => (Array.isArray(value) ? value.join(', ') : String(value ?? '–'));
     const { kind = '', unit, columns, time, time_unit: timeUnit, lines } = layout;
     const parts = [
@@ -175,8 +175,8 @@ export class Recordings {
   /** @type {Recording[]} */ #queue = [];
 
   /**
-   * @param {{ designId: () => Promise<string>, kept: (measurement: any, known: boolean) => void,
-   *   loadCases: () => any[] }} host
+   * @param {{ designId: () => Promise<string>, kept: (measurement: Api.Measurement, known: boolean) => void,
+   *   loadCases: () => Api.Design['load_cases'] }} host
    */
   constructor(host) {
     this.host = host;

@@ -15,7 +15,7 @@ import { Synthetic } from './synthetic.js';
 
 class RigView {
   #chosen = 0;
-  /** The chosen measurement with everything known of it. @type {any} */ #whole = null;
+  /** The chosen measurement with everything known of it. @type {Api.Measurement | null} */ #whole = null;
   /** @type {Promise<string> | null} */ #storing = null;
 
   /** @param {import('../../app.js').App} app */
@@ -131,7 +131,7 @@ class RigView {
     }
   }
 
-  /** @param {any} item */
+  /** @param {Api.ListedMeasurement} item */
   async #remove(item) {
     const answer = await choose(
       `Delete the measurement ${item.file} (${plain(item.torque_Nm)} N m)?`,
@@ -171,10 +171,9 @@ class RigView {
 
   /** What single teeth do, of the load case nearest in torque; null where teeth are alike. @param {number} torque */
   #teethAt(torque) {
-    /** @type {any[]} */
     const cases = this.app.analyst.teeth?.pitch?.load_cases ?? [];
-    const apart = (/** @type {any} */ row) => Math.abs(Math.log(row.torque_Nm / torque));
-    return cases.reduce((best, row) => (best && apart(best) <= apart(row) ? best : row), null);
+    const apart = (/** @type {Api.PitchCase} */ row) => Math.abs(Math.log(row.torque_Nm / torque));
+    return [...cases].sort((a, b) => apart(a) - apart(b))[0] ?? null;
   }
 
   #drawChosen() {
@@ -183,12 +182,12 @@ class RigView {
     if (!item) return;
     figures.drawOrders(bench, item);
     figures.drawTe(bench, item);
-    if (this.#whole?.id !== this.#chosen) return;
+    if (this.#whole?.id !== this.#chosen || !this.#whole.result) return;
     figures.drawSpectrum(
       item,
       this.#whole.result,
       Boolean(this.app.store.design.gear_pair?.pinion_teeth),
-      this.#teethAt(item.torque_Nm),
+      this.#teethAt(item.torque_Nm ?? NaN),
     );
     drawAbout(this.about, item, this.#whole, bench.of(item.id));
     this.recordings.layout.show(this.#whole.layout);

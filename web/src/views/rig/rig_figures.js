@@ -14,14 +14,14 @@ const SAME_SPEED = 20; // rpm: recordings whose speeds differ by less stand toge
 
 /** @typedef {import('./bench.js').Bench} Bench */
 
-/** A curve over the mesh cycle moved by a part of it. @param {number[]} values @param {number} part */
+/** A curve over the mesh cycle moved by a part of it. @param {Page.Curve} values @param {number} part */
 function moved(values, part) {
   const count = values.length;
   return values.map((_, i) => {
     const place = ((((i / count - part) % 1) + 1) % 1) * count;
     const below = Math.floor(place) % count;
     const t = place - Math.floor(place);
-    return values[below] * (1 - t) + values[(below + 1) % count] * t;
+    return (values[below] ?? NaN) * (1 - t) + (values[(below + 1) % count] ?? NaN) * t;
   });
 }
 
@@ -33,7 +33,7 @@ function seriesOver(bench, across, chosen, choose) {
   /** @type {Map<string, import('../../figures/measured.js').Series>} */
   const series = new Map();
   for (const item of bench.items) {
-    const [load, turns] = [item.torque_Nm, item.result.speed_rpm.mean];
+    const [load, turns] = [item.torque_Nm ?? NaN, item.result.speed_rpm.mean ?? NaN];
     const group =
       across === 'speed'
         ? `${plain(Number(load.toPrecision(4)))} N m`
@@ -44,8 +44,8 @@ function seriesOver(bench, across, chosen, choose) {
     series.set(label, own);
     own.points.push({
       x: across === 'speed' ? turns : load,
-      measured: item.result.rms_m_per_s2.value,
-      sigma: item.result.rms_m_per_s2.sigma,
+      measured: item.result.rms_m_per_s2.value ?? NaN,
+      sigma: item.result.rms_m_per_s2.sigma ?? NaN,
       predicted: beside?.predicted ?? null,
       label: `${item.file}: ${plain(load)} N m, ${sig(turns, 5)} rpm`,
       outlier: beside?.outlier,
@@ -61,17 +61,17 @@ function seriesOver(bench, across, chosen, choose) {
   return all;
 }
 
-const MEMBERS = ['pinion', 'gear'];
+const MEMBERS = /** @type {const} */ (['pinion', 'gear']);
 
 /**
  * A predicted average over a turn at the places of a measured one, turned to where it lies nearest: the zero of the
  * encoders is arbitrary. Encoders see the gear's lag with the other sign.
- * @param {number[]} measured @param {number[]} lag of the prediction
+ * @param {Page.Curve} measured @param {number[]} lag of the prediction
  */
 function alongside(measured, lag) {
   const n = measured.length;
   const seen = measured.map((_, i) => -lag[Math.floor(((i + 0.5) / n) * lag.length)]);
-  const mean = measured.reduce((sum, value) => sum + (value ?? 0), 0) / n;
+  const mean = measured.reduce((/** @type {number} */ sum, value) => sum + (value ?? 0), 0) / n;
   let best = 0;
   let most = -Infinity;
   for (let shift = 0; shift < n; shift++) {
@@ -147,21 +147,22 @@ export class RigFigures {
     this.torque.set(seriesOver(bench, 'torque', chosen, choose));
   }
 
-  /** @param {Bench} bench @param {any} item */
+  /** @param {Bench} bench @param {Api.ListedMeasurement} item */
   drawOrders(bench, item) {
     const { mesh } = item.result;
     const predicted = bench.of(item.id)?.detail?.orders?.predicted_m_per_s2;
-    const measured = mesh.acceleration_m_per_s2;
+    const measured = mesh.acceleration_m_per_s2.map(value => value ?? NaN);
     this.orders.set(
       measured,
-      measured.map((/** @type {number} */ value, /** @type {number} */ i) =>
-        mesh.amplitude_um[i] > 0 ? (value * mesh.sigma_um[i]) / mesh.amplitude_um[i] : 0,
-      ),
-      measured.map((/** @type {number} */ _value, /** @type {number} */ i) => predicted?.[i] ?? null),
+      measured.map((value, i) => {
+        const [amplitude, sigma] = [mesh.amplitude_um[i] ?? 0, mesh.sigma_um[i] ?? 0];
+        return amplitude > 0 ? (value * sigma) / amplitude : 0;
+      }),
+      measured.map((_value, i) => predicted?.[i] ?? null),
     );
   }
 
-  /** The recording and its partner of the other pair. @param {Bench} bench @param {any} item */
+  /** The recording and its partner of the other pair. @param {Bench} bench @param {Api.ListedMeasurement} item */
   drawTe(bench, item) {
     /** @type {import('../../figures/chart.js').Curve[]} */
     const curves = [];
@@ -173,7 +174,7 @@ export class RigFigures {
       const part = curve.shift ?? 0;
       const colour = each === item ? 'measured' : 'reference';
       curves.push({ label: `${each.label}, measured`, y: moved(curve.measured_um, part), colour });
-      if (curve.predicted_um.every((/** @type {any} */ value) => value !== null))
+      if (curve.predicted_um.every(value => value !== null))
         curves.push({
           label: `${each.label}, predicted`,
           y: moved(curve.predicted_um, part),
@@ -185,21 +186,23 @@ export class RigFigures {
   }
 
   /**
-   * @param {any} item @param {any} result of the whole measurement @param {boolean} named the orders have names
-   * @param {any} teeth what single teeth do over the hunting period in the load case nearest to it, or null
+   * @param {Api.ListedMeasurement} item @param {Api.MeasuredResult} result of the whole measurement
+   * @param {boolean} named the orders have names
+   * @param {Api.PitchCase | null} teeth what single teeth do over the hunting period in the load case nearest to it,
+   *   or null
    */
   drawSpectrum(item, result, named, teeth) {
-    /** @type {number[] | undefined} */
-    const lines = teeth?.spectrum?.rotational_m_per_s2;
+    const spectrum = teeth?.spectrum;
+    const lines = spectrum?.rotational_m_per_s2;
     this.spectrum.set({
       x: result.spectrum.order,
       curves: [
-        { label: item.file, y: result.spectrum.acceleration_m_per_s2, colour: 'measured', width: 1 },
-        ...(lines
+        { label: item.file ?? '', y: result.spectrum.acceleration_m_per_s2, colour: 'measured', width: 1 },
+        ...(spectrum && lines
           ? [
               {
                 label: 'predicted from single teeth',
-                x: lines.map((_, i) => i * teeth.spectrum.step),
+                x: lines.map((_, i) => i * spectrum.step),
                 y: lines,
                 colour: 'predicted',
                 width: 1,
@@ -207,7 +210,7 @@ export class RigFigures {
             ]
           : []),
       ],
-      marks: result.mesh.order.map((/** @type {number} */ order, /** @type {number} */ i) => ({
+      marks: result.mesh.order.map((order, i) => ({
         x: order,
         label: named ? `${i + 1}×` : '',
         strong: i === 0,

@@ -20,37 +20,38 @@ const HEAD = /** @type {[string, string][]} */ ([
 const HASH = 12; // digits shown of a check sum
 
 /** @typedef {import('./bench.js').Bench} Bench */
-/** @typedef {{ choose: (id: number) => void, remove: (item: any) => void }} Acts */
+/** @typedef {ReturnType<Bench['of']>} Beside what the comparison says of it */
+/** @typedef {{ choose: (id: number) => void, remove: (item: Api.ListedMeasurement) => void }} Acts */
 
 /** @param {HTMLElement} table */
 function scrolled(table) {
   return h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Table' }, table);
 }
 
-/** @param {any[]} items by torque, speed, pair */
+/** @param {Api.ListedMeasurement[]} items by torque, speed, pair */
 export function ordered(items) {
   return [...items].sort(
     (a, b) =>
-      a.torque_Nm - b.torque_Nm ||
-      a.result.speed_rpm.mean - b.result.speed_rpm.mean ||
+      Number(a.torque_Nm) - Number(b.torque_Nm) ||
+      Number(a.result.speed_rpm.mean) - Number(b.result.speed_rpm.mean) ||
       a.label.localeCompare(b.label) ||
       a.id - b.id,
   );
 }
 
-/** @param {any} item @param {any} beside */
+/** @param {Api.ListedMeasurement} item @param {Beside} beside */
 function findingMarks(item, beside) {
   const worst = ['warning', 'repaired', 'note'].find(severity =>
-    item.findings.some((/** @type {any} */ finding) => finding.severity === severity),
+    item.findings.some(finding => finding.severity === severity),
   );
-  const texts = item.findings.map((/** @type {any} */ finding) => finding.text).join('\n');
+  const texts = item.findings.map(finding => finding.text).join('\n');
   return [
     beside?.outlier ? h('span.severity.warning', { title: beside.reason }, 'outlier') : null,
     worst ? h(`span.severity.${worst}`, { title: texts }, worst === 'warning' ? 'doubtful' : worst) : null,
   ];
 }
 
-/** @param {any} item @param {Acts} acts */
+/** @param {Api.ListedMeasurement} item @param {Acts} acts */
 function actionLinks(item, acts) {
   /** @param {Event} event */
   const here = event => event.stopPropagation();
@@ -82,7 +83,7 @@ function actionLinks(item, acts) {
   ];
 }
 
-/** @param {Bench} bench @param {any} item @param {boolean} chosen @param {Acts} acts */
+/** @param {Bench} bench @param {Api.ListedMeasurement} item @param {boolean} chosen @param {Acts} acts */
 function measurementRow(bench, item, chosen, acts) {
   const beside = bench.of(item.id);
   const { rms_m_per_s2: rms, speed_rpm: turns, te: error } = item.result;
@@ -171,15 +172,16 @@ export function drawReductions(place, bench, chosen) {
   );
 }
 
-/** @param {any} ellipse */
+/** @param {Api.RawTracks} ellipse */
 function trackText(ellipse) {
-  const amplitudes = ellipse.amplitude.map((/** @type {number} */ value) => sig(value, 3)).join(' / ');
+  const amplitudes = ellipse.amplitude.map(value => sig(value, 3)).join(' / ');
   return `amplitude ${amplitudes}, ratio ${sig(ellipse.ratio, 4)}, phase ${sig(ellipse.phase_deg, 4)}°`;
 }
 
-/** What is known of one recording. @param {any} whole @returns {[string, string][]} */
+/** What is known of one recording. @param {Api.Measurement} whole @returns {[string, string][]} */
 function factsOf(whole) {
   const { result, signal } = whole;
+  if (!result) return [];
   const { speed_rpm: speed, shafts, rms_m_per_s2: rms } = result;
   const stated = whole.stated_speed_rpm ? `, stated ${plain(whole.stated_speed_rpm)}` : '';
   /** @type {[string, string][]} */
@@ -196,9 +198,11 @@ function factsOf(whole) {
     ['Unexplained', `${sig(result.residual_um, 2)} µm RMS`],
     ['RMS by FFT', `${sig(rms.spectrum, 4)} m/s², with sidebands ${sig(rms.band, 4)}`],
   ];
-  for (const member of ['pinion', 'gear'])
-    if (signal.tracks?.[member])
-      facts.push([`${member === 'pinion' ? 'Pinion' : 'Gear'} tracks`, trackText(signal.tracks[member])]);
+  for (const [name, tracks] of /** @type {const} */ ([
+    ['Pinion', signal.tracks?.pinion],
+    ['Gear', signal.tracks?.gear],
+  ]))
+    if (tracks) facts.push([`${name} tracks`, trackText(tracks)]);
   const [file] = whole.files;
   facts.push([
     'File',
@@ -207,7 +211,9 @@ function factsOf(whole) {
   return facts;
 }
 
-/** @param {HTMLElement} place @param {any} item @param {any} whole @param {any} beside */
+/**
+ * @param {HTMLElement} place @param {Api.ListedMeasurement} item @param {Api.Measurement} whole @param {Beside} beside
+ */
 export function drawAbout(place, item, whole, beside) {
   const { findings, notes } = whole;
   fill(
@@ -231,7 +237,7 @@ export function drawAbout(place, item, whole, beside) {
       h(
         'ul.findings',
         null,
-        notes.map((/** @type {string} */ text) => h('li', null, text)),
+        notes.map(text => h('li', null, text)),
       ),
     ),
   );

@@ -4,7 +4,7 @@ import { download, h } from '../../base/dom.js';
 import { plain } from '../../base/format.js';
 import { Lane } from '../../base/lane.js';
 import { readQuantity } from '../../base/quantity.js';
-import { mainCase } from '../../figures/context.js';
+import { mainCase, torqueOf } from '../../figures/context.js';
 import { group } from '../../form/group.js';
 
 const OUTPUTS = ['angles', 'counts', 'sine-cosine', 'pulses'];
@@ -20,6 +20,9 @@ function select(label, values) {
   );
 }
 
+/** @typedef {NonNullable<Api.RigOrder['rig']>['output']} Output */
+/** @typedef {NonNullable<Api.RigOrder['rig']>['fault']} Fault */
+
 export class Synthetic {
   #keep = false;
   #asked = { name: '', torque: 0, speed: 0 };
@@ -34,6 +37,7 @@ export class Synthetic {
     this.output = select('Synthetic columns', OUTPUTS);
     this.fault = select('Synthetic fault', FAULTS);
     this.note = h('p.figure-note', { role: 'status' });
+    /** @type {Lane<string>} */
     this.lane = new Lane({
       result: (_task, data) => this.#take(data),
       refused: (_task, error) => this.#say(error.message),
@@ -86,7 +90,7 @@ export class Synthetic {
     this.#keep = keep;
     const { design } = this.app.store;
     const usual = design.load_cases[mainCase(design)];
-    const torque = this.#read(this.torque, 'Nm', usual.torque_Nm);
+    const torque = this.#read(this.torque, 'Nm', torqueOf(usual));
     const speed = this.#read(this.speed, 'rpm', usual.speed_rpm);
     if (!(torque > 0 && speed > 0)) return this.#say('Torque and speed are numbers above zero, or left empty.');
     const pair = this.pair.value;
@@ -100,8 +104,8 @@ export class Synthetic {
           torque_Nm: torque,
           speed_rpm: speed,
           unmodified: pair === 'unmodified',
-          output: this.output.value,
-          fault: this.fault.value,
+          output: /** @type {Output} */ (this.output.value),
+          fault: /** @type {Fault} */ (this.fault.value),
           ...(this.output.value === 'angles' ? {} : { pinion_lines: LINES, gear_lines: LINES }),
         },
       },

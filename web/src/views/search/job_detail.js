@@ -4,6 +4,7 @@ import { ask, get, list, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
 import { change, changeText, choiceText, duration, sig } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
+import { documentOf } from '../../base/store.js';
 import { progressText } from '../../jobbar.js';
 import { JobFigures } from './job_figures.js';
 import { MEASURES, footnote, meanOf } from './measures.js';
@@ -13,10 +14,10 @@ const PAUSE = 700; // ms between two looks at a running search
 const MOST_ROWS = 4000;
 
 export class JobDetail {
-  /** @type {any} */ #job = null;
-  /** @type {any} */ #result = null;
-  /** The design that it started from, resolved. @type {any} */ #design = null;
-  /** @type {any[]} */ #rows = [];
+  /** @type {Api.Job | null} */ #job = null;
+  /** @type {Api.OptimizationResult | null} */ #result = null;
+  /** The design that it started from, resolved. @type {Api.Design | null} */ #design = null;
+  /** @type {Api.JobHistoryRow[]} */ #rows = [];
   #timer = 0;
   #last = 0;
 
@@ -29,7 +30,7 @@ export class JobDetail {
     this.element = h('.job-detail', { hidden: true }, this.head, this.figures.elements(this.best));
   }
 
-  /** @param {any} job */
+  /** @param {Api.Job | null} job */
   choose(job) {
     const before = this.#job;
     this.#job = job;
@@ -40,7 +41,7 @@ export class JobDetail {
       this.figures.clear();
     }
     if (!job) return;
-    this.#drawHead();
+    this.#drawHead(job);
     this.#drawBest();
     if (before?.id !== job.id || before.state !== job.state || performance.now() - this.#last > PAUSE) this.#look();
     else if (!this.#timer) this.#timer = window.setTimeout(() => this.#look(), PAUSE);
@@ -51,22 +52,25 @@ export class JobDetail {
     this.#timer = 0;
     this.#last = performance.now();
     const job = this.#job;
+    if (!job) return;
     const gone = () => this.#job?.id !== job.id;
     try {
       const columns = await get(`jobs/${job.id}/generations`);
       if (gone()) return;
       this.figures.drawGenerations(columns);
       const design = this.#design ?? (await get(`jobs/${job.id}`)).design;
+      if (!design) return;
+      const start = documentOf(design);
       const rows = await list(`jobs/${job.id}/history`, MOST_ROWS);
       const done = job.state === 'done' && job.has_result !== false;
       const result = done ? (this.#result ?? (await get(`jobs/${job.id}/result`))) : null;
       if (gone()) return;
-      this.#design = design;
+      this.#design = start;
       this.#rows = rows;
       this.#result = result;
-      this.#drawHead();
+      this.#drawHead(job);
       this.#drawBest();
-      this.figures.draw({ design, best: this.#bestOf(), rows, result });
+      this.figures.draw({ design: start, best: this.#bestOf(), rows, result });
     } catch {
       // the next event looks again
     }
@@ -75,27 +79,30 @@ export class JobDetail {
   /**
    * The best with its flank: the list of jobs has both for searches of the service; of those of the terminal the result
    * has them, and the history as long as they run.
+   * @returns {Partial<Api.JobPoint> | null}
    */
   #bestOf() {
-    const { best } = this.#job;
+    const best = this.#job?.best;
     if (!best) return null;
     if (best.modification) return best;
     const found = this.#result?.best;
     if (found) return { ...found.objectives, modification: found.modification };
     const rows = this.#rows.filter(row => typeof row.J === 'number');
-    const least = rows.reduce((low, row) => (low === null || row.J < low.J ? row : low), null);
+    const least = [...rows].sort((a, b) => Number(a.J) - Number(b.J))[0];
     if (!least || !this.#design) return best;
-    return { ...least, modification: withValues(this.#design, flatten(least.modification)).modification };
+    const { modification } = withValues(this.#design, flatten(least.modification));
+    return { ...least, modification: /** @type {Api.Modification} */ (modification) };
   }
 
   #unmodifiedOf() {
-    return this.#job.unmodified ?? this.#result?.unmodified?.objectives ?? this.#result?.unmodified ?? null;
+    return this.#job?.unmodified ?? this.#result?.unmodified ?? null;
   }
 
-  #drawHead() {
-    const job = this.#job;
+  /** @param {Api.Job} job */
+  #drawHead(job) {
     const active = ACTIVE.includes(job.state);
-    const { progress = {} } = job;
+    /** @type {Partial<Api.JobProgress>} */
+    const progress = job.progress ?? {};
     const facts = [
       choiceText(job.algorithm ?? ''),
       progressText(job),
@@ -114,14 +121,14 @@ export class JobDetail {
     );
   }
 
-  /** @param {any} job @param {boolean} active */
+  /** @param {Api.Job} job @param {boolean} active */
   #actions(job, active) {
     const { app } = this;
     /** @param {string} text @param {() => unknown} act @param {string} [kind] */
     const button = (text, act, kind = 'button') => h(kind, { type: 'button', onclick: () => app.attempt(act) }, text);
-    /** @param {string} verb */
+    /** @param {'cancel' | 'retry' | 'clone'} verb */
     const act = verb => async () => {
-      const answer = await post(`jobs/${job.id}/${verb}`);
+      const answer = await post(`jobs/${job.id}/${verb}`, {});
       app.jobs.put(answer);
       if (verb === 'clone') app.go('optimize', { job: String(answer.id) });
     };
@@ -144,7 +151,7 @@ export class JobDetail {
 
   #drawBest() {
     const best = this.#bestOf();
-    const title = this.#job.state === 'done' ? 'The best' : 'Best so far';
+    const title = this.#job?.state === 'done' ? 'The best' : 'Best so far';
     if (!best) {
       fill(this.best, h('h3', null, title), h('p.figure-note', null, 'Nothing is evaluated yet.'));
       return;
@@ -157,7 +164,7 @@ export class JobDetail {
       own: cases ? meanOf(best, measure, cases) : null,
       before: cases ? meanOf(before, measure, cases) : null,
     }));
-    rows.push({ name: 'Objective J', unit: '', own: best.J, before: before?.J ?? 1 });
+    rows.push({ name: 'Objective J', unit: '', own: best.J ?? null, before: before?.J ?? 1 });
     fill(
       this.best,
       h('.figure-head', null, h('h3', null, title), h('span.figure-note', null, 'duty-cycle means')),
@@ -195,7 +202,7 @@ export class JobDetail {
     );
   }
 
-  /** @param {any} best */
+  /** @param {Partial<Api.JobPoint>} best */
   #flankTable(best) {
     const rows = changedValues(best.modification);
     if (!rows.length) return null;
@@ -219,22 +226,24 @@ export class JobDetail {
 
   async #openBest() {
     const best = this.#bestOf();
-    if (this.#design && best?.modification) await this.#open({ ...this.#design, modification: best.modification });
+    if (!this.#design || !best?.modification) return;
+    await this.#open(documentOf({ ...this.#design, modification: best.modification }));
   }
 
   /** @param {Record<string, number>} values of variables */
   async #openValues(values) {
-    if (this.#design) await this.app.attempt(() => this.#open(withValues(this.#design, values)));
+    const design = this.#design;
+    if (design) await this.app.attempt(() => this.#open(withValues(design, values)));
   }
 
   /**
    * The design of the search with another modification. What the designer left open stays open when it is the same
    * pair.
-   * @param {any} design
+   * @param {Api.Design} design
    */
   async #open(design) {
     const { store, app } = { store: this.app.store, app: this.app };
-    /** @param {any} whole */
+    /** @param {Page.Design} whole */
     const pair = whole => JSON.stringify([whole.gear_pair, whole.material, whole.supports, whole.shafts]);
     const resolved = app.analyst.result?.design ?? store.design;
     const same = pair(resolved) === pair(design);
@@ -244,13 +253,13 @@ export class JobDetail {
   }
 }
 
-/** Values of a history row by the names of variables. @param {any} modification */
+/** Values of a history row by the names of variables. @param {Api.JobHistoryRow['modification']} modification */
 function flatten(modification) {
   /** @type {Record<string, number>} */
   const values = {};
   for (const [member, ends] of Object.entries(modification ?? {}))
-    for (const [end, flank] of Object.entries(/** @type {any} */ (ends) ?? {}))
-      for (const [key, value] of Object.entries(/** @type {any} */ (flank) ?? {}))
+    for (const [end, flank] of Object.entries(ends ?? {}))
+      for (const [key, value] of Object.entries(flank ?? {}))
         if (typeof value === 'number') values[`${member}/${end}/${key}`] = value;
   return values;
 }

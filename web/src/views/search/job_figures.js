@@ -2,9 +2,9 @@
 // The figures of a search: how it converges, what it has tried, and the best so far beside where it started.
 import { h } from '../../base/dom.js';
 import { Lane } from '../../base/lane.js';
-import { unmodified } from '../../base/store.js';
+import { documentOf, unmodified } from '../../base/store.js';
 import { Chart } from '../../figures/chart.js';
-import { OWN_COLOUR, REFERENCE_COLOUR, caseLong, mainCase } from '../../figures/context.js';
+import { OWN_COLOUR, REFERENCE_COLOUR, caseLong, lessMean, mainCase } from '../../figures/context.js';
 import { Parallel, Scatter } from '../../figures/scatter.js';
 import { MEASURE_COLUMNS, meansOf } from './measures.js';
 import { shortName, valuesOf, variablesOf } from './variables.js';
@@ -12,21 +12,21 @@ import { shortName, valuesOf, variablesOf } from './variables.js';
 /** @typedef {import('../../figures/scatter.js').Dot} Dot */
 /**
  * @typedef {object} Search
- * @property {any} design that it started from @property {any} best modification and objectives
- * @property {any[]} rows of its history @property {any} result when it is done
+ * @property {Api.Design} design that it started from
+ * @property {Partial<Api.JobPoint> | null} best modification and objectives
+ * @property {Api.JobHistoryRow[]} rows of its history
+ * @property {Api.OptimizationResult | null} result when it is done
  */
-
-/** @param {number[]} values */
-const lessMean = values => values.map(each => each - values.reduce((sum, other) => sum + other, 0) / values.length);
 
 /** Results of a few designs, asked for one after the other; those of a best that is no longer one are dropped. */
 class Compared {
-  /** @type {Map<string, any>} */ results = new Map();
-  /** @type {{ name: string, design: any }[]} */ #left = [];
+  /** @type {Map<string, Page.Result>} */ results = new Map();
+  /** @type {{ name: string, design: Api.Design }[]} */ #left = [];
   #asked = '';
 
   /** @param {() => void} tell */
   constructor(tell) {
+    /** @type {Lane<Page.Result>} */
     this.lane = new Lane({
       result: (task, data) => {
         this.results.set(task.note, data);
@@ -37,7 +37,7 @@ class Compared {
     });
   }
 
-  /** @param {{ name: string, design: any }[]} designs */
+  /** @param {{ name: string, design: Api.Design }[]} designs */
   ask(designs) {
     const text = JSON.stringify(designs);
     if (text === this.#asked) return;
@@ -145,12 +145,12 @@ export class JobFigures {
     this.front.element.hidden = this.history.element.hidden = this.parallel.element.hidden = true;
   }
 
-  /** @param {any} columns */
+  /** @param {Api.Generations} columns */
   drawGenerations(columns) {
     if (!columns.generation?.length) return;
-    const x = columns.generation.map((/** @type {number} */ value) => value + 1);
+    const x = columns.generation.map(value => value + 1);
     const curves = [{ label: 'best', y: columns.best, colour: 'best' }];
-    if (columns.mean?.some((/** @type {any} */ value) => value !== null))
+    if (columns.mean?.some(value => value !== null))
       curves.unshift({ label: 'mean', y: columns.mean, colour: 'mean' });
     this.convergence.set({ x, curves });
     this.pfc.set({ x, curves: [{ label: 'PFC', y: columns.pfc_percent, colour: OWN_COLOUR }] });
@@ -169,7 +169,7 @@ export class JobFigures {
     const { design } = search;
     this.compared.ask([
       ...(search.best?.modification
-        ? [{ name: 'best', design: { ...design, modification: search.best.modification } }]
+        ? [{ name: 'best', design: documentOf({ ...design, modification: search.best.modification }) }]
         : []),
       { name: 'start', design },
       { name: 'unmodified', design: unmodified(design) },
@@ -182,7 +182,8 @@ export class JobFigures {
     const cases = design.load_cases.length;
     const names = [...new Set(rows.flatMap(row => Object.keys(variablesOf(row))))];
     const columns = ['evaluation', ...names.map(shortName), ...MEASURE_COLUMNS, 'J'];
-    const found = rows.find(row => typeof row.J === 'number' && best && Math.abs(row.J - best.J) <= 1e-9 * best.J);
+    const least = best?.J ?? NaN;
+    const found = rows.find(row => typeof row.J === 'number' && Math.abs(row.J - least) <= 1e-9 * least);
     /** @type {Dot[]} */
     const dots = rows.map((row, i) => {
       const values = variablesOf(row);
@@ -198,7 +199,8 @@ export class JobFigures {
         pick: () => this.open(values),
       };
     });
-    /** @param {string} mark @param {any} modification @param {any} objectives @param {number} place */
+    /** @param {string} mark @param {import('./variables.js').Flanks} modification
+     * @param {import('./measures.js').Objectives & { J?: Page.Reading }} objectives @param {number} place */
     const extra = (mark, modification, objectives, place) =>
       dots.push({
         kind: 'known',
@@ -222,12 +224,13 @@ export class JobFigures {
 
   /** @param {Search} search */
   #drawFront({ result, design }) {
+    if (!result?.front) return;
     const cases = design.load_cases.length;
-    const names = result.variables.map((/** @type {any} */ variable) => variable.name);
+    const names = result.variables.map(variable => variable.name);
     this.front.element.hidden = false;
     this.front.set({
       columns: [...MEASURE_COLUMNS, 'J', ...names.map(shortName)],
-      dots: result.front.map((/** @type {any} */ point) => ({
+      dots: result.front.map(point => ({
         kind: 'front',
         mark: point.weighted ? 'best J' : point.knee ? 'knee' : undefined,
         values: [...meansOf(point, cases), point.J, ...point.values],
@@ -257,17 +260,17 @@ export class JobFigures {
     const shown = looks.filter(({ name }) => results.has(name));
     this.te.frame.setCase(caseLong(search.design.load_cases[k]));
     this.te.set({
-      x: first.load_cases[k].position,
-      curves: shown.map(({ name, colour, line }) => {
-        const row = results.get(name).load_cases[k];
-        return { label: name, x: row.position, y: lessMean(row.lte.pair_um), colour, line };
+      x: first.load_cases[k].position ?? [],
+      curves: shown.flatMap(({ name, colour, line }) => {
+        const row = results.get(name)?.load_cases[k];
+        return row ? [{ label: name, x: row.position ?? undefined, y: lessMean(row.lte.pair_um), colour, line }] : [];
       }),
     });
-    const { pinion } = first.modification;
+    const pinion = first.modification?.pinion;
     this.flank.set({
       x: pinion?.u_mm ?? [],
       curves: shown.flatMap(({ name, colour, line }) => {
-        const member = results.get(name).modification?.pinion;
+        const member = results.get(name)?.modification?.pinion;
         return member?.left ? [{ label: name, x: member.u_mm, y: member.left.profile_um, colour, line }] : [];
       }),
     });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The objectives of a search as a designer reads them: means over the duty cycle in the units of the page.
 
-/** @typedef {{ key: string, name: string, unit: string, scale: number }} Measure */
+/** @typedef {{ f1_um?: Page.Reading, f2_N?: Page.Reading, f3_m_per_s2?: Page.Reading }} Objectives */
+/** @typedef {{ key: keyof Objectives, name: string, unit: string, scale: number }} Measure */
 
 /** @type {Measure[]} */
 export const MEASURES = [
@@ -16,7 +17,7 @@ export const MEASURE_COLUMNS = ['Transmission error (µm)', 'Entering impact (kN
 /**
  * The mean over the duty cycle. The method's objectives are that mean divided by the number of load cases; this takes
  * the division back.
- * @param {any} objectives f1, f2, f3
+ * @param {Objectives | null | undefined} objectives
  * @param {Measure} measure
  * @param {number} cases how many load cases
  * @returns {number | null}
@@ -26,7 +27,7 @@ export function meanOf(objectives, { key, scale }, cases) {
   return typeof value === 'number' ? value * scale * cases : null;
 }
 
-/** @param {any} objectives @param {number} cases */
+/** @param {Objectives | null | undefined} objectives @param {number} cases */
 export function meansOf(objectives, cases) {
   return MEASURES.map(measure => meanOf(objectives, measure, cases));
 }

@@ -129,8 +129,10 @@ export class SearchForm {
     const name = this.store.design.name;
     const done = this.app.jobs
       .searches()
-      .find(job => job.name === name && job.progress?.seconds > 1 && job.progress?.true_evaluations > 20);
-    if (done) return done.progress.seconds / done.progress.true_evaluations;
+      .filter(job => job.name === name)
+      .map(({ progress }) => ({ seconds: progress?.seconds ?? 0, count: progress?.true_evaluations ?? 0 }))
+      .find(({ seconds, count }) => seconds > 1 && count > 20);
+    if (done) return done.seconds / done.count;
     const ms = this.app.analyst.result?.timing_ms?.evaluation;
     return typeof ms === 'number' ? ms / 1000 : 0;
   }
@@ -147,7 +149,7 @@ export class SearchForm {
     fill(this.details, this.changing.fieldsOf('/optimization', { skip }));
   }
 
-  /** @param {any[] | null} rows */
+  /** @param {Api.Design['load_cases'] | null} rows */
   #drawListed(rows) {
     if (!rows) return fill(this.listed);
     const { store } = this;

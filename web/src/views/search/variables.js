@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a search varied: variables by name ("pinion/both/tip_relief_um"), of a history row and of a best.
 import { labelOf, unitText } from '../../base/format.js';
+import { valueAt, withValue } from '../../base/pointer.js';
 
 /** @typedef {Record<string, number>} Values */
+/** @typedef {object | null | undefined} Flanks values by member, end and key, all of them or those that were varied */
 
 /** Short names of the variables. @param {string} name */
 export function shortName(name) {
@@ -13,7 +15,7 @@ export function shortName(name) {
   return `${labelOf(key)}${end}${unit ? ` (${unit})` : ''}`;
 }
 
-/** Numbers of a modification, both ends beside each other. @param {any} modification */
+/** Numbers of a modification, both ends beside each other. @param {Flanks} modification */
 function flankValues(modification) {
   /** @type {{ member: string, key: string, left: number, right: number }[]} */
   const rows = [];
@@ -28,7 +30,7 @@ function flankValues(modification) {
   return rows;
 }
 
-/** Variables of a history row; it lists nothing else. @param {any} row @returns {Values} */
+/** Variables of a history row; it lists nothing else. @param {{ modification?: Flanks }} row @returns {Values} */
 export function variablesOf(row) {
   /** @type {Values} */
   const values = {};
@@ -45,31 +47,28 @@ export function variablesOf(row) {
 /**
  * The same variables of any modification.
  * @param {string[]} names
- * @param {any} modification
+ * @param {Flanks} modification
  * @returns {(number | null)[]}
  */
 export function valuesOf(names, modification) {
   return names.map(name => {
     const [member, end, key] = name.split('/');
-    return modification?.[member]?.[end === 'both' ? 'left' : end]?.[key] ?? null;
+    return valueAt(modification, `/${member}/${end === 'both' ? 'left' : end}/${key}`) ?? null;
   });
 }
 
-/** The design with these values. @param {any} design @param {Values} values */
+/** The design with these values. @param {Api.Design} design @param {Values} values */
 export function withValues(design, values) {
-  const next = structuredClone(design);
+  let next = design;
   for (const [name, value] of Object.entries(values)) {
     const [member, end, key] = name.split('/');
-    next.modification ??= {};
-    for (const each of end === 'both' ? ['left', 'right'] : [end]) {
-      next.modification[member] ??= {};
-      next.modification[member][each] = { ...next.modification[member][each], [key]: value };
-    }
+    for (const each of end === 'both' ? ['left', 'right'] : [end])
+      next = withValue(next, `/modification/${member}/${each}/${key}`, value);
   }
   return next;
 }
 
-/** What is not zero, for people. @param {any} modification */
+/** What is not zero, for people. @param {Flanks} modification */
 export function changedValues(modification) {
   return flankValues(modification)
     .filter(({ left, right }) => left !== 0 || right !== 0)

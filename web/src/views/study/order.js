@@ -6,7 +6,7 @@ import { duration } from '../../base/format.js';
 
 const PAUSE = 400; // ms after the last key before the cost is asked for
 
-/** Paths of the numbers of a design. @param {any} value @param {string} path @returns {string[]} */
+/** Paths of the numbers of a design. @param {unknown} value @param {string} path @returns {string[]} */
 function numberPaths(value, path = '') {
   if (typeof value === 'number') return [path];
   if (!value || typeof value !== 'object') return [];
@@ -140,6 +140,7 @@ export class StudyOrder {
     this.#changed();
   }
 
+  /** @returns {Api.StudyOrder} */
   #document() {
     const vary = [...this.axes.children].flatMap(row => {
       const [key, values] = [...row.querySelectorAll('input')].map(input => input.value.trim());
@@ -148,7 +149,7 @@ export class StudyOrder {
     return {
       design: this.app.store.design,
       vary,
-      sampling: this.sampling.value,
+      sampling: /** @type {Api.StudyOrder['sampling']} */ (this.sampling.value),
       samples: Number(this.samples.value) || 64,
       ...(this.columns.value.trim() ? { columns: this.columns.value.trim() } : {}),
     };

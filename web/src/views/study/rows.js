@@ -28,15 +28,16 @@ export class Rows extends EventTarget {
   /** Reads all rows that a study has by now. @param {number} study */
   async load(study) {
     const turn = ++this.#turn;
-    /** @type {any[]} */ const items = [];
-    /** @type {any} */ let page = null;
-    for (let next = '0'; next !== null;) {
+    /** @type {Api.StudyRow[]} */ const items = [];
+    /** @type {Api.StudyTable | null} */ let page = null;
+    for (let next = /** @type {string | null} */ ('0'); next !== null;) {
       page = await get(`studies/${study}/table?limit=${PAGE}&cursor=${next}`);
       if (turn !== this.#turn) return;
       items.push(...page.items);
       next = page.next;
       await breath();
     }
+    if (!page) return;
     if (study !== this.study) {
       this.brushes.clear();
       this.sort = { column: -1, descending: false };
@@ -46,7 +47,7 @@ export class Rows extends EventTarget {
     await this.#take(page, items, turn);
   }
 
-  /** @param {any} page @param {any[]} items @param {number} turn */
+  /** @param {Api.StudyTable} page @param {Api.StudyRow[]} items @param {number} turn */
   async #take(page, items, turn) {
     const keys = page.keys.length;
     /** @type {Column[]} */

@@ -4,6 +4,7 @@ import { ask, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
 import { dateText, duration } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
+import { documentOf } from '../../base/store.js';
 import { progressBar } from '../../jobbar.js';
 import { StudyOrder } from './order.js';
 import { Coordinates } from './coordinates.js';
@@ -87,7 +88,7 @@ class StudyView {
     this.#choose(studies.find(job => String(job.id) === this.#chosen) ?? null);
   }
 
-  /** @param {any} job */
+  /** @param {Api.Job} job */
   #row(job) {
     const left = ACTIVE.includes(job.state) ? job.progress?.seconds_left : null;
     return h(
@@ -102,7 +103,7 @@ class StudyView {
     );
   }
 
-  /** @param {any} job */
+  /** @param {Api.Job | null} job */
   #choose(job) {
     this.detail.hidden = !job;
     if (!job) return;
@@ -117,7 +118,7 @@ class StudyView {
       }, LOOK);
   }
 
-  /** @param {any} job @param {string} state */
+  /** @param {Api.Job} job @param {string} state */
   async #look(job, state) {
     if (!this.#shown.startsWith(`${job.id} `)) fill(this.picked);
     this.#shown = state;
@@ -130,14 +131,15 @@ class StudyView {
     this.#looked = performance.now();
   }
 
-  /** @param {any} job */
+  /** @param {Api.Job} job */
   #drawHead(job) {
     const active = ACTIVE.includes(job.state);
-    const { progress = {} } = job;
+    /** @type {Partial<Api.JobProgress>} */
+    const progress = job.progress ?? {};
     /** @param {string} text @param {() => unknown} act */
     const button = (text, act) => h('button', { type: 'button', onclick: () => this.app.attempt(act) }, text);
-    /** @param {string} verb */
-    const act = verb => async () => this.app.jobs.put(await post(`jobs/${job.id}/${verb}`));
+    /** @param {'cancel' | 'retry'} verb */
+    const act = verb => async () => this.app.jobs.put(await post(`jobs/${job.id}/${verb}`, {}));
     const remove = async () => {
       await ask('DELETE', `jobs/${job.id}`);
       this.app.jobs.all.delete(job.id);
@@ -183,7 +185,7 @@ class StudyView {
     const variant = rows.variant[row];
     const open = async () => {
       const { data } = await ask('GET', `studies/${rows.study}/variants/${variant}/design`);
-      await app.library.openNew({ ...data, name: `${data.name || 'design'}, variant ${variant}` });
+      await app.library.openNew(documentOf({ ...data, name: `${data.name || 'design'}, variant ${variant}` }));
     };
     fill(
       this.picked,

@@ -4,6 +4,7 @@ import { fill, h } from '../../base/dom.js';
 import { duration, labelOf, unitText } from '../../base/format.js';
 import { Lane } from '../../base/lane.js';
 import { readQuantity } from '../../base/quantity.js';
+import { documentOf } from '../../base/store.js';
 import { Chart } from '../../figures/chart.js';
 import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, yields } from './tolerance_tables.js';
@@ -23,7 +24,7 @@ const UNIT = /_(um|MPa|N_per_mm|N|m_per_s2)$/;
 const unitOfKey = key => UNIT.exec(key)?.[1] ?? '';
 
 class ToleranceView {
-  /** @type {any} */ #result = null;
+  /** @type {Api.Tolerance | null} */ #result = null;
   /** Pairs of the answer that is on its way; 0: none. */
   #asked = 0;
   #began = 0;
@@ -35,10 +36,12 @@ class ToleranceView {
   constructor(app) {
     this.app = app;
     this.fields = app.form.set();
+    /** @type {Lane<Api.Tolerance, number>} */
     this.lane = new Lane({
       result: (task, data) => this.#take(task.note, data),
       refused: (_task, error) => this.#end(error.message),
-      preparing: (_task, job) => this.#say(`The teeth are prepared, ${Math.round(100 * (job.progress ?? 0))} %`),
+      preparing: (_task, { progress }) =>
+        this.#say(`The teeth are prepared, ${Math.round(100 * (progress?.fraction ?? 0))} %`),
     });
     this.start = h('button.primary', { type: 'button', onclick: () => this.#begin() }, 'Draw the pairs');
     this.stop = h('button', { type: 'button', hidden: true, onclick: () => this.#halt() }, 'Stop');
@@ -103,10 +106,10 @@ class ToleranceView {
     const { store } = this.app;
     const stated = () => store.design.tolerance?.limits ?? [];
     /** @param {string} key */
-    const mine = key => stated().find((/** @type {any} */ limit) => limit.output === key && !limit.load_case);
+    const mine = key => stated().find(limit => limit.output === key && !limit.load_case);
     /** @param {string} key @param {string} text @param {string} unit */
     const change = (key, text, unit) => {
-      const others = stated().filter((/** @type {any} */ limit) => limit !== mine(key));
+      const others = stated().filter(limit => limit !== mine(key));
       const { value, fault } = readQuantity(text, unit);
       if (text.trim() !== '' && fault !== undefined) return fault;
       store.set('/tolerance/limits', text.trim() === '' ? others : [...others, { output: key, at_most: value }]);
@@ -151,7 +154,7 @@ class ToleranceView {
 
   /**
    * Each answer is shown; the next one has more pairs, the first of them the same.
-   * @param {number} pairs @param {any} data
+   * @param {number} pairs @param {Api.Tolerance} data
    */
   #take(pairs, data) {
     const seconds = (performance.now() - this.#began) / 1000;
@@ -199,10 +202,11 @@ class ToleranceView {
 
   #drawChoice() {
     const chosen = this.output.value;
+    if (!this.#result) return;
     const cases = this.#result.design.load_cases.length;
     fill(
       this.output,
-      this.#result.outputs.map((/** @type {any} */ { key, load_case: k }, /** @type {number} */ i) => {
+      this.#result.outputs.map(({ key, load_case: k }, i) => {
         const text = `${labelOf(key)}${cases > 1 ? `, load case ${k}` : ''}`;
         return h('option', { value: String(i), selected: String(i) === chosen }, text);
       }),
@@ -224,21 +228,21 @@ class ToleranceView {
     fill(this.inputs, inputTable(result));
     fill(
       this.notes,
-      result.warnings.map((/** @type {string} */ text) => h('p.aside', null, text)),
+      result.warnings.map(text => h('p.aside', null, text)),
     );
   }
 
-  /** A step for each part. @param {any} output @param {string} unit */
+  /** A step for each part. @param {Api.ScatterOutput} output @param {string} unit */
   #drawHistogram(output, unit) {
     const { least: from, largest: to, count } = output.histogram;
     const width = (to - from) / count.length;
-    const x = count.flatMap((/** @type {number} */ _n, /** @type {number} */ i) => [
+    const x = count.flatMap((_n, i) => [
       from + i * width,
       from + (i + 1) * width * (1 - 1e-9),
     ]);
-    const y = count.flatMap((/** @type {number} */ n) => [n, n]);
-    const high = output.percentiles.find((/** @type {any} */ row) => row.percent === 95);
-    const marks = [{ x: high.value, label: '95 %', strong: true }];
+    const y = count.flatMap(n => [n, n]);
+    const high = output.percentiles.find(row => row.percent === 95);
+    const marks = high ? [{ x: high.value, label: '95 %', strong: true }] : [];
     if (output.nominal !== null && output.nominal >= from && output.nominal <= to)
       marks.push({ x: output.nominal, label: 'as drawn', strong: false });
     this.histogram.frame.setCase(`${labelOf(output.key)} ${unit ? `(${unit})` : ''}, ${output.rows} pairs`);
@@ -249,7 +253,8 @@ class ToleranceView {
 
   #openWorst() {
     const { library } = this.app;
-    this.app.opening(() => library.openNew(this.#result.worst.design), 'design');
+    const worst = this.#result?.worst.design;
+    if (worst) this.app.opening(() => library.openNew(documentOf(worst)), 'design');
   }
 
   show() {

@@ -13,9 +13,9 @@ function nameOf(key) {
   return where ? `${where.replaceAll('_', ' ')}, ${last}` : last;
 }
 
-/** @param {any} result @param {any} output @param {string} unit */
+/** @param {Api.Tolerance} result @param {Api.ScatterOutput} output @param {string} unit */
 export function percentiles(result, output, unit) {
-  /** @param {any} row */
+  /** @param {Api.ScatterOutput['percentiles'][number]} row */
   const line = row =>
     h(
       'tr',
@@ -48,28 +48,28 @@ export function percentiles(result, output, unit) {
         null,
         h('th', { scope: 'row' }, 'mean'),
         h('td', null, sig(output.mean, 4)),
-        h('td', null, output.mean_interval.map((/** @type {number} */ end) => sig(end, 4)).join(' to ')),
+        h('td', null, output.mean_interval.map(end => sig(end, 4)).join(' to ')),
       ),
       h(
         'tr',
         null,
         h('th', { scope: 'row' }, 'standard deviation'),
         h('td', null, sig(output.std, 3)),
-        h('td', null, output.std_interval.map((/** @type {number} */ end) => sig(end, 3)).join(' to ')),
+        h('td', null, output.std_interval.map(end => sig(end, 3)).join(' to ')),
       ),
       h('tr', null, h('th', { scope: 'row' }, 'as drawn'), h('td', null, sig(output.nominal, 4)), h('td')),
     ),
   );
 }
 
-/** Bars of the inputs that decide most, by the measure that explains more. @param {any} output */
+/** Bars of the inputs that decide most, by the measure that explains more. @param {Api.ScatterOutput} output */
 export function influences(output) {
   const bySurface = (output.Q2 ?? -1) > (output.R2 ?? -1);
-  /** @param {any} row */
+  /** @param {Api.ScatterOutput['influences'][number]} row */
   const sizeOf = row => (bySurface ? (row.total ?? 0) : Math.abs(row.coefficient ?? 0));
   const rows = output.influences.slice(0, SHOWN);
   const largest = Math.max(...rows.map(sizeOf), 1e-12);
-  /** @param {any} row */
+  /** @param {Api.ScatterOutput['influences'][number]} row */
   const bar = row =>
     h(
       'tr',
@@ -90,26 +90,26 @@ export function influences(output) {
   );
 }
 
-/** @param {any[]} rows */
+/** @param {Api.ScatterYield[]} rows */
 export function yields(rows) {
   if (!rows.length) return null;
-  /** @param {any} row */
+  /** @param {Api.ScatterYield} row */
   const line = row =>
     h(
       'tr',
       null,
       h('th', { scope: 'row' }, row.output ? `${labelOf(row.output)} at most ${sig(row.at_most, 4)}` : 'all limits'),
       h('td', null, `${sig(100 * row.fraction, 4)} %`),
-      h('td', null, row.clopper_pearson.map((/** @type {number} */ end) => `${sig(100 * end, 3)} %`).join(' to ')),
+      h('td', null, row.clopper_pearson.map(end => `${sig(100 * end, 3)} %`).join(' to ')),
     );
   const caption = h('caption', null, 'Yield, with its 95 % interval');
   return h('table.numbers', null, caption, h('tbody', null, rows.map(line)));
 }
 
-/** @param {any} result */
+/** @param {Api.Tolerance} result */
 export function inputTable(result) {
   const title = `What scatters: ${result.inputs.length} inputs`;
-  /** @param {any} row */
+  /** @param {Api.ScatterInput} row */
   const line = row =>
     h(
       'tr',
