@@ -18,6 +18,7 @@ globalThis.CustomEvent ??= class extends Event {
   }
 };
 const { readRows } = await import('../../web/src/base/case_rows.js');
+const { caseLong, caseNames, torqueOf } = await import('../../web/src/figures/context.js');
 const { DesignStore } = await import('../../web/src/base/store.js');
 
 let count = 0;
@@ -48,6 +49,12 @@ is(
   'bare numbers: torque, then speed',
 );
 is(guess('run7.csv'), { label: '', torque: '', speed: '' }, 'a name that says nothing');
+
+// ---- load cases ----
+const byPower = { power_kW: 100, speed_rpm: 1500 };
+is(caseNames([byPower, { torque_Nm: 828, speed_rpm: 2000 }]), ['100 kW', '828 N m'], 'one that states its power');
+is(caseLong(byPower), '100 kW at 1500 rpm', 'in full');
+near(torqueOf(byPower), 100000 / (2 * Math.PI * 25), 1e-9, 'and what it comes to');
 
 // ---- numbers ----
 is(parseNumber('1,5'), 1.5, 'comma');
@@ -199,6 +206,8 @@ ok(
   radii.every((radius, i) => i === 0 || radius >= radii[i - 1] - 1e-9),
   'the radius grows from root to tip',
 );
+const own = halfTooth(geometry, { ...pair, pinion_dedendum_coefficient: 1.4 }, 0);
+near(Math.hypot(...own[0]), reference - 1.4 * 6, 1e-9, 'a member with a rack of its own');
 const jump = Math.max(...tooth.slice(1).map(([x, y], i) => Math.hypot(x - tooth[i][0], y - tooth[i][1])));
 ok(jump < 1.5, `fillet and involute meet without a step (longest piece ${jump.toFixed(2)} mm)`);
 const last = tooth[tooth.length - 1];
@@ -300,7 +309,7 @@ function serve({ stopped = [] } = {}) {
     let job = [...jobs.values()].find(one => one.teeth === teeth && !stopped.includes(one.id));
     if (!job) jobs.set(jobs.size + 1, (job = { id: jobs.size + 1, teeth, looks: 0 }));
     log.push(`wait ${job.id}`);
-    return answer(202, { id: job.id, state: 'preparing' });
+    return answer(202, { job: { id: job.id, state: 'preparing' } });
   };
   return log;
 }
