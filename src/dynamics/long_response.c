@@ -8,6 +8,7 @@
 #include "dynamics/propagator.h"
 #include "numerics/dense.h"
 #include "numerics/fft.h"
+#include "numerics/periodic.h"
 
 /* STEPS_PER_CYCLE as time integration by mesh cycles takes at least; SAMPLES_PER_CYCLE: accelerations that are kept;
    LEAD_CYCLES: before the period that is looked at, and once more while the motion has not come back. */
@@ -45,14 +46,6 @@ static double dot(int n, const double *a, const double *b)
   for (int i = 0; i < n; i++)
     sum += a[i] * b[i];
   return sum;
-}
-
-static double mean_of(int n, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += value[i];
-  return sum / n;
 }
 
 static int power_of_two(double least)
@@ -101,7 +94,7 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
   int n = load->cycles * load->positions, ends = load->parameters->ends;
   double nominal = eo_dynamics_mesh_load(load->parameters, load->torque), mean = 0;
   for (int end = 0; end < ends; end++)
-    mean += mean_of(n, load->tangent[end]) / ends;
+    mean += eo_periodic_mean(n, load->tangent[end]) / ends;
   set_steps(response, mean);
   for (int end = 0; end < ends; end++) {
     response->row[end] = malloc(sizeof(double) * ROWS * (size_t)response->steps);
@@ -115,7 +108,7 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
                                          .rows = ROWS,
                                          .nominal = nominal,
                                          .back = load->back,
-                                         .back_stiffness = mean_of(n, load->tangent[end])};
+                                         .back_stiffness = eo_periodic_mean(n, load->tangent[end])};
   }
   return EO_OK;
 }
@@ -352,7 +345,7 @@ static enum eo_code read_spectra(struct response *response, struct eo_error *err
   for (int reading = 0; reading < EO_READINGS && !code; reading++) {
     double *mean = response->acceleration[reading][0];
     for (int end = 0; end < ends; end++) {
-      double level = mean_of(n, response->acceleration[reading][end]),
+      double level = eo_periodic_mean(n, response->acceleration[reading][end]),
              square = dot(n, response->acceleration[reading][end], response->acceleration[reading][end]) / n;
       result->rms[reading] += sqrt(fmax(0, square - level * level)) / ends;
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/design_rating.h"
+#include "numerics/periodic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -101,14 +102,6 @@ enum eo_code eo_design_rating_lean(struct eo_design_rating *rating, struct eo_ev
   return code;
 }
 
-static double mean(int count, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < count; i++)
-    sum += value[i];
-  return sum / count;
-}
-
 /* Hours that the load case states, else its share of the required life. */
 static double time_of(const struct eo_rating_settings *settings, const struct eo_load_case *load_case)
 {
@@ -154,7 +147,8 @@ static void describe_end(struct eo_design_rating *rating, const struct eo_pair *
   if (!rating->rated)
     face->leaning[0] = face->leaning[1] = NAN;
   face->worse = rating->rated ? fmax(face->leaning[0], face->leaning[1]) : NAN;
-  case_rating->sharing[end] = mean(pair->grid->positions, case_result->end[end].loaded.load) / case_result->force;
+  case_rating->sharing[end] = eo_periodic_mean(pair->grid->positions, case_result->end[end].loaded.load) /
+                              case_result->force;
   eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, case_result->load_case.speed);
   eo_tribology_find(&case_rating->tribology[end], &state, eo_pair_half(pair, end)->grid, &case_result->end[end].loaded);
 }

@@ -52,6 +52,16 @@ double eo_periodic_mean(int count, const double *value)
   return sum / count;
 }
 
+double eo_periodic_swing(int count, const double *value)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < count; i++) {
+    low = fmin(low, value[i]);
+    high = fmax(high, value[i]);
+  }
+  return high - low;
+}
+
 double eo_periodic_harmonics(int count, const double *value, int harmonics, double (*amplitude)[2])
 {
   enum { TABLE = 512 }; /* angles of a round that are kept */

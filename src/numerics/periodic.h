@@ -20,6 +20,9 @@ double eo_periodic_at(const struct eo_periodic *spline, double phase, double *sl
 /* Mean of the values. */
 double eo_periodic_mean(int count, const double *value);
 
+/* Largest less smallest of the values. */
+double eo_periodic_swing(int count, const double *value);
+
 /* Complex amplitudes: value = mean + sum_h re_h cos(2 pi h phi) - im_h sin(2 pi h phi), h = 1..harmonics;
    amplitude[harmonics][2] as [re, im]. Returns the mean. count > 2 harmonics. */
 double eo_periodic_harmonics(int count, const double *value, int harmonics, double (*amplitude)[2]);

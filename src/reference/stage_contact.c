@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 
+#include "numerics/periodic.h"
 #include "reference/stage.h"
 #include "reference/stage_mesh.h"
 
@@ -194,16 +195,6 @@ static void read_position(struct end_output *out, const struct eo_contact_grid *
   out->edge_share = fmax(out->edge_share, edge);
 }
 
-static double swing(int n, const double *value)
-{
-  double low = INFINITY, high = -INFINITY;
-  for (int i = 0; i < n; i++) {
-    low = fmin(low, value[i]);
-    high = fmax(high, value[i]);
-  }
-  return high - low;
-}
-
 static enum eo_code read_end(struct end_output *out, const struct eo_stage_mesh *mesh, int side, bool points,
                              struct eo_error *error)
 {
@@ -227,7 +218,7 @@ static enum eo_code read_end(struct end_output *out, const struct eo_stage_mesh 
     out->column[STIFFNESS].value[j] = end->load[j] / (end->approach[j] - mesh->gaps[side].unloaded[j]);
     read_position(out, grid, end, j);
   }
-  out->peak_to_peak = swing(grid->positions, end->approach) / cos(grid->geometry.base_helix_angle);
+  out->peak_to_peak = eo_periodic_swing(grid->positions, end->approach) / cos(grid->geometry.base_helix_angle);
   return EO_OK;
 }
 
@@ -241,7 +232,7 @@ static void read_transmission(struct load_output *out, const struct eo_stage_mes
     out->mean += out->transmission.value[j] / n;
     out->float_mean += lean > 0 ? (left - right) / (2 * lean) / n : 0;
   }
-  out->peak_to_peak = swing(n, out->transmission.value);
+  out->peak_to_peak = eo_periodic_swing(n, out->transmission.value);
 }
 
 static enum eo_code solve_load(struct load_output *out, struct eo_stage_mesh *mesh, const struct input *given, int k,

@@ -10,6 +10,7 @@
 #include "document/design_document.h"
 #include "evaluation/analysis.h"
 #include "format/json.h"
+#include "numerics/periodic.h"
 #include "rating/pair_dimensions.h"
 #include "reference/verify.h"
 
@@ -204,14 +205,6 @@ static void check_stiffness(struct gear_case *gear_case)
   eo_verify_member(gear_case->v, gear_case->expected, "c_gamma_beta", 1e-9 * iso.mesh_beta, WITHIN, 0);
 }
 
-static double mean(const double *value, int count)
-{
-  double sum = 0;
-  for (int i = 0; i < count; i++)
-    sum += value[i];
-  return sum / count;
-}
-
 /* A whole analysis, where what it gives is expected. */
 static enum eo_code check_analysis(struct gear_case *gear_case, struct eo_error *error)
 {
@@ -232,7 +225,7 @@ static enum eo_code check_analysis(struct gear_case *gear_case, struct eo_error 
     eo_verify_number(gear_case->v, ripple, 1e6 * evaluation->objective[0].peak_to_peak,
                      eo_case_relative_or(gear_case->expected, "peak_to_peak_tolerance", 0.05), 0);
     eo_verify_number(gear_case->v, stiffness,
-                     1e-6 * mean(evaluation->load_case[0].end[EO_LEFT].stiffness, evaluation->positions),
+                     1e-6 * eo_periodic_mean(evaluation->positions, evaluation->load_case[0].end[EO_LEFT].stiffness),
                      eo_case_relative_or(gear_case->expected, "tolerance", 0.05), 0);
   }
   eo_analysis_free(analysis);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "contact/hunting.h"
+#include "numerics/periodic.h"
 
 enum { MOST_TEETH = 1024, CURVES = 4, PAIR = 2, FLOAT = 3 };
 
@@ -92,24 +93,6 @@ static enum eo_code solve(struct trial *trial, struct eo_error *error)
   return EO_OK;
 }
 
-static double swing(int n, const double *value)
-{
-  double low = INFINITY, high = -INFINITY;
-  for (int i = 0; i < n; i++) {
-    low = fmin(low, value[i]);
-    high = fmax(high, value[i]);
-  }
-  return high - low;
-}
-
-static double mean(int n, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += value[i];
-  return sum / n;
-}
-
 /* 2 |mean x exp(-2 pi i o t)|, t in pinion revolutions, n samples of which `per_turn` are one. */
 static double amplitude(int n, const double *value, double order, double per_turn)
 {
@@ -182,7 +165,7 @@ static void check_cycles(const struct trial *trial, struct eo_case *block)
                                                  ? eo_case_whole(block, "cycle_of_max", 0, trial->hunting.cycles - 1)
                                                  : 0;
   for (int cycle = 0; cycle < trial->hunting.cycles; cycle++) {
-    double own = swing(n, trial->curve[PAIR] + cycle * n);
+    double own = eo_periodic_swing(n, trial->curve[PAIR] + cycle * n);
     low = fmin(low, own);
     high = fmax(high, own);
     sum += own;
@@ -192,7 +175,7 @@ static void check_cycles(const struct trial *trial, struct eo_case *block)
   eo_verify_member(trial->v, block, "max", 1e6 * high, 0, within);
   if (eo_case_find(block, "cycle_of_max"))
     eo_verify_derived(trial->v, block, "swing of the cycle of the largest one",
-                      1e6 * swing(n, trial->curve[PAIR] + stated * n), 1e6 * high, within);
+                      1e6 * eo_periodic_swing(n, trial->curve[PAIR] + stated * n), 1e6 * high, within);
 }
 
 /* The largest load of a pair of teeth, and that the teeth and the place stated carry it: of places that differ by less
@@ -230,14 +213,14 @@ static void check_most_load(const struct trial *trial, struct eo_case *block)
 
 static void check_means(const struct trial *trial, struct eo_case *expected)
 {
-  const double hands[2] = {mean(trial->hunting.instants, trial->curve[EO_LEFT]),
-                           mean(trial->hunting.instants, trial->curve[EO_RIGHT])};
+  const double hands[2] = {eo_periodic_mean(trial->hunting.instants, trial->curve[EO_LEFT]),
+                           eo_periodic_mean(trial->hunting.instants, trial->curve[EO_RIGHT])};
   double relative = eo_case_relative_or(trial->tolerance, "LTE_mean_rel", 0.002),
          within = eo_case_absolute_or(trial->tolerance, "LTE_um", 0.02);
-  eo_verify_member(trial->v, expected, "LTE_mean_um", 1e6 * mean(trial->hunting.instants, trial->curve[PAIR]), relative,
-                   0);
-  eo_verify_member(trial->v, expected, "LTE_range_um", 1e6 * swing(trial->hunting.instants, trial->curve[PAIR]),
-                   relative, within);
+  eo_verify_member(trial->v, expected, "LTE_mean_um",
+                   1e6 * eo_periodic_mean(trial->hunting.instants, trial->curve[PAIR]), relative, 0);
+  eo_verify_member(trial->v, expected, "LTE_range_um",
+                   1e6 * eo_periodic_swing(trial->hunting.instants, trial->curve[PAIR]), relative, within);
   if (eo_case_find(expected, "LTE_mean_hands_um"))
     eo_verify_list(trial->v, eo_case_find(expected, "LTE_mean_hands_um"), trial->ends, hands, 1e6, relative, 0);
   for (int k = 0; k < eo_case_size(expected); k++) {
@@ -247,7 +230,8 @@ static void check_means(const struct trial *trial, struct eo_case *expected)
       struct eo_case *value = eo_case_at(expected, k);
       bool is_mean = strstr(key, "mean") != NULL;
       eo_verify_number(trial->v, value,
-                       1e6 * (is_mean ? mean(trial->hunting.instants, curve) : swing(trial->hunting.instants, curve)),
+                       1e6 * (is_mean ? eo_periodic_mean(trial->hunting.instants, curve)
+                                      : eo_periodic_swing(trial->hunting.instants, curve)),
                        relative, within);
     }
   }
