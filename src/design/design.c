@@ -2,6 +2,7 @@
 #include "design/design.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,6 +53,40 @@ static enum eo_code settle_series(struct eo_gear_pair *pair, struct eo_error *er
     fill(&pair->thickness_allowance[i][1], of.lower);
   }
   return EO_OK;
+}
+
+double eo_alignment_outwards(const struct eo_alignment *alignment)
+{
+  return alignment->apex == EO_APEX_LEADING ? -1 : 1;
+}
+
+/* + right-handed; 0: not stated. */
+static double hand_of(const struct eo_gear_pair *pair)
+{
+  return !*pair->hand ? 0 : strcmp(pair->hand, "right") == 0 ? 1 : -1;
+}
+
+static void set_hand(struct eo_gear_pair *pair, double hand)
+{
+  snprintf(pair->hand, sizeof pair->hand, "%s", hand > 0 ? "right" : "left");
+}
+
+double eo_design_rotation(const struct eo_design *design)
+{
+  double hand = hand_of(&design->gear_pair);
+  return hand == 0 ? -1 : -hand * eo_alignment_outwards(&design->alignment); /* theory (F9) */
+}
+
+void eo_design_settle_rotation(struct eo_gear_pair *pair, struct eo_alignment *alignment)
+{
+  double hand = hand_of(pair), rotation = strcmp(alignment->pinion_rotation, "clockwise") == 0 ? 1 : -1;
+  if (!*alignment->pinion_rotation)
+    return;
+  if (hand == 0)
+    set_hand(pair, -rotation * eo_alignment_outwards(alignment));
+  else
+    alignment->apex = hand * rotation > 0 ? EO_APEX_LEADING : EO_APEX_TRAILING; /* theory (F9) */
+  *alignment->pinion_rotation = '\0';
 }
 
 /* The mean of both allowances of both members, normal to the flank: j_bn = -(A_sn1 + A_sn2) cos alpha_n (DIN 3967). */
@@ -126,6 +161,7 @@ static enum eo_code settle_errors(struct eo_design *design, struct eo_error *err
 
 enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error)
 {
+  eo_design_settle_rotation(&design->gear_pair, &design->alignment);
   EO_TRY(eo_gear_pair_settle(&design->gear_pair, error));
   EO_TRY(settle_errors(design, error));
   return settle_allowances(&design->gear_pair, error);
@@ -368,6 +404,8 @@ static void resolve_material(struct eo_material *material)
 void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry)
 {
   resolve_alignment(design, geometry->face_width);
+  if (!*design->gear_pair.hand && geometry->helix_angle > 0)
+    set_hand(&design->gear_pair, eo_alignment_outwards(&design->alignment)); /* theory (F9) */
   resolve_gear_pair(&design->gear_pair, geometry);
   resolve_material(&design->material);
   for (int i = 0; i < 2; i++) {

@@ -42,6 +42,8 @@ struct eo_alignment {
   double coupling_thrust;        /* on the pinion, + to the right, N */
   double apex_offset[2];         /* [member] of the right end away from the left one beyond the nominal distance, m */
   enum eo_apex apex;
+  char pinion_rotation[20]; /* entry alone: "clockwise" or "counterclockwise", seen from the left end, running ahead;
+                               with a stated hand it states the apex, else the hand; "": not stated */
   int error_grade; /* of ISO 1328-1, from which the shaft angle errors follow: eo_design_settle(); 0: they are stated */
 };
 
@@ -68,6 +70,15 @@ struct eo_load_case {
   } alignment;
   char name[64];
 };
+
+/* Axes run from left to right. +1: the outer face ends of the drive flanks meet first (of one end: its left face), -1:
+   the other ones. */
+double eo_alignment_outwards(const struct eo_alignment *alignment);
+/* Sense in which the pinion turns about its axis when the design runs ahead, +1: clockwise seen from the left end. The
+   pinion's left half is right-handed where that is not the sense of eo_alignment_outwards(). */
+double eo_design_rotation(const struct eo_design *design);
+/* A stated rotation states the apex of a stated hand, else the hand that belongs to the apex; it is not stated then. */
+void eo_design_settle_rotation(struct eo_gear_pair *pair, struct eo_alignment *alignment);
 
 /* How the teeth of a load case meet. */
 struct eo_running {
@@ -176,7 +187,8 @@ struct eo_design {
 struct eo_geometry;
 
 /* Before there is a geometry: what was entered in another way becomes the members themselves (gear/entry.h), allowances
-   come from their series, the backlash from stated allowances, shaft angle errors from a stated grade. EO_ERROR_INPUT
+   come from their series, the backlash from stated allowances, shaft angle errors from a stated grade, apex or hand
+   from a stated rotation. EO_ERROR_INPUT
    with the key: statements that contradict each other, no such series or grade. */
 enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
 /* The drive flanks carry ahead with the member driving that drives in every load case, or with the pinion driving when

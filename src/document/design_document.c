@@ -112,6 +112,24 @@ static void migrate_variables(struct eo_optimization *optimization)
   }
 }
 
+/* Hand, rotation and apex: two of them say the third. */
+static void check_rotation(const json_t *document, const struct eo_design *design, struct eo_faults *faults)
+{
+  struct eo_path block = {NULL, "alignment", 0}, place = {&block, "pinion_rotation", 0};
+  const char *apex = json_string_value(eo_json_find(document, "alignment/apex"));
+  struct eo_gear_pair pair = design->gear_pair;
+  struct eo_alignment alignment = design->alignment;
+  if (!apex || !*design->gear_pair.hand || !*design->alignment.pinion_rotation)
+    return;
+  eo_design_settle_rotation(&pair, &alignment);
+  if (alignment.apex != design->alignment.apex)
+    eo_faults_at(faults, &place,
+                 "A pinion whose left half is %s-handed and that turns %s has its apex %s, but alignment.apex says %s: "
+                 "leave one of the three out.",
+                 design->gear_pair.hand, design->alignment.pinion_rotation,
+                 alignment.apex == EO_APEX_LEADING ? "leading" : "trailing", apex);
+}
+
 static bool decode_current(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
                            struct eo_faults *faults)
 {
@@ -123,6 +141,8 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
     eo_load_cases_settle(json_object_get(document, "load_cases"), read.load_case, read.load_cases, warnings, faults);
   if (faults->count == before)
     check_alignments(document, &read, faults);
+  if (faults->count == before)
+    check_rotation(document, &read, faults);
   if (faults->count == before)
     eo_flank_grids_decode(json_object_get(document, "modification"), read.gear_pair.ends, &read.grids, faults);
   if (faults->count == before)
@@ -263,12 +283,19 @@ enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LEN
   return hash_document(eo_design_encode(design), hex, error);
 }
 
+/* The hand turns pictures and files round, and no number of an evaluation. */
+static void drop_hand(json_t *document)
+{
+  json_object_del(json_object_get(document, "gear_pair"), "hand");
+}
+
 static enum eo_code hash_without(const struct eo_design *design, const char *const *without,
                                  char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   json_t *document = eo_design_encode(design);
   for (int i = 0; without[i] && document; i++)
     json_object_del(document, without[i]);
+  drop_hand(document);
   return hash_document(document, hex, error);
 }
 
@@ -312,6 +339,7 @@ static json_t *encode_problem(const struct eo_design *design)
   size_t i;
   for (i = 0; i < sizeof without / sizeof without[0]; i++)
     json_object_del(document, without[i]);
+  drop_hand(document);
   json_object_del(json_object_get(document, "resolution"), "marking_thickness_um");
   if (!eo_objective_wants_rating(&design->objective)) /* a damage sum asks how long each load lasts */
     json_array_foreach(json_object_get(document, "load_cases"), i, load_case) json_object_del(load_case, "share");

@@ -38,7 +38,8 @@ struct flank {
   const struct eo_geometry *geometry;
   int member, end;
   struct eo_modification_shape shape;
-  double offset;        /* mid face of the end from the middle of the groove, m */
+  double offset;        /* z of mid face, m */
+  double along, across; /* +1, -1: from the frame of its own end to that of the member: z, x */
   double pitch, behind; /* to the frame below, from +x towards +y, rad; what a stagger turns more */
   double half;          /* from the tooth's centre to a flank at the working pitch radius, rad */
   bool coast;
@@ -75,7 +76,9 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
     struct eo_flank_spline *spline = NULL;
     text->failed = text->failed || eo_flank_shape(design, &half, side, member, end, &flank.shape, &spline);
     flank.coast = flank.shape.mirrored = side == EO_COAST_FLANK;
-    flank.offset = eo_gear_pair_mid_face(&design->gear_pair, end);
+    flank.offset = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(&design->gear_pair, end);
+    flank.along = (end == EO_LEFT ? -1 : 1) * eo_alignment_outwards(&design->alignment);
+    flank.across = -eo_design_rotation(design);
     double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
     flank.pitch = pitch_angle(geometry, member);
     flank.behind = member == EO_PINION ? behind : -behind;
@@ -128,10 +131,11 @@ static void turn(double vector[3], double angle) /* from +x towards +y */
 }
 
 /* Points:
-   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and
-   would, unmodified, pass through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives
-   one end with z along eta (pinion) or against it (gear). The left end mirrors the right one. A stagger turns the right
-   end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
+   Frame of a member: z its axis, from the middle of the groove (of the only face) to the right; the working flank of a
+   tooth faces +x (-x, all mirrored, where the pinion turns clockwise seen from its left end) and would, unmodified,
+   pass through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives one end with z
+   along eta (pinion) or against it (gear), y towards the face that meets first. A stagger turns the right end back:
+   against the motion, which goes to +x on the pinion, to -x on the gear. */
 static void place_vector(const struct flank *flank, const double local[3], double shift, double global[3])
 {
   double own[3] = {local[0], local[1], local[2]};
@@ -142,10 +146,9 @@ static void place_vector(const struct flank *flank, const double local[3], doubl
     turn(own, flank->half + flank->behind);
   } else
     turn(own, flank->pitch + flank->behind);
-  double outwards = shift + (flank->member == EO_PINION ? own[2] : -own[2]);
-  global[0] = own[0];
+  global[0] = flank->across * own[0];
   global[1] = own[1];
-  global[2] = flank->end == EO_LEFT && flank->offset > 0 ? -outwards : outwards;
+  global[2] = shift + flank->along * (flank->member == EO_PINION ? own[2] : -own[2]);
 }
 
 /* y: over the face, + on the side where drive flanks meet first. */

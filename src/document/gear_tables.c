@@ -13,6 +13,8 @@ enum { TO_MM = 1000000 };
 static const char *const other_modules[] = {"transverse_module_mm", "normal_diametral_pitch_per_inch",
                                             "transverse_diametral_pitch_per_inch", NULL};
 
+static const char *const hands[] = {"left", "right", NULL};
+
 static const char *const own_widths[] = {"pinion_face_width_mm", "gear_face_width_mm", NULL};
 
 #define OWN_WIDTH(member_)                                                                                             \
@@ -89,10 +91,13 @@ static const struct eo_field gear_pair[] = {
      .low = 0,
      .high = 60,
      .fallback = NAN,
-     .below = "The angle has no sign here: a single helical pair of the other hand is the mirror image, enter it "
-              "without the sign and exchange left and right; of a herringbone pair the hand decides whether the apex "
-              "leads or trails: see alignment.apex.",
+     .below = "The angle has no sign here: state it without the sign and the hand as gear_pair.hand.",
      .help = "helix angle beta at the pitch cylinder; 0: spur"},
+    EO_WORD_DERIVED(struct eo_gear_pair, hand, "hand", hands, 0, NULL,
+                    "that of a pinion which turns counterclockwise, seen from its left end: right with the apex "
+                    "trailing, left with the apex leading",
+                    "hand of the helix of the pinion's left half (of its only one); its right half and the gear have "
+                    "the other hand"),
     {.key = "face_width_mm",
      .kind = EO_FIELD_NUMBER,
      .flags = EO_FIELD_REQUIRED,
@@ -243,6 +248,7 @@ static const struct eo_field material[] = {
 
 static const char *const axial[] = {"floating", "fixed", "spring", "stops", NULL};
 static const char *const apex[] = {"trailing", "leading", NULL};
+static const char *const rotations[] = {"clockwise", "counterclockwise", NULL};
 
 /* An angle as a deviation: it states the angle, and stays in the document beside it. */
 #define DEVIATION(member, key_, states_, derived_, help_)                                                              \
@@ -298,7 +304,11 @@ static const struct eo_field alignment[] = {
               "how far the gear's right end stands away from its left one beyond the nominal distance"),
     EO_CHOICE(struct eo_alignment, apex, "apex", apex, EO_APEX_TRAILING,
               "where the helices of both ends would meet, running ahead on the drive flanks: trailing, the outer face "
-              "ends meet first, or leading, those at the groove"),
+              "ends meet first, or leading, those at the groove; of one end: trailing, its left face meets first, or "
+              "leading, its right one"),
+    EO_WORD_DERIVED(struct eo_alignment, pinion_rotation, "pinion_rotation", rotations, EO_FIELD_ENTRY, "apex", NULL,
+                    "which way the pinion turns when the design runs ahead, seen from its left end: with the hand it "
+                    "says whether the apex trails or leads; without it, which hand the apex asks for"),
 };
 
 /* Rules of eo_design_resolve(). */

@@ -37,6 +37,7 @@ static const struct eo_outline_row contact_rows[] = {
            "against position",
            .words = sequences),
     EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N),
+    EO_KEY("axial", "object", "rotation, first contact and forces along the axes", .outline = &eo_outline_axial),
     EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate",
            .words = outcomes),
     EO_KEY("position", "[number]", "phase of the mesh cycle of the left end, 0..1, over which the static curves run"),
@@ -72,6 +73,7 @@ json_t *eo_result_case_contact(struct eo_result_source *source, int k)
   eo_object_put(&object, "flank", json_string(flank_sides[case_result->running.flank]));
   eo_object_put(&object, "sequence", json_string(sequences[case_result->running.backwards]));
   eo_object_put_number(&object, "normal_force_N", case_result->force);
+  eo_object_put(&object, "axial", eo_result_axial(source, case_result));
   eo_object_put(&object, "outcome", json_string(outcome_of(case_result)));
   eo_object_put(&object, "position", eo_result_position(source));
   eo_object_put(&object, "lte", eo_result_lte(source, case_result));

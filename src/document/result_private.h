@@ -56,7 +56,7 @@ void eo_result_put_right_face(struct eo_object *object, const char *key, const s
 
 /* The parts; each stands beside its writer. */
 extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
-    eo_outline_face_load, eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress,
+    eo_outline_axial, eo_outline_face_load, eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress,
     eo_outline_vibration, eo_outline_modification, eo_outline_rating, eo_outline_tribology, eo_outline_pitch;
 extern const struct eo_outline eo_outline_value;    /* of a struct eo_objective_value */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
@@ -76,6 +76,7 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
 json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_face_load(const struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_contact(struct eo_result_source *source, int load_case);
+json_t *eo_result_axial(const struct eo_result_source *source, const struct eo_case_result *load_case);
 /* Normal gap that the bodies open at the pitch point, mean over the mesh cycle. */
 json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *load_case);

@@ -42,15 +42,25 @@ static void print_faces(const json_t *pair, const json_t *geometry, const struct
     eo_text_print(text, " (%.6g/%.6g)", pinion, gear);
 }
 
+/* Of the pinion. */
+static void print_hand(const json_t *pair, struct eo_text *text)
+{
+  const char *hand = find_text(pair, "hand");
+  if (*hand)
+    eo_text_print(text, find(pair, "ends") == 2 ? " (left end %s-handed)" : " (%s-handed)", hand);
+  eo_text_add(text, ", face ");
+}
+
 static void print_pair(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *pair = eo_json_find(result, "design/gear_pair"), *geometry = json_object_get(result, "geometry");
   char name[200];
   eo_text_clean(name, sizeof name, find_text(result, "design/name"));
   eo_text_print(text, "%s%s", name, *name ? "\n" : "");
-  eo_text_print(text, "  %.0f/%.0f teeth, m_n %.6g %s, beta %.6g deg, face ", find(pair, "pinion_teeth"),
+  eo_text_print(text, "  %.0f/%.0f teeth, m_n %.6g %s, beta %.6g deg", find(pair, "pinion_teeth"),
                 find(pair, "gear_teeth"), find(pair, "normal_module_mm") / as->divisor, as->length,
                 find(pair, "helix_angle_deg"));
+  print_hand(pair, text);
   print_faces(pair, geometry, as, text);
   eo_text_print(text, " %s, a %.7g %s, eps_alpha %.4g, eps_beta %.4g\n", as->length,
                 find(geometry, "centre_distance_mm") / as->divisor, as->length,
@@ -110,6 +120,21 @@ static void start_table(struct eo_text_table *sheet)
   eo_text_table_init(sheet, 5, headings);
 }
 
+/* Nothing without a helix, which has no axial force. */
+static void print_axial(const json_t *axial, struct eo_text *text)
+{
+  const char *first = find_text(axial, "meets_first");
+  double right = find(axial, "pinion_right_N");
+  if (!*first)
+    return;
+  eo_text_print(text, "  the pinion turns %s seen from its left end, the %s face%s first; axial force on it ",
+                find_text(axial, "pinion_rotation"), first, isnan(right) ? " meets" : " ends meet");
+  if (isnan(right))
+    eo_text_print(text, "%+.5g N (+ to the right)\n", find(axial, "pinion_left_N"));
+  else
+    eo_text_print(text, "%+.5g and %+.5g N (left, right end; + to the right)\n", find(axial, "pinion_left_N"), right);
+}
+
 static void print_case(const json_t *result, size_t k, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), k);
@@ -118,6 +143,7 @@ static void print_case(const json_t *result, size_t k, const struct shown_length
   struct eo_text_table sheet;
   eo_text_print(text, "%.6g N m, %.6g rpm, share %.4g: %s\n", find(load_case, "torque_Nm"),
                 find(load_case, "speed_rpm"), find(load_case, "share"), find_text(load_case, "outcome"));
+  print_axial(json_object_get(load_case, "axial"), text);
   start_table(&sheet);
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
     const struct quantity *quantity = &quantities[i];

@@ -20,6 +20,7 @@ static const struct {
     {"mn", "gear_pair.normal_module_mm", EO_KEY_USUAL},
     {"alpha_n", "gear_pair.normal_pressure_angle_deg", EO_KEY_USUAL},
     {"beta", "gear_pair.helix_angle_deg", EO_KEY_USUAL},
+    {"hand", "gear_pair.hand", EO_KEY_SURE},
     {"b", "gear_pair.face_width_mm", EO_KEY_USUAL},
     {"x", "gear_pair.profile_shift", EO_KEY_SURE},
     {"a", "gear_pair.centre_distance_mm", EO_KEY_USUAL},

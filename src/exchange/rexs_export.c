@@ -37,7 +37,7 @@ struct writer {
   json_t *document;
   const json_t *gear_pair, *shafts;
   int ends;
-  double mirror;   /* +1: the driver turns negatively; -1: the mirror image of all */
+  double mirror;   /* +1: the pinion turns negatively, its left flanks carry ahead; -1: the mirror image */
   double overhang; /* from the outer face to the end of the shaft, mm */
 };
 
@@ -204,11 +204,11 @@ static void write_shaft(struct writer *writer, int member)
   write_load(writer, member);
 }
 
-/* + right-handed: the pinion's left end, of one end the other hand; mates are opposite. */
+/* + right-handed; both ends of a member, and mates, are opposite. */
 static double helix_of(const struct writer *writer, int member, int end)
 {
-  double hand = writer->ends == 1 || end == EO_RIGHT ? -1 : 1;
-  return writer->mirror * (member == EO_GEAR ? -hand : hand) * pair_number(writer, "helix_angle_deg");
+  double hand = eo_alignment_outwards(&writer->design->alignment) * writer->mirror;
+  return ((member == EO_GEAR) != (end == EO_RIGHT) ? -hand : hand) * pair_number(writer, "helix_angle_deg");
 }
 
 static void write_flank(struct writer *writer, int member, int end, int side, int *modification)
@@ -217,7 +217,7 @@ static void write_flank(struct writer *writer, int member, int end, int side, in
   const json_t *block = json_object_get(
       json_object_get(json_object_get(writer->document, "modification"), member_name[member]), end_name[end]);
   bool loaded = side == (writer->mirror < 0);
-  double leading = helix_of(writer, EO_PINION, end) * -writer->mirror < 0 ? -1 : 1;
+  double leading = (end == EO_LEFT ? -1 : 1) * eo_alignment_outwards(&writer->design->alignment);
   struct eo_rexs_flank_export flank = {writer->design, writer->geometry, member, end, !loaded, leading};
   eo_rexs_build(&writer->builder, id, "cylindrical_gear_flank", "");
   eo_rexs_build_number(&writer->builder, "normal_pressure_angle", pair_number(writer, "normal_pressure_angle_deg"));
@@ -368,9 +368,7 @@ void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *ge
   writer.gear_pair = json_object_get(writer.document, "gear_pair");
   writer.shafts = json_object_get(writer.document, "shafts");
   writer.ends = design->gear_pair.ends;
-  const char *hand = json_string_value(json_object_get(writer.gear_pair, "hand"));
-  bool right_handed = writer.ends == 2; /* the left end of a design's own frame */
-  writer.mirror = hand && (strcmp(hand, "right") == 0) != right_handed ? -1 : 1;
+  writer.mirror = -eo_design_rotation(design);
   writer.overhang = overhang(&writer);
   write_head(&writer);
   write_unit(&writer, with_design);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A design as a REXS model, in the design's own frame: u from left to right, the driver turns negatively about it, the
-   left flanks carry the load, and the pinion's left end is right-handed. */
+/* A design as a REXS model, in the design's own frame: u from left to right. The pinion turns ahead as
+   eo_design_rotation() says: negatively about u its left flanks carry, positively, all mirrored, its right ones. */
 #ifndef EASEOFF_EXCHANGE_REXS_EXPORT_H
 #define EASEOFF_EXCHANGE_REXS_EXPORT_H
 

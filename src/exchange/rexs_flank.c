@@ -255,8 +255,4 @@ void eo_rexs_read_modification(struct eo_rexs_import *import, json_t *design)
     for (int end = 0; end < import->pair->ends; end++)
       for (int coast = 0; coast < 2; coast++)
         read_flank(import, modification, member, end, coast);
-  const struct eo_rexs_wheel *driver = &import->wheel[EO_PINION][EO_LEFT];
-  if (import->pair->ends == 2 && driver->helix * import->rotation > 0)
-    eo_import_say(import->out, import->out->notes,
-                  "the groove side meets first; the sign of shaft angle errors is then reversed");
 }

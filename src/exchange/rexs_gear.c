@@ -381,3 +381,21 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   put_backlash(import, gear_pair);
   return true;
 }
+
+/* The face at larger x meets first where hand and rotation have one sign: at the groove of the left end, or on the
+   right of the only one. */
+void eo_rexs_read_hand(struct eo_rexs_import *import, json_t *design)
+{
+  double helix = import->wheel[EO_PINION][EO_LEFT].helix;
+  bool leading = helix * import->rotation > 0;
+  if (helix == 0)
+    return;
+  eo_rexs_put_word(import, &eo_gear_pair_table, eo_rexs_part(import, design, "gear_pair"), "hand",
+                   helix > 0 ? "right" : "left");
+  eo_rexs_put_word(import, &eo_alignment_table, eo_rexs_part(import, design, "alignment"), "apex",
+                   leading ? "leading" : "trailing");
+  if (leading)
+    eo_import_say(import->out, import->out->notes,
+                  import->pair->ends == 2 ? "the groove side meets first: the apex leads"
+                                          : "the right face meets first: alignment.apex is \"leading\"");
+}

@@ -265,6 +265,7 @@ static void read_pair(struct eo_rexs_import *import)
   read_name(import, design);
   if (!eo_rexs_read_gear_pair(import, design) || !eo_rexs_find_rotation(import))
     return;
+  eo_rexs_read_hand(import, design);
   eo_rexs_read_bodies(import, design);
   eo_rexs_read_loads(import, design);
   eo_rexs_read_modification(import, design);

@@ -41,6 +41,8 @@ int eo_rexs_loaded_side(const struct eo_rexs_import *import, int member, int end
 
 /* gear_pair and the common face; false: a fault is told. */
 bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design);
+/* gear_pair.hand and alignment.apex, when the rotation is found. */
+void eo_rexs_read_hand(struct eo_rexs_import *import, json_t *design);
 /* material, shafts, alignment: bodies and bearings beside the teeth. */
 void eo_rexs_read_bodies(struct eo_rexs_import *import, json_t *design);
 void eo_rexs_read_modification(struct eo_rexs_import *import, json_t *design);

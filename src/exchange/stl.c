@@ -136,16 +136,18 @@ static int put_triangle(struct eo_text *text, const double a[3], const double b[
   return 1;
 }
 
-/* Points of a ring follow each other from +y towards +x, rings from left to right: clockwise seen from outside. */
+/* Points of a ring follow each other from +y towards +x, rings from left to right: clockwise seen from outside; of a
+   mirrored body the other way. */
 static uint32_t put_triangles(struct skin *skin, struct eo_text *text)
 {
   uint32_t count = 0;
+  bool mirrored = eo_design_rotation(skin->design) > 0;
   for (int k = 0; k < skin->rings; k++) {
     double(*a)[3] = ring_at(skin, k), (*b)[3] = ring_at(skin, (k + 1) % skin->rings);
     for (int i = 0; i < skin->points; i++) {
       int next = (i + 1) % skin->points;
-      count += (uint32_t)put_triangle(text, a[i], b[next], a[next]);
-      count += (uint32_t)put_triangle(text, a[i], b[i], b[next]);
+      count += (uint32_t)put_triangle(text, a[i], mirrored ? a[next] : b[next], mirrored ? b[next] : a[next]);
+      count += (uint32_t)put_triangle(text, a[i], mirrored ? b[next] : b[i], mirrored ? b[i] : b[next]);
     }
   }
   return count;

@@ -57,6 +57,8 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
   tooth->member = member;
   tooth->end = end;
   tooth->two_ends = design->gear_pair.ends == 2;
+  tooth->along = (end == EO_LEFT ? -1 : 1) * eo_alignment_outwards(&design->alignment);
+  tooth->across = -eo_design_rotation(design);
   for (int side = 0; side < 2; side++)
     if (eo_flank_shape(design, geometry, (enum eo_flank_side)side, member, end, &tooth->shape[side],
                        &tooth->spline[side])) {
@@ -64,7 +66,7 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
       return eo_error_memory(error);
     }
   tooth->shape[EO_COAST_FLANK].mirrored = true; /* flank_point() has it in a frame that runs against y */
-  tooth->offset = eo_gear_pair_mid_face(&design->gear_pair, end);
+  tooth->offset = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(&design->gear_pair, end);
   double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
   tooth->pitch = pitch_angle(geometry, member, 0);
   tooth->behind = member == EO_PINION ? behind : -behind;
@@ -215,20 +217,19 @@ void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int n
                     double point[3], double normal[3])
 {
   const struct eo_geometry *geometry = tooth->geometry;
-  bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
-  double outwards = geometry->member_width[tooth->member] * (mirrored ? 0.5 - q : q - 0.5), unused[3];
+  double y = geometry->member_width[tooth->member] * tooth->along * (q - 0.5), unused[3];
   double *across = normal ? normal : unused;
   if (is_flank(part))
-    flank_point(tooth, part == EO_TOOTH_COAST, tooth->start_path + p * (tooth->tip_path - tooth->start_path), outwards,
-                point, across);
+    flank_point(tooth, part == EO_TOOTH_COAST, tooth->start_path + p * (tooth->tip_path - tooth->start_path), y, point,
+                across);
   else
-    swept_point(tooth, part, p, tooth->member == EO_PINION ? outwards : -outwards, point, across);
+    swept_point(tooth, part, p, tooth->member == EO_PINION ? y : -y, point, across);
   double angle = -tooth->half - tooth->behind + number * 2 * M_PI / geometry->teeth[tooth->member];
   double *const both[2] = {point, across};
   for (int i = 0; i < 2; i++) {
     turn_vector(both[i], angle);
-    double outward = tooth->member == EO_PINION ? both[i][2] : -both[i][2];
-    outward += i == 0 ? tooth->offset : 0;
-    both[i][2] = mirrored ? -outward : outward;
+    both[i][0] *= tooth->across;
+    both[i][2] *= tooth->member == EO_PINION ? tooth->along : -tooth->along;
   }
+  point[2] += tooth->offset;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surfaces of one tooth in the frame of the member (that of flank-points): z the axis, from the middle of the
-   groove to the right; the drive flank faces +x and would, unmodified, pass through x = 0 at the working pitch radius
-   in mid face. Teeth have no thickness allowance. Flanks are modified over their active profile, tip included; what
+   groove (of the only face) to the right; the drive flank would, unmodified, pass through x = 0 at the working pitch
+   radius in mid face. It faces +x, or -x where the pinion turns clockwise seen from its left end: that is the mirror
+   image. Teeth have no thickness allowance. Flanks are modified over their active profile, tip included; what
    lies below it belongs to the root, unmodified: a relief is not defined there, and going on it can fold near the base
    circle. */
 #ifndef EASEOFF_EXCHANGE_TOOTH_H
@@ -30,9 +31,10 @@ struct eo_tooth {
   const struct eo_geometry *geometry; /* the same; a tooth stays where it was made */
   int member, end;
   bool two_ends;
+  double along, across;                  /* +1, -1: from the frame of its own end to that of the member: z, x */
   struct eo_modification_shape shape[2]; /* [drive, coast] */
   struct eo_flank_spline *spline[2];     /* owned: their grids; NULL: none */
-  double offset;                         /* mid face from the middle of the groove, m */
+  double offset;                         /* z of mid face, m */
   double pitch;                          /* angle of the unmodified flank at the pitch radius in mid face as
                                             eo_surface_evaluate() has it, from +y towards +x, rad */
   double behind;                         /* a stagger: turn from +x towards +y, rad */
@@ -56,7 +58,7 @@ int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int d
 
 /* Point (m) and unit normal (may be NULL), out of the tooth. p: profile, from root to tip, of the tip land from the
    coast to the drive flank, of a root from the middle of the tooth space to the flank; q: face, from left to right.
-   number: of the tooth, 0 the one described above, the others behind it from +y towards +x. */
+   number: of the tooth, 0 the one described above, the others from the drive flank's side on. */
 void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
                     double point[3], double normal[3]);
 

@@ -207,6 +207,12 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
     .key = key_, .kind = EO_FIELD_TEXT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .low = low_, \
     .count = sizeof((type *)0)->member, .derived = derived_, .help = help_                                         \
   }
+/* One of the words; null, or absent: "". flags: EO_FIELD_ENTRY states the key states_. */
+#define EO_WORD_DERIVED(type, member, key_, choices_, flags_, states_, derived_, help_)                            \
+  {                                                                                                                \
+    .key = key_, .kind = EO_FIELD_TEXT, .flags = EO_FIELD_NULLABLE | (flags_), .offset = offsetof(type, member),   \
+    .count = sizeof((type *)0)->member, .choices = choices_, .states = states_, .derived = derived_, .help = help_ \
+  }
 /* An object of its own, which the schema names. */
 #define EO_DOCUMENT(type, member, key_, document_, flags_, help_)                                                     \
   {                                                                                                                   \

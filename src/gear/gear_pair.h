@@ -28,7 +28,9 @@ struct eo_gear_pair {
   int teeth[2];                 /* [member]: pinion, gear */
   double normal_module;         /* m_n, m */
   double normal_pressure_angle; /* alpha_n, rad; NaN: 20 deg (settled) */
-  double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
+  double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 */
+  char hand[8];                 /* of the pinion's left half, "left" or "right"; the other half's and the gear's follow;
+                                   "": eo_design_resolve() */
   double face_width;           /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
   double member_width[2];      /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
   double right_face_width;     /* b of the right end, m; NaN: face_width, which is that of the left one then */

@@ -87,7 +87,7 @@ says '/gear_pair/planets: Planetary stages are not modelled'
 expect 1 "an internal gear" sh -c "sed 's/53/-53/; s/, \"planets\": 3//' '$folder/design.json' | '$EASEOFF' design -"
 says '/gear_pair/gear_teeth: -53 is outside 4 .. 2000. Internal gears'
 expect 1 "a left hand" sh -c "sed 's/deg\": 0/deg\": -30/; s/, \"planets\": 3//' '$folder/design.json' | '$EASEOFF' design -"
-says '/gear_pair/helix_angle_deg: -30 is outside .* mirror image'
+says '/gear_pair/helix_angle_deg: -30 is outside .* gear_pair.hand'
 printf '{"gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55}}' >"$folder/no-load.json"
 expect 1 "no load" "$EASEOFF" design "$folder/no-load.json"
 says '/load_cases: This key is required'

@@ -651,6 +651,7 @@ static void test_pair_identity(void)
                                                "gear_teeth_spanned",
                                                "pinion_measuring_ball_mm",
                                                "gear_measuring_ball_mm",
+                                               "hand",
                                                NULL},
                            *const kept[] = {
                                "hub_windup", "marking_thickness_um", "mesh_law", "solver", "impact_in_dynamics",

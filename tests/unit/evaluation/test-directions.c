@@ -349,6 +349,87 @@ static void test_own_alignment(void)
   ok(apart(&own, 0, &first, 0) > 1e-7 && first.running.in_plane == 0, "the other load case keeps the design's");
 }
 
+static struct eo_design turning(const struct eo_design *design, const char *hand, const char *rotation)
+{
+  struct eo_design turned = *design;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  snprintf(turned.gear_pair.hand, sizeof turned.gear_pair.hand, "%s", hand);
+  snprintf(turned.alignment.pinion_rotation, sizeof turned.alignment.pinion_rotation, "%s", rotation);
+  if (eo_design_complete(&turned, &geometry, &error))
+    stop(&error);
+  return turned;
+}
+
+/* Two of hand, rotation and apex say the third. */
+static void test_hand_and_rotation(void)
+{
+  static const char *const hands[2] = {"left", "right"}, *const rotations[2] = {"counterclockwise", "clockwise"};
+  struct eo_design design = plain_design(), turned;
+  *design.gear_pair.hand = '\0';
+  for (int hand = 0; hand < 2; hand++)
+    for (int clockwise = 0; clockwise < 2; clockwise++) {
+      turned = turning(&design, hands[hand], rotations[clockwise]);
+      ok(turned.alignment.apex == (hand == clockwise ? EO_APEX_LEADING : EO_APEX_TRAILING) &&
+             eo_design_rotation(&turned) == (clockwise ? 1 : -1) && !*turned.alignment.pinion_rotation,
+         "%s hand, %s: apex %d", hands[hand], rotations[clockwise], turned.alignment.apex);
+      design.alignment.apex = turned.alignment.apex;
+      struct eo_design derived = turning(&design, "", rotations[clockwise]);
+      ok(strcmp(derived.gear_pair.hand, hands[hand]) == 0, "apex and rotation ask for a %s hand", hands[hand]);
+      design.alignment.apex = EO_APEX_TRAILING;
+    }
+  turned = turning(&design, "", "");
+  ok(strcmp(turned.gear_pair.hand, "right") == 0 && eo_design_rotation(&turned) == -1,
+     "nothing stated: counterclockwise, right-handed");
+}
+
+/* One end on shafts without symmetry: the pinion of the other hand that turns the other way is the mirror image in the
+   plane of the axes, the one that turns the same way that in a plane across them. */
+static void test_mirror(void)
+{
+  struct eo_design design = plain_design(), mirrored;
+  struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &form}, .own_pivots = true};
+  struct eo_pair *two = pair, *single = NULL;
+  struct eo_evaluator *of_two = evaluator;
+  struct eo_error error;
+  design.gear_pair.ends = 1;
+  *design.gear_pair.hand = '\0';
+  design.modification.flank[EO_PINION][EO_LEFT] = odd_flank(1);
+  design.alignment.pinion_axial = EO_AXIAL_FIXED;
+  design.alignment.shaft_angle_in_plane = 2e-4;
+  design.alignment.shaft_angle_out_of_plane = -1e-4;
+  design.shafts.enabled = true;
+  for (int i = 0; i < 2; i++) {
+    design.shafts.bearing_position[i][EO_LEFT] = -0.06;
+    design.shafts.bearing_position[i][EO_RIGHT] = 0.11;
+    design.shafts.drive_side[i] = EO_DRIVE_LEFT;
+  }
+  design = turning(&design, "right", "counterclockwise");
+  if (eo_pair_new(&single, &design, &options, NULL, &error) || eo_evaluator_new(&evaluator, single, 1, &error))
+    stop(&error);
+  pair = single;
+  struct answer a = solve(&design);
+  mirrored = turning(&design, "left", "clockwise");
+  struct answer b = solve(&mirrored);
+  close_to(apart(&a, 0, &b, 0), 0, 0, "the other hand turning the other way: the same");
+  mirrored = turning(&design, "left", "counterclockwise");
+  struct answer c = solve(&mirrored);
+  ok(apart(&a, 0, &c, 0) > 1e-8, "turning the same way: another result, by %.3g um", 1e6 * apart(&a, 0, &c, 0));
+  mirrored.alignment.shaft_angle_in_plane *= -1;
+  mirrored.alignment.shaft_angle_out_of_plane *= -1;
+  for (int i = 0; i < 2; i++) {
+    mirrored.shafts.bearing_position[i][EO_LEFT] = -0.11;
+    mirrored.shafts.bearing_position[i][EO_RIGHT] = 0.06;
+    mirrored.shafts.drive_side[i] = EO_DRIVE_RIGHT;
+  }
+  struct answer d = solve(&mirrored);
+  close_to(apart(&a, 0, &d, 0), 0, ROUNDING, "and with shafts and errors mirrored too: the same");
+  eo_evaluator_free(evaluator);
+  eo_pair_free(single);
+  pair = two;
+  evaluator = of_two;
+}
+
 int main(void)
 {
   struct eo_design design = plain_design();
@@ -366,6 +447,8 @@ int main(void)
   test_thrust();
   test_sampled_grid();
   test_own_alignment();
+  test_hand_and_rotation();
+  test_mirror();
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return tap_done();

@@ -12,6 +12,7 @@
 #include "exchange/rexs_export.h"
 #include "exchange/rexs_read.h"
 #include "exchange/rexs_schema.h"
+#include "format/json.h"
 #include "support/tap.h"
 
 static struct eo_design design;
@@ -169,6 +170,38 @@ static void check_example(const char *name)
   check_plain(name, EO_REXS_EXPORT_VERSION);
 }
 
+/* Hand and apex in REXS's own words, shafts that are no mirror image of themselves beside them. */
+static void check_hands(void)
+{
+  static const char *const hands[2] = {"left", "right"}, *const names[2] = {"paper-case-b", "single"};
+  for (int i = 0; i < 8; i++) {
+    struct eo_error error;
+    if (!eo_example_build(names[i & 1], &design))
+      printf("Bail out! example\n");
+    snprintf(design.gear_pair.hand, sizeof design.gear_pair.hand, "%s", hands[i >> 1 & 1]);
+    design.alignment.apex = (enum eo_apex)(i >> 2);
+    design.shafts.bearing_position[EO_PINION][EO_LEFT] = -0.17;
+    design.shafts.bearing_position[EO_PINION][EO_RIGHT] = 0.21;
+    design.modification.flank[EO_PINION][EO_LEFT].helix_slope = 9e-6;
+    if (eo_design_complete(&design, &geometry, &error))
+      printf("Bail out! %s\n", error.text);
+    struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+    struct eo_import import = read_file(&text);
+    json_t *found = complete(import.design), *expected = eo_design_encode(&design);
+    ok(found && json_equal(eo_json_find(found, "gear_pair/hand"), eo_json_find(expected, "gear_pair/hand")) &&
+           json_equal(eo_json_find(found, "alignment/apex"), eo_json_find(expected, "alignment/apex")),
+       "%s, %s hand, apex %d: out and in", names[i & 1], hands[i >> 1 & 1], i >> 2);
+    static const char *const parts[] = {"shafts/pinion_left_bearing_mm", "shafts/pinion_right_bearing_mm",
+                                        "modification/pinion/left/helix_slope_um"};
+    for (int k = 0; k < 3; k++)
+      close_to(eo_json_find_number(found, parts[k]), eo_json_find_number(expected, parts[k]), 1e-9, parts[k]);
+    json_decref(found);
+    json_decref(expected);
+    eo_import_done(&import);
+    eo_text_done(&text);
+  }
+}
+
 static bool says(const json_t *list, const char *text)
 {
   const json_t *entry;
@@ -298,6 +331,7 @@ int main(void)
   static const char *const fast[] = {"paper-case-b", "shifted", "single"};
   for (size_t i = 0; i < sizeof fast / sizeof *fast; i++)
     check_example(fast[i]);
+  check_hands();
   check_edited();
   check_topography();
   check_hostile();

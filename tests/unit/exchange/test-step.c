@@ -18,11 +18,16 @@ static const double allowed = 10e-9; /* m off the exact surface */
 
 static struct eo_design design;
 static struct eo_geometry geometry;
+static const char *hand = "";                /* of the designs that are built */
+static enum eo_apex apex = EO_APEX_TRAILING; /* the same */
 
 static void build(const char *name)
 {
   struct eo_error error;
-  if (!eo_example_build(name, &design) || eo_design_complete(&design, &geometry, &error))
+  bool found = eo_example_build(name, &design);
+  snprintf(design.gear_pair.hand, sizeof design.gear_pair.hand, "%s", hand);
+  design.alignment.apex = apex;
+  if (!found || eo_design_complete(&design, &geometry, &error))
     printf("Bail out! example %s\n", name);
 }
 
@@ -133,13 +138,12 @@ static void check_frame(const char *name, bool coast)
       continue;
     struct eo_tooth tooth;
     init(&tooth, strcmp(member, "gear") == 0, strcmp(end, end_name[1]) == 0);
-    bool mirrored = tooth.two_ends && tooth.end == EO_LEFT;
     double s = geometry.path_start +
                (geometry.path_end - geometry.path_start) * (tooth.member == EO_PINION ? row / 20. : 1 - row / 20.);
     double p = (eo_geometry_own_path(tooth.member, s) - tooth.start_path) / (tooth.tip_path - tooth.start_path);
     bool on_coast = strcmp(flank, "coast") == 0;
     coasts += on_coast;
-    eo_tooth_point(&tooth, on_coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30.,
+    eo_tooth_point(&tooth, on_coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, 0, p, 0.5 + tooth.along * (column / 30. - 0.5),
                    point, NULL);
     largest = fmax(largest, hypot(hypot(1e3 * point[0] - x, 1e3 * point[1] - y), 1e3 * point[2] - z));
     compared++;
@@ -172,6 +176,47 @@ static void check_coast_slope(void)
       close_to(1e6 * off[1], 20, 0.5, "off the outer end of a coast flank, um");
       close_to(1e6 * off[0], -20, 0.5, "and on at the inner one");
       design.modification.coast[member][end].helix_slope = 0;
+    }
+}
+
+/* The body itself tells hand and apex: right-handed teeth turn positively about z as z grows, drive flanks face the way
+   the pinion turns (the gear's against theirs), and the face that meets first is ahead on the pinion. */
+static void check_hand(const char *name, const char *left_hand, enum eo_apex wanted)
+{
+  int wrong = 0;
+  hand = left_hand;
+  apex = wanted;
+  build(name);
+  double right = strcmp(left_hand, "right") == 0 ? 1 : -1, out = wanted == EO_APEX_LEADING ? -1 : 1;
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < design.gear_pair.ends; end++) {
+      struct eo_tooth tooth;
+      double face[2][3], normal[3], angle[2];
+      init(&tooth, member, end);
+      for (int q = 0; q < 2; q++) {
+        eo_tooth_point(&tooth, EO_TOOTH_DRIVE, 0, 0.5, q, face[q], normal);
+        angle[q] = atan2(-face[q][0], face[q][1]); /* about z, from +y */
+      }
+      double rises = (end == EO_RIGHT) != (member == EO_GEAR) ? -right : right, rotation = -right * out,
+             first = (end == EO_LEFT ? -1 : 1) * out;
+      wrong += !(face[1][2] > face[0][2]) || !((angle[1] - angle[0]) * rises > 0);
+      wrong += !(-normal[0] * rotation > 0);
+      wrong += member == EO_PINION && !((angle[1] - angle[0]) * rotation * first > 0);
+    }
+  ok(wrong == 0, "%s, %s hand, apex %s: helix, flank and first face of every end", name, left_hand,
+     wanted == EO_APEX_LEADING ? "leading" : "trailing");
+  check_frame(name, true);
+  hand = "";
+  apex = EO_APEX_TRAILING;
+}
+
+static void check_hands(void)
+{
+  static const char *const hands[2] = {"left", "right"};
+  for (int i = 0; i < 2; i++)
+    for (int leading = 0; leading < 2; leading++) {
+      check_hand("paper-case-b", hands[i], (enum eo_apex)leading);
+      check_hand("single", hands[i], (enum eo_apex)leading);
     }
 }
 
@@ -406,9 +451,12 @@ int main(void)
     check_loaded("shifted", EO_GEAR);
   } else
     ok(1, "loading in OpenCASCADE # SKIP gmsh is not installed");
+  check_hands();
   /* pinion of the paper: between root and tip cylinders, 2 x 55 mm, and 50 mm of groove body 94.65 mm */
-  check_stl("paper-case-b", "stl-pinion",
-            1e9 * M_PI * 0.04905 * 0.04905 * 0.11 + 1e9 * M_PI * 0.047325 * 0.047325 * 0.05,
-            1e9 * M_PI * 0.0618 * 0.0618 * 0.11 + 1e9 * M_PI * 0.047325 * 0.047325 * 0.05);
+  double groove = 1e9 * M_PI * 0.047325 * 0.047325 * 0.05, low = 1e9 * M_PI * 0.04905 * 0.04905 * 0.11 + groove,
+         high = 1e9 * M_PI * 0.0618 * 0.0618 * 0.11 + groove;
+  check_stl("paper-case-b", "stl-pinion", low, high);
+  hand = "left";
+  check_stl("paper-case-b", "stl-pinion", low, high);
   return tap_done();
 }
