@@ -36,15 +36,16 @@ static int floored(int number, int by)
   return (number - wrap(number, by)) / by;
 }
 
-/* theory (P2): C_Halpha xi/2 + C_Hbeta zeta/2 of one member. */
-static double slopes_at(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
-                        int member, const struct eo_tooth_deviation *tooth)
+/* theory (P2): C_Halpha xi/2 + C_Hbeta zeta/2 + C_alpha xi^2 + C_beta zeta^2 of one member. */
+static double form_at(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards, int member,
+                      const struct eo_tooth_deviation *tooth)
 {
   double middle = (geometry->path_start + geometry->path_end) / 2,
          half = (geometry->path_end - geometry->path_start) / 2,
          xi = eo_geometry_own_path(member, point->s[member] - middle) / half,
          zeta = (inwards ? -2 : 2) * point->eta / geometry->face_width;
-  return (tooth->profile_slope * xi + tooth->helix_slope * zeta) / 2;
+  return (tooth->profile_slope * xi + tooth->helix_slope * zeta) / 2 + tooth->profile_crowning * xi * xi +
+         tooth->lead_crowning * zeta * zeta;
 }
 
 double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
@@ -54,7 +55,7 @@ double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_
   for (int member = 0; member < 2; member++)
     if (tooth[member])
       /* theory (P1) */
-      gap += slopes_at(geometry, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
+      gap += form_at(geometry, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
   return gap;
 }
 

@@ -18,6 +18,7 @@ struct eo_tooth_deviation {
   double index;         /* F, m, on the arc of the reference circle, transverse, + displaced towards the mate */
   double profile_slope; /* C_Halpha, m, + takes more off at the tip */
   double helix_slope;   /* C_Hbeta, m, over the face width, + takes more off at positive y */
+  double profile_crowning, lead_crowning; /* C_alpha as a barrel, C_beta, m, + takes off at both ends */
 };
 
 enum { EO_HUNTING_MOST_INSTANTS = 1 << 19 };

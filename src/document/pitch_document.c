@@ -24,7 +24,8 @@ struct pitch_document {
   struct member_document member[2];
 };
 
-static const char *const term_key[EO_TOOTH_TERMS] = {"index_um", "profile_slope_um", "helix_slope_um"};
+static const char *const term_key[EO_TOOTH_TERMS] = {"index_um", "profile_slope_um", "helix_slope_um",
+                                                     "profile_crowning_um", "lead_crowning_um"};
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
 #define FLANK_ROWS(side)                                                                                              \
@@ -38,7 +39,13 @@ static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2]
       EO_SERIES(struct end_document, side.term[EO_TOOTH_HELIX_SLOPE], "helix_slope_um", &eo_unit_um, MOST_TEETH,      \
                 -1000, 1000, 0,                                                                                       \
                 "C_Hbeta of each tooth beside the flank's own, + takes more off at the face end that meets first "    \
-                "on the drive flank; [] : none")
+                "on the drive flank; [] : none"),                                                                     \
+      EO_SERIES(struct end_document, side.term[EO_TOOTH_PROFILE_CROWNING], "profile_crowning_um", &eo_unit_um,        \
+                MOST_TEETH, -1000, 1000, 0,                                                                           \
+                "C_alpha of each tooth beside the flank's own, as a barrel, + takes off at root and tip; [] : none"), \
+      EO_SERIES(struct end_document, side.term[EO_TOOTH_LEAD_CROWNING], "lead_crowning_um", &eo_unit_um, MOST_TEETH,  \
+                -1000, 1000, 0,                                                                                       \
+                "C_beta of each tooth beside the flank's own, + takes off at both face ends; [] : none")
 #define TEXT_ROW(help_)                                                                                 \
   {                                                                                                     \
     .key = "csv", .kind = EO_FIELD_TEXT, .flags = EO_FIELD_ELSEWHERE, .count = MOST_TEXT, .help = help_ \
@@ -65,6 +72,9 @@ static const char *const editions[] = {"1995", "1995_exact", "2013", NULL};
 static const struct eo_field member_fields[] = {
     EO_INTEGER(struct member_document, own.tolerance_class, "tolerance_class", 0, 12, 0,
                "class of ISO 1328-1 from which the flanks without index_um are drawn; 0: not drawn"),
+    EO_INTEGER(struct member_document, own.flank_class, "flank_class", 0, 12, 0,
+               "class of ISO 1328-1 from which slopes and crownings of single teeth are drawn where no array states "
+               "them: slopes within f_Halpha and f_Hbeta, crownings within f_falpha and f_fbeta; 0: not drawn"),
     EO_CHOICE(struct member_document, own.edition, "tolerance_edition", editions, EO_ISO1328_2013,
               "of ISO 1328-1: classes of 2013, grades of 1995"),
     EO_NUMBER(struct member_document, own.tolerance_share, "tolerance_share", NULL, 0, 1, 1,

@@ -9,9 +9,22 @@
 
 enum { MOST_TEETH = 2000, MOST_COLUMNS = 32, MOST_CELL = 64, FLANKS = 8 };
 
-enum heading { TOOTH, INDEX, SINGLE, PROFILE_SLOPE, HELIX_SLOPE, MEMBER, END, FLANK, HEADINGS };
-static const char *const heading_name[HEADINGS] = {"tooth",          "index_um", "single_um", "profile_slope_um",
-                                                   "helix_slope_um", "member",   "end",       "flank"};
+enum heading {
+  TOOTH,
+  INDEX,
+  SINGLE,
+  PROFILE_SLOPE,
+  HELIX_SLOPE,
+  PROFILE_CROWNING,
+  LEAD_CROWNING,
+  MEMBER,
+  END,
+  FLANK,
+  HEADINGS
+};
+static const char *const heading_name[HEADINGS] = {
+    "tooth",  "index_um", "single_um", "profile_slope_um", "helix_slope_um", "profile_crowning_um", "lead_crowning_um",
+    "member", "end",      "flank"};
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"},
                          *const side_name[2] = {"drive", "coast"};
 
@@ -90,9 +103,9 @@ static enum eo_code read_headings(struct reading *reading, bool whole, struct eo
     if (found == HEADINGS || (!whole && found >= MEMBER))
       return refuse(reading, error,
                     whole ? "is no heading; those known are tooth, index_um, single_um, profile_slope_um, "
-                            "helix_slope_um, member, end and flank."
-                          : "is no heading; those of one flank are tooth, index_um, single_um, profile_slope_um and "
-                            "helix_slope_um.",
+                            "helix_slope_um, profile_crowning_um, lead_crowning_um, member, end and flank."
+                          : "is no heading; those of one flank are tooth, index_um, single_um, profile_slope_um, "
+                            "helix_slope_um, profile_crowning_um and lead_crowning_um.",
                     cell);
     if (reading->has[found] || reading->columns == MOST_COLUMNS)
       return refuse(reading, error, "stands there twice.", cell);
@@ -100,7 +113,8 @@ static enum eo_code read_headings(struct reading *reading, bool whole, struct eo
     reading->heading[reading->columns++] = (enum heading)found;
   }
   if (!reading->has[TOOTH] || (reading->has[INDEX] && reading->has[SINGLE]) ||
-      !(reading->has[INDEX] || reading->has[SINGLE] || reading->has[PROFILE_SLOPE] || reading->has[HELIX_SLOPE]))
+      !(reading->has[INDEX] || reading->has[SINGLE] || reading->has[PROFILE_SLOPE] || reading->has[HELIX_SLOPE] ||
+        reading->has[PROFILE_CROWNING] || reading->has[LEAD_CROWNING]))
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "Line %d of the table: headings name tooth and what is stated of it, with one of index_um and "
                         "single_um at most.",
@@ -181,7 +195,7 @@ static enum eo_code put_flank(const struct reading *reading, int flank, json_t *
   if (first > 1)
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "The table begins with tooth %d: teeth are counted from 0 or from 1.", first);
-  for (int heading = INDEX; heading <= HELIX_SLOPE; heading++) {
+  for (int heading = INDEX; heading <= LEAD_CROWNING; heading++) {
     json_t *row = reading->has[heading] ? json_array() : NULL;
     double sum = 0;
     for (int tooth = first; row && tooth <= reading->most[flank]; tooth++) {

@@ -169,7 +169,9 @@ static bool hands_alike(const struct work *work, const struct eo_pitch_case *own
     for (int i = 0; i < work->evaluator->pair->geometry.teeth[member]; i++)
       alike = alike && of[EO_LEFT][i].index == of[EO_RIGHT][i].index &&
               of[EO_LEFT][i].profile_slope == of[EO_RIGHT][i].profile_slope &&
-              of[EO_LEFT][i].helix_slope == of[EO_RIGHT][i].helix_slope;
+              of[EO_LEFT][i].helix_slope == of[EO_RIGHT][i].helix_slope &&
+              of[EO_LEFT][i].profile_crowning == of[EO_RIGHT][i].profile_crowning &&
+              of[EO_LEFT][i].lead_crowning == of[EO_RIGHT][i].lead_crowning;
   }
   return alike;
 }

@@ -80,19 +80,39 @@ void eo_pitch_draw(const struct eo_flank_tolerance *tolerance, double share, int
   add_up(teeth, low, waves, part, scatter, index);
 }
 
-enum eo_code eo_pitch_tolerance(struct eo_flank_tolerance *tolerance, const struct eo_pitch_member *member,
-                                const struct eo_geometry *geometry, int of, struct eo_error *error)
+void eo_tooth_form_draw(const struct eo_flank_tolerance *tolerance, double share, enum eo_tooth_term term, int teeth,
+                        uint64_t seed, uint64_t stream, double *value)
+{
+  enum { FORM = 8 }; /* streams of eo_pitch_draw() before */
+  const double limit[EO_TOOTH_TERMS] = {[EO_TOOTH_PROFILE_SLOPE] = tolerance->profile_slope,
+                                        [EO_TOOTH_HELIX_SLOPE] = tolerance->helix_slope,
+                                        [EO_TOOTH_PROFILE_CROWNING] = tolerance->profile_form,
+                                        [EO_TOOTH_LEAD_CROWNING] = tolerance->helix_form};
+  struct eo_random random = eo_random_at(seed, stream, FORM + (uint64_t)term, 0);
+  for (int i = 0; i < teeth; i++)
+    value[i] = share * limit[term] * (2 * eo_random_unit(random, (uint64_t)i) - 1);
+}
+
+static enum eo_code class_tolerance(struct eo_flank_tolerance *tolerance, const struct eo_pitch_member *member,
+                                    int grade, const char *key, const struct eo_geometry *geometry, int of,
+                                    struct eo_error *error)
 {
   const struct eo_tolerance_input input = {.reference_diameter = 2 * geometry->reference_radius[of],
                                            .normal_module = geometry->normal_module,
                                            .face_width = geometry->face_width,
                                            .teeth = geometry->teeth[of],
-                                           .grade = member->tolerance_class,
+                                           .grade = grade,
                                            .total_contact_ratio = NAN};
   enum eo_code code = eo_flank_tolerance(tolerance, member->edition, &input, error);
   if (code == EO_ERROR_INPUT && error)
-    snprintf(error->pointer, sizeof error->pointer, "/pitch/%s/tolerance_class", of == EO_PINION ? "pinion" : "gear");
+    snprintf(error->pointer, sizeof error->pointer, "/pitch/%s/%s", of == EO_PINION ? "pinion" : "gear", key);
   return code;
+}
+
+enum eo_code eo_pitch_tolerance(struct eo_flank_tolerance *tolerance, const struct eo_pitch_member *member,
+                                const struct eo_geometry *geometry, int of, struct eo_error *error)
+{
+  return class_tolerance(tolerance, member, member->tolerance_class, "tolerance_class", geometry, of, error);
 }
 
 int eo_pitch_usual_positions(int resolved)
@@ -125,9 +145,13 @@ enum eo_code eo_pitch_check(const struct eo_pitch *pitch, const struct eo_geomet
                         "the %d instants that are computed: state at most %d.",
                         geometry->teeth[0], geometry->teeth[1], cycles, pitch->positions, EO_HUNTING_MOST_INSTANTS,
                         EO_HUNTING_MOST_INSTANTS / cycles);
-  for (int member = 0; member < 2; member++)
-    if (pitch->member[member].tolerance_class > 0)
-      EO_TRY(eo_pitch_tolerance(&tolerance, &pitch->member[member], geometry, member, error));
+  for (int member = 0; member < 2; member++) {
+    const struct eo_pitch_member *own = &pitch->member[member];
+    if (own->tolerance_class > 0)
+      EO_TRY(eo_pitch_tolerance(&tolerance, own, geometry, member, error));
+    if (own->flank_class > 0)
+      EO_TRY(class_tolerance(&tolerance, own, own->flank_class, "flank_class", geometry, member, error));
+  }
   return EO_OK;
 }
 
@@ -160,31 +184,49 @@ static double displaced(const struct eo_pitch_member *own, const struct eo_geome
   return along / cos(geometry->transverse_pressure_angle) + sense * axial * tan(geometry->helix_angle);
 }
 
+/* The table of a term: stated, drawn into `drawn`, or none (NULL). */
+static enum eo_code table_of(const struct eo_pitch *pitch, const struct eo_geometry *geometry,
+                             const struct eo_pitch_meeting *meeting, int member, int end, enum eo_tooth_term term,
+                             double *drawn, const double **table, struct eo_error *error)
+{
+  const struct eo_pitch_member *own = &pitch->member[member];
+  uint64_t stream = 4 * (uint64_t)meeting->side + 2 * (uint64_t)member + (uint64_t)end;
+  struct eo_flank_tolerance tolerance;
+  int teeth = geometry->teeth[member];
+  *table = eo_tooth_table_at(&pitch->tables, meeting->side, member, end, term);
+  if (*table || (term == EO_TOOTH_INDEX ? own->tolerance_class : own->flank_class) == 0)
+    return EO_OK;
+  *table = drawn;
+  if (term == EO_TOOTH_INDEX)
+    return draw_index(own, geometry, member, stream, drawn, error);
+  EO_TRY(class_tolerance(&tolerance, own, own->flank_class, "flank_class", geometry, member, error));
+  eo_tooth_form_draw(&tolerance, own->tolerance_share, term, teeth, own->seed, stream, drawn);
+  return EO_OK;
+}
+
 enum eo_code eo_pitch_compose(const struct eo_pitch *pitch, const struct eo_geometry *geometry,
                               const struct eo_pitch_meeting *meeting, int member, int end,
                               struct eo_tooth_deviation *tooth, struct eo_error *error)
 {
   static const double none = 0;
   const struct eo_pitch_member *own = &pitch->member[member];
-  const double *table[EO_TOOTH_TERMS];
+  const double *table[EO_TOOTH_TERMS] = {NULL};
   int teeth = geometry->teeth[member];
-  double *drawn = malloc(sizeof *drawn * (size_t)teeth);
+  double *drawn = malloc(sizeof *drawn * EO_TOOTH_TERMS * (size_t)teeth);
   enum eo_code code = drawn ? EO_OK : eo_error_memory(error);
-  for (int term = 0; term < EO_TOOTH_TERMS; term++)
-    table[term] = eo_tooth_table_at(&pitch->tables, meeting->side, member, end, (enum eo_tooth_term)term);
-  if (!code && !table[EO_TOOTH_INDEX] && own->tolerance_class > 0) {
-    code = draw_index(own, geometry, member, 4 * (uint64_t)meeting->side + 2 * (uint64_t)member + (uint64_t)end, drawn,
-                      error);
-    table[EO_TOOTH_INDEX] = drawn;
-  }
+  for (int term = 0; term < EO_TOOTH_TERMS && !code; term++)
+    code = table_of(pitch, geometry, meeting, member, end, (enum eo_tooth_term)term,
+                    drawn + (size_t)term * (size_t)teeth, &table[term], error);
   for (int i = 0; i < teeth && !code; i++) {
-    const double *value[EO_TOOTH_TERMS] = {NULL};
+    const double *value[EO_TOOTH_TERMS];
     for (int term = 0; term < EO_TOOTH_TERMS; term++)
       value[term] = table[term] ? &table[term][i] : &none;
     tooth[i] =
         (struct eo_tooth_deviation){.index = *value[EO_TOOTH_INDEX] + displaced(own, geometry, meeting, member, end, i),
                                     .profile_slope = *value[EO_TOOTH_PROFILE_SLOPE],
-                                    .helix_slope = *value[EO_TOOTH_HELIX_SLOPE]};
+                                    .helix_slope = *value[EO_TOOTH_HELIX_SLOPE],
+                                    .profile_crowning = *value[EO_TOOTH_PROFILE_CROWNING],
+                                    .lead_crowning = *value[EO_TOOTH_LEAD_CROWNING]};
   }
   free(drawn);
   return code;

@@ -12,7 +12,14 @@
 #include "gear/flank_grid.h"
 #include "rating/flank_tolerance.h"
 
-enum eo_tooth_term { EO_TOOTH_INDEX, EO_TOOTH_PROFILE_SLOPE, EO_TOOTH_HELIX_SLOPE, EO_TOOTH_TERMS };
+enum eo_tooth_term {
+  EO_TOOTH_INDEX,
+  EO_TOOTH_PROFILE_SLOPE,
+  EO_TOOTH_HELIX_SLOPE,
+  EO_TOOTH_PROFILE_CROWNING,
+  EO_TOOTH_LEAD_CROWNING,
+  EO_TOOTH_TERMS
+};
 
 /* All tables of a design, as plain values: copies need no care. */
 enum { EO_TOOTH_NUMBERS = 8192 };
@@ -41,6 +48,7 @@ struct eo_pitch {
   int gear_tooth; /* whose drive flank meets that of the pinion's tooth 0 */
   struct eo_pitch_member {
     int tolerance_class; /* of ISO 1328-1, from which flanks without a table of index deviations are drawn; 0: none */
+    int flank_class;     /* from which the slopes and crownings without a table are drawn, tooth by tooth; 0: none */
     enum eo_tolerance_edition edition;
     double tolerance_share; /* how much of the tolerances the drawn flanks take, 0 .. 1 */
     uint64_t seed;
@@ -63,6 +71,12 @@ struct eo_pitch_size eo_pitch_size_of(int teeth, const double *index);
    the flank. index[teeth], m. */
 void eo_pitch_draw(const struct eo_flank_tolerance *tolerance, double share, int teeth, uint64_t seed, uint64_t stream,
                    double *index);
+
+/* One form term of every tooth: uniform within the share of its tolerance, on either side, as the scatter of the index
+   deviations is. f_Halpha, f_Hbeta are for the slopes, f_falpha, f_fbeta for the crownings: what of a
+   form deviation a flank has as a whole. value[teeth], m. */
+void eo_tooth_form_draw(const struct eo_flank_tolerance *tolerance, double share, enum eo_tooth_term term, int teeth,
+                        uint64_t seed, uint64_t stream, double *value);
 
 /* How the flanks of one side meet. */
 struct eo_pitch_meeting {

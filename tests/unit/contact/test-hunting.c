@@ -2,6 +2,7 @@
 /* Loaded contact over the hunting period: what holds for it exactly (no deviations, constants, rigid teeth, linear
    response, hands of their own, slopes that all teeth have, threads). Closed-form compliance, the paper's pair. */
 #include "contact/hunting.h"
+#include "numerics/fft.h"
 #include "support/contact-fixture.h"
 
 #include <complex.h>
@@ -304,25 +305,58 @@ static void test_threads(void)
     eo_hunting_done(&many[i]);
 }
 
-/* A slope that every tooth has is the flank's own, to first order. */
-static void test_slopes(void)
+/* A slope or a crowning that every tooth has is the flank's own, to first order. */
+static void test_forms(void)
 {
-  struct eo_flank_modification a = case_a(), sloped = case_a();
+  struct eo_flank_modification a = case_a(), formed = case_a();
   for (int i = 0; i < GEAR; i++)
-    table[0][0][i] = (struct eo_tooth_deviation){.profile_slope = 4e-6, .helix_slope = -6e-6};
+    table[0][0][i] = (struct eo_tooth_deviation){
+        .profile_slope = 4e-6, .helix_slope = -6e-6, .profile_crowning = 3e-6, .lead_crowning = 5e-6};
   struct eo_hunting_input input = plain_input(1);
   input.tooth[0][0] = table[0][0];
   struct eo_hunting h = run(&input);
-  sloped.profile_slope = 4e-6;
-  sloped.helix_slope = -6e-6;
-  set_gaps(&sloped);
+  formed.profile_slope = 4e-6;
+  formed.helix_slope = -6e-6;
+  formed.profile_barrel = 3e-6;
+  formed.lead_crowning += 5e-6;
+  set_gaps(&formed);
   struct eo_hunting_input exact = plain_input(1);
   struct eo_hunting e = run(&exact);
   double most = apart(h.instants, h.approach[0], e.approach[0], 0);
-  ok(most < 30e-9, "slopes of every tooth are those of the flank, to first order (%.1f nm of 10 um)", 1e9 * most);
+  ok(most < 40e-9, "slopes and crownings of every tooth are those of the flank, to first order (%.1f nm of 18 um)",
+     1e9 * most);
   eo_hunting_done(&h);
   eo_hunting_done(&e);
   set_gaps(&a);
+}
+
+/* A tooth with less crowning than the others carries more; and Parseval over the period. */
+static void test_one_full_tooth(void)
+{
+  enum { FULL = 5 };
+  memset(table, 0, sizeof table);
+  table[0][0][FULL].lead_crowning = -8e-6;
+  struct eo_hunting_input input = plain_input(1);
+  input.tooth[0][0] = table[0][0];
+  struct eo_hunting h = run(&input);
+  int most = 0;
+  for (int i = 0; i < PINION; i++)
+    most = h.tooth_load[0][0][i].value > h.tooth_load[0][0][most].value ? i : most;
+  ok(most == FULL, "a tooth whose face ends are fuller than the others' carries the largest load (%.0f N, tooth %d, %.0f N)",
+     h.tooth_load[0][0][FULL].value, most, h.tooth_load[0][0][most].value);
+  complex double *line = malloc(sizeof *line * (size_t)(h.instants / 2 + 1));
+  struct eo_error error;
+  double square = 0, lines = 0;
+  if (!line || eo_fft_spectrum(h.instants, h.approach[0], line, &error))
+    stop(&error);
+  for (int i = 0; i < h.instants; i++)
+    square += h.approach[0][i] * h.approach[0][i] / h.instants;
+  for (int k = 0; k <= h.instants / 2; k++)
+    lines += cabs(line[k]) * cabs(line[k]) * (k == 0 || 2 * k == h.instants ? 1 : 0.5);
+  ok(fabs(lines / square - 1) < 1e-9, "its orders hold all of the transmission error (Parseval, %.1e)",
+     fabs(lines / square - 1));
+  free(line);
+  eo_hunting_done(&h);
 }
 
 /* Fewer positions of a cycle are those of the full one. */
@@ -351,7 +385,8 @@ int main(void)
   test_averaging();
   test_hands();
   test_threads();
-  test_slopes();
+  test_forms();
+  test_one_full_tooth();
   test_fewer_positions();
   close_bench();
   return tap_done();

@@ -93,6 +93,18 @@ static void test_drawn(void)
   for (int i = 0; i < GEAR; i++)
     differ = differ || index[i] != again[i];
   ok(differ, "... and other ones for the other hand");
+  double most = 0, mean = 0, square = 0;
+  for (uint64_t seed = 0; seed < 60; seed++) {
+    eo_tooth_form_draw(&tolerance, 0.5, EO_TOOTH_LEAD_CROWNING, GEAR, seed, 1, index);
+    for (int i = 0; i < GEAR; i++) {
+      double part = index[i] / (0.5 * tolerance.helix_form);
+      most = fmax(most, fabs(part));
+      mean += part / (60 * GEAR);
+      square += part * part / (60 * GEAR);
+    }
+  }
+  ok(most <= 1 && most > 0.99 && fabs(mean) < 0.05 && fabs(square - 1.0 / 3) < 0.02,
+     "drawn crownings of single teeth are uniform within the share of f_fbeta (%.3f, %.3f, %.3f)", most, mean, square);
 }
 
 /* LTE of amplitude e at the member's order, less what pairs in contact average. */
@@ -276,6 +288,15 @@ static void test_document(void)
   teeth.teeth[EO_PINION] = 5;
   teeth.teeth[EO_GEAR] = 2;
   eo_pitch_decode(object, &teeth, &read, faults);
+  json_t *crowned = json_loads("{\"pinion\":{\"left\":{\"profile_crowning_um\":[1,2,3,4,5],"
+                               "\"csv\":null},\"flank_class\":6}}",
+                               0, NULL);
+  eo_pitch_decode(crowned, &teeth, &again, faults);
+  const double *crowning = eo_tooth_table_at(&again.tables, EO_DRIVE_FLANK, EO_PINION, EO_LEFT,
+                                             EO_TOOTH_PROFILE_CROWNING);
+  ok(faults->count == 0 && crowning && fabs(crowning[4] - 5e-6) < 1e-15 && again.member[EO_PINION].flank_class == 6,
+     "crownings of single teeth and the class of what is not stated are read");
+  json_decref(crowned);
   const double *index = eo_tooth_table_at(&read.tables, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, EO_TOOTH_INDEX);
   ok(faults->count == 0 && index && fabs(index[1] - 1.5e-6) < 1e-15 && fabs(index[3] - 3e-6) < 1e-15,
      "single pitch deviations add up, decimal commas are read");
@@ -310,6 +331,11 @@ static void test_refusals(void)
   ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/pitch/gear/tolerance_class") == 0,
      "a class that ISO 1328-1:2013 does not have");
+  design.pitch.member[1].tolerance_class = 0;
+  design.pitch.member[1].flank_class = 12;
+  ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/pitch/gear/flank_class") == 0,
+     "... of flanks");
 }
 
 int main(void)
