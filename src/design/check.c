@@ -334,8 +334,11 @@ static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo
 
 static enum eo_code check_objective(const struct eo_objective *objective, struct eo_error *error)
 {
-  if (objective->weight[0] + objective->weight[1] + objective->weight[2] <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, "/objective/weights", "At least one weight must be above 0.");
+  if (objective->robust != EO_ROBUST_OFF && objective->scatter_pairs > 0 &&
+      objective->first_pairs > objective->scatter_pairs)
+    return eo_error_set(error, EO_ERROR_INPUT, "/objective/first_pairs",
+                        "%d pairs are not among the %d of scatter_pairs: state fewer.", objective->first_pairs,
+                        objective->scatter_pairs);
   return EO_OK;
 }
 

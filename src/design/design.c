@@ -358,11 +358,34 @@ static int count_variables(const struct eo_optimization *optimization, int ends)
   return optimization->listed;
 }
 
+static int count_axes(const struct eo_design *design)
+{
+  switch (design->optimization.front) {
+  case EO_FRONT_NOMINAL_AND_ROBUST:
+    return 2;
+  case EO_FRONT_TERMS:
+    return design->objective.terms > 0 ? design->objective.terms : 1;
+  case EO_FRONT_OBJECTIVES:
+    break;
+  }
+  return 3;
+}
+
+/* A front needs the values themselves of all that it is made of. */
+static void resolve_first_pairs(struct eo_design *design)
+{
+  enum { USUAL = 2, FEW = 4 };
+  struct eo_objective *objective = &design->objective;
+  if (objective->robust == EO_ROBUST_OFF || objective->scatter_pairs == 0 || objective->first_pairs > 0)
+    return;
+  bool all = objective->scatter_pairs <= FEW || design->optimization.search.algorithm == EO_NSGA2;
+  objective->first_pairs = all ? objective->scatter_pairs : USUAL;
+}
+
 static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair,
                                  const struct eo_geometry *geometry)
 {
   optimization->search.variables = count_variables(optimization, pair->ends);
-  optimization->search.objectives = 3;
   optimization->search.share_radius = eo_optimizer_share_radius(&optimization->search);
   resolve_amount(&optimization->tip_relief, 0.02 * pair->normal_module);
   resolve_amount(&optimization->root_relief, 0.02 * pair->normal_module);
@@ -421,5 +444,7 @@ void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geome
   if (design->pitch.stated && design->pitch.positions == 0)
     design->pitch.positions = eo_pitch_usual_positions(design->resolution.positions);
   resolve_scenarios(&design->objective, &design->alignment);
+  resolve_first_pairs(design);
+  design->optimization.search.objectives = count_axes(design);
   resolve_optimization(&design->optimization, &design->gear_pair, geometry);
 }

@@ -88,6 +88,21 @@ struct eo_running {
   double in_plane, out_of_plane; /* shaft angle errors, rad */
 };
 
+/* What a search minimises or keeps to beside f1, f2, f3: one of the numbers of a load case by name. */
+enum { EO_MAX_OBJECTIVE_TERMS = 8, EO_MAX_OBJECTIVE_LIMITS = 16 };
+struct eo_objective_term {
+  int output;     /* index of eo_scalar_keys in evaluation/scalar.h */
+  int load_case;  /* 1 ..; 0: the mean over the duty cycle, by share */
+  double weight;  /* in J */
+  double scale;   /* what it is divided by, in the unit of its key; NaN: as `normalise` says */
+  double percent; /* of its values over the states of a robust objective; NaN: as J is taken */
+};
+struct eo_objective_limit {
+  int output, load_case; /* load_case 0: every one */
+  double most;           /* in the unit of its key */
+  double percent;        /* the percentile over the states that keeps to it; NaN: every state does */
+};
+
 enum eo_normalise { EO_NORMALISE_UNMODIFIED, EO_NORMALISE_NONE };
 enum eo_robust { EO_ROBUST_OFF, EO_ROBUST_MEAN, EO_ROBUST_WORST, EO_ROBUST_PERCENTILE, EO_ROBUST_SIGMAS };
 struct eo_objective {
@@ -108,11 +123,19 @@ struct eo_objective {
   enum eo_robust robust;
   double robust_percent, robust_sigmas; /* of the last two */
   int scatter_pairs;                    /* drawn from the block tolerance instead of the rows below; 0: none */
-  int scenarios;                        /* number of rows below */
+  int first_pairs; /* of them, with which every flank is looked at; a few of each batch are with all; 0: all */
+  int check_pairs; /* others, over which what was found is compared with the unmodified pair; 0: none */
+  int terms, limits;
+  struct eo_objective_term term[EO_MAX_OBJECTIVE_TERMS];
+  struct eo_objective_limit limit[EO_MAX_OBJECTIVE_LIMITS];
+  int scenarios; /* number of rows below */
   struct eo_scenario {
     double in_plane, out_of_plane, compliance, speed;
   } scenario[EO_MAX_SCENARIOS]; /* rad, rad (NaN: nominal), factor, factor */
 };
+
+/* What a Pareto front is over. */
+enum eo_front_axes { EO_FRONT_OBJECTIVES, EO_FRONT_NOMINAL_AND_ROBUST, EO_FRONT_TERMS };
 
 enum eo_variable_set { EO_VARIABLES_SHARED, EO_VARIABLES_PER_END, EO_VARIABLES_LISTED };
 enum { EO_BOTH_ENDS = 2, EO_MAX_LISTED = 48 };
@@ -134,6 +157,7 @@ struct eo_optimization {
   int listed; /* rows below, with EO_VARIABLES_LISTED */
   struct eo_listed_variable list[EO_MAX_LISTED];
   struct eo_range tip_relief, root_relief, tip_relief_start, root_relief_start, lead_crowning; /* m; NaN: derived */
+  enum eo_front_axes front;
   struct eo_optimizer_settings search; /* its variables and objectives follow from the above: eo_design_resolve() */
 };
 

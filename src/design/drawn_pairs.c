@@ -32,11 +32,20 @@ void eo_drawn_pair_apply(const struct eo_design *design, int pair, struct eo_des
   }
 }
 
-int eo_design_scenarios(const struct eo_design *design)
+int eo_design_states(const struct eo_design *design)
 {
+  const struct eo_drawn_pairs *drawn = &design->drawn;
   if (design->objective.robust == EO_ROBUST_OFF)
     return 1;
-  if (design->drawn.pairs > 0)
-    return design->drawn.pairs;
+  if (drawn->pairs > 0)
+    return drawn->first > 0 ? drawn->first : drawn->pairs;
   return design->objective.scenarios > 0 ? design->objective.scenarios : 1;
+}
+
+int eo_design_scenarios(const struct eo_design *design)
+{
+  int states = eo_design_states(design);
+  bool nominal = design->optimization.front == EO_FRONT_NOMINAL_AND_ROBUST &&
+                 design->optimization.search.algorithm == EO_NSGA2 && states > 1;
+  return states + nominal;
 }

@@ -11,6 +11,7 @@ enum { EO_MAX_DRAWN_PAIRS = 64, EO_MAX_DRAWN_INPUTS = 48 };
 
 struct eo_drawn_pairs {
   int pairs, inputs; /* 0 pairs: none are drawn */
+  int first;         /* of them that are looked at; 0: all */
   struct eo_drawn_input {
     int target;       /* enum eo_scatter_target of tolerance/scatter.h */
     size_t offset;    /* in struct eo_design */
@@ -27,7 +28,11 @@ struct eo_scenario;
 void eo_drawn_pair_apply(const struct eo_design *design, int pair, struct eo_design *made,
                          struct eo_scenario *scenario);
 
-/* How many states of the pair a robust objective looks at: drawn ones, or listed scenarios; 1: it is not robust. */
+enum { EO_MAX_PAIR_STATES = EO_MAX_DRAWN_PAIRS + 1 };
+
+/* How many states of the pair a robust objective is made of: drawn ones, or listed scenarios; 1: it is not robust. */
+int eo_design_states(const struct eo_design *design);
+/* How many are evaluated: one more where a front sets the nominal pair against them. */
 int eo_design_scenarios(const struct eo_design *design);
 
 #endif

@@ -15,6 +15,7 @@
 #include "document/pitch_document.h"
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
+#include "evaluation/objective_terms.h"
 #include "design/check.h"
 
 static void add_warning(struct eo_warnings *warnings, const char *key, const char *format, va_list arguments)
@@ -258,6 +259,8 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
     code = eo_design_check(&complete, &made, error);
   if (!code)
     code = eo_scatter_draw_pairs(&complete, error);
+  if (!code)
+    code = eo_objective_check(&complete, error);
   if (!code) {
     *design = complete;
     *geometry = made;
@@ -315,6 +318,8 @@ static json_t *encode_wants(const struct eo_design *design)
   if (design->objective.robust != EO_ROBUST_OFF && design->drawn.pairs > 0) {
     eo_json_put(wants, "tolerance", eo_table_encode(&eo_tolerance_table, &design->tolerance), &failed);
     eo_json_put(wants, "scatter_pairs", json_integer(design->drawn.pairs), &failed);
+    if (design->drawn.first > 0)
+      eo_json_put(wants, "first_pairs", json_integer(design->drawn.first), &failed);
   } else if (design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0) {
     json_t *objective = eo_table_encode(&eo_objective_table, &design->objective);
     eo_json_put(wants, "scenarios", json_incref(json_object_get(objective, "scenarios")), &failed);
@@ -322,7 +327,11 @@ static json_t *encode_wants(const struct eo_design *design)
   }
   if (eo_objective_wants_rating(&design->objective))
     eo_json_put(wants, "rating", eo_table_encode(&eo_rating_table, &design->rating), &failed);
-  eo_json_put(wants, "root_stress", json_boolean(!isnan(design->objective.root_stress)), &failed);
+  if (eo_design_scenarios(design) > eo_design_states(design))
+    eo_json_put(wants, "nominal", json_true(), &failed);
+  if (eo_objective_wants_scalars(&design->objective))
+    eo_json_put(wants, "scalars", json_true(), &failed);
+  eo_json_put(wants, "root_stress", json_boolean(eo_objective_wants_root(&design->objective)), &failed);
   eo_json_put(wants, "evaluator", json_integer(EO_EVALUATOR_VERSION), &failed);
   if (!failed)
     return wants;

@@ -3,6 +3,7 @@
 #include "document/design_document.h"
 #include "document/design_migration.h"
 #include "document/pitch_document.h"
+#include "evaluation/scalar.h"
 #include "flexibility/flexibility.h"
 
 /* clang-format off */
@@ -96,6 +97,38 @@ static const struct eo_field scenario[] = {
 };
 const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
 
+#define PERCENT(type, fallback_)                                        \
+  EO_NUMBER_DERIVED(type, percent, "percent", NULL, 50, 100, fallback_, \
+                    "percentile of its values over the states of a robust objective: pairs as made, or scenarios")
+#define LOAD_CASE(type, fallback_)                                                                                 \
+  {                                                                                                                \
+    .key = "load_case", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, load_case), \
+    .low = 1, .high = EO_MAX_LOAD_CASES, .fallback = NAN, .derived = fallback_, .help = "which load case, from 1"  \
+  }
+#define OUTPUT(type, help_)                                                                                 \
+  {                                                                                                         \
+    .key = "output", .kind = EO_FIELD_CHOICE, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, output), \
+    .choices = eo_scalar_keys, .fallback = NAN, .help = help_                                               \
+  }
+static const struct eo_field term[] = {
+    OUTPUT(struct eo_objective_term, "a number of the load cases, as tolerance.limits name them"),
+    LOAD_CASE(struct eo_objective_term, "the mean over the duty cycle, by share of time"),
+    EO_NUMBER(struct eo_objective_term, weight, "weight", NULL, 0, 1e6, 1, "in the sum J, beside f1, f2 and f3"),
+    EO_NUMBER_DERIVED(struct eo_objective_term, scale, "scale", NULL, 1e-9, 1e9,
+                      "the unmodified pair's, or 1 with normalise none",
+                      "what it is divided by, in the unit of the output"),
+    PERCENT(struct eo_objective_term, "part of J in every state, as f1, f2 and f3"),
+};
+static const struct eo_table term_table = EO_TABLE("a term of the objective", struct eo_objective_term, term);
+
+static const struct eo_field limit[] = {
+    OUTPUT(struct eo_objective_limit, "a number of the load cases, as tolerance.limits name them"),
+    LOAD_CASE(struct eo_objective_limit, "every one"),
+    EO_NUMBER_REQUIRED(struct eo_objective_limit, most, "at_most", NULL, -1e9, 1e9, "in the unit of the output"),
+    PERCENT(struct eo_objective_limit, "every state keeps to it"),
+};
+static const struct eo_table limit_table = EO_TABLE("a limit of the objective", struct eo_objective_limit, limit);
+
 static const struct eo_field objective[] = {
     EO_NUMBERS(struct eo_objective, weight, "weights", 3, NULL, 0, 1e6, 0, NUMBERS(0.4, 0.15, 0.45), NULL,
                "of peak-to-peak transmission error, impact force and vibration"),
@@ -121,6 +154,23 @@ static const struct eo_field objective[] = {
      .derived = "none: the scenarios count",
      .help = "pairs as made, drawn from the block tolerance, that stand in place of the scenarios when robust is not "
              "off: the same deviations for every flank that is tried; each costs an evaluation"},
+    {.key = "first_pairs",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_objective, first_pairs),
+     .low = 2,
+     .high = EO_MAX_DRAWN_PAIRS,
+     .fallback = NAN,
+     .derived = "2 of more than 4 scatter_pairs, all of them where a front is sought",
+     .help = "of scatter_pairs: every flank is looked at with these; of each batch the best go on to all, so many that "
+             "both cost the same; as many as scatter_pairs: every flank with all"},
+    EO_INTEGER(struct eo_objective, check_pairs, "check_pairs", 0, 10000, 200,
+               "other pairs as made, on which a search with scatter_pairs ends: what it found beside the unmodified "
+               "pair, with intervals; 0: none"),
+    EO_LIST(struct eo_objective, term, terms, "terms", &term_table, 0, EO_MAX_OBJECTIVE_TERMS,
+            "further numbers in the sum J, or on the axes of a front"),
+    EO_LIST(struct eo_objective, limit, limits, "limits", &limit_table, 0, EO_MAX_OBJECTIVE_LIMITS,
+            "what further numbers keep to"),
     {.key = "scenarios",
      .kind = EO_FIELD_LIST,
      .offset = offsetof(struct eo_objective, scenario),
@@ -134,6 +184,7 @@ static const struct eo_field objective[] = {
      .help = "alignments, compliances and speeds around the nominal ones"},
 };
 
+static const char *const fronts[] = {"objectives", "nominal_and_robust", "terms", NULL};
 static const char *const variables[] = {"shared", "per_end", "listed", NULL};
 static const char *const variable_members[] = {"pinion", "gear", NULL};
 static const char *const variable_ends[] = {"left", "right", "both", NULL};
@@ -201,6 +252,9 @@ static const struct eo_field optimization[] = {
             "the variables, when variables is listed"),
     EO_CHOICE(struct eo_optimization, search.algorithm, "algorithm", eo_algorithm_names, EO_CREDIBILITY_GA,
               "optimizer"),
+    EO_CHOICE(struct eo_optimization, front, "front", fronts, EO_FRONT_OBJECTIVES,
+              "what the front is over: f1, f2 and f3; J of the nominal pair against the robust J; or the terms of the "
+              "objective (nsga2)"),
     EO_GROUP("bounds", &bounds_table, "lowest and highest value of each variable"),
     EO_OPTIMIZER_SETTINGS(SEED, BUDGET, PARAMETER, DERIVED, COUNT, FLAG, CHOICE)};
 

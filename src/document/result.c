@@ -175,6 +175,28 @@ static bool sums_are_known(const void *source)
   return !((const struct eo_objective_value *)source)->sums.failed;
 }
 
+static bool has_terms(const void *source)
+{
+  return ((const struct eo_objective_value *)source)->terms > 0;
+}
+
+static bool has_nominal(const void *source)
+{
+  return !isnan(((const struct eo_objective_value *)source)->nominal);
+}
+
+static json_t *write_terms(const void *source)
+{
+  const struct eo_objective_value *value = source;
+  json_t *array = json_array();
+  for (int i = 0; i < value->terms && array; i++)
+    if (json_array_append_new(array, eo_json_real(value->sums.failed ? NAN : value->term[i], NULL)) != 0) {
+      json_decref(array);
+      array = NULL;
+    }
+  return array;
+}
+
 #define EO_SUM(index) EO_AT(struct eo_objective_value, sums.f[index]), .known = sums_are_known
 static const struct eo_outline_row value_rows[] = {
     EO_KEY("f1_um", "number?",
@@ -186,6 +208,11 @@ static const struct eo_outline_row value_rows[] = {
     EO_KEY("fitness", "number?", "1/J less penalties", EO_AT(struct eo_objective_value, fitness)),
     EO_KEY("violation", "number?", "sum of the violated constraints, relative; 0: feasible",
            EO_AT(struct eo_objective_value, violation)),
+    EO_KEY("terms", "[number?]", "of objective.terms, in their order and units", .when = "of an objective with terms",
+           .write = write_terms, .there = has_terms),
+    EO_KEY("nominal_J", "number?", "J of the nominal pair, beside the robust one",
+           .when = "of a front of the nominal against the robust objective", EO_AT(struct eo_objective_value, nominal),
+           .there = has_nominal),
 };
 const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
 

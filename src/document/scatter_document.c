@@ -318,11 +318,11 @@ enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_de
 }
 
 /* Deviations alone: bounds count for the design that is tried. */
-static enum eo_code draw(struct eo_design *design, struct eo_scatter *scatter, struct eo_error *error)
+static enum eo_code draw(struct eo_design *design, struct eo_scatter *scatter, int from, int pairs, int points,
+                         struct eo_error *error)
 {
   struct eo_drawn_pairs *drawn = &design->drawn;
   struct eo_sampler *sampler;
-  int pairs = design->objective.scatter_pairs;
   double value[EO_MAX_SCATTER_INPUTS];
   if (scatter->inputs > EO_MAX_DRAWN_INPUTS)
     return eo_error_set(error, EO_ERROR_INPUT, "/objective/scatter_pairs",
@@ -338,10 +338,10 @@ static enum eo_code draw(struct eo_design *design, struct eo_scatter *scatter, s
     input->least = -INFINITY;
     input->most = INFINITY;
   }
-  EO_TRY(eo_sampler_new(&sampler, (enum eo_sampling)design->tolerance.sampling, scatter->dimensions, pairs,
+  EO_TRY(eo_sampler_new(&sampler, (enum eo_sampling)design->tolerance.sampling, scatter->dimensions, points,
                         design->tolerance.seed, error));
   for (int pair = 0; pair < pairs; pair++) {
-    eo_scatter_draw(scatter, sampler, pair, value);
+    eo_scatter_draw(scatter, sampler, from + pair, value);
     for (int i = 0; i < scatter->inputs; i++)
       drawn->deviation[pair][i] = value[i] * scatter->input[i].unit;
   }
@@ -353,15 +353,21 @@ static enum eo_code draw(struct eo_design *design, struct eo_scatter *scatter, s
 
 enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *error)
 {
+  int pairs = design->objective.scatter_pairs;
   memset(&design->drawn, 0, sizeof design->drawn);
-  if (design->objective.robust == EO_ROBUST_OFF || design->objective.scatter_pairs == 0)
+  if (design->objective.robust == EO_ROBUST_OFF || pairs == 0)
     return EO_OK;
+  return eo_scatter_draw_range(design, 0, pairs, pairs, error);
+}
+
+enum eo_code eo_scatter_draw_range(struct eo_design *design, int first, int pairs, int points, struct eo_error *error)
+{
   struct eo_scatter *scatter = malloc(sizeof *scatter);
   if (!scatter)
     return eo_error_memory(error);
   enum eo_code code = eo_scatter_of_design(scatter, design, true, NULL, error);
   if (!code)
-    code = draw(design, scatter, error);
+    code = draw(design, scatter, first, pairs, points, error);
   free(scatter);
   return code;
 }

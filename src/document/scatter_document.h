@@ -17,6 +17,10 @@ enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_de
    and too many inputs. */
 enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *error);
 
+/* Pairs first .. first + pairs - 1 of `points` in the sequence of the block, into design->drawn, whatever the objective
+   asks for. Errors: the same. */
+enum eo_code eo_scatter_draw_range(struct eo_design *design, int first, int pairs, int points, struct eo_error *error);
+
 /* A row's distribution in words, "normal, sigma 3.25, cut at 2.5 sigma". */
 void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size);
 

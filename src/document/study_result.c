@@ -7,6 +7,7 @@
 
 #include "format/json.h"
 #include "document/result_private.h"
+#include "evaluation/objective_terms.h"
 #include "format/text_table.h"
 
 #include <config.h>
@@ -24,6 +25,7 @@ void eo_study_result_done(struct eo_study_result *result)
   free(result->best.raw);
   free(result->generation);
   free(result->front);
+  eo_made_check_done(&result->check);
   *result = (struct eo_study_result){.knee = -1, .weighted = -1};
 }
 
@@ -228,6 +230,7 @@ static const struct eo_outline generation_outline = EO_OUTLINE("StudyGeneration"
 
 struct front_point {
   const struct eo_study_result *result;
+  const struct eo_design *design;
   const struct eo_study_point *point;
   struct eo_objective_value value;
   bool knee, weighted;
@@ -243,8 +246,20 @@ static json_t *write_values(const void *source)
   return values;
 }
 
+static json_t *write_axes(const void *source)
+{
+  const struct front_point *front_point = source;
+  double axis[EO_MAX_OBJECTIVES];
+  json_t *axes = json_array();
+  eo_front_values(front_point->design, &front_point->value, &front_point->result->unmodified.value, axis);
+  for (int i = 0; i < front_point->design->optimization.search.objectives && axes; i++)
+    axes = append(axes, eo_json_real(axis[i], NULL));
+  return axes;
+}
+
 static const struct eo_outline_row front_rows[] = {
     EO_KEY("values", "[number]", "of the variables, in their order and units", .write = write_values),
+    EO_KEY("axes", "[number]", "what the front is over, in the order of front_axes", .write = write_axes),
     {.outline = &eo_outline_value, .offset = offsetof(struct front_point, value)},
     EO_KEY("knee", "flag", "the point at the knee of the front", EO_AT(struct front_point, knee)),
     EO_KEY("weighted", "flag", "the point that the weights choose", EO_AT(struct front_point, weighted)),
@@ -253,14 +268,45 @@ static const struct eo_outline front_outline = EO_OUTLINE("FrontPoint", front_ro
 
 static json_t *write_front(const void *source)
 {
-  const struct eo_study_result *result = &((const struct source *)source)->result;
+  const struct source *this_source = source;
+  const struct eo_study_result *result = &this_source->result;
   json_t *array = json_array();
   for (int i = 0; i < result->front_count && array; i++) {
     const struct eo_study_point *point = &result->front[i];
-    const struct front_point row = {result, point, point->value, i == result->knee, i == result->weighted};
+    const struct front_point row = {result,       this_source->design, point,
+                                    point->value, i == result->knee,   i == result->weighted};
     array = append(array, eo_outline_encode(&front_outline, &row));
   }
   return array;
+}
+
+static json_t *write_front_axes(const void *source)
+{
+  const struct eo_design *design = ((const struct source *)source)->design;
+  json_t *array = json_array();
+  for (int i = 0; i < design->optimization.search.objectives && array; i++) {
+    char name[120];
+    eo_front_axis_name(design, i, name, sizeof name);
+    array = append(array, json_string(name));
+  }
+  return array;
+}
+
+static bool is_race(const void *source)
+{
+  const struct eo_design *design = ((const struct source *)source)->design;
+  return design->objective.robust != EO_ROBUST_OFF && design->drawn.pairs > 0;
+}
+
+static bool has_check(const void *source)
+{
+  return ((const struct source *)source)->result.check.pairs > 0;
+}
+
+static json_t *write_check(const void *source)
+{
+  const struct source *this_source = source;
+  return eo_made_check_encode(&this_source->result.check, this_source->design);
 }
 
 static bool has_front(const void *source)
@@ -358,8 +404,16 @@ static const struct eo_outline_row study_rows[] = {
     EO_KEY("generations", "[object]",
            "generations (ga, fpga), batches (credibility-ga) or cycles (nsga2), in their order",
            .outline = &generation_outline, EO_ROWS_AT(struct source, result.generation, result.generations)),
+    EO_KEY("whole_evaluations", "integer",
+           "true evaluations with all pairs as made; the others are with objective.first_pairs alone",
+           .when = "of a robust objective over pairs as made", EO_AT(struct source, result.whole), .there = is_race),
+    EO_KEY("front_axes", "[text]", "what the front is over", .when = "of nsga2", .write = write_front_axes,
+           .there = has_front),
     EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline,
            .write = write_front, .there = has_front),
+    EO_KEY("check", "object", "what was found, and the design it began with, beside the unmodified pair",
+           .when = "of a robust objective over pairs as made, with check_pairs", .outline = &eo_made_check_outline,
+           .write = write_check, .there = has_check),
     EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops, EO_AT(struct source, result.stopped)),
     EO_KEY("warnings", "[text]", "in plain words", .write = write_warnings),
     EO_KEY("run", "object", "with best/result/timing_ms the only part that differs between two runs",
@@ -467,6 +521,34 @@ static void print_cases(const json_t *document, struct eo_text *text)
   }
 }
 
+/* What the front is over, point by point. */
+static void print_front(const json_t *document, struct eo_text *text)
+{
+  const json_t *axes = json_object_get(document, "front_axes"), *front = json_object_get(document, "front"), *point;
+  size_t count = json_array_size(axes), i;
+  const char *headings[EO_MAX_OBJECTIVES + 3] = {""};
+  struct eo_text_table sheet;
+  for (i = 0; i < count && i < EO_MAX_OBJECTIVES; i++)
+    headings[i + 1] = json_string_value(json_array_get(axes, i));
+  headings[count + 1] = "J";
+  headings[count + 2] = "violation";
+  eo_text_print(text, "Pareto front, %zu points:\n", json_array_size(front));
+  eo_text_table_init(&sheet, (int)count + 3, headings);
+  json_array_foreach((json_t *)front, i, point)
+  {
+    bool knee = json_is_true(json_object_get(point, "knee")),
+         weighted = json_is_true(json_object_get(point, "weighted"));
+    eo_text_table_string(&sheet, weighted ? "least J" : knee ? "knee" : "");
+    for (size_t k = 0; k < count; k++)
+      eo_text_table_number(&sheet, json_number_value(json_array_get(json_object_get(point, "axes"), k)), NULL, 4);
+    eo_text_table_number(&sheet, eo_json_find_number(point, "J"), NULL, 4);
+    eo_text_table_number(&sheet, eo_json_find_number(point, "violation"), NULL, 4);
+  }
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
+  eo_text_add(text, "\n");
+}
+
 static void print_effort(const json_t *document, struct eo_text *text)
 {
   eo_text_print(text,
@@ -512,7 +594,9 @@ void eo_study_result_summary(const json_t *document, struct eo_text *text)
     eo_text_print(text, "Constraints are violated by %.4g in sum.\n",
                   eo_json_find_number(best, "objectives/violation"));
   if (front)
-    eo_text_print(text, "Pareto front: %zu points (--json lists them)\n", json_array_size(front));
+    print_front(document, text);
+  if (json_object_get(document, "check"))
+    eo_made_check_summary(json_object_get(document, "check"), text);
   print_effort(document, text);
   print_notes(json_object_get(document, "warnings"), text);
   print_notes(eo_json_find(best, "result/warnings"), text);

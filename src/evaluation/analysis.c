@@ -2,6 +2,8 @@
 #include "evaluation/analysis.h"
 
 #include "base/clock.h"
+#include "evaluation/objective_terms.h"
+#include "evaluation/scalar.h"
 #include "gear/modification.h"
 
 #include <math.h>
@@ -147,10 +149,11 @@ static void copy_reference(struct eo_analysis *analysis)
    before. */
 static void forget_root(struct eo_analysis *analysis)
 {
+  int root = eo_scalar_find("root_stress_MPa");
   for (int k = 0; k < analysis->cases; k++)
-    analysis->unmodified[k].root_stress = NAN;
+    analysis->unmodified[k].root_stress = analysis->unmodified[k].scalar[root] = NAN;
   for (int k = 0; k < analysis->cases * analysis->scenarios; k++)
-    analysis->raw_unmodified[k].root_stress = NAN;
+    analysis->raw_unmodified[k].root_stress = analysis->raw_unmodified[k].scalar[root] = NAN;
   analysis->known_root = false;
 }
 
@@ -194,7 +197,7 @@ enum eo_code eo_analysis_run(struct eo_analysis *analysis, const struct eo_desig
   analysis->cases = design->load_cases;
   analysis->scenarios = eo_evaluator_scenarios(design);
   analysis->want = want;
-  analysis->root = analysis->pair->flexibility && (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
+  analysis->root = analysis->pair->flexibility && (want & EO_WANT_ROOT || eo_objective_wants_root(&design->objective));
   enum eo_code code = fit(analysis, analysis->cases, analysis->scenarios, error);
   if (!code)
     code = eo_evaluator_use_threads(analysis->evaluator, analysis->threads, error);

@@ -106,6 +106,10 @@ int eo_evaluator_scenarios(const struct eo_design *design);
 enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_design *design,
                               struct eo_objective_case *raw, struct eo_error *error);
 
+/* The same from a scenario on: raw still begins with the first. */
+enum eo_code eo_evaluator_raw_from(struct eo_evaluator *evaluator, const struct eo_design *design, int first,
+                                   struct eo_objective_case *raw, struct eo_error *error);
+
 /* J and fitness from raw values of the design and of the same design without modification: nominal, mean or worst over
    the scenarios. */
 void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry,

@@ -3,6 +3,9 @@
 
 #include <string.h>
 
+#include "evaluation/objective_terms.h"
+#include "evaluation/scalar.h"
+
 /* The gap field of an end as the bodies of a load case hold it; *bent is made where they are elastic. */
 static const struct eo_gap_field *loaded_field(const struct eo_evaluator *evaluator,
                                                const struct eo_case_result *load_case, int end,
@@ -171,6 +174,10 @@ static struct eo_objective_case objective_of(const struct eo_case_result *load_c
 void eo_evaluator_collect_objectives(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   struct eo_evaluation *result = &evaluator->result;
-  for (int k = 0; k < result->cases; k++)
+  bool scalars = eo_objective_wants_scalars(&run->design->objective);
+  for (int k = 0; k < result->cases; k++) {
     result->objective[k] = objective_of(&result->load_case[k], result->ends, result->positions, run->root);
+    for (int i = 0; i < EO_SCALARS; i++)
+      result->objective[k].scalar[i] = scalars ? eo_scalar_value(eo_scalar_at(i), result, k) : NAN;
+  }
 }

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "evaluation/objective_terms.h"
+
 struct eo_objective_case eo_objective_nothing(void)
 {
   struct eo_objective_case nothing = {.peak_to_peak = NAN,
@@ -20,6 +22,8 @@ struct eo_objective_case eo_objective_nothing(void)
                                       .end_impact = {NAN, NAN}};
   for (int i = 0; i < EO_OBJECTIVE_SAMPLES; i++)
     nothing.transmission[i] = NAN;
+  for (int i = 0; i < EO_SCALARS; i++)
+    nothing.scalar[i] = NAN;
   return nothing;
 }
 
@@ -37,14 +41,6 @@ void eo_objective_sum(int cases, const struct eo_load_case *load_case, const str
     sums->failed |= !isfinite(sums->f[i]);
 }
 
-/* By how much of the limit a value exceeds it; a limit that is off (NaN) is never exceeded. */
-static double excess(double limit, double value)
-{
-  if (!(value > limit))
-    return 0;
-  return limit > 0 ? value / limit - 1 : value;
-}
-
 /* By how much of itself a value falls short of a limit from below. */
 static double shortfall(double limit, double value)
 {
@@ -60,27 +56,27 @@ static double worse(double value, double before)
 static double violation(const struct eo_objective *objective, const struct eo_objective_case *objective_case,
                         const struct eo_objective_case *before)
 {
-  double sum = excess(objective->contact_pressure, objective_case->contact_pressure) +
-               excess(objective->root_stress, objective_case->root_stress) +
-               excess(objective->peak_to_peak, objective_case->peak_to_peak) +
-               excess(objective->edge_load_share, objective_case->edge_load_share) +
-               excess(objective->contact_loss, objective_case->contact_loss) +
+  double sum = eo_objective_excess(objective->contact_pressure, objective_case->contact_pressure) +
+               eo_objective_excess(objective->root_stress, objective_case->root_stress) +
+               eo_objective_excess(objective->peak_to_peak, objective_case->peak_to_peak) +
+               eo_objective_excess(objective->edge_load_share, objective_case->edge_load_share) +
+               eo_objective_excess(objective->contact_loss, objective_case->contact_loss) +
                shortfall(objective->flank_safety, objective_case->flank_safety) +
                shortfall(objective->root_safety, objective_case->root_safety) +
                shortfall(objective->film_ratio, objective_case->film_ratio) +
-               excess(objective->contact_temperature, objective_case->contact_temperature);
+               eo_objective_excess(objective->contact_temperature, objective_case->contact_temperature);
   if (objective->no_worse_than_unmodified)
     sum += worse(objective_case->peak_to_peak, before->peak_to_peak) + worse(objective_case->impact, before->impact) +
            worse(objective_case->rms, before->rms);
   return sum;
 }
 
-void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
+void eo_objective_weigh(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
                         const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
                         bool relief_outside, struct eo_objective_value *result)
 {
   struct eo_objective_sums before;
-  *result = (struct eo_objective_value){0};
+  *result = (struct eo_objective_value){.nominal = NAN};
   eo_objective_sum(cases, load_case, value, &result->sums);
   eo_objective_sum(cases, load_case, unmodified, &before);
   for (int i = 0; i < 3; i++) {
@@ -96,12 +92,28 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
     result->violation += violation(objective, &value[k], &unmodified[k]);
   if (objective->relief_inside_active_flank && relief_outside)
     result->violation += 1;
-  if (result->sums.failed || !(result->objective > 0)) {
-    result->objective = NAN;
-    result->fitness = EO_FITNESS_WORST;
+  if (!eo_objective_has_scalars(objective, cases, value))
+    result->sums.failed = true;
+  else
+    eo_objective_add_terms(objective, cases, load_case, value, unmodified, result);
+}
+
+void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
+                        bool relief_outside, struct eo_objective_value *result)
+{
+  eo_objective_weigh(objective, cases, load_case, value, unmodified, relief_outside, result);
+  eo_objective_judge(objective, result);
+}
+
+void eo_objective_judge(const struct eo_objective *objective, struct eo_objective_value *value)
+{
+  if (value->sums.failed || !(value->objective > 0)) {
+    value->objective = NAN;
+    value->fitness = EO_FITNESS_WORST;
     return;
   }
-  result->fitness = 1 / result->objective - objective->penalty * result->violation; /* theory (O3) */
+  value->fitness = 1 / value->objective - objective->penalty * value->violation; /* theory (O3) */
 }
 
 bool eo_objective_wants_rating(const struct eo_objective *objective)

@@ -5,6 +5,8 @@
 
 #include "design/design.h"
 
+enum { EO_SCALARS = 19 }; /* numbers of evaluation/scalar.h */
+
 enum { EO_OBJECTIVE_SAMPLES = 32 }; /* of the transmission error: its mesh harmonics beyond 12 are small */
 
 /* What the objectives need of one load case: raw, before weights, so that a history can serve any later weighting. */
@@ -24,6 +26,7 @@ struct eo_objective_case {
   /* What peak_to_peak is the range of, but for what lies between the samples, and impact the largest: LTE of the pair
      less its mean, m, at phases i / samples; N, of each end (equal where there is one). NaN: not kept. */
   double transmission[EO_OBJECTIVE_SAMPLES], end_impact[2];
+  double scalar[EO_SCALARS]; /* in the units of their keys; NaN unless a term or a limit of the objective asks */
 };
 
 /* f_i = sum_k share_k value_ik / 3: the /3 is kept as printed, for three cases; n cases divide by n. */
@@ -37,6 +40,9 @@ struct eo_objective_value {
   double objective; /* J, dimensionless when normalised; NaN when failed */
   double violation; /* sum of relative excesses over the constraints */
   double fitness;   /* 1/J - penalty * violation; EO_FITNESS_WORST when failed (the paper prints the penalty with +) */
+  int terms;
+  double term[EO_MAX_OBJECTIVE_TERMS]; /* each term of the objective in the unit of its key, over the states as f is */
+  double nominal; /* J of the nominal pair alone, beside the pairs as made; NaN: it was not asked for */
 };
 
 static const double EO_FITNESS_WORST = -1e9;
@@ -47,12 +53,19 @@ struct eo_objective_case eo_objective_nothing(void);
 void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
                       struct eo_objective_sums *sums);
 
-/* J = sum w_i f_i / f_i(unmodified) (normalise: unmodified) or sum w_i f_i in SI units (none). unmodified: [cases], the
-   same design without modification; needed to normalise and for no_worse_than_unmodified. relief_outside: 1 when a
-   relief starts outside the active flank. */
+/* J = sum w_i f_i / f_i(unmodified) (normalise: unmodified) or sum w_i f_i in SI units (none), and the terms that are
+   no percentiles. unmodified: [cases], the same design without modification; needed to normalise and for
+   no_worse_than_unmodified. relief_outside: 1 when a relief starts outside the active flank. */
 void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
                         const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
                         bool relief_outside, struct eo_objective_value *result);
+
+/* The same without the judgement that follows: J may be 0 where all of it is percentiles. */
+void eo_objective_weigh(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
+                        bool relief_outside, struct eo_objective_value *result);
+/* The fitness of J and the violation as they stand; without a J above 0 there is none. */
+void eo_objective_judge(const struct eo_objective *objective, struct eo_objective_value *value);
 
 /* Whether a limit asks for what only the rating gives. */
 bool eo_objective_wants_rating(const struct eo_objective *objective);

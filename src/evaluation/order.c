@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/evaluator_private.h"
+#include "evaluation/objective_terms.h"
 
 static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
 
@@ -13,7 +14,7 @@ static struct eo_run run_of(const struct eo_evaluator *evaluator, const struct e
   if (isnan(run.scenario.out_of_plane))
     run.scenario.out_of_plane = design->alignment.shaft_angle_out_of_plane;
   run.root = evaluator->pair->flexibility && !(want & EO_WANT_CONTACT_ALONE) &&
-             (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
+             (want & EO_WANT_ROOT || eo_objective_wants_root(&design->objective));
   run.rating = !(want & EO_WANT_CONTACT_ALONE) && eo_objective_wants_rating(&design->objective);
   return run;
 }

@@ -23,38 +23,42 @@ enum what {
 };
 
 /* clang-format off */
-static const struct eo_scalar scalars[] = {
-    {"peak_to_peak_um", "of the loaded transmission error of the pair", 1e-6, 0, 0, -1, SWING},
-    {"peak_to_peak_left_um", "of the left end alone", 1e-6, 0, 0, EO_LEFT, SWING},
-    {"peak_to_peak_right_um", "of the right end alone", 1e-6, 0, 0, EO_RIGHT, SWING},
-    {"mean_um", "of the loaded transmission error", 1e-6, 0, 0, -1, MEAN},
-    {"order_1_um", "first mesh order of the transmission error, amplitude", 1e-6, 0, 1, -1, ORDER},
-    {"order_2_um", "second mesh order", 1e-6, 0, 2, -1, ORDER},
-    {"order_3_um", "third mesh order", 1e-6, 0, 3, -1, ORDER},
-    {"max_pressure_MPa", "largest contact pressure", 1e6, 0, 0, -1, PRESSURE},
-    {"max_pressure_left_MPa", "of the left end", 1e6, 0, 0, EO_LEFT, PRESSURE},
-    {"max_pressure_right_MPa", "of the right end", 1e6, 0, 0, EO_RIGHT, PRESSURE},
-    {"max_line_load_N_per_mm", "largest load per length of contact line", 1e3, 0, 0, -1, LINE_LOAD},
-    {"edge_load_share", "largest share of the load on tip edges", 1, 0, 0, -1, EDGE},
-    {"K_Hbeta", "load over the face: largest over mean", 1, 0, 0, -1, FACE_FACTOR},
-    {"K_Halpha", "sharing among the pairs", 1, 0, 0, -1, SHARE_FACTOR},
-    {"impact_N", "general entering impact", 1, 0, 0, -1, IMPACT},
-    {"rms_m_per_s2", "RMS of the relative acceleration normal to the teeth", 1, EO_SCALAR_VIBRATION, 0, -1, RMS},
-    {"dynamic_factor", "largest dynamic over static mesh force", 1, EO_SCALAR_VIBRATION, 0, -1, DYNAMIC},
-    {"contact_loss", "share of the mesh cycle without contact", 1, EO_SCALAR_VIBRATION, 0, -1, LOSS},
-    {"root_stress_MPa", "largest root stress of both members", 1e6, EO_SCALAR_ROOT, 0, -1, ROOT},
-};
+/* The rows in the order in which a history keeps their numbers: new ones stand at the end. */
+#define SCALARS(ROW)                                                                                                   \
+  ROW("peak_to_peak_um", "of the loaded transmission error of the pair", 1e-6, 0, 0, -1, SWING)                         \
+  ROW("peak_to_peak_left_um", "of the left end alone", 1e-6, 0, 0, EO_LEFT, SWING)                                      \
+  ROW("peak_to_peak_right_um", "of the right end alone", 1e-6, 0, 0, EO_RIGHT, SWING)                                   \
+  ROW("mean_um", "of the loaded transmission error", 1e-6, 0, 0, -1, MEAN)                                              \
+  ROW("order_1_um", "first mesh order of the transmission error, amplitude", 1e-6, 0, 1, -1, ORDER)                     \
+  ROW("order_2_um", "second mesh order", 1e-6, 0, 2, -1, ORDER)                                                         \
+  ROW("order_3_um", "third mesh order", 1e-6, 0, 3, -1, ORDER)                                                          \
+  ROW("max_pressure_MPa", "largest contact pressure", 1e6, 0, 0, -1, PRESSURE)                                          \
+  ROW("max_pressure_left_MPa", "of the left end", 1e6, 0, 0, EO_LEFT, PRESSURE)                                         \
+  ROW("max_pressure_right_MPa", "of the right end", 1e6, 0, 0, EO_RIGHT, PRESSURE)                                      \
+  ROW("max_line_load_N_per_mm", "largest load per length of contact line", 1e3, 0, 0, -1, LINE_LOAD)                    \
+  ROW("edge_load_share", "largest share of the load on tip edges", 1, 0, 0, -1, EDGE)                                   \
+  ROW("K_Hbeta", "load over the face: largest over mean", 1, 0, 0, -1, FACE_FACTOR)                                     \
+  ROW("K_Halpha", "sharing among the pairs", 1, 0, 0, -1, SHARE_FACTOR)                                                 \
+  ROW("impact_N", "general entering impact", 1, 0, 0, -1, IMPACT)                                                       \
+  ROW("rms_m_per_s2", "RMS of the relative acceleration normal to the teeth", 1, EO_SCALAR_VIBRATION, 0, -1, RMS)       \
+  ROW("dynamic_factor", "largest dynamic over static mesh force", 1, EO_SCALAR_VIBRATION, 0, -1, DYNAMIC)               \
+  ROW("contact_loss", "share of the mesh cycle without contact", 1, EO_SCALAR_VIBRATION, 0, -1, LOSS)                   \
+  ROW("root_stress_MPa", "largest root stress of both members", 1e6, EO_SCALAR_ROOT, 0, -1, ROOT)
+#define SCALAR(key, help, unit, needs, order, end, what) {key, help, unit, needs, order, end, what},
+#define KEY(key, help, unit, needs, order, end, what) key,
 /* clang-format on */
-enum { SCALARS = sizeof scalars / sizeof *scalars };
+static const struct eo_scalar scalars[] = {SCALARS(SCALAR)};
+const char *const eo_scalar_keys[] = {SCALARS(KEY) NULL};
+_Static_assert(sizeof scalars / sizeof *scalars == EO_SCALARS, "raw values have room for every scalar");
 
 const struct eo_scalar *eo_scalar_at(int index)
 {
-  return index >= 0 && index < SCALARS ? &scalars[index] : NULL;
+  return index >= 0 && index < EO_SCALARS ? &scalars[index] : NULL;
 }
 
 int eo_scalar_find(const char *key)
 {
-  for (int i = 0; i < SCALARS; i++)
+  for (int i = 0; i < EO_SCALARS; i++)
     if (strcmp(scalars[i].key, key) == 0)
       return i;
   return -1;

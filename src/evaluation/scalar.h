@@ -18,6 +18,9 @@ struct eo_scalar {
   int what;         /* of scalar.c */
 };
 
+/* Their keys by index, NULL at the end: the words of a choice. */
+extern const char *const eo_scalar_keys[];
+
 /* NULL after the last; the index of a key, -1: none. */
 const struct eo_scalar *eo_scalar_at(int index);
 int eo_scalar_find(const char *key);

@@ -3,6 +3,7 @@
 
 #include "reference/stage.h"
 #include "reference/stage_input.h"
+#include "evaluation/objective_terms.h"
 #include "evaluation/evaluator.h"
 
 #define RAW(member_, key_, unit_, high_, help_)                                                                     \
@@ -99,6 +100,11 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   const struct eo_geometry profile = {.rack_bottom = given->bottom, .rack_top = given->top};
   static const struct eo_modification none = {0};
   struct eo_faults faults = {0};
+  if (eo_objective_wants_scalars(&design.objective))
+    return eo_error_set(
+        error, EO_ERROR_INPUT, design.objective.terms > 0 ? "/objective/terms" : "/objective/limits",
+        "The raw values of this stage do not hold the numbers that terms and limits ask for: leave them "
+        "out.");
   eo_load_cases_settle(NULL, design.load_case, design.load_cases, NULL, &faults);
   enum eo_code code = eo_faults_first(&faults, error);
   if (!code)

@@ -2,6 +2,7 @@
 #include "store/evaluations.h"
 
 #include "base/hash.h"
+#include "evaluation/scalar.h"
 #include "store/statement.h"
 
 #include <math.h>
@@ -24,8 +25,9 @@ static enum eo_evaluation_outcome find_outcome(const char *name)
   return (enum eo_evaluation_outcome)i;
 }
 
-/* The curve of a row: the transmission error, then the impacts of the ends. Kept whole or not at all. */
-enum { CURVE = EO_OBJECTIVE_SAMPLES + 2 };
+/* The curve of a row: the transmission error, then the impacts of the ends, kept whole or not at all; and behind it the
+   numbers of evaluation/scalar.h in their order, where a term or a limit asks for them. */
+enum { CURVE = EO_OBJECTIVE_SAMPLES + 2, LONG_CURVE = CURVE + EO_SCALARS };
 
 /* Fills curve[CURVE]; false when it is not there. */
 static bool copy_curve(const struct eo_objective_case *objective_case, double *curve)
@@ -38,17 +40,33 @@ static bool copy_curve(const struct eo_objective_case *objective_case, double *c
   return finite;
 }
 
+/* Fills curve[LONG_CURVE]; returns how many bytes of it are kept, 0: none. */
+static size_t pack_curve(const struct eo_objective_case *objective_case, double *curve)
+{
+  bool there = copy_curve(objective_case, curve), scalars = false;
+  for (int i = 0; i < EO_SCALARS; i++) {
+    double value = objective_case->scalar[i];
+    curve[CURVE + i] = isfinite(value) ? value : NAN;
+    scalars = scalars || isfinite(value);
+  }
+  for (int i = 0; i < CURVE && !there; i++)
+    curve[i] = NAN;
+  return sizeof *curve * (scalars ? LONG_CURVE : there ? CURVE : 0);
+}
+
+/* Rows of a version with fewer scalars are shorter. */
 static void read_curve(const struct eo_statement *statement, int column, struct eo_objective_case *objective_case)
 {
-  double value[CURVE];
+  double value[LONG_CURVE];
   const void *bytes = sqlite3_column_blob(statement->handle, column);
-  const bool there = bytes && sqlite3_column_bytes(statement->handle, column) == (int)sizeof value;
-  for (int i = 0; i < CURVE; i++)
+  const size_t size = bytes ? (size_t)sqlite3_column_bytes(statement->handle, column) : 0;
+  for (int i = 0; i < LONG_CURVE; i++)
     value[i] = NAN;
-  if (there)
-    memcpy(value, bytes, sizeof value);
+  if (size >= sizeof *value * CURVE && size <= sizeof value)
+    memcpy(value, bytes, size);
   memcpy(objective_case->transmission, value, sizeof objective_case->transmission);
   memcpy(objective_case->end_impact, value + EO_OBJECTIVE_SAMPLES, sizeof objective_case->end_impact);
+  memcpy(objective_case->scalar, value + CURVE, sizeof objective_case->scalar);
 }
 
 static void add_raw(struct eo_hash *hash, const struct eo_objective_case *objective_case)
@@ -75,6 +93,9 @@ static void add_raw(struct eo_hash *hash, const struct eo_objective_case *object
   const bool there = copy_curve(objective_case, curve);
   for (int i = 0; i < CURVE && there; i++) /* likewise */
     eo_hash_add_number(hash, "curve", curve[i]);
+  for (int i = 0; i < EO_SCALARS; i++)
+    if (isfinite(objective_case->scalar[i]))
+      eo_hash_add_number(hash, eo_scalar_keys[i], objective_case->scalar[i]);
 }
 
 static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_HASH_LENGTH + 1])
@@ -180,7 +201,8 @@ static enum eo_code read_all_raw(struct eo_store *store, struct eo_stored_evalua
     count++;
   }
   enum eo_code code = eo_statement_end(&statement, error);
-  return code || (good && count == size) ? code : damaged(store, row->id, error);
+  row->scenarios = row->cases > 0 ? count / row->cases : 0;
+  return code || (good && count > 0 && count % row->cases == 0) ? code : damaged(store, row->id, error);
 }
 
 /* Columns id, outcome, reason, cost. */
@@ -260,15 +282,15 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
   enum eo_code code = EO_OK;
   for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
     const struct eo_objective_case *objective_case = &row->raw[i];
-    double curve[CURVE];
-    const bool there = copy_curve(objective_case, curve);
+    double curve[LONG_CURVE];
+    const size_t size = pack_curve(objective_case, curve);
     code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                             "innrrrrrrrnrrrrb", row->id, i / row->cases, i % row->cases, objective_case->peak_to_peak,
                             objective_case->impact, objective_case->rms, objective_case->contact_pressure,
                             objective_case->root_stress, objective_case->edge_load_share, objective_case->contact_loss,
                             (int)objective_case->failed, objective_case->flank_safety, objective_case->root_safety,
                             objective_case->film_ratio, objective_case->contact_temperature,
-                            there ? (const void *)curve : NULL, sizeof curve);
+                            size > 0 ? (const void *)curve : NULL, size);
   }
   return code;
 }

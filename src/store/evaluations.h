@@ -53,8 +53,8 @@ enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_store
 enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, const char *modification,
                                       struct eo_stored_evaluation *row, struct eo_error *error);
 
-/* The row with a number; row->scenarios, ->cases and ->raw as above; the modification is appended to text.
-   EO_ERROR_FILE when it is not there. */
+/* The row with a number; row->scenarios, ->cases and ->raw as above, but a row of a first look has fewer scenarios,
+   which row->scenarios then says; the modification is appended to text. EO_ERROR_FILE when it is not there. */
 enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct eo_stored_evaluation *row,
                                      struct eo_text *modification, struct eo_error *error);
 

@@ -62,10 +62,11 @@ static enum eo_code find_unmodified(struct history *history, struct eo_error *er
   return code;
 }
 
-static enum eo_code weigh(struct history *history, const char *modification, struct eo_objective_value *value,
-                          struct eo_error *error)
+static enum eo_code weigh(struct history *history, const char *modification, int states,
+                          struct eo_objective_value *value, struct eo_error *error)
 {
   enum eo_code code = eo_modification_read(modification, &history->design.modification, error);
+  history->design.drawn.first = states < history->scenarios ? states : 0;
   if (!code)
     eo_evaluator_combine(&history->design, &history->geometry, history->raw, history->unmodified, value);
   return code;
@@ -94,6 +95,8 @@ static const struct eo_outline_row history_rows[] = {
            .name = "SparseModification", .sparse = true, .write = write_modification),
     {.outline = &eo_outline_value, .offset = offsetof(struct row, value)},
     EO_KEY("reused", "flag", "the history knew it before the job asked", EO_AT(struct row, candidate.reused)),
+    EO_KEY("states", "integer", "of the pair that its values are over: 1, scenarios, or pairs as made",
+           EO_AT(struct row, evaluation.scenarios)),
 };
 const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
 
@@ -103,7 +106,7 @@ static enum eo_code add_row(struct history *history, const struct eo_stored_cand
   struct row row = {.candidate = *candidate,
                     .evaluation = {.scenarios = history->scenarios, .cases = history->cases, .raw = history->raw}};
   EO_TRY(eo_store_get_evaluation(history->store, candidate->evaluation, &row.evaluation, text, error));
-  EO_TRY(weigh(history, row.evaluation.modification, &row.value, error));
+  EO_TRY(weigh(history, row.evaluation.modification, row.evaluation.scenarios, &row.value, error));
   return json_array_append_new(history->items, eo_outline_encode(&eo_job_history_outline, &row))
              ? eo_error_memory(error)
              : EO_OK;

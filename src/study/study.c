@@ -65,7 +65,8 @@ static int report_within(void *context, const char *what, double fraction)
 static enum eo_code work(void *context, int thread, int item, struct eo_error *error)
 {
   struct study *study = context;
-  return eo_study_compute_row(study, &study->worker[thread], eo_rows_at(&study->row, study->missing[item]), error);
+  return eo_study_compute_row(study, &study->worker[thread], eo_rows_at(&study->row, study->missing[item]),
+                              study->target, error);
 }
 
 /* Rows of the batch behind those already told, and which of them have to be computed. */
@@ -80,6 +81,7 @@ static enum eo_code lay_out(struct study *study, struct eo_error *error)
     study->missing_capacity = study->batch.count;
   }
   study->missing_count = 0;
+  study->target = study->race.first ? study->race.first : study->result->scenarios;
   for (int i = 0; i < study->batch.count && !code; i++) {
     struct eo_modification modification;
     struct eo_row_data *row;
@@ -88,6 +90,8 @@ static enum eo_code lay_out(struct study *study, struct eo_error *error)
     code = eo_rows_add(&study->row, &modification, study->plan->design->gear_pair.ends, &row, error);
     if (!code)
       code = eo_study_look_up(study, row, error);
+    if (!code)
+      memcpy(row->x, study->batch.candidates[i].x, sizeof *row->x * (size_t)study->result->space.count);
     if (!code && !row->point.evaluation)
       study->missing[study->missing_count++] = study->told + i;
   }
@@ -215,10 +219,11 @@ static enum eo_code note_best(struct study *study, struct eo_error *error)
 static enum eo_code tell(struct study *study, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  double objectives[3];
+  double objectives[EO_MAX_OBJECTIVES];
+  for (int i = 0; i < study->batch.count; i++)
+    eo_race_settle(study, eo_rows_at(&study->row, study->told + i));
   for (int i = 0; i < study->batch.count && !code; i++) {
     struct eo_row_data *row = eo_rows_at(&study->row, study->told + i);
-    eo_study_weigh(study, &row->point);
     study->result->failed += !row->point.there;
     struct eo_outcome outcome = eo_study_outcome(study, row, objectives);
     code = eo_optimizer_tell(study->optimizer, i, &outcome, error);
@@ -240,6 +245,10 @@ static enum eo_code run_batch(struct study *study, bool *more, struct eo_error *
     code = lay_out(study, error);
   if (!code)
     code = compute(study, error);
+  if (!code && *more && study->race.first) {
+    eo_race_choose(study);
+    code = compute(study, error);
+  }
   if (code && code != EO_ERROR_CANCELLED)
     return code;
   enum eo_code saved = save_batch(study, !code, error);
@@ -313,6 +322,7 @@ static enum eo_code finish(struct study *study, bool cancelled, struct eo_error 
   struct eo_study_result *result = study->result;
   struct eo_counters counters = eo_optimizer_counters(study->optimizer);
   result->individuals = counters.individuals;
+  result->whole = study->race.first ? study->race.whole : counters.true_evaluations;
   result->true_evaluations = counters.true_evaluations;
   result->predicted = counters.predicted;
   result->repeated = counters.reused;
@@ -336,6 +346,7 @@ static void release(struct study *study)
     eo_evaluator_free(study->worker[i].evaluator);
     free(study->worker[i].design);
   }
+  eo_race_end(study);
   eo_rows_done(&study->row);
   eo_optimizer_free(study->optimizer);
   eo_text_done(&study->design);

@@ -59,9 +59,17 @@ static enum eo_code find_job(struct study *study, struct eo_error *error)
                                             .evaluator = EO_EVALUATOR_VERSION,
                                             .scenarios = study->result->scenarios,
                                             .cases = study->result->cases};
+  const struct eo_stored_problem first = {.hash = study->race.hash,
+                                          .spec = study->race.spec.data,
+                                          .name = study->plan->design->name,
+                                          .evaluator = EO_EVALUATOR_VERSION,
+                                          .scenarios = study->race.first,
+                                          .cases = study->result->cases};
   enum eo_code code = eo_store_begin(store, error);
   if (!code)
     code = eo_store_find_problem(store, &problem, &study->job.problem, error);
+  if (!code && study->race.first)
+    code = eo_store_find_problem(store, &first, &study->race.problem, error);
   study->job.study = study->study_hash;
   study->job.space = study->space_hash;
   study->job.fresh = study->plan->fresh;
@@ -92,8 +100,8 @@ static enum eo_code find_unmodified(struct study *study, struct eo_error *error)
   enum eo_code code = eo_rows_add(&rows, &none, study->plan->design->gear_pair.ends, &row, error);
   if (!code)
     code = eo_study_look_up(study, row, error);
-  if (!code && !row->point.evaluation) {
-    code = eo_study_compute_row(study, &study->worker[0], row, error);
+  if (!code && row->states < study->result->scenarios) {
+    code = eo_study_compute_row(study, &study->worker[0], row, study->result->scenarios, error);
     if (!code)
       code = eo_store_begin(study->plan->store, error);
     if (!code)
@@ -119,7 +127,8 @@ static enum eo_code find_unmodified(struct study *study, struct eo_error *error)
 /* What the values are made of, once the unmodified pair is known. */
 static enum eo_code describe_value(struct study *study, struct eo_error *error)
 {
-  enum eo_code code = eo_objective_anatomy(study->plan->design, study->result->scenarios, study->result->unmodified.raw,
+  study->parted = study->race.first ? study->race.first : study->result->scenarios;
+  enum eo_code code = eo_objective_anatomy(study->plan->design, study->parted, study->result->unmodified.raw,
                                            &study->anatomy, error);
   if (code || study->anatomy.parts == 0)
     return code;
@@ -135,7 +144,7 @@ static enum eo_code import(void *context, const struct eo_stored_evaluation *eva
   struct study *study = context;
   struct eo_row_data *row;
   struct eo_modification modification;
-  double point[EO_MAX_LISTED], objectives[3];
+  double point[EO_MAX_LISTED], objectives[EO_MAX_OBJECTIVES];
   const struct eo_modification *base = &study->plan->design->modification;
   enum eo_code code = eo_modification_read(evaluation->modification, &modification, error);
   if (code || !eo_study_space_locate(&study->result->space, base, &modification, point))
@@ -145,7 +154,10 @@ static enum eo_code import(void *context, const struct eo_stored_evaluation *eva
     return code;
   memcpy(row->point.raw, evaluation->raw, sizeof *evaluation->raw * (size_t)study->row.values);
   eo_study_take(row, evaluation);
-  eo_study_weigh(study, &row->point);
+  row->states = study->result->scenarios;
+  row->whole = true;
+  memcpy(row->x, size == study->result->space.count ? x : point, sizeof *row->x * (size_t)study->result->space.count);
+  eo_race_settle(study, row);
   struct eo_outcome outcome = eo_study_outcome(study, row, objectives);
   code = eo_optimizer_import(study->optimizer, size == study->result->space.count ? x : point, &outcome, error);
   if (!code && eo_optimizer_rows(study->optimizer) < study->row.count) /* the same point once more */
@@ -172,6 +184,8 @@ enum eo_code eo_study_begin(struct study *study, struct eo_error *error)
     return code;
   eo_study_space_hash(&result->space, study->space_hash);
   code = eo_optimizer_new(&study->settings, &study->optimizer, error);
+  if (!code)
+    code = eo_race_begin(study, error);
   if (!code)
     code = describe(study, error);
   if (!code)

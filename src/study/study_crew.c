@@ -2,6 +2,7 @@
 #include "study/study_crew.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,18 +73,25 @@ static enum eo_code work(struct eo_crew_bench *bench, int thread, const char *it
   size_t values = (size_t)shop->result.scenarios * (size_t)shop->result.cases;
   struct eo_row_data row = {0};
   struct head head;
+  int states = 0, length = 0;
   (void)size;
-  EO_TRY(eo_modification_read(item, &row.point.modification, error));
+  if (sscanf(item, "%d %d %n", &row.states, &states, &length) < 2 || row.states < 0 || states <= row.states ||
+      states > shop->result.scenarios)
+    return eo_error_set(error, EO_ERROR_FILE, "", "An item of the search says nothing of its states.");
+  size_t known = (size_t)row.states * (size_t)shop->result.cases,
+         made = (size_t)(states - row.states) * (size_t)shop->result.cases;
+  EO_TRY(eo_modification_read(item + length, &row.point.modification, error));
   row.point.raw = calloc(values, sizeof *row.point.raw);
-  enum eo_code code = row.point.raw ? eo_study_compute_row(&shop->study, &shop->study.worker[thread], &row, error)
-                                    : eo_error_memory(error);
+  enum eo_code code = row.point.raw
+                          ? eo_study_compute_row(&shop->study, &shop->study.worker[thread], &row, states, error)
+                          : eo_error_memory(error);
   memset(&head, 0, sizeof head);
   head.outcome = (int32_t)row.outcome;
   head.cost = row.cost;
   memcpy(head.reason, row.reason, sizeof head.reason);
   eo_text_add_bytes(answer, &head, sizeof head);
   if (row.point.raw)
-    eo_text_add_bytes(answer, row.point.raw, sizeof *row.point.raw * values);
+    eo_text_add_bytes(answer, row.point.raw + known, sizeof *row.point.raw * made);
   free(row.point.raw);
   return code;
 }
@@ -95,8 +103,10 @@ const struct eo_crew_trade eo_study_trade = {"search", open, work, close};
 static enum eo_code write_item(void *context, int item, struct eo_text *text, struct eo_error *error)
 {
   const struct study *study = context;
+  const struct eo_row_data *row = eo_rows_at(&study->row, study->missing[item]);
   (void)error;
-  eo_text_add(text, eo_rows_at(&study->row, study->missing[item])->text.data);
+  eo_text_print(text, "%d %d ", row->states, study->target);
+  eo_text_add(text, row->text.data);
   return EO_OK;
 }
 
@@ -105,14 +115,16 @@ static enum eo_code take_answer(void *context, int item, const char *answer, siz
   struct study *study = context;
   struct eo_row_data *row = eo_rows_at(&study->row, study->missing[item]);
   struct head head;
-  size_t raw = sizeof *row->point.raw * (size_t)study->row.values;
+  size_t known = (size_t)row->states * (size_t)study->result->cases,
+         raw = sizeof *row->point.raw * (size_t)(study->target - row->states) * (size_t)study->result->cases;
   if (size != sizeof head + raw)
     return eo_error_set(error, EO_ERROR_FILE, "", "A rank sent an answer of the wrong length.");
   memcpy(&head, answer, sizeof head);
-  memcpy(row->point.raw, answer + sizeof head, raw);
+  memcpy(row->point.raw + known, answer + sizeof head, raw);
   memcpy(row->reason, head.reason, sizeof row->reason);
   row->outcome = (enum eo_evaluation_outcome)head.outcome;
-  row->cost = head.cost;
+  row->cost += head.cost;
+  row->states = study->target;
   row->computed = true;
   study->computed_of_batch = item + 1;
   return EO_OK;

@@ -6,8 +6,8 @@
 #include "crew/crew.h"
 #include "study/study_private.h"
 
-/* The order is the complete design, an item a modification as the history has it, an answer a row without its number.
- */
+/* The order is the complete design, an item a modification as the history has it behind the numbers of states that
+   it has and gets, an answer what is new of the row but its number. */
 extern const struct eo_crew_trade eo_study_trade;
 
 /* Computes the missing rows of the pending batch; they come back in its order. Errors: of the crew. */

@@ -8,6 +8,7 @@
 #include "document/result.h"
 #include "evaluation/analysis.h"
 #include "store/jobs.h"
+#include "study/made_check.h"
 
 bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
                           struct eo_design *best)
@@ -30,6 +31,34 @@ static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_de
   return code;
 }
 
+static bool is_modified(const struct eo_design *design)
+{
+  bool modified = false;
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < design->gear_pair.ends; end++)
+      modified = modified || !eo_modification_is_none(&design->modification.flank[member][end]) ||
+                 !eo_modification_is_none(&design->modification.coast[member][end]);
+  return modified;
+}
+
+/* What a search over pairs as made found, and the flank it began with where there is one, on other pairs. */
+static enum eo_code check(const struct eo_study_plan *plan, struct eo_study_result *result, struct eo_error *error)
+{
+  const struct eo_design *design = plan->design;
+  struct eo_made_plan made = {.design = design,
+                              .pair = plan->pair,
+                              .designs = 1,
+                              .modification = {&result->best.modification, &design->modification},
+                              .name = {"found", "as designed"},
+                              .pairs = design->objective.check_pairs,
+                              .threads = plan->threads};
+  made.designs += is_modified(design);
+  result->check = (struct eo_made_check){0};
+  if (!result->best.there || result->stopped == EO_STOP_CANCELLED || design->drawn.pairs == 0 || made.pairs == 0)
+    return EO_OK;
+  return eo_made_check_run(&result->check, &made, error);
+}
+
 static enum eo_code keep(struct eo_store *store, int64_t job, const json_t *document, struct eo_error *error)
 {
   struct eo_text text = {0};
@@ -43,11 +72,14 @@ enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo
                                const struct eo_warnings *warnings, json_t **document, struct eo_error *error)
 {
   json_t *analysis = NULL, *made = NULL;
+  struct eo_study_result checked = *result; /* with a check of its own */
   struct eo_design *best = malloc(sizeof *best);
   enum eo_code code = best ? EO_OK : eo_error_memory(error);
   if (!code && eo_study_best_design(plan, result, best))
     code = analyse(plan, best, &analysis, error);
-  if (!code && !(made = eo_study_result_encode(result, plan->design, analysis, warnings)))
+  if (!code)
+    code = check(plan, &checked, error);
+  if (!code && !(made = eo_study_result_encode(&checked, plan->design, analysis, warnings)))
     code = eo_error_memory(error);
   if (!code)
     code = keep(plan->store, result->job, made, error);
@@ -55,6 +87,7 @@ enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo
     *document = made;
   else
     json_decref(made);
+  eo_made_check_done(&checked.check);
   json_decref(analysis);
   free(best);
   return code;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "evaluation/objective_terms.h"
 #include "store/evaluations.h"
 
 static double thread_seconds(void)
@@ -17,8 +18,14 @@ static double thread_seconds(void)
 
 void eo_study_weigh(struct study *study, struct eo_study_point *point)
 {
+  eo_study_weigh_over(study, 0, point);
+}
+
+void eo_study_weigh_over(struct study *study, int first, struct eo_study_point *point)
+{
   const struct eo_design *design = study->plan->design;
   study->scratch->modification = point->modification;
+  study->scratch->drawn.first = first;
   eo_evaluator_combine(study->scratch, &study->plan->pair->geometry, point->raw, study->result->unmodified.raw,
                        &point->value);
   bool normalised = design->objective.normalise == EO_NORMALISE_UNMODIFIED;
@@ -37,11 +44,11 @@ static void refuse(struct eo_row_data *row, int count, const struct eo_error *er
     row->point.raw[i] = eo_objective_nothing();
 }
 
-static void judge(struct eo_row_data *row, int scenarios, int cases)
+static void judge(struct eo_row_data *row, int from, int scenarios, int cases)
 {
   row->outcome = EO_EVALUATION_CONVERGED;
   row->reason[0] = '\0';
-  for (int i = scenarios * cases - 1; i >= 0; i--) {
+  for (int i = scenarios * cases - 1; i >= from * cases; i--) {
     const struct eo_objective_case *objective_case = &row->point.raw[i];
     if (!objective_case->failed && isfinite(objective_case->peak_to_peak) && isfinite(objective_case->impact) &&
         isfinite(objective_case->rms))
@@ -63,7 +70,7 @@ static enum eo_code prepare_worker(struct study *study, struct worker *worker, s
   return eo_evaluator_new(&worker->evaluator, study->plan->pair, study->result->cases, error);
 }
 
-enum eo_code eo_study_compute_row(struct study *study, struct worker *worker, struct eo_row_data *row,
+enum eo_code eo_study_compute_row(struct study *study, struct worker *worker, struct eo_row_data *row, int states,
                                   struct eo_error *error)
 {
   struct eo_error found = {0};
@@ -72,16 +79,18 @@ enum eo_code eo_study_compute_row(struct study *study, struct worker *worker, st
     return code;
   double start = thread_seconds();
   worker->design->modification = row->point.modification;
-  code = eo_evaluator_raw(worker->evaluator, worker->design, row->point.raw, &found);
-  row->cost = thread_seconds() - start;
+  worker->design->drawn.first = states < study->result->scenarios ? states : 0;
+  code = eo_evaluator_raw_from(worker->evaluator, worker->design, row->states, row->point.raw, &found);
+  row->cost += thread_seconds() - start;
   if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC) {
     *error = found;
     return code;
   }
   if (code)
-    refuse(row, study->result->scenarios * study->result->cases, &found);
+    refuse(row, states * study->result->cases, &found);
   else
-    judge(row, study->result->scenarios, study->result->cases);
+    judge(row, row->states, states, study->result->cases);
+  row->states = states;
   row->computed = true;
   return EO_OK;
 }
@@ -92,7 +101,7 @@ static struct eo_stored_evaluation stored(const struct study *study, struct eo_r
                                             .modification = row->text.data,
                                             .outcome = row->outcome,
                                             .cost = row->cost,
-                                            .scenarios = study->result->scenarios,
+                                            .scenarios = row->states,
                                             .cases = study->result->cases,
                                             .raw = row->point.raw};
   snprintf(evaluation.reason, sizeof evaluation.reason, "%s", row->reason);
@@ -109,32 +118,39 @@ void eo_study_take(struct eo_row_data *row, const struct eo_stored_evaluation *e
 
 enum eo_code eo_study_look_up(struct study *study, struct eo_row_data *row, struct eo_error *error)
 {
-  struct eo_stored_evaluation evaluation = stored(study, row);
-  enum eo_code code = eo_store_find_evaluation(study->plan->store, study->job.problem, row->text.data, &evaluation,
-                                               error);
-  if (!code && evaluation.id)
-    eo_study_take(row, &evaluation);
-  return code;
+  const int states[2] = {study->result->scenarios, study->race.first};
+  const int64_t problem[2] = {study->job.problem, study->race.problem};
+  for (int i = 0; i < 2 && states[i] > 0 && !row->states; i++) {
+    struct eo_stored_evaluation evaluation = stored(study, row);
+    evaluation.scenarios = states[i];
+    EO_TRY(eo_store_find_evaluation(study->plan->store, problem[i], row->text.data, &evaluation, error));
+    if (evaluation.id) {
+      eo_study_take(row, &evaluation);
+      row->states = states[i];
+    }
+  }
+  return EO_OK;
 }
 
 enum eo_code eo_study_save_row(struct study *study, struct eo_row_data *row, struct eo_error *error)
 {
   struct eo_stored_evaluation evaluation = stored(study, row);
-  enum eo_code code = eo_store_add_evaluation(study->plan->store, study->job.problem, &evaluation, error);
+  int64_t problem = row->states < study->result->scenarios ? study->race.problem : study->job.problem;
+  enum eo_code code = eo_store_add_evaluation(study->plan->store, problem, &evaluation, error);
   if (!code)
     eo_study_take(row, &evaluation);
   return code;
 }
 
-struct eo_outcome eo_study_outcome(struct study *study, const struct eo_row_data *row, double objectives[3])
+struct eo_outcome eo_study_outcome(struct study *study, const struct eo_row_data *row,
+                                   double objectives[EO_MAX_OBJECTIVES])
 {
-  const struct eo_objective_sums *own = &row->point.value.sums, *before = &study->result->unmodified.value.sums;
-  for (int i = 0; i < 3; i++)
-    objectives[i] = before->f[i] > 0 ? own->f[i] / before->f[i] : own->f[i];
+  eo_front_values(study->plan->design, &row->point.value, &study->result->unmodified.value, objectives);
   if (study->part)
-    eo_objective_parts(row->point.raw, study->row.values, study->part);
-  return (struct eo_outcome){.failed = !row->point.there,
-                             .value = row->point.rank,
+    eo_objective_parts(row->point.raw, study->parted * study->result->cases, study->part);
+  double told = eo_race_value(study, row);
+  return (struct eo_outcome){.failed = !row->point.there || !isfinite(told),
+                             .value = told,
                              .violation = row->point.value.violation,
                              .objectives = objectives,
                              .parts = study->part};

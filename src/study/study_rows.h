@@ -4,6 +4,7 @@
 #define EASEOFF_STUDY_STUDY_ROWS_H
 
 #include "document/study_result.h"
+#include "optimizer/settings.h"
 #include "store/evaluations.h"
 
 struct eo_row_data {
@@ -11,8 +12,12 @@ struct eo_row_data {
   struct eo_text text; /* the modification as the history knows it */
   enum eo_evaluation_outcome outcome;
   char reason[EO_REASON_LENGTH];
-  double cost;   /* s */
-  bool computed; /* by this process, and not saved yet */
+  double cost;                /* s */
+  bool computed;              /* by this process, and not saved yet */
+  int states;                 /* scenarios whose raw values are there, from the first on */
+  bool whole;                 /* told with all of them; else with the first pairs alone: study_race.c */
+  double rest;                /* whole, in a race: rank over all less that over the first pairs */
+  double x[EO_MAX_VARIABLES]; /* in the unit cube */
 };
 
 struct eo_rows {

@@ -8,6 +8,8 @@
 
 #include "base/parallel.h"
 #include "evaluation/analysis.h"
+#include "evaluation/objective_terms.h"
+#include "evaluation/scalar.h"
 #include "document/search_space.h"
 #include "format/json.h"
 #include "variants/pair_rack.h"
@@ -163,8 +165,9 @@ static void judge(const struct eo_analysis *analysis, struct eo_variant_answer *
 /* What nobody asked for is not kept: a search of the same pair finds its own rows. */
 static void forget_root(const struct eo_design *design, struct eo_analysis *analysis)
 {
-  for (int k = 0; k < analysis->cases && isnan(design->objective.root_stress); k++)
-    analysis->raw[k].root_stress = NAN;
+  int root = eo_scalar_find("root_stress_MPa");
+  for (int k = 0; k < analysis->cases && !eo_objective_wants_root(&design->objective); k++)
+    analysis->raw[k].root_stress = analysis->raw[k].scalar[root] = NAN;
 }
 
 static enum eo_code evaluate(struct shop *shop, struct tool *tool, struct eo_variant_answer *answer,

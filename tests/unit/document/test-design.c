@@ -158,6 +158,9 @@ static void test_every_fault(void)
   strcpy(complete.tolerance.row[0].key, "speed_factor");
   strcpy(complete.tolerance.limit[0].output, "peak_to_peak_um");
   complete.tolerance.limit[0].most = 1;
+  complete.objective.terms = complete.objective.limits = 1;
+  complete.objective.term[0] = (struct eo_objective_term){.weight = 1, .scale = NAN, .percent = NAN};
+  complete.objective.limit[0] = (struct eo_objective_limit){.most = 1, .percent = NAN};
   for (int i = 0; i < 4; i++) /* and all flanks */
     complete.modification.coast[i / 2][i % 2].helix_slope = 1e-6;
   complete.load_case[0].has_alignment = 1;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Objectives, constraints and fitness against their formulae, paper equations (19)-(23). */
-#include "evaluation/objective.h"
+#include "evaluation/evaluator.h"
+#include "evaluation/objective_terms.h"
+#include "evaluation/scalar.h"
 #include "support/tap.h"
 
 #include <stddef.h>
@@ -199,6 +201,96 @@ static void test_zero_baseline(void)
   ok(v.fitness == EO_FITNESS_WORST, "all objectives at zero cannot be: no infinite fitness");
 }
 
+/* Eleven states whose order_1_um is 1 .. 11 um at load case 2, the others 5 um; the unmodified pair has 10. */
+enum { STATES = 11 };
+static struct eo_objective_case state[STATES][3], bare[STATES][3];
+
+static void fill_states(int output)
+{
+  for (int i = 0; i < STATES; i++)
+    for (int k = 0; k < 3; k++) {
+      state[i][k] = after[k];
+      bare[i][k] = before[k];
+      for (int s = 0; s < EO_SCALARS; s++)
+        state[i][k].scalar[s] = bare[i][k].scalar[s] = NAN;
+      state[i][k].scalar[output] = k == 1 ? (double)(7 * i % STATES + 1) : 5;
+      bare[i][k].scalar[output] = 10;
+    }
+}
+
+static void test_terms(void)
+{
+  struct eo_objective objective = plain();
+  int output = eo_scalar_find("order_1_um");
+  double without = value_of(&objective, after, false).objective;
+  fill_states(output);
+  objective.terms = 1;
+  objective.term[0] =
+      (struct eo_objective_term){.output = output, .load_case = 2, .weight = 2, .scale = NAN, .percent = NAN};
+  ok(eo_objective_wants_scalars(&objective) && !eo_objective_wants_root(&objective),
+     "a term asks for the numbers, this one not for root stress");
+  struct eo_objective_case missing[3] = {state[0][0], state[0][1], state[0][2]};
+  missing[1].scalar[output] = NAN;
+  struct eo_objective_value v = value_of(&objective, missing, false);
+  ok(v.sums.failed && isnan(v.objective), "a number that is missing: no J");
+  eo_objective_value(&objective, 3, load_case, state[3], bare[0], false, &v);
+  near(v.objective, without + 2 * 11 / 10.0, 1e-13, "a term over the unmodified pair's");
+  near(v.term[0], 11, 1e-14, "in the unit of its key");
+  objective.term[0].scale = 4;
+  eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
+  near(v.objective, without + 2 * 1 / 4.0, 1e-13, "over a stated scale");
+  objective.term[0].load_case = 0;
+  eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
+  near(v.term[0], 0.2 * 5 + 0.5 * 1 + 0.3 * 5, 1e-14, "without a load case the mean by share");
+  objective.terms = 0;
+  objective.limits = 1;
+  objective.limit[0] = (struct eo_objective_limit){.output = output, .most = 4, .percent = NAN};
+  eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
+  near(v.violation, 0.5, 1e-13, "a limit of 4 where two load cases have 5 and one 1");
+  objective.limit[0].load_case = 2;
+  eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
+  near(v.violation, 0, 1e-13, "... at one load case");
+}
+
+static void test_percentiles(void)
+{
+  static struct eo_design design;
+  const struct eo_geometry geometry = {.rack_bottom = -1, .rack_top = 1};
+  struct eo_objective_value v;
+  design.objective = plain();
+  design.load_cases = 3;
+  for (int k = 0; k < 3; k++)
+    design.load_case[k] = load_case[k];
+  design.objective.robust = EO_ROBUST_MEAN;
+  design.objective.scenarios = STATES;
+  design.objective.terms = design.objective.limits = 1;
+  int output = eo_scalar_find("order_1_um");
+  design.objective.term[0] =
+      (struct eo_objective_term){.output = output, .load_case = 2, .weight = 1, .scale = NAN, .percent = 90};
+  design.objective.limit[0] = (struct eo_objective_limit){.output = output, .most = 8, .percent = 80};
+  fill_states(output);
+  double without = value_of(&(struct eo_objective){.weight = {0.4, 0.3, 0.3},
+                                                   .contact_pressure = NAN,
+                                                   .root_stress = NAN,
+                                                   .peak_to_peak = NAN,
+                                                   .edge_load_share = NAN,
+                                                   .contact_loss = NAN,
+                                                   .flank_safety = NAN,
+                                                   .root_safety = NAN,
+                                                   .film_ratio = NAN,
+                                                   .contact_temperature = NAN},
+                            after, false)
+                       .objective;
+  eo_evaluator_combine(&design, &geometry, state[0], bare[0], &v);
+  near(v.objective, without + 10 / 10.0, 1e-13, "90 % of 1 .. 11 is 10: a percentile beside the mean of J");
+  near(v.term[0], 10, 1e-13, "... in the unit of its key");
+  near(v.violation, 9.0 / 8 - 1, 1e-13, "80 % of them are 9 or less, where 8 is the limit");
+  design.objective.weight[0] = design.objective.weight[1] = design.objective.weight[2] = 0;
+  eo_evaluator_combine(&design, &geometry, state[0], bare[0], &v);
+  near(v.objective, 1, 1e-13, "a percentile alone");
+  ok(isnan(v.nominal), "no nominal pair where no front asks for it");
+}
+
 int main(void)
 {
   test_sums();
@@ -209,5 +301,7 @@ int main(void)
   test_relief();
   test_failures();
   test_zero_baseline();
+  test_terms();
+  test_percentiles();
   return tap_done();
 }

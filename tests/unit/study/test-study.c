@@ -252,6 +252,75 @@ static void test_front(void)
   eo_study_result_done(&result);
 }
 
+/* The nominal pair against the pairs as made: a front of two axes. */
+static void test_robust_front(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  coarse_design(&design, "nsga2", 60);
+  design.objective.robust = EO_ROBUST_PERCENTILE;
+  design.objective.scatter_pairs = 3;
+  design.objective.check_pairs = 0;
+  design.optimization.front = EO_FRONT_NOMINAL_AND_ROBUST;
+  complete(&design);
+  free(run(&plan, &result));
+  int dominated = 0;
+  for (int i = 0; i < result.front_count; i++)
+    for (int j = 0; j < result.front_count; j++) {
+      const struct eo_objective_value *a = &result.front[i].value, *b = &result.front[j].value;
+      dominated += a->nominal <= b->nominal && a->objective <= b->objective &&
+                   (a->nominal < b->nominal || a->objective < b->objective);
+    }
+  ok(result.front_count > 1 && !dominated && result.scenarios == 4,
+     "nsga2: %d true rows between the nominal and the robust J, none dominated", result.front_count);
+  eo_study_result_done(&result);
+}
+
+/* Most flanks are looked at with the first pairs alone: the same bytes for any number of threads and once more, the
+   best one is known over all pairs, and both looks cost about the same. */
+static void test_race(void)
+{
+  char *text[2];
+  coarse_design(&design, "credibility-ga", 80);
+  design.objective.robust = EO_ROBUST_PERCENTILE;
+  design.objective.scatter_pairs = 8;
+  design.objective.check_pairs = 6;
+  complete(&design);
+  for (int i = 0; i < 2; i++) {
+    struct eo_study_plan plan = plan_of(&design, NULL);
+    plan.threads = 1 + 2 * i;
+    empty_folder();
+    text[i] = run(&plan, &result);
+    if (i == 0)
+      eo_study_result_done(&result);
+  }
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "a race over pairs: the same bytes for 1 and 3 threads");
+  int first = design.objective.first_pairs, looked = first * result.true_evaluations,
+      more = (design.objective.scatter_pairs - first) * result.whole;
+  ok(first == 2 && result.whole < 40 && abs(more - looked) <= 8,
+     "%d of %d flanks were looked at with all pairs: %d and %d evaluations of a pair", result.whole,
+     result.true_evaluations, looked, more);
+  int there = 0;
+  for (int i = 0; i < result.scenarios * result.cases; i++)
+    there += isfinite(result.best.raw[i].rms);
+  ok(result.best.there && there == result.scenarios * result.cases && result.best.value.objective < 1,
+     "the best one, J %.3f, is known over all of them", result.best.value.objective);
+  eo_study_result_done(&result);
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  char *again = run(&plan, &result);
+  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0, "once more, nothing is computed");
+  json_t *document = again ? json_loads(again, 0, NULL) : NULL;
+  const json_t *check = json_object_get(document, "check");
+  ok(json_integer_value(json_object_get(check, "pairs")) == 6 &&
+         json_array_size(json_object_get(check, "designs")) == 2,
+     "what was found is checked on six other pairs beside the unmodified pair");
+  json_decref(document);
+  eo_study_result_done(&result);
+  free(again);
+  free(text[0]);
+  free(text[1]);
+}
+
 /* A seventh of all points fails: outcomes, kept and never the optimum. The history is filled before the search with
    rows as a model would have left them that did not converge. */
 static void test_failures(void)
@@ -467,6 +536,8 @@ int main(void)
   test_reuse();
   test_truth();
   test_front();
+  test_robust_front();
+  test_race();
   test_failures();
   test_constraints();
   test_variables();
