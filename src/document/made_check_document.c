@@ -222,44 +222,64 @@ static double percentile_of(const json_t *number, double percent, const char *ke
 
 static void add_share(struct eo_text_table *sheet, const json_t *share)
 {
-  char text[60];
-  snprintf(text, sizeof text, "%.1f %% (%.1f .. %.1f)", 100 * eo_json_find_number(share, "fraction"),
-           100 * eo_json_find_number(share, "low"), 100 * eo_json_find_number(share, "high"));
-  eo_text_table_string(sheet, text);
+  eo_text_table_number(sheet, 100 * eo_json_find_number(share, "fraction"), NULL, 3);
+  eo_text_table_number(sheet, 100 * eo_json_find_number(share, "low"), NULL, 3);
+  eo_text_table_number(sheet, 100 * eo_json_find_number(share, "high"), NULL, 3);
+}
+
+static void add_number(struct eo_text_table *sheet, const json_t *design, const json_t *number, int digits)
+{
+  char name[120];
+  const double shown[] = {50, 90, 95, 99};
+  double load_case = eo_json_find_number(number, "load_case");
+  snprintf(name, sizeof name, load_case > 0 ? "%.90s, load case %.0f" : "%.90s",
+           json_string_value(json_object_get(number, "key")), load_case);
+  eo_text_table_string(sheet, json_string_value(json_object_get(design, "name")));
+  eo_text_table_string(sheet, name);
+  eo_text_table_number(sheet, eo_json_find_number(number, "mean"), NULL, digits);
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
+    eo_text_table_number(sheet, percentile_of(number, shown[i], "value"), NULL, digits);
+  eo_text_table_number(sheet, percentile_of(number, 95, "low"), NULL, digits);
+  eo_text_table_number(sheet, percentile_of(number, 95, "high"), NULL, digits);
+}
+
+void eo_made_check_table(const json_t *document, int digits, struct eo_text_table *sheet)
+{
+  static const char *const headings[] = {"design", "number", "mean", "50 %", "90 %", "95 %", "99 %", "95 % from", "to"};
+  const json_t *design, *number;
+  size_t i, k;
+  eo_text_table_init(sheet, 9, headings);
+  json_array_foreach(json_object_get(document, "designs"), i, design)
+      json_array_foreach(json_object_get(design, "numbers"), k, number) add_number(sheet, design, number, digits);
+}
+
+void eo_made_check_shares(const json_t *document, struct eo_text_table *sheet)
+{
+  static const char *const headings[] = {
+      "design", "J worse than unmodified, %", "from", "to", "worse anywhere, %", "from", "to", "failed"};
+  const json_t *design;
+  size_t i;
+  eo_text_table_init(sheet, 8, headings);
+  json_array_foreach(json_object_get(document, "designs"), i, design)
+  {
+    if (i == 0)
+      continue;
+    eo_text_table_string(sheet, json_string_value(json_object_get(design, "name")));
+    add_share(sheet, json_object_get(design, "worse_J"));
+    add_share(sheet, json_object_get(design, "worse_anywhere"));
+    eo_text_table_number(sheet, eo_json_find_number(design, "failed"), NULL, 4);
+  }
 }
 
 void eo_made_check_summary(const json_t *document, struct eo_text *text)
 {
-  static const char *const headings[] = {"design",   "number", "mean",    "50 %",          "95 %",
-                                         "interval", "99 %",   "J worse", "worse anywhere"};
-  const json_t *design, *number;
-  size_t i, k;
   struct eo_text_table sheet;
   eo_text_print(text, "On %.0f other pairs as made, the same for each:\n", eo_json_find_number(document, "pairs"));
-  eo_text_table_init(&sheet, 9, headings);
-  json_array_foreach(json_object_get(document, "designs"), i, design)
-  {
-    json_array_foreach(json_object_get(design, "numbers"), k, number)
-    {
-      char interval[60];
-      snprintf(interval, sizeof interval, "%.4g .. %.4g", percentile_of(number, 95, "low"),
-               percentile_of(number, 95, "high"));
-      eo_text_table_string(&sheet, k ? "" : json_string_value(json_object_get(design, "name")));
-      eo_text_table_string(&sheet, json_string_value(json_object_get(number, "key")));
-      eo_text_table_number(&sheet, eo_json_find_number(number, "mean"), NULL, 4);
-      eo_text_table_number(&sheet, percentile_of(number, 50, "value"), NULL, 4);
-      eo_text_table_number(&sheet, percentile_of(number, 95, "value"), NULL, 4);
-      eo_text_table_string(&sheet, interval);
-      eo_text_table_number(&sheet, percentile_of(number, 99, "value"), NULL, 4);
-      if (k || !i) {
-        eo_text_table_string(&sheet, "");
-        eo_text_table_string(&sheet, "");
-        continue;
-      }
-      add_share(&sheet, json_object_get(design, "worse_J"));
-      add_share(&sheet, json_object_get(design, "worse_anywhere"));
-    }
-  }
+  eo_made_check_table(document, 4, &sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
+  eo_text_add(text, "\n");
+  eo_made_check_shares(document, &sheet);
   eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
   eo_text_add(text, "\n");

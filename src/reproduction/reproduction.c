@@ -108,6 +108,7 @@ static json_t *encode(const struct reproduction *reproduction, json_t *sensitivi
   eo_object_put(&object, "optimizations", json_incref(reproduction->optimizations));
   eo_object_put(&object, "figures", json_incref(reproduction->figures));
   eo_object_put(&object, "sensitivity", sensitivity);
+  eo_object_put(&object, "as_made", json_incref(reproduction->made));
   eo_object_put(&object, "readings", eo_reproduction_readings());
   eo_object_put(&object, "run", json_pack("{s:f}", "wall_s", round(1e3 * seconds) / 1e3));
   return eo_object_close(&object);
@@ -127,6 +128,7 @@ static enum eo_code run(struct reproduction *reproduction, json_t **document, st
   EO_TRY(build_designs(reproduction, error));
   EO_TRY(prepare_pair(reproduction, error));
   EO_TRY(eo_reproduction_optimize(reproduction, error));
+  EO_TRY(eo_reproduction_made(reproduction, error));
   EO_TRY(analyse(reproduction, error));
   EO_TRY(eo_reproduction_figures(reproduction, error));
   EO_TRY(eo_reproduction_sensitivity(reproduction, &sensitivity, error));
@@ -152,6 +154,7 @@ enum eo_code eo_reproduction_run(const struct eo_reproduction_plan *plan, json_t
   eo_pair_free(reproduction->pair);
   json_decref(reproduction->optimizations);
   json_decref(reproduction->figures);
+  json_decref(reproduction->made);
   free(reproduction);
   return code;
 }

@@ -6,7 +6,8 @@
    Document: program, quick, design (the paper's pair, every default resolved), table_3 (rows: parameter; printed and
    our own), optimizations (case, algorithm, J, PFC, true evaluations, ...), figures (number, title, x, series),
    comparisons (figure, quantity, paper, ours, with the paper's mesh law; whether trend and value agree), sensitivity
-   (one assumption changed at a time), readings (what the paper leaves open and what was assumed), run.
+   (one assumption changed at a time), as_made (the designs and one found over pairs as made, on the same 1000 pairs of
+   class 5), readings (what the paper leaves open and what was assumed), run.
 
    A figure: { "number", "title", "x_label", "y_label", "from_zero", "series": [ { "name", "dots", "x": [..], "y": [..]
    } ] }. */
@@ -28,6 +29,7 @@ struct eo_reproduction_plan {
   const struct eo_resolution *resolution; /* in place of the default one; NULL: none */
   int generations;                        /* of fpga and ga in place of 200 (20 when quick); 0: those */
   int budget;                             /* of credibility-ga in place of 1000 (300 when quick); 0: that */
+  int pairs;                              /* as made, in place of 1000 (100 when quick); 0: that */
   const struct eo_progress *progress;     /* may be NULL */
 };
 

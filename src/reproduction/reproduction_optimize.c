@@ -31,15 +31,17 @@ int eo_reproduction_generations(const struct reproduction *reproduction)
   return reproduction->plan->generations > 0 ? reproduction->plan->generations : reproduction->plan->quick ? 20 : 200;
 }
 
+int eo_reproduction_budget(const struct reproduction *reproduction)
+{
+  return reproduction->plan->budget > 0 ? reproduction->plan->budget : reproduction->plan->quick ? 300 : 1000;
+}
+
 static void set_up(const struct reproduction *reproduction, struct eo_design *design, int algorithm)
 {
   struct eo_optimizer_settings *search = &design->optimization.search;
   search->algorithm = algorithms[algorithm];
   search->generations = eo_reproduction_generations(reproduction);
-  search->true_evaluations = algorithm < 2                    ? 0
-                             : reproduction->plan->budget > 0 ? reproduction->plan->budget
-                             : reproduction->plan->quick      ? 300
-                                                              : 1000;
+  search->true_evaluations = algorithm < 2 ? 0 : eo_reproduction_budget(reproduction);
 }
 
 static json_t *encode_run(const struct eo_study_result *result, const char *case_name, const char *algorithm)

@@ -7,6 +7,7 @@
 #include "format/json.h"
 #include "format/plot.h"
 #include "format/text_table.h"
+#include "document/made_check_document.h"
 #include "reproduction/reproduction.h"
 
 static const char *find_text(const json_t *value, const char *path)
@@ -136,6 +137,17 @@ static void fill_sensitivity(const json_t *document, struct eo_text_table *sheet
   }
 }
 
+static void fill_made(const json_t *document, struct eo_text_table *sheet, int digits)
+{
+  eo_made_check_table(json_object_get(document, "as_made"), digits, sheet);
+}
+
+static void fill_worse(const json_t *document, struct eo_text_table *sheet, int digits)
+{
+  (void)digits;
+  eo_made_check_shares(json_object_get(document, "as_made"), sheet);
+}
+
 static const struct table {
   const char *file, *title;
   void (*fill)(const json_t *document, struct eo_text_table *sheet, int digits);
@@ -144,6 +156,8 @@ static const struct table {
     {"table-3.csv", "Table 3: parameters of the optimal modification", fill_table_3},
     {"results.csv", "Every design at the three torques", fill_results},
     {"optimizations.csv", "Our optimizations", fill_optimizations},
+    {"as-made.csv", "The designs as they are made: the same pairs of class 5 of ISO 1328-1 for each", fill_made},
+    {"as-made-worse.csv", "... and how many of these pairs are worse than the unmodified pair made alike", fill_worse},
     {"sensitivity.csv", "What the assumptions do: one changed at a time", fill_sensitivity},
 };
 enum { TABLES = sizeof tables / sizeof tables[0] };

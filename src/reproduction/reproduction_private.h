@@ -23,6 +23,7 @@ struct reproduction {
   struct eo_objective_value value[LAWS][VARIANTS];
   json_t *optimizations;     /* array */
   json_t *figures;           /* array */
+  json_t *made;              /* designs side by side on pairs as made */
   double pfc[CASES];         /* of fpga, per cent; NaN: none */
   int evaluations[CASES][2]; /* true ones of fpga and ga */
   double rms_414[LAWS][2];   /* unmodified and case A, m/s2 */
@@ -40,6 +41,12 @@ enum eo_code eo_reproduction_report(const struct reproduction *reproduction, con
 
 /* Both cases with each algorithm; fills design[OWN_A], design[OWN_B]. */
 enum eo_code eo_reproduction_optimize(struct reproduction *reproduction, struct eo_error *error);
+
+/* True evaluations of credibility-ga. */
+int eo_reproduction_budget(const struct reproduction *reproduction);
+
+/* The paper's optimum and ours on the same pairs as made, into made. */
+enum eo_code eo_reproduction_made(struct reproduction *reproduction, struct eo_error *error);
 
 /* Figures 8 to 12, 14, 15, 17 and 18. */
 enum eo_code eo_reproduction_figures(struct reproduction *reproduction, struct eo_error *error);

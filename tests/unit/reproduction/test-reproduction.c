@@ -13,7 +13,7 @@ static struct eo_design design;
 static json_t *run(int threads)
 {
   struct eo_reproduction_plan plan = {
-      .threads = threads, .quick = true, .resolution = &design.resolution, .generations = 3, .budget = 40};
+      .threads = threads, .quick = true, .resolution = &design.resolution, .generations = 3, .budget = 40, .pairs = 5};
   json_t *document = NULL;
   if (eo_store_open(&plan.store, folder, EO_STORE_WRITE, &error) || eo_reproduction_run(&plan, &document, &error))
     printf("# %s\n", error.text);
@@ -129,11 +129,24 @@ static void test_output(const json_t *document)
     svg++;
   ok(svg == (int)json_array_size(json_object_get(document, "figures")), "it has %d plots", svg);
   ok(!strstr(page.data, "nan") && !strstr(page.data, "inf\""), "no number in it is missing");
-  ok(!bundle.failed && bundle.count == 5 + svg, "%d files of comma-separated values", bundle.count);
+  ok(!bundle.failed && bundle.count == 7 + svg, "%d files of comma-separated values", bundle.count);
   ok(!summary.failed && strstr(summary.data, "trends and"), "a summary");
   eo_text_done(&page);
   eo_text_done(&summary);
   eo_file_set_done(&bundle);
+}
+
+/* The designs on the same pairs as made. */
+static void test_made(const json_t *document)
+{
+  const json_t *made = json_object_get(document, "as_made"), *designs = json_object_get(made, "designs");
+  ok(json_integer_value(json_object_get(made, "pairs")) == 5 && json_array_size(designs) == 5,
+     "four designs beside the unmodified pair on five pairs as made");
+  const json_t *bare = json_array_get(json_object_get(json_array_get(designs, 0), "numbers"), 0);
+  near(eo_json_find_number(bare, "mean"), 1, 1e-12, "J of the unmodified pair is 1 in every pair");
+  ok(eo_json_find_number(bare, "deviation") < 1e-12 &&
+         eo_json_find_number(json_array_get(designs, 0), "worse_J/fraction") == 0,
+     "... and never worse than itself");
 }
 
 static void test_plot(void)
@@ -172,6 +185,7 @@ int main(void)
   test_verdicts(document);
   test_figures(document);
   test_agreement(document);
+  test_made(document);
   test_output(document);
   test_plot();
   json_t *again = run(2);

@@ -67,6 +67,13 @@ export class Scatter {
     this.element = this.painting.element;
   }
 
+  /** What the next columns are shown over. @param {string} x @param {string} y */
+  turn(x, y) {
+    if (this.#cloud.columns.includes(x)) return;
+    this.#x = x;
+    this.#y = y;
+  }
+
   /** @param {Cloud} cloud */
   set(cloud) {
     const shape = cloud.columns.join('|');

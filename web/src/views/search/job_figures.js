@@ -183,12 +183,13 @@ export class JobFigures {
     const names = [...new Set(rows.flatMap(row => Object.keys(variablesOf(row))))];
     const columns = ['evaluation', ...names.map(shortName), ...MEASURE_COLUMNS, 'J'];
     const least = best?.J ?? NaN;
+    const states = Math.max(0, ...rows.map(row => row.states));
     const found = rows.find(row => typeof row.J === 'number' && Math.abs(row.J - least) <= 1e-9 * least);
     /** @type {Dot[]} */
     const dots = rows.map((row, i) => {
       const values = variablesOf(row);
       return {
-        kind: row.reused ? 'known' : 'new',
+        kind: row.reused || row.states < states ? 'known' : 'new',
         mark: row === found ? 'best' : undefined,
         values: [
           row.ordinal ?? i + 1,
@@ -211,9 +212,11 @@ export class JobFigures {
     if (best?.modification && !found) extra('best, known before', best.modification, best, rows.length);
     this.history.element.hidden = this.parallel.element.hidden = rows.length === 0;
     const known = rows.filter(row => row.reused).length;
+    const partly = rows.filter(row => row.states < states).length;
     this.history.painting.frame.note.hidden = false;
     const before = known ? `, ${known} of them known before` : '';
-    this.history.painting.frame.note.textContent = `${rows.length} designs${before}; equal ones stand once.`;
+    const first = partly ? `, ${partly} looked at with the first pairs as made alone (open)` : '';
+    this.history.painting.frame.note.textContent = `${rows.length} designs${before}${first}; equal ones stand once.`;
     this.history.set({ columns, dots });
     const shown = [...names.map((_, k) => k + 1), columns.length - 1];
     this.parallel.set({
@@ -227,13 +230,16 @@ export class JobFigures {
     if (!result?.front) return;
     const cases = design.load_cases.length;
     const names = result.variables.map(variable => variable.name);
+    const other = (design.optimization?.front ?? 'objectives') !== 'objectives';
+    const axes = other ? (result.front_axes ?? []) : [];
     this.front.element.hidden = false;
+    if (axes.length > 1) this.front.turn(axes[0], axes[1]);
     this.front.set({
-      columns: [...MEASURE_COLUMNS, 'J', ...names.map(shortName)],
+      columns: [...axes, ...MEASURE_COLUMNS, 'J', ...names.map(shortName)],
       dots: result.front.map(point => ({
         kind: 'front',
         mark: point.weighted ? 'best J' : point.knee ? 'knee' : undefined,
-        values: [...meansOf(point, cases), point.J, ...point.values],
+        values: [...(axes.length ? point.axes : []), ...meansOf(point, cases), point.J, ...point.values],
         pick: () =>
           this.open(
             Object.fromEntries(

@@ -40,6 +40,8 @@ export class SearchForm {
     this.changing = app.form.set();
     this.details = h('div');
     this.listed = h('.listed');
+    this.terms = h('.listed');
+    this.limits = h('.listed');
     this.algorithm = h('p.figure-note');
     this.cost = h('p.figure-note', { role: 'status' });
     this.weights = h('p.figure-note');
@@ -58,12 +60,13 @@ export class SearchForm {
       group('bounds', 'Bounds of the variables', true, this.fields.fieldsOf('/optimization/bounds')),
       group('objective', 'What is good', true, [
         ...this.fields.fieldsOf('/objective', {
-          skip: ['constraints'],
+          skip: ['constraints', 'terms', 'limits', 'scenarios'],
           looks: { weights: { label: 'Weights', parts: WEIGHTS }, normalise: { label: 'Each divided by' } },
         }),
         this.weights,
+        this.terms,
       ]),
-      group('constraints', 'Limits', false, this.fields.fieldsOf('/objective/constraints')),
+      group('constraints', 'Limits', false, [this.fields.fieldsOf('/objective/constraints'), this.limits]),
       group('algorithm', 'The algorithm in detail', false, [this.details]),
     );
     this.store.addEventListener('change', () => this.refresh());
@@ -105,12 +108,20 @@ export class SearchForm {
     );
     this.weights.textContent = sum ? `That is ${parts.join(', ')}.` : '';
     this.#drawCost(algorithm, COUNTS[variables] ?? rows.length);
-    const shape = JSON.stringify([algorithm, variables, rows.length]);
+    const [terms, limits] = ['terms', 'limits'].map(key => this.store.get(`/objective/${key}`) ?? []);
+    const shape = JSON.stringify([algorithm, variables, rows.length, terms.length, limits.length]);
     if (shape === this.#shape) return;
     this.#shape = shape;
     this.changing.release();
     this.#drawDetails(algorithm);
-    this.#drawListed(variables === 'listed' ? rows : null);
+    const variable = { member: 'pinion', end: 'both', parameter: 'tip_relief_um', bounds: null };
+    const keys = ['member', 'end', 'parameter', 'bounds'];
+    if (variables === 'listed') this.#drawRows(this.listed, '/optimization/variable_list', 'variable', keys, variable);
+    else fill(this.listed);
+    const term = { output: 'order_1_um', load_case: null, weight: 0.2, scale: null, percent: null };
+    this.#drawRows(this.terms, '/objective/terms', 'term of the objective', Object.keys(term), term);
+    const limit = { output: 'max_pressure_MPa', load_case: null, at_most: 1500, percent: null };
+    this.#drawRows(this.limits, '/objective/limits', 'limit', Object.keys(limit), limit);
   }
 
   /** What the search costs, before it is started. @param {string} algorithm @param {number} count of variables */
@@ -149,43 +160,44 @@ export class SearchForm {
     fill(this.details, this.changing.fieldsOf('/optimization', { skip }));
   }
 
-  /** @param {Api.Design['load_cases'] | null} rows */
-  #drawListed(rows) {
-    if (!rows) return fill(this.listed);
+  /**
+   * The rows of a list, each with its fields, one to take it out and one to add another.
+   * @param {HTMLElement} place
+   * @param {string} pointer of the list
+   * @param {string} name of a row
+   * @param {string[]} keys
+   * @param {any} fresh what a new row has
+   */
+  #drawRows(place, pointer, name, keys, fresh) {
     const { store } = this;
+    const rows = () => /** @type {any[]} */ (store.get(pointer) ?? []);
     /** @param {number} i */
     const remove = i =>
       store.set(
-        '/optimization/variable_list',
-        rows.filter((_row, k) => k !== i),
+        pointer,
+        rows().filter((_row, k) => k !== i),
       );
-    const add = () =>
-      store.set('/optimization/variable_list', [
-        ...rows,
-        { member: 'pinion', end: 'both', parameter: 'tip_relief_um', bounds: null },
-      ]);
+    const title = name.charAt(0).toUpperCase() + name.slice(1);
     fill(
-      this.listed,
-      rows.map((_row, i) =>
+      place,
+      rows().map((_row, i) =>
         h(
           'fieldset.listed-row',
           null,
           h(
             'legend',
             null,
-            `Variable ${i + 1} `,
+            `${title} ${i + 1} `,
             h(
               'button.icon',
-              { type: 'button', 'aria-label': `Remove variable ${i + 1}`, onclick: () => remove(i) },
+              { type: 'button', 'aria-label': `Remove ${name} ${i + 1}`, onclick: () => remove(i) },
               '✕',
             ),
           ),
-          ['member', 'end', 'parameter', 'bounds'].map(key =>
-            this.changing.field(`/optimization/variable_list/${i}/${key}`),
-          ),
+          keys.map(key => this.changing.field(`${pointer}/${i}/${key}`)),
         ),
       ),
-      h('button.small', { type: 'button', onclick: add }, '+ variable'),
+      h('button.small', { type: 'button', onclick: () => store.set(pointer, [...rows(), fresh]) }, `+ ${name}`),
     );
   }
 }
