@@ -8,59 +8,62 @@ struct factor_of_ends {
   bool two;
 };
 
-static bool has_right(const void *source)
-{
-  return ((const struct factor_of_ends *)source)->two;
-}
-
 static const struct eo_outline_row factor_rows[] = {
     EO_KEY("left", "number?", "left end; null when it carries nothing", EO_AT(struct factor_of_ends, end[EO_LEFT])),
     EO_KEY("right", "number?", "right end", .when = EO_TWO_ENDS, EO_AT(struct factor_of_ends, end[EO_RIGHT]),
-           .there = has_right),
+           EO_IF(struct factor_of_ends, two)),
 };
 static const struct eo_outline factor_of_ends = EO_OUTLINE("FactorOfEnds", factor_rows);
 
+/* How the load lies over the face. */
+struct face {
+  bool two, uneven;
+  struct eo_series eta, load[2];
+  json_t *right_eta;
+  struct factor_of_ends face, share, line;
+};
+
+#define OF_FACE(member) EO_AT(struct face, member)
 static const struct eo_outline_row face_rows[] = {
     EO_KEY("eta_mm", "[number]?", "middles of slices of the face, from its middle, + on the side that meets first",
-           .unit = &eo_unit_mm),
-    EO_KEY("right_eta_mm", "[number]?", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN),
+           .unit = &eo_unit_mm, OF_FACE(eta)),
+    EO_KEY("right_eta_mm", "[number]?", "the same of the right end", .unit = &eo_unit_mm, .when = EO_UNEVEN,
+           OF_FACE(right_eta), EO_IF(struct face, uneven)),
     EO_KEY("left_N_per_mm", "[number?]?",
            "normal force per face width, all tooth pairs together, mean over the mesh cycle, over eta_mm, left end",
-           .unit = &eo_unit_N_per_mm),
-    EO_KEY("right_N_per_mm", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_mm, .when = EO_TWO_ENDS),
+           .unit = &eo_unit_N_per_mm, OF_FACE(load[EO_LEFT])),
+    EO_KEY("right_N_per_mm", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_mm, .when = EO_TWO_ENDS,
+           OF_FACE(load[EO_RIGHT]), EO_IF(struct face, two)),
     EO_KEY("K_Hbeta", "object",
            "face load factor: the largest of these over their mean; of the flanks as designed, without tolerances",
-           .outline = &factor_of_ends),
+           .outline = &factor_of_ends, OF_FACE(face)),
     EO_KEY("K_Halpha", "object",
            "transverse load factor: the largest load of a tooth pair over the one it has where the load lies evenly "
            "along all contact lines; without pitch deviations",
-           .outline = &factor_of_ends),
+           .outline = &factor_of_ends, OF_FACE(share)),
     EO_KEY("line_load_factor", "object",
            "the largest line load over the mean line load of the mesh cycle: over the face and among the pairs at once",
-           .outline = &factor_of_ends),
+           .outline = &factor_of_ends, OF_FACE(line)),
 };
 const struct eo_outline eo_outline_face_load = EO_OUTLINE("FaceLoad", face_rows);
 
 json_t *eo_result_face_load(const struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  struct eo_object object = eo_object_open_as(&eo_outline_face_load);
-  struct factor_of_ends face = {.two = source->ends == 2}, share = face, line = face;
-  bool curves = eo_result_has(source, EO_RESULT_NO_FACE_LOAD, case_result);
-  eo_object_put(&object, "eta_mm",
-                curves ? eo_json_reals(EO_FACE_SLICES, case_result->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
-                       : json_null());
-  eo_result_put_right_face(&object, "right_eta_mm", source, EO_FACE_SLICES, case_result->end[0].face.eta, curves);
+  bool curves = eo_result_has(source, EO_RESULT_NO_FACE_LOAD, case_result), two = source->ends == 2;
+  const double *eta = curves ? case_result->end[0].face.eta : NULL;
+  struct face view = {.two = two,
+                      .uneven = source->pair->right,
+                      .eta = eo_series_of(EO_FACE_SLICES, eta, EO_DIGITS_CURVE),
+                      .right_eta = eo_result_right_face(source, EO_FACE_SLICES, eta),
+                      .face.two = two,
+                      .share.two = two,
+                      .line.two = two};
   for (int end = 0; end < source->ends; end++) {
     const struct eo_face_load *found = &case_result->end[end].face;
-    face.end[end] = found->face_factor;
-    share.end[end] = found->share_factor;
-    line.end[end] = found->line_factor;
-    eo_object_put(&object, end ? "right_N_per_mm" : "left_N_per_mm",
-                  curves ? eo_json_reals(EO_FACE_SLICES, found->load, 1, &eo_unit_N_per_mm, EO_DIGITS_CURVE)
-                         : json_null());
+    view.face.end[end] = found->face_factor;
+    view.share.end[end] = found->share_factor;
+    view.line.end[end] = found->line_factor;
+    view.load[end] = eo_series_of(EO_FACE_SLICES, curves ? found->load : NULL, EO_DIGITS_CURVE);
   }
-  eo_object_put(&object, "K_Hbeta", eo_outline_encode(&factor_of_ends, &face));
-  eo_object_put(&object, "K_Halpha", eo_outline_encode(&factor_of_ends, &share));
-  eo_object_put(&object, "line_load_factor", eo_outline_encode(&factor_of_ends, &line));
-  return eo_object_close(&object);
+  return eo_outline_encode(&eo_outline_face_load, &view);
 }

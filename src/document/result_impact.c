@@ -41,23 +41,25 @@ static const struct eo_outline_row impact_end_rows[] = {
 };
 static const struct eo_outline impact_end = EO_OUTLINE("ImpactEnd", impact_end_rows);
 
-static json_t *encode_impact_end(const struct eo_result_source *source, const struct eo_impact *impact)
-{
-  struct impact_end end = {*impact, fmax(0, source->pair->geometry.path_start - impact->path)};
-  end.impact.off_line = impact->touched && impact->off_line;
-  return eo_outline_encode(&impact_end, &end);
-}
+struct impact {
+  bool two;
+  struct impact_end end[2];
+};
 
 static const struct eo_outline_row impact_rows[] = {
-    EO_KEY("left", "object", "left end", .outline = &impact_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &impact_end),
+    EO_KEY("left", "object", "left end", .outline = &impact_end, EO_AT(struct impact, end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &impact_end,
+           EO_AT(struct impact, end[EO_RIGHT]), EO_IF(struct impact, two)),
 };
 const struct eo_outline eo_outline_impact = EO_OUTLINE("Impact", impact_rows);
 
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
-  struct eo_object object = eo_object_open_as(&eo_outline_impact);
-  for (int end = 0; end < source->ends; end++)
-    eo_object_put(&object, eo_result_end[end], encode_impact_end(source, &case_result->end[end].impact));
-  return eo_object_close(&object);
+  struct impact view = {.two = source->ends == 2};
+  for (int end = 0; end < source->ends; end++) {
+    const struct eo_impact *found = &case_result->end[end].impact;
+    view.end[end] = (struct impact_end){*found, fmax(0, source->pair->geometry.path_start - found->path)};
+    view.end[end].impact.off_line = found->touched && found->off_line;
+  }
+  return eo_outline_encode(&eo_outline_impact, &view);
 }

@@ -34,21 +34,19 @@ bool eo_result_has(const struct eo_result_source *source, unsigned part, const s
 bool eo_result_has_overview(const struct eo_result_source *source, unsigned part,
                             const struct eo_case_result *load_case);
 
-/* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
-json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
-                             const struct eo_unit *unit);
+/* A curve over the mesh positions of one end, shifted so that both ends stand at the same instant; value NULL: left
+   out. */
+struct eo_series eo_result_curve(const struct eo_result_source *source, int end, const double *value, double scale);
 
-/* [rows][columns] as an array of rows; null when maps are left out. */
-json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
-                      const struct eo_unit *unit);
+/* A map over the flank [EO_PATTERN_ROWS][EO_PATTERN_COLUMNS]; left out with the maps. */
+struct eo_series eo_result_map(const struct eo_result_source *source, const double *value);
 
 /* The pattern of an end. */
 struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *source, int end);
 
-/* Places on the right end's face, m, where it has a width of its own: as many as on the left one, in proportion.
-   Nothing else writes the key. */
-void eo_result_put_right_face(struct eo_object *object, const char *key, const struct eo_result_source *source,
-                              int count, const double *place, bool wanted);
+/* Places on the right end's face, m, where it has a width of its own: as many as on the left one, in proportion; place
+   NULL: left out. New; null where both ends are alike, NULL without memory. */
+json_t *eo_result_right_face(const struct eo_result_source *source, int count, const double *place);
 #define EO_UNEVEN "with halves of unequal width"
 
 /* What is there when the pair has two ends. */

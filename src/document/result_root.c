@@ -4,22 +4,16 @@
 
 #include "document/result_private.h"
 
-static json_t *encode_root_history(const struct eo_root_history *history, bool wanted)
+/* Largest stress of one tooth over its way through the mesh, NULL: left out. */
+static struct eo_series history_of(const struct eo_root_history *history, const double *value)
 {
-  return wanted ? eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE) : json_null();
+  return eo_series_of(history->phases, value, EO_DIGITS_CURVE);
 }
 
 struct root_end {
-  const struct eo_root_history *history;
-  bool wanted;                       /* the history itself */
   double maximum, dynamic, arc, eta; /* Pa, m */
+  struct eo_series history;
 };
-
-static json_t *write_root_history(const void *source)
-{
-  const struct root_end *end = source;
-  return encode_root_history(end->history, end->wanted);
-}
 
 static const struct eo_outline_row root_end_rows[] = {
     EO_KEY("max_MPa", "number?", "largest static root stress of the end", .unit = &eo_unit_MPa,
@@ -30,16 +24,9 @@ static const struct eo_outline_row root_end_rows[] = {
     EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm, EO_AT(struct root_end, eta)),
     EO_KEY("history_MPa", "[number?]?",
            "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa,
-           .write = write_root_history),
+           EO_AT(struct root_end, history)),
 };
 static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_rows);
-
-static json_t *encode_root_end(const struct eo_root_history *history, double factor, bool wanted)
-{
-  const struct root_end end = {history,      wanted,      history->maximum, history->maximum * factor,
-                               history->arc, history->eta};
-  return eo_outline_encode(&root_end, &end);
-}
 
 static double force_factor(const struct eo_case_result *case_result, int end)
 {
@@ -48,43 +35,55 @@ static double force_factor(const struct eo_case_result *case_result, int end)
              : fmax(1, case_result->vibration.dynamic_factor[end]);
 }
 
+struct root_member {
+  bool two;
+  double maximum, dynamic; /* Pa, of the worse end */
+  struct eo_series position, history;
+  struct root_end end[2];
+};
+
+#define OF_MEMBER(member) EO_AT(struct root_member, member)
 static const struct eo_outline_row root_member_rows[] = {
-    EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa),
+    EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa, OF_MEMBER(maximum)),
     EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration",
-           .unit = &eo_unit_MPa),
-    EO_KEY("position", "[number]?",
-           "phase of the tooth's way through the mesh, in mesh cycles; null without histories"),
-    EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa),
-    EO_KEY("left", "object", "left end", .outline = &root_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &root_end),
+           .unit = &eo_unit_MPa, OF_MEMBER(dynamic)),
+    EO_KEY("position", "[number]?", "phase of the tooth's way through the mesh, in mesh cycles; null without histories",
+           OF_MEMBER(position)),
+    EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa,
+           OF_MEMBER(history)),
+    EO_KEY("left", "object", "left end", .outline = &root_end, OF_MEMBER(end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &root_end, OF_MEMBER(end[EO_RIGHT]),
+           EO_IF(struct root_member, two)),
 };
 static const struct eo_outline root_member = EO_OUTLINE("RootStressMember", root_member_rows);
 
-static json_t *encode_root_member(const struct eo_result_source *source, const struct eo_case_result *case_result,
-                                  int member)
+static struct root_member find_member(const struct eo_result_source *source, const struct eo_case_result *case_result,
+                                      int member)
 {
   const struct eo_root_history *history[2] = {&case_result->end[0].root[member], &case_result->end[1].root[member]};
-  int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
-  double dynamic = 0;
+  const struct eo_root_history *worse = source->ends == 2 && history[1]->maximum > history[0]->maximum ? history[1]
+                                                                                                       : history[0];
   bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, case_result);
-  struct eo_object object = eo_object_open_as(&root_member);
-  for (int end = 0; end < source->ends; end++)
-    dynamic = isnan(force_factor(case_result, end))
-                  ? NAN
-                  : fmax(dynamic, history[end]->maximum * force_factor(case_result, end));
-  eo_object_put_number(&object, "max_MPa", history[worst]->maximum);
-  eo_object_put_number(&object, "max_dynamic_MPa", dynamic);
-  eo_object_put(&object, "position",
-                wanted ? eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&object, "history_MPa", encode_root_history(history[worst], wanted));
-  for (int end = 0; end < source->ends; end++)
-    eo_object_put(&object, eo_result_end[end], encode_root_end(history[end], force_factor(case_result, end), wanted));
-  return eo_object_close(&object);
+  struct root_member view = {.two = source->ends == 2,
+                             .maximum = worse->maximum,
+                             .position = history_of(history[0], wanted ? history[0]->phase : NULL),
+                             .history = history_of(worse, wanted ? worse->stress : NULL)};
+  for (int end = 0; end < source->ends; end++) {
+    double factor = force_factor(case_result, end), dynamic = history[end]->maximum * factor;
+    view.end[end] = (struct root_end){history[end]->maximum, dynamic, history[end]->arc, history[end]->eta,
+                                      history_of(history[end], wanted ? history[end]->stress : NULL)};
+    view.dynamic = isnan(factor) ? NAN : fmax(view.dynamic, dynamic);
+  }
+  return view;
 }
 
+struct root {
+  struct root_member member[2];
+};
+
 static const struct eo_outline_row root_rows[] = {
-    EO_KEY("pinion", "object", "pinion", .outline = &root_member),
-    EO_KEY("gear", "object", "gear", .outline = &root_member),
+    EO_KEY("pinion", "object", "pinion", .outline = &root_member, EO_AT(struct root, member[EO_PINION])),
+    EO_KEY("gear", "object", "gear", .outline = &root_member, EO_AT(struct root, member[EO_GEAR])),
 };
 const struct eo_outline eo_outline_root_stress = EO_OUTLINE("RootStress", root_rows);
 
@@ -92,8 +91,6 @@ json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_c
 {
   if (!source->analysis->root)
     return json_null();
-  struct eo_object object = eo_object_open_as(&eo_outline_root_stress);
-  for (int member = 0; member < 2; member++)
-    eo_object_put(&object, eo_result_member[member], encode_root_member(source, case_result, member));
-  return eo_object_close(&object);
+  const struct root view = {{find_member(source, case_result, EO_PINION), find_member(source, case_result, EO_GEAR)}};
+  return eo_outline_encode(&eo_outline_root_stress, &view);
 }

@@ -26,13 +26,13 @@ static int digits_of(int usual, unsigned left_out, int less)
   return left_out >> 24 && most < usual ? most : usual;
 }
 
-json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
-                             const struct eo_unit *unit)
+struct eo_series eo_result_curve(const struct eo_result_source *source, int end, const double *value, double scale)
 {
-  int n = source->positions, lag = end == EO_RIGHT ? source->lag : 0;
-  for (int j = 0; j < n; j++)
-    source->scratch[j] = value[(j + n - lag) % n];
-  return eo_json_column(n, source->scratch, scale, unit, source->digits);
+  return (struct eo_series){.value = value,
+                            .count = source->positions,
+                            .lag = end == EO_RIGHT ? source->lag : 0,
+                            .scale = scale,
+                            .digits = source->digits};
 }
 
 struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *source, int end)
@@ -40,30 +40,24 @@ struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *sour
   return &source->pattern[end == EO_RIGHT && source->pair->right];
 }
 
-void eo_result_put_right_face(struct eo_object *object, const char *key, const struct eo_result_source *source,
-                              int count, const double *place, bool wanted)
+json_t *eo_result_right_face(const struct eo_result_source *source, int count, const double *place)
 {
   enum { MOST = 64 };
   double right[MOST];
-  if (!source->pair->right)
-    return;
+  if (!source->pair->right || !place)
+    return json_null();
   for (int i = 0; i < count && i < MOST; i++)
     right[i] = place[i] * source->pair->right->geometry.face_width / source->pair->geometry.face_width;
-  eo_object_put(object, key, wanted ? eo_json_reals(count, right, 1, &eo_unit_mm, source->digits) : json_null());
+  return eo_json_reals(count, right, 1, &eo_unit_mm, source->digits);
 }
 
-json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
-                      const struct eo_unit *unit)
+struct eo_series eo_result_map(const struct eo_result_source *source, const double *value)
 {
-  if (source->left_out & EO_RESULT_NO_MAPS)
-    return json_null();
-  json_t *map = json_array();
-  for (int i = 0; i < rows && map; i++)
-    if (json_array_append_new(map, eo_json_reals(columns, value + i * columns, 1, unit, source->map_digits)) != 0) {
-      json_decref(map);
-      map = NULL;
-    }
-  return map;
+  return (struct eo_series){.value = source->left_out & EO_RESULT_NO_MAPS ? NULL : value,
+                            .rows = EO_PATTERN_ROWS,
+                            .count = EO_PATTERN_COLUMNS,
+                            .scale = 1,
+                            .digits = source->map_digits};
 }
 
 json_t *eo_result_position(const struct eo_result_source *source)

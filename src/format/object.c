@@ -60,6 +60,18 @@ void eo_object_put(struct eo_object *object, const char *key, json_t *value)
   eo_json_put(object->json, key, value, &object->failed);
 }
 
+struct eo_object eo_list_open(void)
+{
+  struct eo_object list = {.json = json_array()};
+  list.failed = !list.json;
+  return list;
+}
+
+void eo_list_add(struct eo_object *list, json_t *value)
+{
+  list->failed = json_array_append_new(list->json, value) != 0 || list->failed;
+}
+
 void eo_object_put_number(struct eo_object *object, const char *key, double value)
 {
   const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;

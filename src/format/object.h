@@ -33,7 +33,10 @@ struct eo_object eo_object_open(void);
 struct eo_object eo_object_open_as(const struct eo_outline *outline);
 void eo_object_put(struct eo_object *object, const char *key, json_t *value);
 void eo_object_put_number(struct eo_object *object, const char *key,
-                          double value);                /* SI; the outline's row has the unit */
+                          double value); /* SI; the outline's row has the unit */
+/* An array while it is written: the same struct, opened so. */
+struct eo_object eo_list_open(void);
+void eo_list_add(struct eo_object *list, json_t *value);
 json_t *eo_object_close(struct eo_object *object);      /* NULL when anything failed, or is missing of the outline */
 json_t *eo_object_close_part(struct eo_object *object); /* the same where others write the rows behind */
 

@@ -3,8 +3,10 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "format/json.h"
 #include "format/object.h"
 #include "format/schema.h"
 
@@ -39,12 +41,39 @@ static json_t *encode_part(const struct eo_outline_row *row, const void *part)
 
 static json_t *encode_rows(const struct eo_outline_row *row, const void *source)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   const char *part = *(const char *const *)((const char *)source + row->offset);
   int count = *(const int *)((const char *)source + row->count_offset);
   for (int i = 0; i < count; i++)
-    list.failed = json_array_append_new(list.json, encode_part(row, part + (size_t)i * row->stride)) != 0 ||
-                  list.failed;
+    eo_list_add(&list, encode_part(row, part + (size_t)i * row->stride));
+  return eo_object_close(&list);
+}
+
+struct eo_series eo_series_of(int count, const double *value, int digits)
+{
+  return (struct eo_series){.value = value, .count = count, .scale = 1, .digits = digits};
+}
+
+static json_t *encode_line(const struct eo_series *series, const double *value, const struct eo_unit *unit)
+{
+  int n = series->count;
+  double *number = malloc(sizeof *number * (size_t)(n ? n : 1));
+  for (int i = 0; i < n && number; i++)
+    number[i] = value[(i + n - series->lag) % n] * series->scale;
+  json_t *line = number ? eo_json_reals(n, number, 1, unit, series->digits) : NULL;
+  free(number);
+  return line;
+}
+
+static json_t *encode_series(const struct eo_outline_row *row, const struct eo_series *series)
+{
+  if (!series->value)
+    return json_null();
+  if (!series->rows)
+    return encode_line(series, series->value, row->unit);
+  struct eo_object list = eo_list_open();
+  for (int i = 0; i < series->rows; i++)
+    eo_list_add(&list, encode_line(series, series->value + (size_t)i * (size_t)series->count, row->unit));
   return eo_object_close(&list);
 }
 
@@ -68,6 +97,10 @@ static json_t *encode_at(const struct eo_outline_row *row, const void *source, c
     return encode_text(row, *(const char *const *)place);
   case EO_MEMBER_PART:
     return encode_part(row, place);
+  case EO_MEMBER_SERIES:
+    return encode_series(row, place);
+  case EO_MEMBER_JSON:
+    return *(json_t *const *)place;
   case EO_MEMBER_ROWS:
     return encode_rows(row, source);
   }
@@ -77,12 +110,12 @@ static json_t *encode_at(const struct eo_outline_row *row, const void *source, c
 /* source: of which rows are at an offset, as many as it says */
 static json_t *encode_column(const struct eo_outline_row *row, const void *source)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   const char *first = *(const char *const *)((const char *)source + row->offset);
   int count = *(const int *)((const char *)source + row->count_offset);
   for (int i = 0; i < count; i++) {
     const char *each = first + (size_t)i * row->stride;
-    list.failed = json_array_append_new(list.json, encode_at(row, each, each + row->column_offset)) != 0 || list.failed;
+    eo_list_add(&list, encode_at(row, each, each + row->column_offset));
   }
   return eo_object_close(&list);
 }
@@ -92,14 +125,23 @@ static json_t *encode(const struct eo_outline_row *row, const void *source)
   return row->column ? encode_column(row, source) : encode_at(row, source, (const char *)source + row->offset);
 }
 
+static bool is_there(const struct eo_outline_row *row, const void *source)
+{
+  if (row->optional && !*(const bool *)((const char *)source + row->option_offset))
+    return false;
+  return !row->there || row->there(source);
+}
+
 void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source)
 {
   for (int i = 0; i < outline->count; i++) {
     const struct eo_outline_row *row = &outline->row[i];
     if (!row->key)
       eo_outline_put(object, row->outline, (const char *)source + row->offset);
-    else if (!row->there || row->there(source))
+    else if (is_there(row, source))
       eo_object_put(object, row->key, encode(row, source));
+    else if (row->member == EO_MEMBER_JSON)
+      json_decref(encode(row, source));
   }
 }
 
@@ -112,11 +154,10 @@ json_t *eo_outline_encode(const struct eo_outline *outline, const void *source)
 
 static json_t *take_each(const struct eo_outline *outline, const json_t *array)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   json_t *member;
   size_t i;
-  json_array_foreach((json_t *)array, i, member)
-      list.failed = json_array_append_new(list.json, eo_outline_take(outline, member)) != 0 || list.failed;
+  json_array_foreach((json_t *)array, i, member) eo_list_add(&list, eo_outline_take(outline, member));
   return eo_object_close(&list);
 }
 

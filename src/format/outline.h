@@ -8,7 +8,8 @@
    shape: number, integer, flag, text, word (one of words), any, object (of outline, of table, or `name`), [array],
    one|or another; `?` behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit,
    NaN as null; of an empty text? and a negative word? it is null too; `integer` of a double member is its whole number.
- */
+   A writer fills a struct of its own with what the rows name, numbers and curves and parts that others made, and has it
+   written. */
 #ifndef EASEOFF_FORMAT_OUTLINE_H
 #define EASEOFF_FORMAT_OUTLINE_H
 
@@ -24,6 +25,9 @@ json_t *eo_outline_encode(const struct eo_outline *outline, const void *source);
 
 /* The same into an object that is open with this outline or one that has its rows here. */
 void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source);
+
+/* One array of numbers; value NULL: left out. */
+struct eo_series eo_series_of(int count, const double *value, int digits);
 
 /* What an outline names of a document that has more; the result shares its values. New; NULL without memory. */
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document);

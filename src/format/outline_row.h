@@ -13,6 +13,16 @@
 
 struct eo_outline;
 
+/* Numbers that stand somewhere else, as the document has them: a curve, or the rows of a map. */
+struct eo_series {
+  const double *value; /* [rows][count]; NULL: left out, which is null */
+  int rows;            /* 0: one array of numbers; else an array of so many of them */
+  int count;
+  int lag;      /* of a cycle: begins so many values before its first one */
+  double scale; /* number in SI = value times this */
+  int digits;   /* significant ones */
+};
+
 /* How a row's value lies in the struct that is written. */
 enum eo_outline_member {
   EO_MEMBER_NONE,    /* `write` gives it */
@@ -23,6 +33,8 @@ enum eo_outline_member {
   EO_MEMBER_TEXT,    /* char[] */
   EO_MEMBER_STRING,  /* const char * */
   EO_MEMBER_PART,    /* a struct that the row's outline or table writes */
+  EO_MEMBER_SERIES,  /* struct eo_series */
+  EO_MEMBER_JSON,    /* json_t *: what another writer made, NULL without memory; taken over */
   EO_MEMBER_ROWS,    /* pointer to `stride` bytes each, as many as the int at count_offset says: an array */
 };
 
@@ -42,7 +54,9 @@ struct eo_outline_row {
   size_t column_offset;
   json_t *(*write)(const void *source); /* new; NULL without memory */
   bool (*there)(const void *source);    /* NULL: always; see `when` */
-  bool (*known)(const void *source);    /* number: false: it means nothing and is null; NULL: always known */
+  bool optional;                        /* there only where the bool at option_offset is true; see `when` */
+  size_t option_offset;
+  bool (*known)(const void *source); /* number: false: it means nothing and is null; NULL: always known */
 };
 
 struct eo_outline {
@@ -59,8 +73,11 @@ struct eo_outline {
 #define EO_KIND_OF(type, member_) \
   _Generic(((type *)0)->member_, double: EO_MEMBER_NUMBER, int: EO_MEMBER_INTEGER, unsigned: EO_MEMBER_INTEGER,     \
            long: EO_MEMBER_LONG, unsigned long: EO_MEMBER_LONG, bool: EO_MEMBER_FLAG, char *: EO_MEMBER_TEXT,       \
-           const char *: EO_MEMBER_STRING, default: EO_MEMBER_PART)
+           const char *: EO_MEMBER_STRING,          \
+           struct eo_series: EO_MEMBER_SERIES, json_t *: EO_MEMBER_JSON, default: EO_MEMBER_PART)
 #define EO_AT(type, member_) .offset = offsetof(type, member_), .member = EO_KIND_OF(type, member_)
+/* ... that is there where a flag of the struct says so. */
+#define EO_IF(type, flag_) .optional = true, .option_offset = offsetof(type, flag_)
 /* ... of an array that the struct points to. */
 #define EO_ROWS_AT(type, member_, count)                                                              \
   .offset = offsetof(type, member_), .count_offset = offsetof(type, count), .member = EO_MEMBER_ROWS, \

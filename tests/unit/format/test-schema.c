@@ -390,12 +390,51 @@ static void test_outline(void)
   eo_text_done(&text);
 }
 
+struct curves {
+  bool here, away;
+  struct eo_series cycle, map, left_out;
+  json_t *made, *not_there;
+};
+
+static const struct eo_outline_row curve_rows[] = {
+    EO_KEY("cycle_um", "[number?]?", "from its third value on", .unit = &eo_unit_um, EO_AT(struct curves, cycle)),
+    EO_KEY("map", "[[number?]]?", "two rows", EO_AT(struct curves, map), EO_IF(struct curves, here)),
+    EO_KEY("left_out", "[number?]?", "nothing", EO_AT(struct curves, left_out)),
+    EO_KEY("made", "any", "by somebody else", EO_AT(struct curves, made)),
+    EO_KEY("not_there", "any", "made for nothing", .when = "never", EO_AT(struct curves, not_there),
+           EO_IF(struct curves, away)),
+};
+static const struct eo_outline curve_outline = EO_OUTLINE("Curves", curve_rows);
+
+static void check_curves(void)
+{
+  static const double value[] = {1, 2, NAN, 4};
+  struct curves curves = {.here = true,
+                          .cycle = {.value = value, .count = 4, .lag = 2, .scale = 1e-6 / 3, .digits = 3},
+                          .map = {.value = value, .rows = 2, .count = 2, .scale = 1, .digits = 9},
+                          .left_out = eo_series_of(4, NULL, 9),
+                          .made = json_string("made"),
+                          .not_there = json_object()};
+  struct eo_text text = {0};
+  json_t *document = eo_outline_encode(&curve_outline, &curves);
+  if (document)
+    eo_json_write(&text, document, EO_JSON_COMPACT);
+  ok(text.data && strcmp(text.data, "{\"cycle_um\":[null,1.33,0.333,0.667],\"map\":[[1,2],[null,4]],\"left_out\":null,"
+                                    "\"made\":\"made\"}") == 0,
+     "curves, maps and what others made: %s", text.data ? text.data : "nothing");
+  json_decref(document);
+  eo_text_done(&text);
+  curves = (struct curves){.here = true, .not_there = json_object()};
+  ok(!eo_outline_encode(&curve_outline, &curves), "a part that could not be made is a fault of the whole");
+}
+
 int main(void)
 {
   check_units();
   check_writing();
   check_outline_schema();
   check_taking();
+  check_curves();
   json_t *input = eo_table_json_schema(&eo_design_table, true), *output = eo_table_json_schema(&eo_design_table, false);
   check_examples(input, output);
   check_refusals(input);
