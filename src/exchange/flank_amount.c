@@ -2,6 +2,7 @@
 #include "exchange/flank_amount.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "document/flank_grid_document.h"
 #include "gear/modification.h"
@@ -16,4 +17,15 @@ double eo_flank_amount(const struct eo_design *design, const struct eo_geometry 
   double amount = eo_modification_at(&shape, u, coast ? -y : y);
   eo_flank_spline_free(spline);
   return amount;
+}
+
+double eo_relief_carry(const char *shape, double depth, double reference, double end)
+{
+  double ratio = end / reference;
+  if (strcmp(shape, "linear") == 0)
+    return depth * ratio;
+  if (strcmp(shape, "parabolic") == 0)
+    return depth * ratio * ratio;
+  double radius = (reference * reference + depth * depth) / (2 * depth);
+  return radius - sqrt(fmax(0, radius * radius - end * end));
 }

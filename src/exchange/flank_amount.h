@@ -11,4 +11,8 @@
 double eo_flank_amount(const struct eo_design *design, const struct eo_geometry *geometry, int member, int end,
                        bool coast, double u, double y);
 
+/* Amount at `end` of a relief of this shape (parabolic, linear, circular) that has `depth` at `reference`, both from
+   where it starts; one unit. A circle ends at its radius. */
+double eo_relief_carry(const char *shape, double depth, double reference, double end);
+
 #endif

@@ -205,15 +205,15 @@ static const struct eo_rexs_component *material_of(const struct eo_rexs_import *
 static void read_material(struct eo_rexs_import *import, json_t *design)
 {
   static const struct {
-    const char *key, *attribute;
+    const char *key, *own, *attribute;
     double factor;
     bool divide;
   } rows[] = {
-      {"youngs_modulus_GPa", "elastic_modulus", 1000, true},
-      {"poissons_ratio", "poisson_ratio", 1, false},
-      {"density_kg_per_m3", "density", 1000, false},
+      {"youngs_modulus_GPa", "gear_youngs_modulus_GPa", "elastic_modulus", 1000, true},
+      {"poissons_ratio", "gear_poissons_ratio", "poisson_ratio", 1, false},
+      {"density_kg_per_m3", "gear_density_kg_per_m3", "density", 1000, false},
   };
-  const double differs = 0.01;
+  const double same = 1e-9; /* relative */
   const struct eo_rexs_component *of[2] = {material_of(import, EO_PINION), material_of(import, EO_GEAR)};
   const struct eo_rexs_component *taken = of[0] ? of[0] : of[1];
   if (!taken) {
@@ -223,13 +223,10 @@ static void read_material(struct eo_rexs_import *import, json_t *design)
   json_t *material = eo_rexs_part(import, design, "material");
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     double value = eo_rexs_value(taken, rows[i].attribute), other = eo_rexs_value(of[1], rows[i].attribute);
-    double outside = rows[i].divide ? value / rows[i].factor : value * rows[i].factor;
-    eo_rexs_put(import, &eo_material_table, material, rows[i].key, outside);
-    if (fabs(other - value) > differs * fabs(value))
-      eo_import_say(import->out, import->out->not_used,
-                    "%s of material %d (%.6g): a design has one material, the "
-                    "pinion's with %.6g",
-                    rows[i].attribute, of[1]->id, other, value);
+    double factor = rows[i].divide ? 1 / rows[i].factor : rows[i].factor;
+    eo_rexs_put(import, &eo_material_table, material, rows[i].key, value * factor);
+    if (fabs(other - value) > same * fabs(value))
+      eo_rexs_put(import, &eo_material_table, material, rows[i].own, other * factor);
   }
 }
 

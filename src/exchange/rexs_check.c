@@ -125,6 +125,12 @@ static void check_unit(const struct check *check, const struct eo_rexs_rule *rul
   }
 }
 
+/* Some programs write every attribute, and leave those empty that the model does not state. */
+static bool is_empty(const struct eo_rexs_rule *rule, const struct eo_rexs_attribute *attribute)
+{
+  return rule->type != EO_REXS_STRING && attribute->shape == EO_REXS_SCALAR && !*attribute->text;
+}
+
 static void check_component(const struct check *check, const struct eo_rexs_component *component)
 {
   if (!eo_rexs_type_known(component->type))
@@ -137,6 +143,11 @@ static void check_component(const struct check *check, const struct eo_rexs_comp
     const struct eo_rexs_rule *rule = eo_rexs_rule_of(attribute->id);
     if (!rule || !eo_rexs_rule_on(rule, component->type))
       continue;
+    if (is_empty(rule, attribute)) {
+      tell(check, "no_value", false, component, attribute, NULL, "%s has no value; it was taken as not stated.",
+           attribute->id);
+      continue;
+    }
     check_unit(check, rule, component, attribute);
     check_value(check, rule, component, attribute);
   }

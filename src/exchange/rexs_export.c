@@ -16,17 +16,17 @@
 enum {
   UNIT = 1,
   CASING = 2,
-  SHAFT = 3,  /* + member */
-  GEAR = 11,  /* + 2 member + end */
-  STAGE = 21, /* + end */
-  DATA = 31,  /* + 2 end + member */
-  FLANK = 41, /* + 4 member + 2 end + side */
-  TOOL = 51,  /* + member */
-  SETTINGS = 53,
-  MATERIAL = 54,
-  SECTION = 61, /* + 3 member + place */
-  BEARING = 71, /* + 2 member + side */
-  LOAD = 81,    /* + member */
+  SHAFT = 3,     /* + member */
+  GEAR = 11,     /* + 2 member + end */
+  STAGE = 21,    /* + end */
+  DATA = 31,     /* + 2 end + member */
+  FLANK = 41,    /* + 4 member + 2 end + side */
+  TOOL = 51,     /* + member */
+  SETTINGS = 53, /* + member */
+  MATERIAL = 55, /* + member */
+  SECTION = 61,  /* + 3 member + place */
+  BEARING = 71,  /* + 2 member + side */
+  LOAD = 81,     /* + member */
   MODIFICATION = 101,
 };
 
@@ -58,6 +58,13 @@ static double pair_number(const struct writer *writer, const char *key)
 {
   const json_t *value = json_object_get(writer->gear_pair, key);
   return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* What a member need not have: NaN where it is 0. */
+static double stated(const struct writer *writer, int member, const char *key)
+{
+  double value = number_of(writer->gear_pair, member, key);
+  return value > 0 ? value : NAN;
 }
 
 static double face_width(const struct writer *writer, int end)
@@ -217,24 +224,33 @@ static void write_flank(struct writer *writer, int member, int end, int side, in
   const json_t *block = json_object_get(
       json_object_get(json_object_get(writer->document, "modification"), member_name[member]), end_name[end]);
   bool loaded = side == (writer->mirror < 0);
+  block = loaded ? block : json_object_get(block, "coast");
+  double offset = json_number_value(json_object_get(block, "lead_offset_um"));
   double leading = (end == EO_LEFT ? -1 : 1) * eo_alignment_outwards(&writer->design->alignment);
-  struct eo_rexs_flank_export flank = {writer->design, writer->geometry, member, end, !loaded, leading};
+  const struct eo_geometry half = eo_geometry_of_half(writer->geometry, &writer->design->gear_pair, end);
+  struct eo_rexs_flank_export flank = {writer->design, &half, member, end, !loaded, leading};
   eo_rexs_build(&writer->builder, id, "cylindrical_gear_flank", "");
   eo_rexs_build_number(&writer->builder, "normal_pressure_angle", pair_number(writer, "normal_pressure_angle_deg"));
   eo_rexs_build_number(&writer->builder, "addendum_modification_coefficient",
                        number_of(writer->gear_pair, member, "profile_shift"));
   eo_rexs_build_number(&writer->builder, "addendum_coefficient_basic_profile",
                        number_of(writer->gear_pair, member, "addendum_coefficient"));
-  eo_rexs_build_number(&writer->builder, "custom_easeoff_lead_offset",
-                       loaded && json_number_value(json_object_get(block, "lead_offset_um")) != 0
-                           ? json_number_value(json_object_get(block, "lead_offset_um")) * 1e-3
-                           : NAN);
+  eo_rexs_build_number(&writer->builder, "tooth_tip_chamfer", stated(writer, member, "tip_chamfer_mm"));
+  eo_rexs_build_number(&writer->builder, "custom_easeoff_lead_offset", offset != 0 ? offset * 1e-3 : NAN);
   eo_rexs_relate(&writer->builder, "manufacturing_step", 1, "workpiece", id, "tool", tool, "manufacturing_settings",
-                 SETTINGS, (char *)NULL);
+                 SETTINGS + member, (char *)NULL);
   if (side == 1)
     eo_rexs_relate(&writer->builder, "flank", 0, "gear", gear, "left", id - 1, "right", id, (char *)NULL);
-  *modification = eo_rexs_export_flank(&writer->builder, &flank, loaded ? block : json_object_get(block, "coast"), id,
-                                       *modification);
+  *modification = eo_rexs_export_flank(&writer->builder, &flank, block, id, *modification);
+}
+
+/* One material for both where they are alike. */
+static bool has_own_material(const struct writer *writer)
+{
+  const json_t *material = json_object_get(writer->document, "material");
+  return json_is_number(json_object_get(material, "gear_youngs_modulus_GPa")) ||
+         json_is_number(json_object_get(material, "gear_poissons_ratio")) ||
+         json_is_number(json_object_get(material, "gear_density_kg_per_m3"));
 }
 
 static void write_gear(struct writer *writer, int member, int end, int *modification)
@@ -254,7 +270,8 @@ static void write_gear(struct writer *writer, int member, int end, int *modifica
   eo_rexs_build_word(&writer->builder, "datum_face_orientation", "negative");
   put_place(writer, own_face_at(writer, member, end), distance_of(writer, member));
   eo_rexs_relate(&writer->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
-  eo_rexs_relate(&writer->builder, "reference", 0, "origin", id, "referenced", MATERIAL, (char *)NULL);
+  eo_rexs_relate(&writer->builder, "reference", 0, "origin", id, "referenced",
+                 MATERIAL + (member == EO_GEAR && has_own_material(writer)), (char *)NULL);
   for (int side = 0; side < 2; side++)
     write_flank(writer, member, end, side, modification);
 }
@@ -291,16 +308,26 @@ static void write_tools(struct writer *writer)
                          number_of(writer->gear_pair, member, "dedendum_coefficient"));
     eo_rexs_build_number(&writer->builder, "tip_corner_radius_factor_reference_profile",
                          number_of(writer->gear_pair, member, "fillet_radius_coefficient"));
+    eo_rexs_build_number(&writer->builder, "protuberance_amount", stated(writer, member, "protuberance_um") / 1000);
+    eo_rexs_build(&writer->builder, SETTINGS + member, "cylindrical_gear_manufacturing_settings", "");
+    eo_rexs_build_number(&writer->builder, "machining_allowance",
+                         number_of(writer->gear_pair, member, "grinding_stock_um") / 1000);
   }
-  eo_rexs_build(&writer->builder, SETTINGS, "cylindrical_gear_manufacturing_settings", "");
-  eo_rexs_build_number(&writer->builder, "machining_allowance", 0);
-  const json_t *object = json_object_get(writer->document, "material");
-  eo_rexs_build(&writer->builder, MATERIAL, "material", "material");
-  eo_rexs_build_number(&writer->builder, "elastic_modulus",
-                       1000 * json_number_value(json_object_get(object, "youngs_modulus_GPa")));
-  eo_rexs_build_number(&writer->builder, "poisson_ratio", json_number_value(json_object_get(object, "poissons_ratio")));
-  eo_rexs_build_number(&writer->builder, "density",
-                       json_number_value(json_object_get(object, "density_kg_per_m3")) / 1000);
+}
+
+static void write_materials(struct writer *writer)
+{
+  const json_t *material = json_object_get(writer->document, "material");
+  bool own = has_own_material(writer);
+  for (int member = 0; member < (own ? 2 : 1); member++) {
+    eo_rexs_build(&writer->builder, MATERIAL + member, "material",
+                  !own                  ? "material"
+                  : member == EO_PINION ? "pinion material"
+                                        : "gear material");
+    eo_rexs_build_number(&writer->builder, "elastic_modulus", 1000 * number_of(material, member, "youngs_modulus_GPa"));
+    eo_rexs_build_number(&writer->builder, "poisson_ratio", number_of(material, member, "poissons_ratio"));
+    eo_rexs_build_number(&writer->builder, "density", number_of(material, member, "density_kg_per_m3") / 1000);
+  }
 }
 
 static void write_load_cases(struct writer *writer)
@@ -375,6 +402,7 @@ void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *ge
   for (int member = 0; member < 2; member++)
     write_shaft(&writer, member);
   write_tools(&writer);
+  write_materials(&writer);
   for (int end = 0; end < writer.ends; end++) {
     for (int member = 0; member < 2; member++)
       write_gear(&writer, member, end, &modification);

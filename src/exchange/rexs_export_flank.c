@@ -174,20 +174,23 @@ static void write_lead(struct writer *writer)
   }
 }
 
+/* The design has it up to the common face, REXS up to the gear's own: it goes on beyond in its shape. */
 static void write_end_relief(struct writer *writer, bool leading)
 {
   bool datum = leading == (writer->flank->leading < 0);
   double amount = number(writer, leading ? "leading_end_relief_um" : "trailing_end_relief_um"),
          length = number(writer, leading ? "leading_end_relief_length_mm" : "trailing_end_relief_length_mm");
+  const char *shape = word(writer, leading ? "leading_end_relief_shape" : "trailing_end_relief_shape", "parabolic");
+  const struct eo_geometry *geometry = writer->flank->geometry;
+  double own = length + 1e3 * (geometry->member_width[writer->flank->member] - geometry->face_width) / 2;
   if (amount == 0 || length == 0)
     return;
   begin(writer, datum ? "end_relief_datum_face" : "end_relief_non_datum_face");
   eo_rexs_build_number(writer->builder, datum ? "end_relief_depth_datum_face" : "end_relief_depth_non_datum_face",
-                       amount / 1e3);
+                       eo_relief_carry(shape, amount / 1e3, length, own));
   eo_rexs_build_number(writer->builder, datum ? "end_relief_length_datum_face" : "end_relief_length_non_datum_face",
-                       length);
-  eo_rexs_build_word(writer->builder, "shape_of_relief",
-                     word(writer, leading ? "leading_end_relief_shape" : "trailing_end_relief_shape", "parabolic"));
+                       own);
+  eo_rexs_build_word(writer->builder, "shape_of_relief", shape);
   end(writer);
 }
 

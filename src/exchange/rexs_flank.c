@@ -208,9 +208,9 @@ static void set_up(struct eo_rexs_flank *flank, struct eo_rexs_import *import, i
   flank->amount = import->options->transverse ? cos(import->geometry.base_helix_angle) : 1;
   flank->leading = import->wheel[EO_PINION][end].helix * import->rotation < 0 ? -1 : 1;
   flank->datum = datum && strcmp(datum->text, "positive") == 0 ? wheel->along : -wheel->along;
-  double left = end == EO_LEFT ? import->left : 2 * import->middle - import->right;
-  flank->shift = (wheel->left + wheel->right) / 2 - (left + import->width / 2);
-  if (fabs(flank->shift) < 1e-9 * import->width)
+  flank->width = import->width[end];
+  flank->shift = (wheel->left + wheel->right - import->left[end] - import->right[end]) / 2;
+  if (fabs(flank->shift) < 1e-9 * flank->width)
     flank->shift = 0;
   if (datum && strcmp(datum->text, "positive") == 0)
     eo_import_say(import->out, import->out->assumed,
@@ -238,6 +238,10 @@ static void read_flank(struct eo_rexs_import *import, json_t *modification, int 
         read_one(&flank, component, kind, found, &seen);
     }
   }
+  double offset = eo_rexs_value(component, "custom_easeoff_lead_offset");
+  if (!isnan(offset))
+    flank.lead_offset = (isnan(flank.lead_offset) ? 0 : flank.lead_offset) + offset * flank.amount;
+  any = any || !isnan(offset);
   if (any && (!coast || takes("coast"))) {
     json_t *object = eo_rexs_part(import, eo_rexs_part(import, modification, member_name[member]), end_name[end]);
     put_flank(&flank, coast ? eo_rexs_part(import, object, "coast") : object);

@@ -14,6 +14,7 @@ struct eo_rexs_flank {
   double amount;  /* factor on amounts: 1, or cos(beta_b) for those of the transverse section */
   double leading; /* +1, -1: the face that meets first lies towards + x, - x */
   double datum;   /* the datum face, likewise */
+  double width;   /* common face width */
   double shift;   /* mid face of the gear from the common mid face, along x */
   /* what has been read: NaN, not stated */
   double tip_relief, tip_start, root_relief, root_start, crowning, lead_crowning, helix_slope, lead_offset;

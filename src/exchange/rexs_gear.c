@@ -69,43 +69,40 @@ int eo_rexs_loaded_side(const struct eo_rexs_import *import, int member, int end
   return right;
 }
 
-/* The common face of both members; false: they do not overlap. */
-static bool find_face(struct eo_rexs_import *import)
+/* What the file does not place side by side stands in mid face of each other. */
+static void place_in_middle(struct eo_rexs_import *import, int end)
 {
-  const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][EO_LEFT], *gear = &import->wheel[EO_GEAR][EO_LEFT];
-  struct eo_import *out = import->out;
-  import->left = fmax(pinion->left, gear->left);
-  import->right = fmin(pinion->right, gear->right);
-  if (isnan(import->left) || isnan(import->right) || import->right <= import->left) {
-    eo_import_say(out, out->assumed, "both members stand in mid face of each other: the file does not place them");
-    import->width = fmin(pinion->face_width, gear->face_width);
-    for (int member = 0; member < 2; member++)
-      for (int end = 0; end < 2; end++) {
-        import->wheel[member][end].left = -import->wheel[member][end].face_width / 2;
-        import->wheel[member][end].right = import->wheel[member][end].face_width / 2;
-      }
-    import->left = -import->width / 2;
-    import->right = import->width / 2;
+  const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][end];
+  double middle = isnan(pinion->left) ? 0 : (pinion->left + pinion->right) / 2;
+  eo_import_say(import->out, import->out->assumed,
+                "both members stand in mid face of each other: the file does not place them");
+  for (int member = 0; member < 2; member++) {
+    struct eo_rexs_wheel *wheel = &import->wheel[member][end];
+    wheel->left = middle - wheel->face_width / 2;
+    wheel->right = middle + wheel->face_width / 2;
   }
-  import->width = import->right - import->left;
-  import->middle = (import->left + import->right) / 2;
-  if (import->pair->ends == 2) {
-    double other = fmin(import->wheel[EO_PINION][EO_RIGHT].right, import->wheel[EO_GEAR][EO_RIGHT].right);
-    import->middle = (import->left + other) / 2;
-  }
-  double stated = eo_rexs_value(import->train->mesh[import->pair->mesh[0]].stage, "common_face_width");
-  if (!isnan(stated) && !(fabs(stated - import->width) <= 1e-6 * stated))
-    eo_import_say(out, out->notes,
-                  "common_face_width is %.9g mm; the positions of the gears give %.9g mm, which was taken.", stated,
-                  import->width);
-  return true;
 }
 
-static double groove_width(const struct eo_rexs_import *import)
+/* The face that both members share, end by end. */
+static void find_face(struct eo_rexs_import *import)
 {
-  double from = import->right,
-         to = fmax(import->wheel[EO_PINION][EO_RIGHT].left, import->wheel[EO_GEAR][EO_RIGHT].left);
-  return to - from;
+  struct eo_import *out = import->out;
+  int last = import->pair->ends - 1;
+  for (int end = 0; end <= last; end++) {
+    const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][end], *gear = &import->wheel[EO_GEAR][end];
+    if (!(fmin(pinion->right, gear->right) > fmax(pinion->left, gear->left)))
+      place_in_middle(import, end);
+    import->left[end] = fmax(pinion->left, gear->left);
+    import->right[end] = fmin(pinion->right, gear->right);
+    import->width[end] = import->right[end] - import->left[end];
+    double stated = eo_rexs_value(import->train->mesh[import->pair->mesh[end]].stage, "common_face_width");
+    if (!isnan(stated) && !(fabs(stated - import->width[end]) <= 1e-6 * stated))
+      eo_import_say(out, out->notes,
+                    "common_face_width is %.9g mm; the positions of the gears give %.9g mm, which was taken.", stated,
+                    import->width[end]);
+  }
+  import->middle = last ? (import->right[EO_LEFT] + import->left[EO_RIGHT]) / 2
+                        : (import->left[EO_LEFT] + import->right[EO_LEFT]) / 2;
 }
 
 /* The finished flank of a member: the tool and settings of the step of highest order; lowest: of the lowest. */
@@ -323,27 +320,67 @@ static void name_width(struct eo_rexs_import *import)
     for (int end = 0; end < import->pair->ends; end++) {
       const struct eo_rexs_wheel *wheel = &import->wheel[member][end];
       bool modified = is_modified(import, wheel->flank[0]) || is_modified(import, wheel->flank[1]);
-      if (wheel->face_width > import->width * (1 + same))
+      if (wheel->face_width > import->width[end] * (1 + same))
         eo_import_say(out, modified ? out->not_used : out->notes,
                       "face_width of cylindrical_gear %d beyond the common width", wheel->gear->id);
     }
 }
 
-/* Own widths where both members stand centred on each other; else the common width is all that a design has. */
+/* Own widths where both members stand centred on each other and have as much beyond the common face on both ends; else
+   the common width is all that a design has. */
 static void put_widths(struct eo_rexs_import *import, json_t *gear_pair)
 {
   static const char *const key[2] = {"pinion_face_width_mm", "gear_face_width_mm"};
-  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "face_width_mm", import->width);
+  const double *width = import->width;
+  int last = import->pair->ends - 1;
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "face_width_mm", width[EO_LEFT]);
+  if (fabs(width[last] - width[EO_LEFT]) > same * width[EO_LEFT])
+    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "right_face_width_mm", width[EO_RIGHT]);
   for (int member = 0; member < 2; member++) {
     bool centred = true;
-    for (int end = 0; end < import->pair->ends; end++) {
+    double own = import->wheel[member][EO_LEFT].face_width, beyond = own - width[EO_LEFT];
+    for (int end = 0; end <= last; end++) {
       const struct eo_rexs_wheel *wheel = &import->wheel[member][end], *mate = &import->wheel[1 - member][end];
-      centred = centred && fabs(wheel->left + wheel->right - mate->left - mate->right) <= same * import->width &&
-                fabs(wheel->face_width - import->wheel[member][EO_LEFT].face_width) <= same * import->width;
+      centred = centred && fabs(wheel->left + wheel->right - mate->left - mate->right) <= same * width[end] &&
+                fabs(wheel->face_width - width[end] - beyond) <= same * width[end];
     }
-    double own = import->wheel[member][EO_LEFT].face_width;
-    if (centred && own > import->width * (1 + same))
+    if (centred && beyond > same * width[EO_LEFT])
       eo_rexs_put(import, &eo_gear_pair_table, gear_pair, key[member], own);
+  }
+}
+
+/* What the tool leaves and what is taken off the tip. Where the program cannot make a tooth of it, the pair goes
+   without and the file's words are named. */
+static void put_finish(struct eo_rexs_import *import, json_t *gear_pair)
+{
+  static const struct {
+    const char *key[2], *attribute;
+  } rows[] = {
+      {{"pinion_protuberance_um", "gear_protuberance_um"}, "protuberance_amount"},
+      {{"pinion_grinding_stock_um", "gear_grinding_stock_um"}, "machining_allowance"},
+      {{"pinion_tip_chamfer_mm", "gear_tip_chamfer_mm"}, "tooth_tip_chamfer"},
+  };
+  struct eo_import *out = import->out;
+  struct eo_error error;
+  char name[80];
+  for (int member = 0; member < 2; member++) {
+    const struct eo_rexs_component *of[3] = {
+        step_of(import, member, "tool", true), step_of(import, member, "manufacturing_settings", true),
+        import->wheel[member][EO_LEFT].flank[eo_rexs_loaded_side(import, member, EO_LEFT)]};
+    json_t *before = json_copy(gear_pair);
+    bool any = false;
+    for (int i = 0; i < 3; i++) {
+      double value = eo_rexs_value(of[i], rows[i].attribute) * (i < 2 ? 1e3 : 1);
+      any = (value > 0 && eo_rexs_put(import, &eo_gear_pair_table, gear_pair, rows[i].key[member], value)) || any;
+    }
+    if (any && !make_geometry(import, gear_pair, &error)) {
+      json_object_clear(gear_pair);
+      json_object_update(gear_pair, before);
+      for (int i = 0; i < 3; i++)
+        if (eo_rexs_value(of[i], rows[i].attribute) > 0)
+          eo_import_say(out, out->not_used, "%s of %s: %s", rows[i].attribute, eo_rexs_name(of[i], name), error.text);
+    }
+    json_decref(before);
   }
 }
 
@@ -355,8 +392,9 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   const struct eo_rexs_mesh *mesh = &import->train->mesh[import->pair->mesh[0]];
   json_t *gear_pair = eo_rexs_part(import, design, "gear_pair");
   demand_match(import);
-  if (!gear_pair || json_array_size(out->faults) || !find_face(import))
+  if (!gear_pair || json_array_size(out->faults))
     return false;
+  find_face(import);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "ends", import->pair->ends);
   for (int member = 0; member < 2; member++)
     put_member(import, gear_pair, member);
@@ -365,7 +403,7 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "helix_angle_deg", fabs(pinion->helix));
   put_widths(import, gear_pair);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "groove_width_mm",
-              import->pair->ends == 2 ? groove_width(import) : 0);
+              import->pair->ends == 2 ? import->left[EO_RIGHT] - import->right[EO_LEFT] : 0);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "centre_distance_mm", mesh->centre_distance);
   if (mesh->from_positions)
     eo_import_say(out, out->notes, "The centre distance, %.9g mm, is the distance of the axes of both shafts.",
@@ -378,6 +416,9 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
       json_object_set_new(fault, "key", json_string(error.pointer));
     return false;
   }
+  put_finish(import, gear_pair);
+  if (!make_geometry(import, gear_pair, &error))
+    return false;
   put_backlash(import, gear_pair);
   return true;
 }

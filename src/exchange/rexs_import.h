@@ -15,9 +15,9 @@ struct eo_rexs_import {
   const struct eo_rexs_pair *pair;
   struct eo_rexs_wheel wheel[2][2]; /* [member][end] */
   double rotation;                  /* of the driver about x: +1, -1 */
-  double left, right;               /* the common face of the left end, along x, mm */
+  double left[2], right[2];         /* the common face of each end, along x, mm */
   double middle;                    /* of the groove, or of the face of one end, along x, mm */
-  double width;                     /* common face width, mm */
+  double width[2];                  /* common face width of each end, mm */
   struct eo_gear_pair gear_pair;    /* as the design will have it */
   struct eo_geometry geometry;      /* of it */
 };

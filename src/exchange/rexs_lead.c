@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "exchange/flank_amount.h"
 #include "exchange/rexs_flank.h"
 
 double eo_rexs_axial(const struct eo_rexs_flank *flank, double coordinate)
@@ -15,7 +16,7 @@ double eo_rexs_axial(const struct eo_rexs_flank *flank, double coordinate)
 const char *eo_rexs_helix_crowning(struct eo_rexs_flank *flank, const struct eo_rexs_component *crowning)
 {
   const double agree = 0.02;
-  double half = flank->import->width / 2;
+  double half = flank->width / 2;
   double at[2] = {eo_rexs_value(crowning, "coordinate_where_helix_crowning_is_specified_datum_face"),
                   eo_rexs_value(crowning, "coordinate_where_helix_crowning_is_specified_non_datum_face")};
   double amount[2] = {eo_rexs_value(crowning, "helix_crowning_amount_datum_face") * flank->amount,
@@ -31,7 +32,7 @@ const char *eo_rexs_helix_crowning(struct eo_rexs_flank *flank, const struct eo_
   if (fabs(a[1] - a[0]) > agree * fabs(curvature))
     return "its parabola differs on both sides of the highest point";
   double place = eo_rexs_axial(flank, highest);
-  if (flank->wheel->face_width > flank->import->width * (1 + 1e-9) && highest == 0) {
+  if (flank->wheel->face_width > flank->width * (1 + 1e-9) && highest == 0) {
     place = 0;
     eo_import_say(flank->import->out, flank->import->out->assumed,
                   "a crowning of the %s is centred on the common face width",
@@ -58,7 +59,7 @@ const char *eo_rexs_helix_slope(struct eo_rexs_flank *flank, const struct eo_rex
                 "helix_slope: positive takes material off towards the %s face",
                 flank->import->options->reversed ? "datum" : "non-datum");
   flank->helix_slope = (isnan(flank->helix_slope) ? 0 : flank->helix_slope) +
-                       amount * flank->import->width / length * (away == flank->leading ? 1 : -1);
+                       amount * flank->width / length * (away == flank->leading ? 1 : -1);
   return "";
 }
 
@@ -73,25 +74,27 @@ const char *eo_rexs_end_relief(struct eo_rexs_flank *flank, const struct eo_rexs
   const struct eo_rexs_attribute *shape = eo_rexs_attribute(relief, "shape_of_relief");
   double towards = datum ? flank->datum : -flank->datum; /* of x */
   const char *word = shape ? shape->text : "linear";
-  bool power_known = strcmp(word, "parabolic") == 0 || strcmp(word, "linear") == 0;
+  static const char *const shapes[] = {"parabolic", "linear", "circular"};
+  int known = 0;
   if (isnan(depth) || !(length > 0))
     return "no depth or no length";
-  if (!power_known)
-    return strcmp(word, "circular") == 0 ? "shape circular" : "its shape";
+  while (known < 3 && strcmp(word, shapes[known]) != 0)
+    known++;
+  if (known == 3)
+    return "its shape";
   if (eo_rexs_flag(relief, "specify_tangential_transition"))
     return "a rounded transition changes where the relief starts";
-  double power = strcmp(word, "parabolic") == 0 ? 2 : 1;
   double own = flank->wheel->face_width / 2, reach = isnan(reference) ? length : fabs(reference) - (own - length);
-  double left = length - (own - flank->import->width / 2) - towards * flank->shift;
+  double left = length - (own - flank->width / 2) - towards * flank->shift;
   int side = towards == flank->leading;
   if (left <= 0 || !(reach > 0)) {
     eo_import_say(flank->import->out, flank->import->out->notes,
                   "%s %d lies outside the common face width and takes nothing off in mesh.", relief->type, relief->id);
     return "";
   }
-  flank->end_relief[side] = depth * flank->amount * pow(left / reach, power);
+  flank->end_relief[side] = eo_relief_carry(shapes[known], depth, reach, left) * flank->amount;
   flank->end_length[side] = left;
-  flank->end_shape[side] = power == 2 ? "parabolic" : "linear";
+  flank->end_shape[side] = shapes[known];
   return "";
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "exchange/flank_amount.h"
 #include "exchange/rexs_flank.h"
 
 static const double close = 1e-6; /* mm: profile coordinates that are one; 0.001 um of u */
@@ -71,18 +72,6 @@ static double from_end(const struct eo_rexs_flank *flank, const struct relief_na
   return names->tip ? tip - length : root + length;
 }
 
-/* Amount at the end of the active profile of a relief that has `depth` at `reference`, both from its start. */
-static double carry(const char *shape, double depth, double reference, double end)
-{
-  double ratio = end / reference;
-  if (strcmp(shape, "linear") == 0)
-    return depth * ratio;
-  if (strcmp(shape, "parabolic") == 0)
-    return depth * ratio * ratio;
-  double radius = (reference * reference + depth * depth) / (2 * depth);
-  return radius - sqrt(fmax(0, radius * radius - end * end));
-}
-
 static const char *read_relief(struct eo_rexs_flank *flank, const struct eo_rexs_component *relief,
                                const struct relief_names *names, double *amount, double *start, const char **shape)
 {
@@ -117,7 +106,7 @@ static const char *read_relief(struct eo_rexs_flank *flank, const struct eo_rexs
   if (reference <= u + close || end <= u + close)
     return "it starts outside the active profile";
   *start = fabs(u) < close ? 0 : u;
-  *amount = carry(*shape, depth, reference - u, end - u);
+  *amount = eo_relief_carry(*shape, depth, reference - u, end - u);
   return "";
 }
 
@@ -200,7 +189,7 @@ const char *eo_rexs_profile_twist(struct eo_rexs_flank *flank, const struct eo_r
   double amount = eo_rexs_value(twist, "profile_twist") * flank->amount;
   double from = eo_rexs_value(twist, "position_of_profile_twist_datum_face"),
          to = eo_rexs_value(twist, "position_of_profile_twist_non_datum_face");
-  double along = isnan(from) || isnan(to) || fabs(to - from) <= close ? 1 : flank->import->width / fabs(to - from);
+  double along = isnan(from) || isnan(to) || fabs(to - from) <= close ? 1 : flank->width / fabs(to - from);
   if (isnan(amount))
     return "no amount";
   flank->twist = amount * along * (flank->datum == flank->leading ? -1 : 1) *

@@ -74,6 +74,7 @@ const struct eo_rexs_rule eo_rexs_rules[] = {
      false},
     {"addendum_modification_coefficient", "cylindrical_gear_flank", EO_REXS_NUMBER, "none", -INFINITY, INFINITY, false,
      NULL, 100, false},
+    {"tooth_tip_chamfer", "cylindrical_gear_flank", EO_REXS_NUMBER, "mm", 0, INFINITY, false, NULL, 100, false},
     {"addendum_coefficient_basic_profile", "cylindrical_gear_flank involute_spline_gear_flank", EO_REXS_NUMBER, "none",
      0, INFINITY, true, NULL, 100, false},
     {"addendum_coefficient_reference_profile", "rack_shaped_tool", EO_REXS_NUMBER, "none", 0, INFINITY, true, NULL, 100,

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double same = 1e-6;         /* relative: numbers of two ends that are one */
-static const double gap_tolerance = 0.1; /* mm, by which the gaps of both members may differ */
+static const double same = 1e-6;           /* relative: numbers of two ends that are one */
+static const double place_tolerance = 0.1; /* mm, by which the distances of both members' ends may differ */
 
 double eo_rexs_value(const struct eo_rexs_component *component, const char *attribute)
 {
@@ -171,17 +171,22 @@ static bool alike(double a, double b)
   return (isnan(a) && isnan(b)) || fabs(a - b) <= same * fmax(1, fabs(a));
 }
 
-/* Hands opposite, all else equal. */
+/* Hands opposite, all else equal but the face width: halves may be unequal. */
 static bool is_mirrored(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)
 {
   return alike(a->teeth, b->teeth) && alike(a->module, b->module) && alike(a->helix, -b->helix) && fabs(a->helix) > 0 &&
-         alike(a->pressure_angle, b->pressure_angle) && alike(a->shift, b->shift) &&
-         alike(a->face_width, b->face_width) && a->along == b->along;
+         alike(a->pressure_angle, b->pressure_angle) && alike(a->shift, b->shift) && a->along == b->along;
 }
 
 static double gap_between(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)
 {
   return a->left < b->left ? b->left - a->right : a->left - b->right;
+}
+
+/* From mid face to mid face: members of unequal width stand centred on each other. */
+static double distance_between(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)
+{
+  return fabs(a->left + a->right - b->left - b->right) / 2;
 }
 
 static void swap_wheels(struct eo_rexs_mesh *mesh)
@@ -201,8 +206,10 @@ static bool are_two_ends(const struct eo_rexs_mesh *a, const struct eo_rexs_mesh
         !is_mirrored(&a->wheel[i], &other.wheel[i]))
       return false;
   double gap[2] = {gap_between(&a->wheel[0], &other.wheel[0]), gap_between(&a->wheel[1], &other.wheel[1])};
+  double distance[2] = {distance_between(&a->wheel[0], &other.wheel[0]),
+                        distance_between(&a->wheel[1], &other.wheel[1])};
   return alike(a->centre_distance, b->centre_distance) && gap[0] >= 0 && gap[1] >= 0 &&
-         fabs(gap[0] - gap[1]) <= gap_tolerance;
+         fabs(distance[0] - distance[1]) <= place_tolerance;
 }
 
 static void judge_pair(const struct eo_rexs_train *train, struct eo_rexs_pair *pair)

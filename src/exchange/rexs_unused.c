@@ -101,15 +101,11 @@ static void mark_pair(const struct eo_rexs_import *import, bool *here)
 /* Attributes that the schema table has are read, or say nothing about a design; those that a part refuses it names. */
 static void name_attributes(const struct eo_rexs_import *import, const struct eo_rexs_component *component)
 {
-  static const char *const unread[] = {"protuberance_amount", NULL};
   char name[80];
   for (int i = 0; i < component->count; i++) {
     const struct eo_rexs_attribute *attribute = &component->attribute[i];
     const struct eo_rexs_rule *rule = eo_rexs_rule_of(attribute->id);
-    bool used = rule && eo_rexs_rule_on(rule, component->type);
-    for (int k = 0; unread[k]; k++)
-      used = used && strcmp(unread[k], attribute->id) != 0;
-    if (!used)
+    if (!rule || !eo_rexs_rule_on(rule, component->type))
       eo_import_say(import->out, import->out->not_used, "%s of %s", attribute->id, eo_rexs_name(component, name));
   }
 }

@@ -3,6 +3,7 @@
    file carries; hostile archives. What other programs' files mean is checked by the reference cases (verify). */
 #include <archive.h>
 #include <archive_entry.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -152,10 +153,9 @@ static void check_plain(const char *name, int version)
   eo_text_done(&text);
 }
 
-static void check_example(const char *name)
+static void check_design(const char *name)
 {
   static const int versions[] = {100, 102, 104, 107, 200};
-  build(name);
   for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
     struct eo_rexs_model model = {0};
     eo_rexs_export(&design, &geometry, versions[i], true, &model);
@@ -225,6 +225,51 @@ static void check_edited(void)
       "tip_relief_um");
   ok(says(import.notes, "says something else by now"), "an edited file: its own design is left");
   close_to(json_number_value(flank), 15, 1e-9, "an edited file: the relief is the edited one");
+  eo_import_done(&import);
+  eo_text_done(&text);
+}
+
+/* Every pair that another program can state: unequal halves, own widths and materials, protuberance, stock, chamfer,
+   end reliefs of every shape on a member that is wider than the common face. */
+static void build_stranger(int ends)
+{
+  static const enum eo_relief_shape shapes[] = {EO_RELIEF_LINEAR, EO_RELIEF_PARABOLIC, EO_RELIEF_CIRCULAR};
+  struct eo_error error;
+  eo_example_build(ends == 2 ? "narrow" : "single", &design);
+  struct eo_gear_pair *pair = &design.gear_pair;
+  pair->member_width[EO_PINION] = pair->face_width + 5e-3;
+  pair->right_face_width = ends == 2 ? 0.75 * pair->face_width : NAN;
+  pair->tip_chamfer[EO_GEAR] = 0.1e-3;
+  pair->protuberance[EO_PINION] = 60e-6;
+  pair->grinding_stock[EO_PINION] = 65e-6;
+  design.material.gear_youngs_modulus = 175e9;
+  for (int end = 0; end < ends; end++)
+    for (int member = 0; member < 2; member++) {
+      struct eo_flank_modification *flank = &design.modification.flank[member][end];
+      flank->end_relief[0] = 9e-6;
+      flank->end_relief_length[0] = 3e-3;
+      flank->end_shape[0] = shapes[member + end];
+      flank->lead_offset = 2e-6;
+    }
+  if (eo_design_complete(&design, &geometry, &error))
+    printf("Bail out! a pair of a stranger: %s\n", error.text);
+}
+
+/* A program that writes every attribute leaves empty what its model does not state. */
+static void check_empty(void)
+{
+  build("single");
+  struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+  char *value = strstr(text.data, "\"minimum_normal_backlash\"");
+  value = value ? strchr(value, '>') : NULL;
+  if (!ok(value != NULL, "a backlash is in the file"))
+    return;
+  char *end = strchr(value, '<');
+  memmove(value + 1, end, strlen(end) + 1);
+  text.size -= (size_t)(end - value - 1);
+  struct eo_import import = read_file(&text);
+  ok(import.design && json_array_size(import.faults) == 0, "an attribute without a value is not stated");
+  ok(says(import.notes, "minimum_normal_backlash has no value"), "... and named");
   eo_import_done(&import);
   eo_text_done(&text);
 }
@@ -328,9 +373,15 @@ static void check_coded(void)
 
 int main(void)
 {
-  static const char *const fast[] = {"paper-case-b", "shifted", "single"};
-  for (size_t i = 0; i < sizeof fast / sizeof *fast; i++)
-    check_example(fast[i]);
+  for (int i = 0; eo_example_at(i); i++) {
+    build(eo_example_at(i)->name);
+    check_design(eo_example_at(i)->name);
+  }
+  build_stranger(1);
+  check_design("a stranger's single helical pair");
+  build_stranger(2);
+  check_design("a stranger's herringbone pair with unequal halves");
+  check_empty();
   check_hands();
   check_edited();
   check_topography();
