@@ -117,16 +117,19 @@ static int compare_numbers(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Of a flank: where its end reliefs start, and the same place on the other side of the face. */
+/* Of a flank: where its end reliefs start and its grid ends, and the same places on the other side of the face. */
 static int face_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
                        double at[EO_TOOTH_PIECES + 1])
 {
-  double part[4] = {0};
+  const struct eo_flank_spline *grid = shape->grid;
+  double part[8] = {0}, width = tooth->geometry->member_width[tooth->member];
   int parts = 0, count = 1;
   for (int i = 0; i < 2; i++)
     for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)
-      part[parts++] = 0.5 + side * shape->end[i].start * cos(tooth->geometry->helix_angle) /
-                                tooth->geometry->member_width[tooth->member];
+      part[parts++] = 0.5 + side * shape->end[i].start * cos(tooth->geometry->helix_angle) / width;
+  for (int i = 0; grid && i < 2; i++)
+    for (int side = -1; side <= 1; side += 2)
+      part[parts++] = 0.5 + side * grid->y[i * (grid->y_knots - 1)] / width;
   qsort(part, (size_t)parts, sizeof *part, compare_numbers);
   for (int i = 0; i < parts; i++)
     count = add_break(at, count, part[i]);

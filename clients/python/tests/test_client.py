@@ -185,6 +185,21 @@ class ClientTest(unittest.TestCase):
         rows = (Path(self.folder.name) / "transmission_error.csv").read_text().splitlines()
         self.assertEqual(len(rows), 1 + COARSE["positions"])
 
+    def test_the_robust_example_runs(self):
+        path = Path(self.folder.name) / "design.json"
+        design = self.design()
+        design["load_cases"] = design["load_cases"][:1]
+        path.write_text(json.dumps(design), encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, str(HERE / "examples" / "robust_flank.py"), str(path), self.address, "8", "8"],
+            cwd=self.folder.name, env={**os.environ, "PYTHONPATH": str(HERE)}, capture_output=True, text=True,
+            timeout=120, check=True,
+        )  # fmt: skip
+        self.assertEqual(done.stdout.count("of 100 pairs as made below"), 2)
+        robust = json.loads((Path(self.folder.name) / "robust.json").read_text())
+        self.assertEqual(robust["objective"]["robust"], "percentile")
+        self.assertTrue(robust["modification"])
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
