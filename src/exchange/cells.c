@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
 #include "recording/zip_files.h"
 
 enum { WORKBOOK_BYTES = 64 << 20 }; /* that a sheet may have as text */
@@ -34,6 +35,7 @@ struct scan {
   const char *at, *end;
   char separator;
   char *out; /* where the next cell goes */
+  bool open; /* the text ended within quotation marks */
 };
 
 /* One cell into the text; true when a separator follows it, false at the end of its row. */
@@ -58,6 +60,7 @@ static bool scan_cell(struct scan *scan, const char **cell)
     if (*scan->at != '\r' && *scan->at)
       *scan->out++ = *scan->at;
   }
+  scan->open = quoted;
   while (scan->out > start && (scan->out[-1] == ' ' || scan->out[-1] == '\t'))
     scan->out--;
   *scan->out++ = '\0';
@@ -68,8 +71,8 @@ static bool scan_cell(struct scan *scan, const char **cell)
   return more;
 }
 
-/* Rows and columns, for the room that they need. */
-static void measure(struct scan scan, int *rows, int *columns)
+/* Rows and columns, for the room that they need; false: a quotation mark is left open. */
+static bool measure(struct scan scan, int *rows, int *columns)
 {
   const char *cell;
   char *start = scan.out;
@@ -85,21 +88,59 @@ static void measure(struct scan scan, int *rows, int *columns)
     *columns = count > *columns ? count : *columns;
     ++*rows;
   }
+  return !scan.open;
 }
 
-enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error)
+/* Two bytes a character, as spreadsheets write "Unicode text". */
+static size_t widen(char *out, const unsigned char *bytes, size_t size)
+{
+  bool little = bytes[0] == 0xFF;
+  uint32_t high = 0;
+  size_t used = 0;
+  for (size_t at = 2; at + 1 < size; at += 2) {
+    uint32_t c = little ? bytes[at] | (uint32_t)bytes[at + 1] << 8 : (uint32_t)bytes[at] << 8 | bytes[at + 1];
+    if (c >= 0xD800 && c < 0xDC00) {
+      high = c;
+      continue;
+    }
+    if (c >= 0xDC00 && c < 0xE000)
+      c = high ? 0x10000 + ((high - 0xD800) << 10) + (c - 0xDC00) : '?';
+    high = 0;
+    used += eo_utf8_put(out + used, c);
+  }
+  return used;
+}
+
+/* The text as UTF-8, into out[2 size]: without its mark, from two bytes a character, and from Latin 1 where it is no
+   UTF-8, as spreadsheets in Europe write CSV. */
+static size_t decode(char *out, const char *bytes, size_t size)
 {
   static const char mark[] = "\xEF\xBB\xBF";
-  size_t skip = size >= 3 && memcmp(bytes, mark, 3) == 0 ? 3 : 0;
-  memset(cells, 0, sizeof *cells);
-  bytes += skip;
-  size -= skip;
+  const unsigned char *byte = (const unsigned char *)bytes;
+  size_t at = size >= 3 && memcmp(bytes, mark, 3) == 0 ? 3 : 0, start = at, used = 0;
+  if (size >= 2 && byte[0] + byte[1] == 0xFF + 0xFE && (byte[0] == 0xFF || byte[0] == 0xFE))
+    return widen(out, byte, size);
+  while (at < size && eo_utf8_size(bytes + at, size - at))
+    at += eo_utf8_size(bytes + at, size - at);
+  if (at == size) {
+    memcpy(out, bytes + start, size - start);
+    return size - start;
+  }
+  for (at = start; at < size; at++)
+    used += eo_utf8_put(out + used, byte[at] >= 0x80 && byte[at] < 0xA0 ? '?' : byte[at]);
+  return used;
+}
+
+static enum eo_code read_text(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error)
+{
   cells->separator = find_separator(bytes, size);
   cells->text = malloc(2 * size + 2); /* a cell is no longer than what it is read of, and its end */
   if (!cells->text)
     return eo_error_memory(error);
-  struct scan scan = {bytes, bytes + size, cells->separator, cells->text};
-  measure(scan, &cells->rows, &cells->columns);
+  struct scan scan = {bytes, bytes + size, cells->separator, cells->text, false};
+  if (!measure(scan, &cells->rows, &cells->columns))
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "A quotation mark that opens a cell is never closed; the file is damaged or was cut off.");
   if (cells->rows > EO_CELLS_ROWS || cells->columns > EO_CELLS_COLUMNS || cells->rows * cells->columns > EO_CELLS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The table has %d rows and %d columns; that is no table of designs.",
                         cells->rows, cells->columns);
@@ -116,6 +157,17 @@ enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t siz
     }
   }
   return EO_OK;
+}
+
+enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error)
+{
+  char *text = malloc(2 * size + 1);
+  memset(cells, 0, sizeof *cells);
+  if (!text)
+    return eo_error_memory(error);
+  enum eo_code code = read_text(cells, text, decode(text, bytes, size), error);
+  free(text);
+  return code;
 }
 
 enum eo_code eo_cells_read_workbook(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error)

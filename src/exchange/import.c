@@ -176,7 +176,9 @@ static void read_any(struct eo_import *import, const char *bytes, size_t size, c
     at++;
   bool zip = size > 4 && memcmp(bytes, "PK", 2) == 0;
   bool workbook = zip && memmem(bytes, size, sheet, sizeof sheet - 1);
-  bool model = at == size || bytes[at] == '<' || bytes[at] == '{' || (unsigned char)bytes[0] >= 0xFE;
+  bool wide = size >= 2 && (unsigned char)bytes[0] >= 0xFE; /* two bytes a character: XML is, or a table */
+  at = wide ? (bytes[2 * (size > 2)] ? 2 : 3) : at;
+  bool model = at >= size || bytes[at] == '<' || bytes[at] == '{';
   if (workbook || (!zip && !model))
     eo_import_table(import, bytes, size, workbook, options_);
   else

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
+
 static bool reserve(struct eo_text *text, size_t more)
 {
   if (text->failed || more > SIZE_MAX / 4 || text->size > SIZE_MAX / 4) {
@@ -147,10 +149,19 @@ enum eo_code eo_text_save(const struct eo_text *text, const char *path, struct e
 
 void eo_text_clean(char *target, size_t size, const char *source)
 {
-  size_t length = strlen(source), kept = length < size ? length : size - 4;
-  while (kept < length && kept > 0 && ((unsigned char)source[kept] & 0xC0) == 0x80)
-    kept--;
-  for (size_t i = 0; i < kept; i++)
-    target[i] = (unsigned char)source[i] < 32 || source[i] == 127 ? '?' : source[i];
-  strcpy(target + kept, kept < length ? "..." : "");
+  size_t length = strlen(source), used = 0, at = 0;
+  bool whole = length < size;
+  while (at < length) {
+    bool control = (unsigned char)source[at] < 32 || source[at] == 127;
+    size_t n = control ? 0 : eo_utf8_size(source + at, length - at);
+    if (used + (n ? n : 1) > (whole ? size - 1 : size - 4))
+      break;
+    if (n)
+      memcpy(target + used, source + at, n);
+    else
+      target[used] = '?';
+    used += n ? n : 1;
+    at += n ? n : 1;
+  }
+  strcpy(target + used, at < length ? "..." : "");
 }

@@ -36,8 +36,8 @@ enum eo_code eo_text_write(const struct eo_text *text, FILE *stream, const char 
    when anything fails. */
 enum eo_code eo_text_save(const struct eo_text *text, const char *path, struct eo_error *error);
 
-/* Copies at most size - 1 bytes of a string for people: control characters become '?', no character is cut in two, and
-   a shortened string ends with "...". size >= 8. */
+/* Copies at most size - 1 bytes of a string for people: control characters and bytes that are no UTF-8 become '?', no
+   character is cut in two, and a shortened string ends with "...". size >= 8. */
 void eo_text_clean(char *target, size_t size, const char *source);
 
 #endif

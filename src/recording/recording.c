@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/recording.h"
+#include "base/utf8.h"
 #include "recording/bytes.h"
 
 #include <errno.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,22 +87,6 @@ void eo_recording_free(struct eo_recording *recording)
   free(recording);
 }
 
-/* Bytes of the character of UTF-8 at text; 0 when it is none or a control character. */
-static size_t character_size(const unsigned char *text)
-{
-  if (text[0] < 0x80)
-    return text[0] >= ' ' && text[0] != 0x7f;
-  size_t size = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
-  if (text[0] < 0xc2 || text[0] > 0xf4)
-    return 0;
-  for (size_t i = 1; i < size; i++)
-    if ((text[i] & 0xc0) != 0x80)
-      return 0;
-  bool overlong = (text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xf0 && text[1] < 0x90);
-  bool outside = (text[0] == 0xed && text[1] > 0x9f) || (text[0] == 0xf4 && text[1] > 0x8f);
-  return overlong || outside ? 0 : size;
-}
-
 /* Copies whole characters while they fit. Bytes that are no UTF-8 are taken for Latin 1, as older rig software writes
    it. */
 static void copy_text(char *to, size_t size, const char *text)
@@ -109,7 +95,8 @@ static void copy_text(char *to, size_t size, const char *text)
   size_t used = 0;
   while (*from) {
     unsigned char latin[2] = {(unsigned char)(0xc0 | *from >> 6), (unsigned char)(0x80 | (*from & 0x3f))};
-    size_t n = character_size(from), wanted = n ? n : *from >= 0xa0 ? 2 : 1;
+    bool control = *from < ' ' || *from == 0x7f;
+    size_t n = control ? 0 : eo_utf8_size((const char *)from, SIZE_MAX), wanted = n ? n : *from >= 0xa0 ? 2 : 1;
     if (used + wanted >= size)
       break;
     if (n)

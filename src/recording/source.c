@@ -12,6 +12,8 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/utf8.h"
+
 #define CHUNK ((size_t)128 << 10)
 
 /* Text of two bytes a character on its way to UTF-8. */
@@ -201,23 +203,7 @@ static void put_character(struct wide *wide, uint32_t c)
   wide->high = 0;
   if (c == 0xfeff)
     return;
-  char *to = wide->text + wide->filled;
-  if (c < 0x80) {
-    *to++ = (char)c;
-  } else if (c < 0x800) {
-    *to++ = (char)(0xc0 | c >> 6);
-    *to++ = (char)(0x80 | (c & 0x3f));
-  } else if (c < 0x10000) {
-    *to++ = (char)(0xe0 | c >> 12);
-    *to++ = (char)(0x80 | (c >> 6 & 0x3f));
-    *to++ = (char)(0x80 | (c & 0x3f));
-  } else {
-    *to++ = (char)(0xf0 | c >> 18);
-    *to++ = (char)(0x80 | (c >> 12 & 0x3f));
-    *to++ = (char)(0x80 | (c >> 6 & 0x3f));
-    *to++ = (char)(0x80 | (c & 0x3f));
-  }
-  wide->filled = (size_t)(to - wide->text);
+  wide->filled += eo_utf8_put(wide->text + wide->filled, c);
 }
 
 static enum eo_code read_wide(struct eo_source *source, char *bytes, size_t size, size_t *got, struct eo_error *error)

@@ -39,8 +39,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     const struct eo_import_options options = {.pair = pair, .flank = pair, .transverse = pair};
     struct eo_import import;
     struct eo_error error;
-    if (eo_import_read(&import, (const char *)bytes, size, &options, &error) == EO_OK)
-      look(&import);
+    demand(eo_import_read(&import, (const char *)bytes, size, &options, &error) == EO_OK,
+           "no memory, and there is enough: a text that JSON does not take");
+    look(&import);
     eo_import_done(&import);
   }
   return 0;

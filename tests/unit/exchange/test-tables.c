@@ -117,8 +117,51 @@ static void check_questions(void)
   ok(is_faulty(HEAD "gear_pair.ends;two;;\n", "not_a_number", 2), "a number in words");
 }
 
+static struct eo_import read_bytes(const char *bytes, size_t size)
+{
+  const struct eo_import_options options = {0};
+  struct eo_import import;
+  struct eo_error error;
+  ok(eo_import_read(&import, bytes, size, &options, &error) == EO_OK, "%zu bytes have an answer", size);
+  return import;
+}
+
+/* What spreadsheets write that is no UTF-8: Latin 1 (CSV in Europe) and two bytes a character ("Unicode text"). */
+static void check_encodings(void)
+{
+  static const char latin[] = HEAD "z;17;44;\nname;M\xFCller;;\nC_a;14;;\xB5m\n";
+  char wide[2 * sizeof latin], big[2 * sizeof latin];
+  size_t size = 0;
+  for (const char *c = "\xFF" HEAD "z;17;44;\nname;M\xFCller;;\nC_a;14;;\xB5m\n"; *c; c++) {
+    wide[size] = big[size + 1] = *c;
+    wide[size + 1] = big[size] = 0;
+    size += 2;
+  }
+  wide[1] = big[0] = (char)0xFE;
+  wide[0] = big[1] = (char)0xFF;
+  const struct {
+    const char *bytes;
+    size_t size;
+  } files[] = {{latin, sizeof latin - 1}, {wide, size}, {big, size}};
+  for (int i = 0; i < 3; i++) {
+    struct eo_import import = read_bytes(files[i].bytes, files[i].size);
+    const char *name = json_string_value(json_object_get(import.design, "name"));
+    ok(name && strcmp(name, "M\xC3\xBCller") == 0, "a name with an umlaut, file %d", i + 1);
+    ok(json_array_size(import.faults) == 0, "micrometres with their sign, file %d", i + 1);
+    eo_import_done(&import);
+  }
+  for (int i = 0; i < 2; i++) { /* bytes of no kind, below a heading and alone */
+    static const char *const junk[] = {HEAD "\xFF\x80\xC3;1;2;\xE2\x82\n", "\x1F\x8B\x08\xED\xC1\x31"};
+    struct eo_import import = read_bytes(junk[i], strlen(junk[i]));
+    ok(!import.design && json_array_size(import.faults) > 0, "bytes of no kind are refused with a sentence");
+    eo_import_done(&import);
+  }
+  ok(is_faulty(HEAD "z;17;44;\n\"m_n;6;;\n", "not_readable", 0), "a quotation mark without its other");
+}
+
 int main(void)
 {
+  check_encodings();
   check_round_trip(EO_TABLE_POINT, "points");
   check_round_trip(EO_TABLE_COMMA, "commas");
   check_round_trip(EO_TABLE_WORKBOOK, "workbook");
