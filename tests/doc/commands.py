@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every command of the manuals, run in the order of the text.
 
-Blocks of the kind `sh` of README.md, doc/guide.md and doc/api.md are run by one shell per document, in an empty folder
+Blocks of the kind `sh` of README.md, doc/guide.md, doc/api.md and doc/cluster.md are run by one shell per document, in an empty folder
 of its own; blocks of the kind `python` in between by the interpreter, with the client of clients/python at hand. A
 document passes when every command ends with 0. So that this takes seconds, `easeoff` is a front that asks for a coarse
 mesh in every design; the numbers that the texts quote are those of the usual one. Blocks of other kinds (`console`,
@@ -20,7 +20,7 @@ from pathlib import Path
 
 SOURCES = Path(os.environ.get("SOURCES", ".")).resolve()
 PROGRAM = Path(os.environ.get("EASEOFF", "./easeoff")).resolve()
-DOCUMENTS = ["README.md", "doc/guide.md", "doc/api.md"]
+DOCUMENTS = ["README.md", "doc/guide.md", "doc/api.md", "doc/cluster.md"]
 PATIENCE = 500  # seconds of one document, on a busy machine
 COARSE = {
     "body": "sector",
