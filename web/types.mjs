@@ -43,7 +43,7 @@ function typeOfKind(kind, schema) {
     case 'object':
       return typeOfObject(schema);
     default:
-      return kind;
+      return schema.format === 'binary' ? 'Blob' : kind;
   }
 }
 
@@ -59,8 +59,8 @@ function typeOfObject({ properties, required = [], additionalProperties }) {
 
 /** What a request or an answer holds: JSON or text, or nothing. @param {Schema | undefined} content */
 function typeOfContent(content) {
-  const json = content?.['application/json'];
-  return json ? typeOf(json.schema) : content ? 'string' : undefined;
+  const one = content?.['application/json'] ?? Object.values(content ?? {})[0];
+  return one && typeOf(one.schema);
 }
 
 /** The rows of one method: its paths below the base, as templates, with what is asked and what is answered. */

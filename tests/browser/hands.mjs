@@ -2,22 +2,8 @@
 // What hands do to the page: type, erase, delete, switch, undo, store, print, save; each once went wrong.
 import { readFile } from 'node:fs/promises';
 import { inflateSync } from 'node:zlib';
-import { Server, chapter, finish, note, ok, openBrowser } from './harness.mjs';
+import { COARSE, LOOSE, Server, chapter, finish, note, ok, openBrowser, settled as settledOn } from './harness.mjs';
 
-const COARSE = {
-  positions: 16,
-  cells_per_line: 6,
-  sector_teeth: 3,
-  neighbour_coupling: false,
-  layers: 6,
-  flank_rows: 4,
-  fillet_elements: 6,
-  harmonics: 6,
-  te_harmonics: 6,
-};
-const LOOSE = Object.entries(COARSE)
-  .map(([key, value]) => `resolution.${key}=${value}`)
-  .join('&');
 const START = `#design?from=paper-case-a&${LOOSE}`;
 const WAIT = Number(process.env.EASEOFF_WAIT ?? 30000); // ms for anything
 const PAUSE = 700; // ms after which a typed value has been taken
@@ -41,16 +27,7 @@ const field = (name, where = page) =>
   where.getByLabel(name, { exact: true }).and(where.locator('input[type=text]')).first();
 const torque = i => field(`Torque of load case ${i}`);
 const banner = page.locator('.design-view > .head-pane > .trouble, .trouble').first();
-const settled = (where = page) =>
-  where.waitForFunction(
-    () => {
-      const values = [...document.querySelectorAll('.number-cell .value')];
-      const known = values.length > 0 && values.every(value => /\d/.test(value.textContent));
-      return known && !document.querySelector('.preparing');
-    },
-    null,
-    { polling: 100 }, // a page behind another one has no frames
-  );
+const settled = (where = page) => settledOn(where);
 /** Opens an address afresh. */
 const open = async (hash = START, where = page) => {
   await where.goto('about:blank');
@@ -326,6 +303,49 @@ await chapter('back after opening', async () => {
   await page.goBack();
   await page.waitForFunction(() => /from=paper-case-a/.test(location.hash));
   ok(/paper pair/.test(await page.title()), 'back goes back to the design before');
+});
+
+await chapter('a link shows the same', async () => {
+  const against = page.getByLabel('Compare with');
+  await open(`${START}&modification.pinion.left.tip_relief_um=9&modification.pinion.right.tip_relief_um=9`);
+  await settled();
+  await against.selectOption({ label: 'pin this design' });
+  await field('Tip relief').fill('20');
+  await field('Tip relief').press('Enter');
+  await field('From, rpm').fill('600');
+  await field('To, rpm').fill('3000');
+  await field('To, rpm').press('Enter');
+  await page.getByLabel('Number that is varied').selectOption({ label: 'Stagger' });
+  await page.locator('.chip', { hasText: '621 N m' }).click();
+  await page.waitForFunction(() => /speeds=600-3000/.test(location.hash) && /case=1/.test(location.hash));
+  const elsewhere = await (await browser.newContext({ viewport: { width: 1280, height: 800 } })).newPage();
+  elsewhere.setDefaultTimeout(WAIT);
+  await elsewhere.goto(page.url());
+  await settled(elsewhere);
+  const seen = await elsewhere.evaluate(() => ({
+    pin: document.querySelector('.pin select').selectedOptions[0].textContent,
+    speeds: [...document.querySelectorAll('.range-fields input')].slice(0, 2).map(input => input.value),
+    varied: document.querySelector('select[aria-label="Number that is varied"]').selectedOptions[0].textContent,
+    load: document.querySelector('.chip:has(input:checked)').textContent,
+  }));
+  ok(
+    JSON.stringify(seen) ===
+      JSON.stringify({ pin: 'pinned 1', speeds: ['600', '3000'], varied: 'Stagger', load: '621 N m' }),
+    `what is pinned, swept and chosen: ${JSON.stringify(seen)}`,
+  );
+  const numbers = where => where.locator('.number-cell .delta').allInnerTexts();
+  await elsewhere.waitForFunction(
+    wanted => document.querySelector('.number-cell .delta').textContent === wanted,
+    (await numbers(page))[0],
+  );
+  ok(true, 'with the same gain over the pinned design');
+  await elsewhere.context().close();
+  await menu('paper-case-b');
+  await page.waitForFunction(() => /from=paper-case-b/.test(location.hash));
+  await page.goBack();
+  await page.waitForFunction(() => /tip_relief_um=20/.test(location.hash));
+  await settled();
+  ok((await field('Tip relief').inputValue()) === '20' && /pin=pinned/.test(hash()), 'back goes back');
 });
 
 await chapter('links that lead nowhere', async () => {

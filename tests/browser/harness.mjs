@@ -40,6 +40,49 @@ export function finish() {
   process.exitCode = failed ? 1 : 0;
 }
 
+/** Settings with which a pair is prepared in a moment; as an address has them. */
+export const COARSE = {
+  positions: 16,
+  cells_per_line: 6,
+  sector_teeth: 3,
+  neighbour_coupling: false,
+  layers: 6,
+  flank_rows: 4,
+  fillet_elements: 6,
+  harmonics: 6,
+  te_harmonics: 6,
+};
+export const LOOSE = Object.entries(COARSE)
+  .map(([key, value]) => `resolution.${key}=${value}`)
+  .join('&');
+
+/** Numbers stand at the top of a page, and nothing is being prepared. */
+export function settled(page) {
+  return page.waitForFunction(
+    () => {
+      const values = [...document.querySelectorAll('.number-cell .value')];
+      const known = values.length > 0 && values.every(value => /\d/.test(value.textContent));
+      return known && !document.querySelector('.preparing');
+    },
+    null,
+    { polling: 100 }, // a page behind another one has no frames
+  );
+}
+
+/** Drops files on an element as a hand does. @param files `{ name, text }` or `{ name, base64 }` */
+export async function drop(page, selector, files) {
+  const transfer = await page.evaluateHandle(given => {
+    const data = new DataTransfer();
+    for (const { name, text, base64 } of given) {
+      const bytes = base64 ? Uint8Array.from(atob(base64), letter => letter.charCodeAt(0)) : text;
+      data.items.add(new File([bytes], name));
+    }
+    return data;
+  }, files);
+  for (const kind of ['dragenter', 'dragover', 'drop'])
+    await page.locator(selector).first().dispatchEvent(kind, { dataTransfer: transfer });
+}
+
 export class Server {
   /** @param {Record<string, string>} [environment] */
   static async start(environment = {}) {

@@ -2,22 +2,9 @@
 // A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
 // one is deleted.
 import { readFile } from 'node:fs/promises';
-import { Server, chapter, finish, load, note, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, chapter, finish, load, note, ok, openBrowser } from './harness.mjs';
 
-const COARSE = {
-  positions: 16,
-  cells_per_line: 6,
-  sector_teeth: 3,
-  neighbour_coupling: false,
-  layers: 6,
-  flank_rows: 4,
-  fillet_elements: 6,
-  harmonics: 6,
-  te_harmonics: 6,
-};
-const START = `#rig?from=paper-case-a&${Object.entries(COARSE)
-  .map(([key, value]) => `resolution.${key}=${value}`)
-  .join('&')}`;
+const START = `#rig?from=paper-case-a&${LOOSE}`;
 
 const server = await Server.start();
 const browser = await openBrowser();

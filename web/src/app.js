@@ -19,6 +19,7 @@ import { notice } from './base/notice.js';
  */
 
 const OWN_KEYS = ['job', 'items', 'tab']; // of views, in the address
+const VIEW_KEYS = ['speeds', 'vary', 'shows']; // how the design is looked at: ranges and choices of its figures
 
 export class App extends EventTarget {
   /** @type {Map<string, View>} */ #views = new Map();
@@ -56,11 +57,31 @@ export class App extends EventTarget {
    * @param {Record<string, string>} [own] parameters of the view itself
    */
   go(id, own = {}) {
-    const parameters = this.library.address();
+    const parameters = this.#parameters();
     for (const [key, value] of Object.entries(own)) parameters.set(key, value);
     const place = writePlace(id, parameters);
     if (place !== location.hash) history.pushState(null, '', place);
     this.attempt(() => this.show(id, parameters));
+  }
+
+  /** What an address says of the design, of what it is compared with and of how it is looked at. */
+  #parameters() {
+    const { store, library } = this;
+    const parameters = library.address();
+    library.putPin(parameters);
+    if (store.loadCase >= 0) parameters.set('case', String(store.loadCase + 1));
+    for (const [key, value] of store.view) parameters.set(key, value);
+    return parameters;
+  }
+
+  /** The other way round. @param {URLSearchParams} parameters */
+  async #take(parameters) {
+    const { store, library } = this;
+    await library.openAddress(parameters);
+    await library.openPin(parameters);
+    for (const key of VIEW_KEYS) store.setView(key, parameters.get(key) ?? '');
+    const chosen = Number(parameters.get('case') ?? 0) - 1;
+    if (chosen !== store.loadCase && chosen < (store.design.load_cases?.length ?? 0)) store.setLoadCase(chosen);
   }
 
   /** Opens another design, as a step of its own in the browser's history. @param {() => Promise<unknown>} act */
@@ -77,7 +98,7 @@ export class App extends EventTarget {
   /** Writes the design into the address without a step. */
   note() {
     if (!this.current || this.#following) return;
-    const parameters = this.library.address();
+    const parameters = this.#parameters();
     for (const [key, value] of readPlace(location.hash).parameters)
       if (OWN_KEYS.includes(key)) parameters.set(key, value);
     history.replaceState(null, '', writePlace(this.current, parameters));
@@ -88,7 +109,7 @@ export class App extends EventTarget {
     const { view, parameters } = readPlace(location.hash);
     this.#following = true; // the address is right already
     try {
-      await this.library.openAddress(parameters);
+      await this.#take(parameters);
       await this.show(view, parameters);
     } catch (error) {
       await this.show(view, parameters);

@@ -65,7 +65,7 @@ async function start(page) {
   page.replaceChildren(...shell.elements);
   page.removeAttribute('aria-busy');
   store.addEventListener('change', event => {
-    if (/** @type {CustomEvent} */ (event).detail === 'design') app.note();
+    if (['design', 'view'].includes(/** @type {CustomEvent} */ (event).detail)) app.note();
   });
   jobs.start();
   await app.follow();

@@ -10,6 +10,8 @@ export class Refusal extends Error {
     super(problem?.detail || problem?.title || `The service answered ${status}.`);
     this.status = status;
     this.type = String(problem?.type ?? '');
+    /** Everything that the problem says besides. @type {Record<string, unknown>} */
+    this.more = { ...problem };
     /** @type {Fault[]} */
     this.faults = Array.isArray(problem?.errors) ? problem.errors : [];
   }
@@ -87,6 +89,9 @@ async function readBody(response, whole) {
   return text === '' ? null : text;
 }
 
+/** @param {unknown} body */
+const typeOf = body => (body instanceof Blob ? 'application/octet-stream' : 'application/json');
+
 /**
  * @template {'GET' | 'POST' | 'PUT' | 'DELETE'} M
  * @template {string} P
@@ -105,8 +110,8 @@ export async function ask(method, path, { body, headers = {}, signal, whole } = 
     response = await fetch(new URL(path, BASE), {
       method,
       signal,
-      headers: body === undefined ? headers : { 'content-type': 'application/json', ...headers },
-      body: body === undefined ? undefined : JSON.stringify(body),
+      headers: body === undefined ? headers : { 'content-type': typeOf(body), ...headers },
+      body: body instanceof Blob ? body : body === undefined ? undefined : JSON.stringify(body),
     });
     data = await readBody(response, whole);
   } catch (error) {

@@ -18,9 +18,11 @@ export class Conflict extends Error {
 /** There is nothing at an address. */
 export class Missing extends Error {}
 
+const PIN = 'pin.'; // before the keys of the pinned design
+
 /** Keys of an address that say what the design is. @param {string} key */
 const isDesignKey = key =>
-  key === 'id' || key === 'from' || key === 'name' || key === 'load_cases' || key.includes('.');
+  !key.startsWith(PIN) && (['id', 'from', 'name', 'load_cases'].includes(key) || key.includes('.'));
 
 const FIRST = 'paper-case-a'; // on the table when nobody says anything: a modification beside the unmodified pair
 
@@ -78,6 +80,34 @@ export class Library {
     else parameters.set('from', example || FIRST);
     if (base) putDifference(base.design, store.design, parameters);
     return parameters;
+  }
+
+  /** Adds what is pinned, as its difference from the design that it came from. @param {URLSearchParams} parameters */
+  putPin(parameters) {
+    const { pin } = this.store;
+    if (!pin) return;
+    const { example, id } = pin.from ?? {};
+    const base = this.#bases.get(id ? `id:${id}` : `example:${example || FIRST}`);
+    const own = new URLSearchParams(id ? { id } : { from: example || FIRST });
+    if (base) putDifference(base.design, pin.design, own);
+    parameters.set('pin', pin.label);
+    for (const [key, value] of own) parameters.set(`${PIN}${key}`, value);
+  }
+
+  /** Pins what an address says, unless it is pinned already. @param {URLSearchParams} parameters */
+  async openPin(parameters) {
+    const { store } = this;
+    const [wanted, now] = [parameters, new URLSearchParams()];
+    this.putPin(now);
+    const own = [...wanted].filter(([key]) => key === 'pin' || key.startsWith(PIN));
+    if (new URLSearchParams(own).toString() === now.toString()) return;
+    const label = wanted.get('pin');
+    if (label === null) return store.setPin(null);
+    const difference = new URLSearchParams(own.map(([key, value]) => [key.slice(PIN.length), value]));
+    const id = difference.get('id') ?? '';
+    const from = id ? { id } : { example: difference.get('from') ?? FIRST };
+    const { design } = await this.base(from);
+    store.setPin({ label, design: takeDifference(design, difference), from });
   }
 
   /** Opens what an address says, unless it is open already. @param {URLSearchParams} parameters */

@@ -2,7 +2,10 @@
 // The design on the table, whose it is, what it is compared with, and the way back.
 import { same, valueAt, withValue } from './pointer.js';
 
-/** @typedef {{ label: string, design: Api.Design }} Pin */
+/**
+ * @typedef {{ label: string, design: Api.Design, from?: { example?: string, id?: string } }} Pin from: what a
+ *   link tells its difference from
+ */
 /**
  * Whose a design is: an example's, a stored one's or nobody's yet; and what stands there, to see whether it differs.
  * @typedef {{ example: string, id: string, etag: string, base: any }} Identity
@@ -24,6 +27,8 @@ export class DesignStore extends EventTarget {
   /** null: the unmodified pair. @type {Pin | null} */ pin = null;
   /** Load case whose numbers are shown large; -1: the one with the largest share. */
   loadCase = -1;
+  /** How it is looked at, as far as a link says it: ranges and choices of figures. @type {Map<string, string>} */
+  view = new Map();
   /** Faults of texts that could not become values. @type {Map<string, string>} */ faults = new Map();
 
   /** @type {Step[]} */ #past = [];
@@ -220,6 +225,14 @@ export class DesignStore extends EventTarget {
   /** @param {number} index */
   setLoadCase(index) {
     this.loadCase = index;
+    this.#tell('view');
+  }
+
+  /** @param {string} key @param {string} value "": as usual */
+  setView(key, value) {
+    if ((this.view.get(key) ?? '') === value) return;
+    if (value) this.view.set(key, value);
+    else this.view.delete(key);
     this.#tell('view');
   }
 

@@ -89,6 +89,8 @@ const KEYS = [
   '/alignment/stagger',
   '/supports/mesh_damping_ratio',
 ];
+/** The last part of a pointer. @param {string} pointer */
+const keyIn = pointer => pointer.split('/').pop() ?? '';
 /** @type {[import('../numbers.js').NumberKey, string, string][]} */
 const MEASURES = [
   ['peak_to_peak_um', 'transmission error', 'µm'],
@@ -166,8 +168,6 @@ function pictureOf(points) {
 export class Sensitivity {
   /** @type {Api.Design | null} */ #design = null;
   #timer = 0;
-  #key = IN_PLANE;
-  #measure = MEASURES[0][0];
   #asked = '';
   #drawn = '';
 
@@ -192,22 +192,15 @@ export class Sensitivity {
       'select.small-select',
       {
         'aria-label': 'Number that is varied',
-        onchange: () => {
-          this.#key = keys.value;
-          this.#later();
-        },
+        onchange: () => store.setView('vary', keys.value === keyIn(IN_PLANE) ? '' : keys.value),
       },
-      KEYS.map(pointer => h('option', { value: pointer }, labelOf(pointer.split('/').pop() ?? ''))),
+      KEYS.map(pointer => h('option', { value: keyIn(pointer) }, labelOf(keyIn(pointer)))),
     );
     const measures = h(
       'select.small-select',
       {
         'aria-label': 'What is shown',
-        onchange: () => {
-          this.#measure = /** @type {import('../numbers.js').NumberKey} */ (measures.value);
-          this.#asked = '';
-          this.#later();
-        },
+        onchange: () => store.setView('shows', measures.value === MEASURES[0][0] ? '' : measures.value),
       },
       MEASURES.map(([key, name]) => h('option', { value: key }, name)),
     );
@@ -226,6 +219,21 @@ export class Sensitivity {
       controls: [measures, h('span.unit', null, ' over '), keys],
     });
     this.#drawStrip(STRIP.map(() => []));
+    store.addEventListener('change', event => {
+      if (/** @type {CustomEvent} */ (event).detail !== 'view') return;
+      keys.value = keyIn(this.#key);
+      measures.value = this.#measure;
+      this.#later();
+    });
+  }
+
+  /** The number that is varied. */
+  get #key() {
+    return KEYS.find(pointer => keyIn(pointer) === this.store.view.get('vary')) ?? IN_PLANE;
+  }
+
+  get #measure() {
+    return (MEASURES.find(([key]) => key === this.store.view.get('shows')) ?? MEASURES[0])[0];
   }
 
   /** @param {Api.Design} design */

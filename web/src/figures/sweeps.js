@@ -11,6 +11,8 @@ import { whenSeen } from './frame.js';
 const REST = 350; // ms without a change before a sweep in sight is asked for
 const IDLE = 3000; // ms before one out of sight is, so that a report is whole
 const SPEEDS = 140;
+/** rpm @type {[number, number]} */
+const USUAL_SPEEDS = [400, 8000];
 const TORQUES = 24;
 const SHOWN_ORDERS = 3; // crossings of higher orders are not marked
 const NAMED_ORDERS = 2;
@@ -150,28 +152,35 @@ function rangeFields(unit, read, take) {
         for (const field of fields) field.setAttribute('aria-invalid', String(!good));
         if (!good) return;
         take(values[0], values[1]);
-        fields.forEach((field, k) => {
-          field.value = plain(read()[k]);
-        });
+        for (const [k, field] of fields.entries()) field.value = plain(read()[k]);
       },
     }),
   );
-  return h('span.range-fields', null, fields[0], '…', fields[1], ` ${unit}`);
+  const refresh = () =>
+    fields.forEach((field, i) => {
+      if (field !== document.activeElement) field.value = plain(read()[i]);
+    });
+  return { element: h('span.range-fields', null, fields[0], '…', fields[1], ` ${unit}`), refresh };
+}
+
+/**
+ * The range of speeds that is swept.
+ * @param {import('../base/store.js').DesignStore} store @returns {[number, number]}
+ */
+function speedsOf(store) {
+  const [low, high] = (store.view.get('speeds') ?? '').split('-').map(Number);
+  return low > 0 && low < high ? [low, high] : USUAL_SPEEDS;
 }
 
 export class SpeedSweep extends Sweep {
   #case = 0;
 
-  constructor() {
-    /** @type {[number, number]} */
-    const range = [400, 8000];
+  /** @param {import('../base/store.js').DesignStore} store */
+  constructor(store) {
     const fields = rangeFields(
       'rpm',
-      () => [range[0], range[1]],
-      (low, high) => {
-        [range[0], range[1]] = [low, high];
-        this.later();
-      },
+      () => speedsOf(store),
+      (low, high) => store.setView('speeds', `${low}-${high}`),
     );
     super(
       new Chart({
@@ -186,11 +195,16 @@ export class SpeedSweep extends Sweep {
         xUnit: 'rpm',
         zero: true,
         wide: true,
-        controls: [fields],
+        controls: [fields.element],
       }),
     );
-    this.range = range;
+    this.store = store;
     this.elements = [this.chart.element];
+    store.addEventListener('change', event => {
+      if (/** @type {CustomEvent} */ (event).detail !== 'view') return;
+      fields.refresh();
+      this.later();
+    });
   }
 
   /** @param {import('./context.js').Context} context */
@@ -202,11 +216,12 @@ export class SpeedSweep extends Sweep {
 
   /** @param {Api.Design} design */
   request(design) {
-    const torque = design.load_cases[this.#case]?.torque_Nm ?? design.load_cases[0].torque_Nm;
+    const torque = torqueOf(design.load_cases[this.#case] ?? design.load_cases[0]);
+    const [from, to] = speedsOf(this.store);
     return {
       design,
       torque: { from: torque, to: torque, points: 1 },
-      speed: { from: this.range[0], to: this.range[1], points: SPEEDS },
+      speed: { from, to, points: SPEEDS },
     };
   }
 

@@ -59,12 +59,12 @@ export class DesignMenu {
     );
     this.upload = h('input.away', {
       type: 'file',
-      accept: '.json,application/json',
+      accept: '.json,.xml,.rexs,.rexsj,.rexsz,.zip,.csv,.txt,application/json',
       tabindex: '-1',
       'aria-hidden': 'true',
       onchange: () => {
         const file = this.upload.files?.[0];
-        if (file) app.attempt(() => app.opening(() => app.library.openFile(file)));
+        if (file) this.importFile(file);
         this.upload.value = '';
       },
     });
@@ -86,6 +86,11 @@ export class DesignMenu {
         ? `changed since it was ${store.from.id ? 'stored' : 'opened'}`
         : '';
     this.button.title = [name.replace(/ \*$/, ''), where, state].filter(Boolean).join(', ');
+  }
+
+  /** @param {File} file */
+  importFile(file) {
+    return this.app.attempt(async () => (await import('./import_file.js')).importFile(this.app, file));
   }
 
   async open() {
@@ -128,7 +133,7 @@ export class DesignMenu {
         h('h2', null, 'This design'),
         store.from.id ? item('Store', () => this.save()) : null,
         item('Store as new', () => this.saveNew()),
-        item('Import JSON…', () => this.upload.click()),
+        item('Import a file…', () => this.upload.click(), 'JSON, REXS (XML, JSON, zip), a table; or drop it'),
         item('Export JSON', () => this.#export()),
         this.#exports
           .filter(({ name }) => name !== 'design')

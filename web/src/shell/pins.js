@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the numbers and dashed curves compare with: the unmodified pair or a design that was pinned; kept for as long as
-// the browser's tab.
+// the browser's tab, and in links.
 import { fill, h } from '../base/dom.js';
 
 const KEY = 'easeoff-pins';
@@ -28,6 +28,7 @@ export class Pins {
 
   refresh() {
     const { pin } = this.app.store;
+    if (pin && !this.#pins.includes(pin)) this.#keep(pin); // of a link
     this.element.hidden = !VIEWS.includes(this.app.current);
     const options = [
       h('option', { value: '' }, 'unmodified'),
@@ -49,10 +50,21 @@ export class Pins {
       store.setPin(value === '' ? null : this.#pins[Number(value)]);
       return;
     }
-    const count = this.#pins.length + 1;
-    const pin = { label: `pinned ${count}`, design: store.design };
-    this.#pins.push(pin);
-    sessionStorage.setItem(KEY, JSON.stringify(this.#pins.slice(-MOST)));
+    const { example, id } = store.from;
+    const pin = { label: this.#freeName(), design: store.design, from: { example, id } };
+    this.#keep(pin);
     store.setPin(pin);
+  }
+
+  /** "pinned 2", when there is none of that name. */
+  #freeName() {
+    for (let count = this.#pins.length + 1; ; count++)
+      if (!this.#pins.some(each => each.label === `pinned ${count}`)) return `pinned ${count}`;
+  }
+
+  /** One of the same name gives way. @param {import('../base/store.js').Pin} pin */
+  #keep(pin) {
+    this.#pins = [...this.#pins.filter(each => each.label !== pin.label), pin].slice(-MOST);
+    sessionStorage.setItem(KEY, JSON.stringify(this.#pins));
   }
 }

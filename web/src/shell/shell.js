@@ -19,6 +19,9 @@ const THEMES = /** @type {Record<string, [string, string]>} */ ({
 });
 const SHOWN = 6000; // ms of a notice
 
+/** @param {DragEvent} event */
+const hasFiles = event => Boolean(event.dataTransfer?.types.includes('Files'));
+
 export class Shell {
   #timer = 0;
 
@@ -53,8 +56,20 @@ export class Shell {
     connection.addEventListener('change', () => this.#drawState());
     notice.addEventListener('change', () => this.#say(notice.text));
     document.addEventListener('keydown', event => this.#key(event));
+    document.addEventListener('dragover', event => hasFiles(event) && event.preventDefault());
+    document.addEventListener('drop', event => this.#dropped(event));
     this.#drawTheme();
     this.#refresh();
+  }
+
+  /** A file that nothing on the page took: a design, of this program or of another. @param {DragEvent} event */
+  #dropped(event) {
+    if (event.defaultPrevented || !hasFiles(event)) return;
+    event.preventDefault(); // the browser would leave the page for it
+    const file = event.dataTransfer?.files[0];
+    if (!file) return;
+    if (event.dataTransfer?.files.length === 1) this.menu.importFile(file);
+    else notice.say('One file at a time, please.');
   }
 
   /** @param {string} mark @param {string} name @param {string} keys @param {() => void} act */

@@ -38,7 +38,7 @@ class DesignView {
     this.app = app;
     this.headline = new Headline(app.store);
     this.sensitivity = new Sensitivity(app.store);
-    this.results = new Results(this.sensitivity);
+    this.results = new Results(this.sensitivity, app.store);
     this.trouble = new TroubleLine();
     this.foot = h('div');
     this.progress = h('.preparing-note', { role: 'status', hidden: true });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The modification of the flanks: which member, which end, sliders for what is moved most.
 import { fill, h } from '../base/dom.js';
+import { notice } from '../base/notice.js';
 import { valueAt } from '../base/pointer.js';
 import { fieldAt } from '../base/schema.js';
 import { switcher } from '../figures/frame.js';
@@ -32,10 +33,39 @@ export class Flank {
     this.store = store;
     this.form = form;
     this.fields = form.set();
-    this.element = h('.flank');
+    this.element = h('.flank', {
+      ondragover: (/** @type {DragEvent} */ event) => {
+        if (this.#isTable(event)) event.preventDefault();
+        this.element.classList.toggle('over', this.#isTable(event));
+      },
+      ondragleave: () => this.element.classList.remove('over'),
+      ondrop: (/** @type {DragEvent} */ event) => this.#dropped(event),
+    });
     this.tie = h('input', { type: 'checkbox', id: 'tie', onchange: () => store.tie(this.tie.checked) });
     this.tieLabel = h('label.tie', { for: 'tie' }, this.tie, 'left = right');
     form.finders.push(pointer => this.#turnTo(pointer));
+  }
+
+  /** One file, in the place where a flank takes a table. @param {DragEvent} event */
+  #isTable(event) {
+    return [...(event.dataTransfer?.items ?? [])].filter(item => item.kind === 'file').length === 1;
+  }
+
+  /** The flank on show takes a table that is dropped on it. @param {DragEvent} event */
+  async #dropped(event) {
+    this.element.classList.remove('over');
+    const file = event.dataTransfer?.files[0];
+    if (!file || !/\.(csv|tsv|txt)$/i.test(file.name)) return; // files of other programs are the page's
+    event.preventDefault();
+    this.store.set(this.#pointer('/grid'), { csv: await file.text() });
+    notice.say(`${file.name} is the grid of this flank now; undo takes it back.`);
+  }
+
+  /** Of what is on show. @param {string} key */
+  #pointer(key) {
+    const two = (this.store.design.gear_pair?.ends ?? 2) === 2;
+    const end = two && !this.store.tied ? this.#end : 'left';
+    return `/modification/${this.#member}/${end}${this.#side === COAST ? `/${COAST}` : ''}${key}`;
   }
 
   /** Turns to the member and end of a value. @param {string} pointer */

@@ -20,8 +20,11 @@ export class Results {
   #asked = false;
   #warnings = '';
 
-  /** @param {import('../figures/sensitivity.js').Sensitivity} sensitivity */
-  constructor(sensitivity) {
+  /**
+   * @param {import('../figures/sensitivity.js').Sensitivity} sensitivity
+   * @param {import('../base/store.js').DesignStore} store
+   */
+  constructor(sensitivity, store) {
     const again = () => this.#later();
     const transmission = new Transmission(again);
     const contact = new Contact();
@@ -35,7 +38,7 @@ export class Results {
     const drawing = new GearDrawing();
     this.rating = new Rating();
     this.tribology = new Tribology();
-    this.speed = new SpeedSweep();
+    this.speed = new SpeedSweep(store);
     this.torque = new TorqueSweep();
     this.teeth = new SingleTeeth();
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];

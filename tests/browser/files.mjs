@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that are dropped on the page: of other programs, of this one, a grid on a flank, recordings on the rig.
+import { readFile } from 'node:fs/promises';
+import { COARSE, LOOSE, Server, chapter, drop, finish, ok, openBrowser, settled } from './harness.mjs';
+
+const START = `#design?from=paper-case-a&${LOOSE}`;
+const WAIT = Number(process.env.EASEOFF_WAIT ?? 30000); // ms for anything
+const CASES = `${process.env.SOURCES}/tests/cases/exchange`;
+
+const server = await Server.start();
+const browser = await openBrowser();
+const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce' });
+await context.addInitScript(() => location.protocol === 'http:' && localStorage.setItem('easeoff-lead', 'away'));
+const page = await context.newPage();
+page.setDefaultTimeout(WAIT);
+const troubles = [];
+page.on('pageerror', error => troubles.push(error.message));
+
+const fileOf = async name => ({ name, base64: (await readFile(`${CASES}/${name}`)).toString('base64') });
+const dialog = page.locator('dialog.import-dialog');
+const open = async (hash = START) => {
+  await page.goto('about:blank');
+  await page.goto(server.address + hash);
+  await page.locator('.form-pane').waitFor();
+};
+const teeth = async () => [
+  await page.getByLabel('Pinion teeth', { exact: true }).inputValue(),
+  await page.getByLabel('Gear teeth', { exact: true }).inputValue(),
+];
+
+await chapter('a gear unit of two stages', async () => {
+  await open();
+  await settled(page);
+  await drop(page, '.figure-pane', [await fileOf('two-stage-1.5.rexs')]);
+  await dialog.getByRole('radio').nth(2).waitFor();
+  const labels = await dialog.locator('label.choice').allInnerTexts();
+  ok(labels.length === 3 && /23 and 71 teeth/.test(labels[0]) && /step-up/.test(labels[2]), 'lists its pairs');
+  await dialog.getByRole('radio').nth(1).check();
+  await dialog.getByText('19/58 teeth').waitFor();
+  const text = await dialog.innerText();
+  ok(/amounts are normal to the flank/.test(text), 'says what was assumed');
+  ok(/gear_casing 2/.test(text), 'and what was not used');
+  await dialog.getByRole('button', { name: 'Open this pair' }).click();
+  await page.waitForFunction(() => /two-stage unit/.test(document.title));
+  ok((await teeth()).join('/') === '19/58', 'the chosen pair is on the table');
+  ok((await page.getByLabel(/^Torque of load case/).count()) === 3, 'with the loads of the file');
+  await page.goBack();
+  await page.waitForFunction(() => /paper pair/.test(document.title));
+  ok((await teeth()).join('/') === '17/44', 'back goes back to the design before');
+});
+
+await chapter('every kind of model', async () => {
+  for (const [name, words] of [
+    ['paper-case-b-2.0.0.rexsj', '17/44 teeth'],
+    ['paper-case-b-1.4.rexsz', '17/44 teeth'],
+    ['single-crowned-1.7.rexs', 'single helical'],
+  ]) {
+    await drop(page, '.form-pane', [await fileOf(name)]);
+    await dialog.getByText(words).waitFor();
+    ok(await dialog.getByRole('button', { name: 'Open this pair' }).isEnabled(), name);
+    await dialog.getByRole('button', { name: 'Cancel' }).click();
+  }
+  await drop(page, '.form-pane', [{ name: 'pairs.csv', text: 'z1;z2;mn;beta;b\n23;61;5;30;50\n' }]);
+  await dialog.locator('p', { hasText: /teeth|column|table/ }).first().waitFor();
+  ok(true, `a table: ${(await dialog.locator('.dialog-body p').allInnerTexts()).join(' ').slice(0, 90)}`);
+  await dialog.getByRole('button', { name: 'Cancel' }).click();
+});
+
+await chapter('files with faults', async () => {
+  await drop(page, '.form-pane', [await fileOf('errors-1.6.rexs')]);
+  await dialog.locator('.fault').nth(2).waitFor();
+  ok(/"inch"/.test(await dialog.innerText()), 'each fault is said');
+  ok(await dialog.getByRole('button', { name: 'Open this pair' }).isDisabled(), 'and there is nothing to open');
+  await page.keyboard.press('Escape');
+  await drop(page, '.form-pane', [{ name: 'notes.txt', text: 'no gear at all' }]);
+  await dialog.locator('.fault').first().waitFor();
+  ok(true, `what is no model: ${await dialog.locator('.fault').first().innerText()}`);
+  await page.keyboard.press('Escape');
+  ok(/paper pair/.test(await page.title()), 'the design stays as it is');
+});
+
+await chapter('a design of this program', async () => {
+  const design = await (await fetch(`${server.address}api/v1/examples/paper-case-b`)).json();
+  const text = JSON.stringify({ ...design, name: 'mine', resolution: { ...design.resolution, ...COARSE } });
+  await drop(page, '.figure-pane', [{ name: 'mine.json', text }]);
+  await page.waitForFunction(() => /^mine/.test(document.title));
+  ok(true, 'is opened at once');
+});
+
+await chapter('a grid on a flank', async () => {
+  await open();
+  await settled(page);
+  const before = await page.locator('.number-cell .value').first().innerText();
+  const csv = 'u\\y, -30, 0, 30\n-5, 30, 25, 30\n0, 5, 0, 5\n5, 30, 25, 30\n';
+  await drop(page, '.flank', [{ name: 'flank.csv', text: csv }]);
+  await page.locator('.notice', { hasText: 'flank.csv' }).waitFor();
+  await page.waitForFunction(
+    value => document.querySelector('.number-cell .value').textContent !== value,
+    before,
+  );
+  ok(true, 'changes the result');
+  await page.getByText('This flank has a grid.').waitFor({ state: 'attached' });
+  ok(true, 'and the form says so');
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(value => document.querySelector('.number-cell .value').textContent === value, before);
+  ok(true, 'undo takes it back');
+});
+
+await chapter('recordings on the rig', async () => {
+  const plain = await (await fetch(`${server.address}api/v1/examples/paper-case-a`)).json();
+  const design = { ...plain, resolution: { ...plain.resolution, ...COARSE } };
+  const recording = await fetch(`${server.address}api/v1/rig`, {
+    method: 'POST',
+    headers: { 'content-type': 'application/json' },
+    body: JSON.stringify({ design, rig: { torque_Nm: 828, speed_rpm: 1200, seconds: 1 } }),
+  });
+  await open(`#rig?from=paper-case-a&${LOOSE}`);
+  await drop(page, '.drop', [{ name: 'modified_828Nm_1200rpm.csv', text: await recording.text() }]);
+  await page.locator('.recording').waitFor();
+  await page.getByRole('button', { name: 'Measure', exact: true }).click();
+  const row = page.locator('section[aria-label="Measurements"] tbody tr');
+  await row.first().waitFor();
+  ok(/1200/.test(await row.first().innerText()), `measured: ${(await row.first().innerText()).replace(/\s+/g, ' ')}`);
+});
+
+ok(troubles.length === 0, `nothing was complained about${troubles.length ? `: ${troubles.join('; ')}` : ''}`);
+await browser.close();
+await server.remove();
+finish();
