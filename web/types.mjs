@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes what the API asks and answers as types for tsc: node types.mjs EASEOFF FILE. A server of that program, with an empty
-// folder and at a free port of this machine, describes itself; nothing of it stays.
+// Writes what the API asks and answers as types for tsc: node types.mjs EASEOFF FILE. A server of that program, with an
+// empty folder and at a free port of this machine, describes itself; nothing of it stays.
 import { spawn } from 'node:child_process';
 import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
@@ -100,9 +100,8 @@ function declarationOf({ components, paths }) {
 /** What the program's server says at /openapi.json. @param {string} program @returns {Promise<Schema>} */
 async function describe(program) {
   const folder = await mkdtemp(join(tmpdir(), 'easeoff-types-'));
-  const server = spawn(resolve(program), ['serve', '--listen', '127.0.0.1:0', '--data', folder, '--web', folder, '--quiet'], {
-    stdio: ['ignore', 'pipe', 'inherit'],
-  });
+  const options = ['--listen', '127.0.0.1:0', '--data', folder, '--web', folder, '--quiet'];
+  const server = spawn(resolve(program), ['serve', ...options], { stdio: ['ignore', 'pipe', 'inherit'] });
   const ended = new Promise(done => server.on('exit', done));
   try {
     const address = await new Promise((found, fail) => {

@@ -60,9 +60,17 @@ await chapter('every kind of model', async () => {
     ok(await dialog.getByRole('button', { name: 'Open this pair' }).isEnabled(), name);
     await dialog.getByRole('button', { name: 'Cancel' }).click();
   }
-  await drop(page, '.form-pane', [{ name: 'pairs.csv', text: 'z1;z2;mn;beta;b\n23;61;5;30;50\n' }]);
-  await dialog.locator('p', { hasText: /teeth|column|table/ }).first().waitFor();
-  ok(true, `a table: ${(await dialog.locator('.dialog-body p').allInnerTexts()).join(' ').slice(0, 90)}`);
+  const table = [
+    'key;pinion;gear;unit',
+    'gear_pair.teeth;23;61;',
+    'gear_pair.normal_module_mm;5;;mm',
+    'gear_pair.helix_angle_deg;30;;deg',
+    'gear_pair.face_width_mm;50;;mm',
+    '',
+  ].join('\n');
+  await drop(page, '.form-pane', [{ name: 'pair.csv', text: table }]);
+  await dialog.getByText('23/61 teeth').waitFor();
+  ok(/the load cases of the design on the table are kept/.test(await dialog.innerText()), 'a table without loads');
   await dialog.getByRole('button', { name: 'Cancel' }).click();
 });
 
@@ -109,18 +117,36 @@ await chapter('a grid on a flank', async () => {
 await chapter('recordings on the rig', async () => {
   const plain = await (await fetch(`${server.address}api/v1/examples/paper-case-a`)).json();
   const design = { ...plain, resolution: { ...plain.resolution, ...COARSE } };
-  const recording = await fetch(`${server.address}api/v1/rig`, {
-    method: 'POST',
-    headers: { 'content-type': 'application/json' },
-    body: JSON.stringify({ design, rig: { torque_Nm: 828, speed_rpm: 1200, seconds: 1 } }),
-  });
+  const rig = { torque_Nm: 828, speed_rpm: 1200, turns: 60, speed_step: 0.5, rest_before_s: 0.5 };
+  const record = () =>
+    fetch(`${server.address}api/v1/rig`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify({ design, rig }),
+    });
+  let recording = await record();
+  for (; recording.status === 202; recording = await record()) await page.waitForTimeout(300);
   await open(`#rig?from=paper-case-a&${LOOSE}`);
   await drop(page, '.drop', [{ name: 'modified_828Nm_1200rpm.csv', text: await recording.text() }]);
   await page.locator('.recording').waitFor();
   await page.getByRole('button', { name: 'Measure', exact: true }).click();
   const row = page.locator('section[aria-label="Measurements"] tbody tr');
   await row.first().waitFor();
-  ok(/1200/.test(await row.first().innerText()), `measured: ${(await row.first().innerText()).replace(/\s+/g, ' ')}`);
+  ok(/1499/.test(await row.first().innerText()), 'of two steady states the longer one is measured');
+  const part = page.locator('section[aria-label="Part of the recording"]');
+  await part.locator('.stretches li').first().waitFor();
+  ok(/900 … 1500 rpm/.test(await part.innerText()), 'the stretch that was found is listed');
+  await part.getByLabel('From, s').fill('0.6');
+  await part.getByLabel('To, s').fill('1,9');
+  await part.getByRole('button', { name: 'Measure these times' }).click();
+  await row.nth(1).waitFor();
+  await part.getByText('Measured: 0.6 … 1.899 s').waitFor();
+  ok(/900\.0/.test((await row.allInnerTexts()).join(' ')), 'the other one by its times, with a result of its own');
+  await part.getByRole('button', { name: 'The whole recording' }).click();
+  await part.getByText('Measured: 2.02 … 3.461 s').waitFor();
+  await part.getByRole('button', { name: /with its run-up/ }).click();
+  await row.nth(2).waitFor();
+  ok(true, 'and the whole stretch with what leads to the steady state');
 });
 
 ok(troubles.length === 0, `nothing was complained about${troubles.length ? `: ${troubles.join('; ')}` : ''}`);

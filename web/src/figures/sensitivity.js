@@ -194,7 +194,9 @@ export class Sensitivity {
         'aria-label': 'Number that is varied',
         onchange: () => store.setView('vary', keys.value === keyIn(IN_PLANE) ? '' : keys.value),
       },
-      KEYS.map(pointer => h('option', { value: keyIn(pointer) }, labelOf(keyIn(pointer)))),
+      KEYS.map(pointer =>
+        h('option', { value: keyIn(pointer), selected: pointer === this.#key }, labelOf(keyIn(pointer))),
+      ),
     );
     const measures = h(
       'select.small-select',
@@ -202,7 +204,7 @@ export class Sensitivity {
         'aria-label': 'What is shown',
         onchange: () => store.setView('shows', measures.value === MEASURES[0][0] ? '' : measures.value),
       },
-      MEASURES.map(([key, name]) => h('option', { value: key }, name)),
+      MEASURES.map(([key, name]) => h('option', { value: key, selected: key === this.#measure }, name)),
     );
     this.chart = new Chart({
       title: 'Sensitivity',

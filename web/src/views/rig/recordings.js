@@ -7,12 +7,14 @@ import { plain } from '../../base/format.js';
 import { parseNumber } from '../../base/quantity.js';
 import { guess } from '../../base/recording.js';
 import { RefusedRecording, upload } from '../../base/upload.js';
+import { torqueOf } from '../../figures/context.js';
 import { group } from '../../form/group.js';
 
 /**
  * @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' |
- * 'sending' | 'reading' | 'refused' | 'failed', part: number, error: Error | null, bar: HTMLElement | null }}
- * Recording
+ * 'sending' | 'reading' | 'refused' | 'failed', part: number, error: Error | null, bar: HTMLElement | null,
+ * again?: import('./parts.js').Choice & Pick<Api.Measurement, 'end'> & { layout: Api.AskedLayout | null } }} Recording
+ * again: another part of what was measured before, as it was read then
  */
 
 const AT_ONCE = 2;
@@ -43,6 +45,11 @@ export function findingList(findings) {
       ),
     ),
   );
+}
+
+/** @param {import('../../base/api.js').Fault} fault */
+function faultText({ pointer, detail }) {
+  return pointer === '/torque_Nm' ? `${detail} At which torque was it recorded? Type it above.` : detail;
 }
 
 /** Override of what the columns mean; what is left open is guessed. */
@@ -268,7 +275,7 @@ export class Recordings {
 
   /** The torque when all load cases have the same: else only who recorded it knows. */
   #certainTorque() {
-    const torques = new Set(this.host.loadCases().map(row => row.torque_Nm));
+    const torques = new Set(this.host.loadCases().map(torqueOf));
     return torques.size === 1 ? plain([...torques][0]) : '';
   }
 
@@ -364,7 +371,7 @@ export class Recordings {
             { role: 'alert' },
             item.error instanceof RefusedRecording
               ? findingList(item.error.findings)
-              : h('p.fault', null, faults.length ? faults.map(fault => fault.detail).join(' ') : item.error.message),
+              : h('p.fault', null, faults.length ? faults.map(faultText).join(' ') : item.error.message),
             h(
               '.switches',
               null,
@@ -413,17 +420,16 @@ export class Recordings {
     item.error = null;
     this.draw();
     try {
-      if (item.torque.trim() === '')
-        throw new Error('At which torque was it recorded? The name does not say it; type it above.');
       const form = new FormData();
       form.set('design', await this.host.designId());
       form.set('label', item.label);
       const [torque, speed] = [parseNumber(item.torque), parseNumber(item.speed)];
-      form.set('torque_Nm', torque === undefined ? item.torque : String(torque));
+      if (item.torque.trim()) form.set('torque_Nm', torque === undefined ? item.torque : String(torque));
       if (item.speed.trim()) form.set('speed_rpm', speed === undefined ? item.speed : String(speed));
-      form.set('end', this.end.value);
+      const { end = this.end.value, layout = this.layout.value(), ...part } = item.again ?? {};
+      form.set('end', end);
       if (this.harmonics.value.trim()) form.set('harmonics', this.harmonics.value.trim());
-      const layout = this.layout.value();
+      for (const [key, value] of Object.entries(part)) form.set(key, String(value));
       if (layout) form.set('layout', JSON.stringify(layout));
       form.append('file', item.file, item.file.name);
       if (item.gear) form.append('file', item.gear, item.gear.name);

@@ -8,6 +8,7 @@ import { plain } from '../../base/format.js';
 
 import { Bench } from './bench.js';
 import { FitPanel } from './fit.js';
+import { partsOf } from './parts.js';
 import { Recordings } from './recordings.js';
 import { RigFigures, WHAT } from './rig_figures.js';
 import { drawAbout, drawMeasurements, drawReductions } from './rig_tables.js';
@@ -17,6 +18,7 @@ class RigView {
   #chosen = 0;
   /** The chosen measurement with everything known of it. @type {Api.Measurement | null} */ #whole = null;
   /** @type {Promise<string> | null} */ #storing = null;
+  /** Parts of the chosen measurement. @type {{ id: number, element: HTMLElement | null } | null} */ #parts = null;
 
   /** @param {import('../../app.js').App} app */
   constructor(app) {
@@ -131,6 +133,37 @@ class RigView {
     }
   }
 
+  /** Kept as long as the recording is the chosen one: a time may be half typed. @param {Api.Measurement} whole */
+  #partsOf(whole) {
+    if (this.#parts?.id === whole.id) return this.#parts.element;
+    const { result } = whole;
+    const measure = (/** @type {import('./parts.js').Choice} */ choice) =>
+      this.app.attempt(() => this.#measure(whole, choice));
+    this.#parts = { id: whole.id, element: result && partsOf(result, measure) };
+    return this.#parts.element;
+  }
+
+  /**
+   * Another part of a recording, as a measurement of its own.
+   * @param {Api.Measurement} whole @param {import('./parts.js').Choice} choice
+   */
+  async #measure({ id, files, label, end, torque_Nm: torque, stated_speed_rpm: speed, asked_layout: layout }, choice) {
+    const [file, gear = null] = await Promise.all(
+      files.map(async ({ name }, i) => {
+        const { data } = await ask('GET', `measurements/${id}/file?part=${i + 1}`, { whole: true });
+        return new File([data], name);
+      }),
+    );
+    this.recordings.add([file], {
+      gear,
+      label,
+      torque: torque === null ? '' : plain(torque),
+      speed: speed === null ? '' : plain(speed),
+      again: { ...choice, end, layout },
+    });
+    await this.recordings.send();
+  }
+
   /** @param {Api.ListedMeasurement} item */
   async #remove(item) {
     const answer = await choose(
@@ -189,7 +222,8 @@ class RigView {
       Boolean(this.app.store.design.gear_pair?.pinion_teeth),
       this.#teethAt(item.torque_Nm ?? NaN),
     );
-    drawAbout(this.about, item, this.#whole, bench.of(item.id));
+    const whole = this.#whole;
+    drawAbout(this.about, item, whole, bench.of(item.id), this.#partsOf(whole));
     this.recordings.layout.show(this.#whole.layout);
   }
 

@@ -213,8 +213,9 @@ function factsOf(whole) {
 
 /**
  * @param {HTMLElement} place @param {Api.ListedMeasurement} item @param {Api.Measurement} whole @param {Beside} beside
+ * @param {HTMLElement | null} parts which part of it was measured
  */
-export function drawAbout(place, item, whole, beside) {
+export function drawAbout(place, item, whole, beside, parts) {
   const { findings, notes } = whole;
   fill(
     place,
@@ -230,6 +231,7 @@ export function drawAbout(place, item, whole, beside) {
         factsOf(whole).map(([name, value]) => h('tr', null, h('th', { scope: 'row' }, name), h('td', null, value))),
       ),
     ),
+    parts,
     h(
       'details.more',
       null,
