@@ -12,6 +12,7 @@ enum { EO_MOST_LOSSES = 3, EO_AHEAD = 4, EO_HELD = EO_SAMPLER_BLOCK + EO_AHEAD }
 /* Usual speeds of the samples that are held, and the size of step that is out of the ordinary. */
 struct eo_usual {
   double rate[2], interval;
+  double gap;               /* s: rows are missing where more time passes from one to the next */
   double limit[2], fine[2]; /* of what a row lost, of what a few counts lost stand out of */
   bool uneven;              /* the speed changes much among the samples */
 };

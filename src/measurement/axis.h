@@ -29,16 +29,22 @@ double eo_axis_swing(const struct eo_axis *axis, int member, double theta);
 double eo_axis_loss(const struct eo_axis *axis, double order, const double share[2]);
 
 /* Noise of the readings from their third differences, which no steady change of speed reaches: of white noise they have
-   20 times the variance. The median over blocks of rows, so that a gap does not count. Rows one after the other. */
+   20 times the variance. Rows that are uneven in time leave differences by their numbers, times that are not exact
+   leave differences by their times: the smaller one is noise. The median over blocks of rows, so that a gap does not
+   count. Rows one after the other; time s, angle rad. */
+#define EO_AXIS_WEIGHTS 20.0
 enum { EO_AXIS_BLOCK = 64, EO_AXIS_BLOCKS = 2048 };
-struct eo_axis_noise {
-  double reading[3];
-  int64_t rows;
-  double square; /* sum of the squared third differences of the block */
-  int64_t blocks;
-  double mean_square[EO_AXIS_BLOCKS]; /* of the last blocks */
+struct eo_axis_reading {
+  double time, angle;
 };
-void eo_axis_noise_add(struct eo_axis_noise *noise, double reading);
+struct eo_axis_noise {
+  struct eo_axis_reading reading[4]; /* the last three; the fourth is the one that is added */
+  int64_t rows;
+  double square[2]; /* sums of the squared third differences of the block: by rows, by time */
+  int64_t blocks;
+  double mean_square[2][EO_AXIS_BLOCKS]; /* of the last blocks */
+};
+void eo_axis_noise_add(struct eo_axis_noise *noise, double time, double angle);
 double eo_axis_noise_sigma(struct eo_axis_noise *noise); /* rad; at the end */
 
 #endif

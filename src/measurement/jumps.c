@@ -21,6 +21,7 @@ static void learn(struct eo_angles_maker *maker, const struct eo_sample *sample,
   for (int i = 1; i < count; i++)
     maker->scratch[n++] = sample[i].time - sample[i - 1].time;
   usual->interval = eo_scan_quantile(maker->scratch, n, 0.5);
+  usual->gap = maker->scratch[(int)(0.95 * (n - 1))] + usual->interval / 2; /* uneven rows alone are no gap */
   for (int c = 0; c < 2; c++) {
     n = 0;
     for (int i = lag; i < count; i++)
@@ -225,7 +226,7 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
       judge_jump(maker, angles, &here, excess, sample);
     } else if (judge && !usual->uneven && odd_step(usual, usual->fine, &maker->last, sample, excess)) {
       note_lost_counts(maker, usual, excess, sample, maker->held - i);
-    } else if (judge && sample->time - maker->last.time > 1.5 * usual->interval && sample->row - maker->last.row == 1) {
+    } else if (judge && sample->time - maker->last.time > usual->gap && sample->row - maker->last.row == 1) {
       angles->dropped += llround((sample->time - maker->last.time) / usual->interval) - 1;
       if (!maker->gaps++)
         maker->gap_row = sample->row;

@@ -12,6 +12,7 @@ static const double STANDING = 0.02; /* of the fast tenth of all speeds: slower 
 static const double LEAST_TURNS = 3; /* of the pinion in a part; the shaft orders need them */
 static const double STEADY = 0.02;   /* relative: turns this near to their median are one steady state */
 static const double RUN_UP = 1.25;   /* highest over lowest speed of turns: below, one number serves all */
+static const double TAIL = 0.25;     /* of a turn: less tells no speed */
 static const double MOSTLY = 0.6;    /* of the turns: a steady state this long is meant, the rest leads to it */
 
 static const double LONGER = 1.05; /* by so much a later part has to be longer than an earlier one */
@@ -36,7 +37,8 @@ struct finder {
   double *scratch;         /* owned, [stretches + MOST_TURNS] */
   struct stretch *turn;    /* owned, [turns + 1]: where whole turns begin */
   int turns;
-  double turns_each; /* pinion turns between them */
+  double turns_each;   /* pinion turns between them */
+  struct stretch tail; /* the last row of the part, behind the last whole turn */
 };
 
 typedef void row_function(struct finder *f, int64_t index, const double row[3]);
@@ -134,16 +136,28 @@ static void find_runs(struct finder *finder, double fast)
 static void add_turn(struct finder *finder, int64_t index, const double row[3])
 {
   double angle = fabs(row[1] - finder->turn[0].angle);
+  finder->tail = (struct stretch){index, row[0], row[1]};
   if (finder->turns == 0 && finder->turn[0].row < 0)
     finder->turn[0] = (struct stretch){index, row[0], row[1]};
   else if (finder->turns < MOST_TURNS && angle >= 2 * M_PI * finder->turns_each * (finder->turns + 1))
     finder->turn[++finder->turns] = (struct stretch){index, row[0], row[1]};
 }
 
+static double speed_between(const struct stretch *from, const struct stretch *to)
+{
+  return fabs((to->angle - from->angle) / (to->time - from->time));
+}
+
 static double turn_speed(const struct finder *finder, int turn)
 {
-  return fabs((finder->turn[turn + 1].angle - finder->turn[turn].angle) /
-              (finder->turn[turn + 1].time - finder->turn[turn].time));
+  return speed_between(&finder->turn[turn], &finder->turn[turn + 1]);
+}
+
+/* What is left behind the last whole turn counts when it is more than a small part of one. */
+static bool has_tail(const struct finder *finder)
+{
+  const struct stretch *last = &finder->turn[finder->turns];
+  return last->row >= 0 && fabs(finder->tail.angle - last->angle) > 2 * M_PI * TAIL;
 }
 
 static void find_range(const struct finder *finder, int from, int to, struct eo_part *part)
@@ -153,6 +167,11 @@ static void find_range(const struct finder *finder, int from, int to, struct eo_
   for (int i = from; i < to; i++) {
     part->speed_low = fmin(part->speed_low, turn_speed(finder, i));
     part->speed_high = fmax(part->speed_high, turn_speed(finder, i));
+  }
+  if (to > from && to == finder->turns && has_tail(finder)) {
+    double speed = speed_between(&finder->turn[to], &finder->tail);
+    part->speed_low = fmin(part->speed_low, speed);
+    part->speed_high = fmax(part->speed_high, speed);
   }
   if (to <= from)
     part->speed_low = part->speed_high = fabs(part->turns) * 2 * M_PI / (part->to - part->from);
@@ -238,8 +257,13 @@ static enum eo_code settle_part(struct finder *finder, struct eo_error *error)
   if ((to - from) * finder->turns_each < fmax(MOSTLY * fabs(whole->turns), LEAST_TURNS))
     return EO_OK;
   parts->measured = part_between(finder, &finder->turn[from], &finder->turn[to]);
-  if (to == finder->turns)
-    parts->measured.last = whole->last;
+  bool steady_tail = to == finder->turns &&
+                     (!has_tail(finder) ||
+                      fabs(speed_between(&finder->turn[to], &finder->tail) / turn_speed(finder, to - 1) - 1) < STEADY);
+  if (steady_tail)
+    parts->measured = part_between(finder, &finder->turn[from], &finder->tail);
+  else if (to == finder->turns)
+    finder->tail = finder->turn[to]; /* a run-down */
   find_range(finder, from, to, &parts->measured);
   say_steady(finder, whole);
   return EO_OK;

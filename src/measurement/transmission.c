@@ -57,7 +57,7 @@ static enum eo_code look(struct eo_order_fit *fit, const double row[3], int64_t 
   double theta = eo_axis_angle(&fit->axis, row[1]);
   (void)index;
   (void)error;
-  eo_axis_noise_add(&fit->noise, row[1]);
+  eo_axis_noise_add(&fit->noise, row[0], row[1]);
   if (theta <= fit->to)
     fit->end = row[0];
   return EO_OK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/column.h"
+#include "recording/letters.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -7,7 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
-#define ROWS 20000 /* that are looked at */
+#define ROWS 20000   /* that are looked at */
+#define STRETCHES 64 /* within which noise does not count as travel */
 
 static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values,
                                 struct eo_column *look, struct eo_error *error)
@@ -69,8 +71,8 @@ static void find_steps(struct eo_column *look, const double *values)
     look->falls += values[i] < values[i - 1];
   }
   bool up = look->rises >= look->falls;
-  double sum = 0, square = 0, height = 0;
-  int64_t steps = 0;
+  double sum = 0, square = 0, height = 0, travel = 0, way = 0;
+  int64_t steps = 0, stretch = 1 + look->count / STRETCHES;
   for (int64_t i = 1; i < look->count; i++) {
     double step = values[i] - values[i - 1];
     if (is_reset(look, step, up)) {
@@ -80,8 +82,12 @@ static void find_steps(struct eo_column *look, const double *values)
     }
     steps++;
     sum += step;
+    travel += step;
+    if (steps % stretch == 0)
+      way += fabs(travel), travel = 0;
   }
   look->step = steps ? sum / (double)steps : 0;
+  look->pace = steps ? (way + fabs(travel)) / (double)steps : 0;
   for (int64_t i = 1; i < look->count; i++) {
     double step = values[i] - values[i - 1];
     if (!is_reset(look, step, up))
@@ -153,12 +159,12 @@ static const char *next_word(const char *name, const char **word)
 
 static bool is_listed(const char *word, size_t length, const char *words)
 {
-  char lower[EO_RECORDING_NAME] = "";
-  for (size_t i = 0; i < length; i++)
-    lower[i] = (char)tolower((unsigned char)word[i]);
+  char plain[EO_RECORDING_NAME];
+  eo_letters_plain(word, length, plain, sizeof plain);
+  length = strlen(plain);
   for (const char *p = words; *p;) {
     size_t n = strcspn(p, "|");
-    if (n == length && !memcmp(p, lower, n))
+    if (n == length && !memcmp(p, plain, n))
       return true;
     p += n + (p[n] == '|');
   }

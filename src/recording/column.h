@@ -9,6 +9,15 @@
 
 #include <stdbool.h>
 
+/* Whose a channel is, by its name, as lists for eo_column_named(): English, German, French, Spanish, Italian,
+ * Portuguese. */
+#define EO_PINION_WORDS                                                                                        \
+  "pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|pignon|pinon|pignone|pinhao|menant|menante|" \
+  "entree|entrada|ingresso"
+#define EO_GEAR_WORDS                                                                                                  \
+  "gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|roue|rueda|ruota|roda|corona|mene|menee|sortie|salida|saida|" \
+  "uscita"
+
 struct eo_column {
   enum eo_quantity quantity; /* of its unit */
   double factor;             /* of its unit */
@@ -17,6 +26,7 @@ struct eo_column {
   double low, high;
   bool whole;       /* all are whole numbers */
   double step;      /* mean step between neighbours, without the resets */
+  double pace;      /* mean travel per row whatever the way, 0 or more */
   double spread;    /* standard deviation of steps over |step| */
   int rises, falls; /* steps up and down */
   int resets;       /* steps against the trend by more than half the range */

@@ -10,15 +10,15 @@
 #define TURN EO_TURN
 #define NUMBERED_PINION "1"
 #define NUMBERED_GEAR "2"
-#define PINION_WORDS "pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p"
-#define GEAR_WORDS "gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|g"
+#define PINION_WORDS EO_PINION_WORDS "|p"
+#define GEAR_WORDS EO_GEAR_WORDS "|g"
 #define SINE_WORDS "sin|sine|sinus"
 #define COSINE_WORDS "cos|cosine|kosinus|cosinus"
 #define SINE_LETTER "a" /* only of names without such a word: in a_sin and a_cos it names the encoder */
 #define COSINE_LETTER "b"
 #define OTHER_WORDS                                                                                             \
   "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|" \
-  "trigger|index|sample|count_no|status"
+  "trigger|index|sample|count_no|status|couple|coppia|vitesse|velocidad|velocita"
 #define INCREMENT_WORDS "increment|increments|inkrement|inkremente|delta|diff|difference|differenz|dcount|dcounts"
 
 static const char *const member_names[2] = {"pinion", "gear"};

@@ -8,9 +8,10 @@
 
 #define CLOSE 3e-3 /* of a ratio: teeth pass with errors of micrometres, other ratios are further away */
 
-#define PINION_WORDS "1|pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p|in"
-#define TORQUE_WORDS "torque|moment|drehmoment|md|m|tq|trq|mt"
-#define SPEED_WORDS "speed|rpm|drehzahl|n|velocity|omega|rotspeed"
+#define PINION_WORDS EO_PINION_WORDS "|1|p|in"
+#define GEAR_WORDS EO_GEAR_WORDS "|2|out"
+#define TORQUE_WORDS "torque|moment|drehmoment|md|m|tq|trq|mt|couple|coppia|par"
+#define SPEED_WORDS "speed|rpm|drehzahl|n|velocity|omega|rotspeed|vitesse|velocidad|velocita"
 
 bool eo_layout_turns(const struct eo_column *look)
 {
@@ -49,7 +50,7 @@ static double speed_of(const struct eo_guess *guess, int column)
   if (clock.column < 0 && !(stated.interval > 0))
     clock.column = eo_layout_pick_time(guess, column);
   if (clock.column < 0 && !(stated.interval > 0))
-    return look->step * (double)(look->count - 1) / rows;
+    return look->pace * (double)(look->count - 1) / rows;
   if (clock.column >= 0 && guess->look[clock.column].quantity == EO_QUANTITY_TIME)
     clock.scale = guess->look[clock.column].factor;
   return eo_layout_rate(guess, column, &clock);
@@ -73,7 +74,7 @@ static int unit_points(const struct eo_guess *guess, int column)
           : q == EO_QUANTITY_COUNT ? 3
                                    : 0) +
          2 * eo_column_named(eo_recording_name(guess->recording, column),
-                             "phi|angle|winkel|encoder|enc|pos|position|theta");
+                             "phi|angle|winkel|encoder|enc|pos|position|theta|angulo|angolo");
 }
 
 bool eo_layout_find_pair(struct eo_guess *guess)
@@ -112,8 +113,7 @@ static void take_beside(struct eo_guess *guess, int column, enum eo_quantity qua
   const struct eo_column *look = &guess->look[column];
   const char *name = eo_recording_name(guess->recording, column);
   bool stated = look->quantity == quantity, named = eo_column_named(name, words) && look->quantity == EO_QUANTITY_NONE;
-  bool one = eo_column_named(name, PINION_WORDS),
-       two = eo_column_named(name, "2|gear|wheel|rad|output|abtrieb|out|ausgang");
+  bool one = eo_column_named(name, PINION_WORDS), two = eo_column_named(name, GEAR_WORDS);
   int member = two && !one;
   if ((!stated && !named) || !look->count || (beside[member].scale != 0 && beside[member].stated >= stated))
     return;

@@ -1,22 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which columns are times, which belong to which channel, in what unit, and whether the rows are even within what they
-   tell. */
+/* Which columns are times, which belong to which channel, and in what unit. */
 #include "recording/layout_private.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 2048  /* rows read at once */
-#define STEPS 20000 /* steps from which the resolution of times is told */
-#define FEW 20      /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
-#define ODD_ROWS 2  /* times that start again more often are no times of one recording */
-#define FAR 100.0   /* times a load case: no speed of this pair */
-#define NEAR 30.0   /* times a load case: a unit of time is believed; units differ by more than the square of it */
+#define ODD_ROWS 2 /* times that start again more often are no times of one recording */
+#define FAR 100.0  /* times a load case: no speed of this pair */
+#define NEAR 30.0  /* times a load case: a unit of time is believed; units differ by more than the square of it */
 
 #define STRONG_WORDS                                                                                                \
   "t|time|times|zeit|timestamp|timestamps|elapsed|uhrzeit|zeitstempel|datum|date|datetime|datenum|tid|temps|tempo|" \
-  "seconds"
+  "tiempo|"                                                                                                         \
+  "heure|hora|horodatage|seconds"
 #define WEAK_WORDS "x|axis|abscissa" /* may as well name a signal */
 
 static const char *unit_name(double scale)
@@ -83,7 +80,7 @@ static bool leads_evenly(const struct eo_guess *guess, int column)
   for (int c = column + 1; c < guess->columns; c++)
     behind += guess->look[c].count > 1 && guess->look[c].step != 0 &&
               (guess->look[c].spread > 5 * look->spread || look->spread < 1e-9);
-  return look->spread < 1e-3 && look->step < 0.1 && !look->whole && behind >= 2;
+  return look->spread < 1e-3 && (look->step < 0.1 || look->spread < 1e-9) && !look->whole && behind >= 2;
 }
 
 /* By its unit or its name. */
@@ -199,7 +196,7 @@ static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_err
       return code;
   } else if (!chosen && !(guess->choice->sample_rate > 0)) {
     clock->column = eo_recording_clock(guess->recording, channel).column;
-    if (clock->column < 0)
+    if (clock->column < 0 || guess->number[clock->column]) /* an index of the rows is no time */
       clock->column = eo_layout_pick_time(guess, channel);
   }
   if (clock->column < 0)
@@ -250,7 +247,7 @@ double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_
 {
   const struct eo_column *look = &guess->look[column];
   double seconds = time_at(guess, clock, look->last) - time_at(guess, clock, look->first);
-  return look->step * (double)(look->count - 1) / seconds;
+  return look->pace * (double)(look->count - 1) / seconds;
 }
 
 static bool is_open(const struct eo_guess *guess, int member)
@@ -323,122 +320,4 @@ enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *erro
       "The pinion would turn at %.3g rpm, a hundred times away from every load case of the design (%.4g "
       "to %.4g rpm): state the unit of the time or the sampling rate, and the unit of the angles.",
       speed * 60 / EO_TURN, low * 60 / EO_TURN, high * 60 / EO_TURN);
-}
-
-/* Straight line through the times over the number of the row, by least squares, and what it leaves. */
-struct line {
-  int64_t count;
-  double row, time; /* means */
-  double square, product;
-  double slope, most; /* per row; largest distance */
-};
-
-static void add_time(struct line *line, double row, double time)
-{
-  double before = row - line->row;
-  line->count++;
-  line->row += before / (double)line->count;
-  line->time += (time - line->time) / (double)line->count;
-  line->square += before * (row - line->row);
-  line->product += before * (time - line->time);
-}
-
-static enum eo_code pass(const struct eo_guess *guess, int column, struct line *line, bool fit, struct eo_error *error)
-{
-  int64_t rows = eo_recording_length(guess->recording, column);
-  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
-  enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
-    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(guess->recording, first, n, block, error);
-    for (int64_t i = 0; !code && i < n; i++) {
-      double time = block[i * guess->columns + column];
-      if (isnan(time))
-        continue;
-      if (fit)
-        add_time(line, (double)(first + i), time);
-      else
-        line->most = fmax(line->most, fabs(time - line->time - line->slope * ((double)(first + i) - line->row)));
-    }
-  }
-  free(block);
-  line->slope = line->product / line->square;
-  return code;
-}
-
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* The smallest distance of a step from the usual one, when there are enough such steps: what the times resolve. 0: all
-   steps are equal. */
-static double resolution(double *step, int64_t count)
-{
-  if (count < 2 * FEW)
-    return 0;
-  qsort(step, (size_t)count, sizeof *step, ascending);
-  double usual = step[count / 2], least = INFINITY;
-  int64_t odd = 0;
-  for (int64_t i = 0; i < count; i++) {
-    double distance = fabs(step[i] - usual);
-    odd += distance > 1e-4 * usual;
-    if (distance > 1e-4 * usual && distance < least)
-      least = distance;
-  }
-  return odd >= FEW ? least : 0;
-}
-
-static enum eo_code find_resolution(const struct eo_guess *guess, int column, double *quantum, struct eo_error *error)
-{
-  int64_t rows = eo_recording_length(guess->recording, column), count = 0;
-  rows = rows < STEPS ? rows : STEPS;
-  double *step = malloc((size_t)(rows + 1) * sizeof *step), *row = malloc((size_t)guess->columns * sizeof *row * BLOCK),
-         before = NAN;
-  enum eo_code code = step && row ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
-    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(guess->recording, first, n, row, error);
-    for (int64_t i = 0; !code && i < n; i++) {
-      double time = row[i * guess->columns + column];
-      if (!isnan(time - before))
-        step[count++] = time - before;
-      before = time;
-    }
-  }
-  *quantum = code ? 0 : resolution(step, count);
-  free(step);
-  free(row);
-  return code;
-}
-
-enum eo_code eo_layout_make_even(struct eo_guess *guess, struct eo_error *error)
-{
-  char text[80];
-  for (int member = 0; member < 2; member++) {
-    struct eo_layout_clock *clock = &guess->clock[member];
-    struct line line = {0};
-    double quantum;
-    int column = clock->column;
-    if (column < 0)
-      continue;
-    enum eo_code code = find_resolution(guess, column, &quantum, error);
-    if (!code && quantum > 0)
-      code = pass(guess, column, &line, true, error);
-    if (!code && quantum > 0)
-      code = pass(guess, column, &line, false, error);
-    if (code)
-      return code;
-    if (!(quantum > 0) || !(line.slope > 0) || line.most > 1.01 * quantum)
-      continue;
-    clock->interval = line.slope * clock->scale;
-    clock->start = (line.time - line.slope * line.row) * clock->scale;
-    clock->column = -1;
-    if (!member || guess->clock[0].start != clock->start)
-      eo_notes_add(guess->notes,
-                   "%s only tells steps of %.3g s; within that its rows are even, %.9g s each: the rows count.",
-                   eo_layout_label(guess, column, text, sizeof text), quantum * clock->scale, clock->interval);
-  }
-  return EO_OK;
 }

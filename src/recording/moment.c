@@ -134,16 +134,18 @@ static double take_fraction(struct rest *rest, bool *there)
   return (double)number / pow(10, (double)digits);
 }
 
-/* AM and PM; 12 AM is midnight. */
+/* AM and PM, also "a.m."; 12 AM is midnight. */
 static bool take_half(struct rest *rest, int *hour)
 {
   skip_blanks(rest);
-  if (rest->end - rest->at < 2 || (rest->at[1] | 0x20) != 'm' || !strchr("aApP", rest->at[0]))
+  const char *at = rest->at, *end = rest->end;
+  size_t dots = end - at >= 4 && at[1] == '.' && at[3] == '.' ? 1 : 0;
+  if (end - at < 2 || (at[1 + dots] | 0x20) != 'm' || !strchr("aApP", at[0]))
     return true;
   if (*hour < 1 || *hour > 12)
     return false;
-  *hour = *hour % 12 + ((rest->at[0] | 0x20) == 'p' ? 12 : 0);
-  rest->at += 2;
+  *hour = *hour % 12 + ((at[0] | 0x20) == 'p' ? 12 : 0);
+  rest->at += 2 + 2 * dots;
   return true;
 }
 
@@ -211,13 +213,55 @@ static void take_days(struct rest *rest, struct eo_moment *moment)
   skip_blanks(rest);
 }
 
+/* "Mar 04, 2026", after the day of the week or without it. */
+static bool take_american(struct rest *rest, struct eo_moment *moment)
+{
+  struct rest start = *rest;
+  int year, month, day;
+  bool named = take_month(rest, &month);
+  skip_blanks(rest);
+  bool counted = named && take_number(rest, 2, &day) > 0;
+  take(rest, ',');
+  skip_blanks(rest);
+  if (!counted || take_number(rest, 4, &year) != 4 || !is_date(year, month, day)) {
+    *rest = start;
+    return false;
+  }
+  moment->has_day = true;
+  moment->day = eo_moment_day(year, month, day);
+  return true;
+}
+
+/* "20260304T115959.7" and "20260304115959.7". */
+static bool take_compact(struct rest *rest, struct eo_moment *moment)
+{
+  struct rest start = *rest;
+  int year, month, day, hour, minute, second;
+  bool date = take_number(rest, 4, &year) == 4 && take_number(rest, 2, &month) == 2 &&
+              take_number(rest, 2, &day) == 2 && is_date(year, month, day),
+       fraction = false;
+  if (date && !take(rest, 'T') && !take(rest, '_'))
+    take(rest, '-');
+  date = date && take_number(rest, 2, &hour) == 2 && take_number(rest, 2, &minute) == 2 &&
+         take_number(rest, 2, &second) == 2 && hour < 24 && minute < 60 && second < 61;
+  if (!date) {
+    *rest = start;
+    return false;
+  }
+  *moment = (struct eo_moment){.has_day = true, .has_time = true, .day = eo_moment_day(year, month, day)};
+  moment->seconds = hour * 3600.0 + minute * 60.0 + second + take_fraction(rest, &fraction);
+  return take_zone(rest, moment);
+}
+
 bool eo_moment_read(const char *text, size_t length, struct eo_moment *moment)
 {
   struct rest rest = {text, text + length};
   *moment = (struct eo_moment){0};
   skip_blanks(&rest);
+  if (take_compact(&rest, moment))
+    return rest.at == rest.end;
   take_days(&rest, moment);
-  if (take_date(&rest, moment)) {
+  if (take_date(&rest, moment) || take_american(&rest, moment)) {
     skip_blanks(&rest);
     if (rest.at < rest.end && (*rest.at == 'T' || *rest.at == 't' || *rest.at == ','))
       rest.at++;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/recorded_unit.h"
+#include "recording/letters.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -16,7 +17,8 @@ static const struct {
   enum eo_quantity quantity;
   double factor;
 } units[] = {
-    {"s sec secs second seconds sek sekunde sekunden", EO_QUANTITY_TIME, 1},
+    {"s sec secs second seconds sek sekunde sekunden seconde secondes segundo segundos secondi secondo",
+     EO_QUANTITY_TIME, 1},
     {"ms msec msecs millisecond milliseconds millis msek millisekunden", EO_QUANTITY_TIME, 1e-3},
     {"us usec usecs microsecond microseconds micros mikrosekunden", EO_QUANTITY_TIME, 1e-6},
     {"ns nsec nanosecond nanoseconds nanos", EO_QUANTITY_TIME, 1e-9},
@@ -24,7 +26,8 @@ static const struct {
     {"min mins minute minutes minuten", EO_QUANTITY_TIME, 60},
     {"h hr hrs hour hours std stunden", EO_QUANTITY_TIME, 3600},
     {"d day days tag tage", EO_QUANTITY_TIME, 86400},
-    {"deg degs degree degrees grad altgrad degre degres \xc2\xb0", EO_QUANTITY_ANGLE, DEGREE},
+    {"deg degs degree degrees grad altgrad winkelgrad degre degres grado grados gradi grau graus \xc2\xb0",
+     EO_QUANTITY_ANGLE, DEGREE},
     {"rad rads radian radians radiant", EO_QUANTITY_ANGLE, 1},
     {"mrad millirad milliradian milliradians", EO_QUANTITY_ANGLE, 1e-3},
     {"urad microrad microradian microradians mikrorad", EO_QUANTITY_ANGLE, 1e-6},
@@ -38,7 +41,7 @@ static const struct {
     {"gon gons gradian gradians grads ngrad neugrad", EO_QUANTITY_ANGLE, TURN / 400},
     {"mgon", EO_QUANTITY_ANGLE, TURN / 4e5},
     {"rev revs revolution revolutions turn turns tr tour tours u umdr umdrehung umdrehungen cycle cycles cyc cycs rot "
-     "rots rotation rotations",
+     "rots rotation rotations giro giri vuelta vueltas",
      EO_QUANTITY_ANGLE, TURN},
     {"mrev", EO_QUANTITY_ANGLE, TURN * 1e-3},
     {"count counts cnt cnts cts ct inc incs increment increments inkr ink inkrement inkremente tick ticks pulse pulses "
@@ -55,7 +58,9 @@ static const struct {
     {"khz ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
     {"mhz ms/s msa/s msps megahertz", EO_QUANTITY_FREQUENCY, 1e6},
     {"ghz gs/s gsa/s", EO_QUANTITY_FREQUENCY, 1e9},
-    {"rpm 1/min min-1 u/min umdr/min rev/min r/min rev./min tr/min upm", EO_QUANTITY_SPEED, TURN / 60},
+    {"rpm 1/min min-1 u/min umdr/min rev/min r/min rev./min tr/min trs/min tours/min giri/min g/min vueltas/min "
+     "rot/min upm",
+     EO_QUANTITY_SPEED, TURN / 60},
     {"rps u/s rev/s r/s umdr/s turns/s", EO_QUANTITY_SPEED, TURN},
     {"rad/s rad/sec rads-1", EO_QUANTITY_SPEED, 1},
     {"deg/s \xc2\xb0/s deg/sec grad/s", EO_QUANTITY_SPEED, DEGREE},
@@ -165,6 +170,8 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
   if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))
     return EO_QUANTITY_NONE;
   length = strlen(unit);
+  if (memchr(unit, 0xc3, length)) /* "degrés" */
+    eo_letters_plain(text, strlen(text), unit, sizeof unit), length = strlen(unit);
   if (unit[0] == 'N' && !strcasecmp(unit, "n.m")) /* a point for the product */
     memcpy(unit, "Nm", 3), length = 2;
   for (size_t i = 0; i < sizeof units / sizeof *units; i++)
@@ -208,9 +215,10 @@ static bool split_word(const char *label, size_t length, size_t at, char *name, 
 {
   char last[32];
   double factor;
+  bool time = label[at] == '/' && at == 1 && *label == 't'; /* "t/h", as DIN 1313 writes it */
   copy_part(last, (int)sizeof last, label + at + 1, length - at - 1);
   if (eo_unit_find(last, &factor) == EO_QUANTITY_NONE ||
-      (strlen(last) == 1 && strchr("1cmgnaukfdhvw\"'", tolower((unsigned char)last[0]))))
+      (!time && strlen(last) == 1 && strchr("1cmgnaukfdhvw\"'", tolower((unsigned char)last[0]))))
     return false;
   copy_part(unit, unit_size, last, strlen(last));
   while (at > 1 && strchr("_ /,:-", label[at - 1]))

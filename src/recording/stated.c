@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/stated.h"
 #include "recording/column.h"
+#include "recording/letters.h"
 #include "recording/recorded_unit.h"
 
 #include <ctype.h>
@@ -10,217 +11,141 @@
 
 #define KEY 96
 
-/* The key in lower case with nothing but letters, digits and the slash of "samples/s". */
+/* The key without accents, in lower case, with nothing but letters, digits and the slash of "samples/s". */
 static void fold(const char *key, char *folded)
 {
+  char plain[KEY];
   size_t n = 0;
-  for (; *key && n + 1 < KEY; key++)
-    if (isalnum((unsigned char)*key) || *key == '/')
-      folded[n++] = (char)tolower((unsigned char)*key);
+  eo_letters_plain(key, strlen(key), plain, sizeof plain);
+  for (const char *p = plain; *p; p++)
+    if (isalnum((unsigned char)*p) || *p == '/')
+      folded[n++] = *p;
   folded[n] = '\0';
 }
 
-/* True when the key is one of the words before the double bar, or holds one of those behind it. */
-static bool matches(const char *key, const char *const *whole, const char *const *part)
+/* True when the key is one of the words, which blanks part. */
+static bool is_one(const char *key, const char *words)
 {
-  for (; *whole; whole++)
-    if (!strcmp(key, *whole))
+  size_t length = strlen(key);
+  for (const char *p = words; *p;) {
+    size_t n = strcspn(p, " ");
+    if (n == length && !memcmp(p, key, n))
       return true;
-  for (; *part; part++)
-    if (strstr(key, *part))
-      return true;
+    p += n + (p[n] == ' ');
+  }
   return false;
+}
+
+/* True when one of the words stands in the key. */
+static bool holds(const char *key, const char *words)
+{
+  for (const char *p = words; *p;) {
+    char word[KEY];
+    size_t n = strcspn(p, " ");
+    memcpy(word, p, n);
+    word[n] = '\0';
+    if (strstr(key, word))
+      return true;
+    p += n + (p[n] == ' ');
+  }
+  return false;
+}
+
+/* Stems of what is sampled, in English, German, French, Spanish, Italian, Portuguese and Dutch. With a word for a rate
+   or for an interval behind or before them they make most of the keys in use. */
+#define SAMPLING "sampl scan abtast echantillon muestr campion amostra bemonster"
+#define TAKING                                                                                              \
+  "acqui acqrate acqfreq adquis daq data record enregistr regist logging lograte logfreq loginterval mess " \
+  "mesure medici misura speicher stockage erfass digitali aufzeichn"
+#define RATES "rate freq frec cadenc tasa taux takt"
+#define INTERVALS "interval step increment inkrement delta schritt abstand pasde pasd paso passo spacing"
+#define TIMES "time zeit temps tiempo tempo horiz"
+
+/* Amounts of samples, what a filter does, and what a device could do are no sampling. */
+#define NOT_SAMPLING                                                                                                \
+  "numberof numof noof nof nrof anzahl nombre numero cantidad samplecount numsampl nsampl wfsamples samplesize "    \
+  "points length filter cutoff corte coupure grenz lowpass tiefpass antialias max nyquist original duration dauer " \
+  "divid teiler message calibrat accura generat"
+
+static bool is_about(const char *key, const char *what, const char *measure)
+{
+  return holds(key, what) && holds(key, measure) && !holds(key, NOT_SAMPLING);
 }
 
 static bool is_rate(const char *key)
 {
-  static const char *const whole[] = {"fs",   "sr",      "rate",      "fsample",       "fsamp",
-                                      "fa",   "ratehz",  "samples/s", "samples/sec",   "s/s",
-                                      "sa/s", "fabtast", "frequenz",  "samplespersec", NULL};
-  static const char *const part[] = {"samplerate",
-                                     "samplingrate",
-                                     "samplefreq",
-                                     "samplingfreq",
-                                     "scanrate",
-                                     "scanfreq",
-                                     "acquisitionrate",
-                                     "acqrate",
-                                     "datarate",
-                                     "daqrate",
-                                     "recordingrate",
-                                     "recordrate",
-                                     "loggingrate",
-                                     "lograte",
-                                     "lograte",
-                                     "abtastrate",
-                                     "abtastfreq",
-                                     "messrate",
-                                     "messfreq",
-                                     "speicherrate",
-                                     "samplespersec",
-                                     "samplesper/",
-                                     "samples/s",
-                                     "readingspersec",
-                                     "scanspersec",
-                                     "scans/s",
-                                     "pointspersec",
-                                     "outputrate",
-                                     "updaterate",
-                                     "pollrate",
-                                     "samplingspeed",
-                                     "sampleclk",
-                                     "sampleclock",
-                                     "samplerates",
-                                     "framerate",
-                                     "erfassungsrate",
-                                     "digitalisierungsrate",
-                                     "aufzeichnungsrate",
-                                     "ratehz",
-                                     "bandrate",
-                                     "recordedat",
-                                     "sampledat",
-                                     "acquiredat",
-                                     "loggedat",
-                                     "frequenceechantillonnage",
-                                     "fsample",
-                                     NULL};
-  return matches(key, whole, part);
+  return is_one(key, "fs sr rate fsample fsamp fsampling fa ratehz samples/s samples/sec s/s sa/s frequenz "
+                     "fabtast fech samplespersec") ||
+         holds(key, "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
+                    "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate "
+                    "framerate") ||
+         is_about(key, SAMPLING, RATES " clk clock velocid") || is_about(key, TAKING, RATES);
 }
 
 static bool is_interval(const char *key)
 {
-  static const char *const whole[] = {"dt",       "ts",    "deltat",     "deltax",     "dx",         "increment",
-                                      "interval", "xincr", "xinc",       "xincrement", "incrementx", "wfincrement",
-                                      "tsample",  "tsamp", "period",     "timestep",   "delta",      "intervall",
-                                      "xdelta",   "xin",   "step",       "ta",         "abtastung",  "stepsize",
-                                      "xstep",    "tinc",  "tincrement", NULL};
-  static const char *const part[] = {
-      "sampleinterval",   "samplinginterval",  "sampleperiod",    "samplingperiod",     "sampletime",
-      "samplingtime",     "samplestep",        "scaninterval",    "scanperiod",         "timeinterval",
-      "timeincrement",    "timestep",          "timedelta",       "deltatime",          "acquisitioninterval",
-      "recordinterval",   "recordinginterval", "logginginterval", "loginterval",        "updateinterval",
-      "abtastinterval",   "abtastzeit",        "abtastperiode",   "abtastschritt",      "zeitschritt",
-      "zeitinkrement",    "messintervall",     "messinterval",    "speicherintervall",  "horizontalinterval",
-      "horizinterval",    "xincrement",        "wfincrement",     "timeperpoint",       "timepersample",
-      "secondspersample", "tasttakt",          "dtsec",           "samplingresolution", NULL};
-  return matches(key, whole, part);
+  return is_one(key, "dt ts deltat deltax dx increment interval xincr xinc xincrement xinterval incrementx wfincrement "
+                     "tsample tsamp tsampling period timestep delta intervall xdelta xin step ta abtastung stepsize "
+                     "xstep tinc tincr tincrement tinterval hresolution") ||
+         holds(key, "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
+                    "samplingresolution wfincrement xincrement xinterval") ||
+         is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
 
 static bool is_start(const char *key)
 {
-  static const char *const whole[] = {"x0",         "t0",     "tstart",  "starttime",  "startoffset", "wfstartoffset",
-                                      "xzero",      "xstart", "xoffset", "startvalue", "starts",      "offsettime",
-                                      "timeoffset", "tzero",  "start",   NULL};
-  static const char *const part[] = {"wfstartoffset", NULL};
-  return matches(key, whole, part);
+  return is_one(key, "x0 t0 tstart starttime startoffset wfstartoffset xzero xstart xoffset startvalue starts "
+                     "offsettime timeoffset tzero start xorg xorigin") ||
+         holds(key, "wfstartoffset");
 }
 
 static bool is_tick(const char *key)
 {
-  static const char *const whole[] = {"timebase", "clock",     "fclk", "fclock", "tick", "timerclock",
-                                      "timer",    "zeitbasis", "clk",  "takt",   "mhz",  NULL};
-  static const char *const part[] = {
-      "timebasefreq", "timebaserate",    "timebaseclock", "clockfreq",   "clockrate",      "counterclock",
-      "counterfreq",  "countertimebase", "timerfreq",     "timerclock",  "timerrate",      "tickrate",
-      "tickfreq",     "tickspersec",     "ticks/s",       "ticksper",    "tickduration",   "ticklength",
-      "tickperiod",   "ticktime",        "tickinterval",  "taktfreq",    "taktrate",       "timerresolution",
-      "timerperiod",  "zaehlertakt",     "zhlertakt",     "clockperiod", "referenceclock", NULL};
-  return matches(key, whole, part);
+  return is_one(key, "timebase clock fclk fclock tick timerclock timer zeitbasis clk takt mhz") ||
+         (holds(key, "timebasefreq timebaserate timebaseclock clockfreq clockrate counterclock counterfreq "
+                     "countertimebase timerfreq timerclock timerrate tickrate tickfreq tickspersec ticks/s ticksper "
+                     "tickduration ticklength tickperiod ticktime tickinterval taktfreq taktrate timerresolution "
+                     "timerperiod zaehlertakt zahlertakt clockperiod referenceclock") &&
+          !holds(key, SAMPLING));
 }
 
 static bool is_turn(const char *key)
 {
-  static const char *const whole[] = {"cpr",           "ppr",
-                                      "lpr",           "encoderresolution",
-                                      "resolution",    "aufloesung",
-                                      "auflsung",      "strichzahl",
-                                      "lines",         "pulses",
-                                      "striche",       "teethofwheel",
-                                      "encoderlines",  "encoderpulses",
-                                      "encodercounts", "geberstriche",
-                                      "wheelteeth",    NULL};
-  static const char *const part[] = {"perrev",
-                                     "perturn",
-                                     "percycle",
-                                     "/rev",
-                                     "/turn",
-                                     "/umdr",
-                                     "/u",
-                                     "proumdr",
-                                     "prou",
-                                     "countsper360",
-                                     "encoderresolution",
-                                     "geberaufl",
-                                     "encoderaufl",
-                                     "strichzahl",
-                                     "impulszahl",
-                                     "encodercpr",
-                                     "encoderppr",
-                                     "pulsesperrev",
-                                     "countsperrev",
-                                     "linesperrev",
-                                     "polepairs",
-                                     NULL};
-  return matches(key, whole, part);
+  return is_one(key, "cpr ppr lpr encoderresolution resolution aufloesung auflosung strichzahl lines pulses striche "
+                     "teethofwheel encoderlines encoderpulses encodercounts geberstriche wheelteeth") ||
+         holds(key, "perrev perturn percycle /rev /turn /umdr /u /tour /giro /vuelta proumdr prou partour pervuelta "
+                    "porvuelta pergiro countsper360 encoderresolution geberaufl encoderaufl strichzahl impulszahl "
+                    "encodercpr encoderppr polepairs");
 }
 
 static bool is_scale(const char *key)
 {
-  static const char *const whole[] = {"scalefactor",
-                                      "scale",
-                                      "gain",
-                                      "slope",
-                                      "factor",
-                                      "faktor",
-                                      "conversionfactor",
-                                      "bitvolts",
-                                      "calibration",
-                                      "calibrationfactor",
-                                      "sensitivityfactor",
-                                      "scaling",
-                                      "multiplier",
-                                      "umrechnungsfaktor",
-                                      "lsb",
-                                      "resolutionperbit",
-                                      NULL};
-  static const char *const part[] = {"scalefactor", NULL};
-  return matches(key, whole, part);
+  return is_one(key, "scalefactor scale gain slope factor faktor conversionfactor bitvolts calibration "
+                     "calibrationfactor sensitivityfactor scaling multiplier umrechnungsfaktor lsb resolutionperbit") ||
+         holds(key, "scalefactor");
 }
 
 static bool is_offset(const char *key)
 {
-  static const char *const whole[] = {"addoffset", "offset", "intercept", "bias", "yoffset", "scaleoffset", NULL};
-  static const char *const part[] = {"addoffset", NULL};
-  return matches(key, whole, part);
+  return is_one(key, "addoffset offset intercept bias yoffset scaleoffset") || holds(key, "addoffset");
 }
 
 /* "Pinion counts" and the like say whose it is. */
 int eo_stated_member(const char *name)
 {
-  bool pinion = eo_column_named(name, "pinion|ritzel|input|antrieb|eingang|driver|drive|1"),
-       gear = eo_column_named(name, "gear|wheel|rad|output|abtrieb|ausgang|driven|grossrad|2");
+  bool pinion = eo_column_named(name, EO_PINION_WORDS "|1"), gear = eo_column_named(name, EO_GEAR_WORDS "|2");
   return pinion == gear ? -1 : gear;
 }
 
 bool eo_stated_begin(const char *key)
 {
-  static const char *const whole[] = {"start",    "t0",          "beginn",      "begin", "datetime", "timestamp",
-                                      "date",     "datum",       "time",        "zeit",  "uhrzeit",  "created",
-                                      "acquired", "wfstarttime", "triggertime", NULL};
-  static const char *const part[] = {"starttime",      "startdate",
-                                     "startzeit",      "startdatum",
-                                     "starttimestamp", "startedat",
-                                     "recordingstart", "messbeginn",
-                                     "messstart",      "begintime",
-                                     "recordedat",     "startat",
-                                     "timeofstart",    "startofrecording",
-                                     "triggertime",    "acquisitiondate",
-                                     "aufnahmebeginn", "recordingdate",
-                                     "recordingtime",  "datetime",
-                                     "timestamp",      NULL};
   char folded[KEY];
   fold(key, folded);
-  return matches(folded, whole, part);
+  return is_one(folded, "start t0 beginn begin datetime timestamp date datum time zeit uhrzeit created acquired "
+                        "wfstarttime triggertime heure fecha hora data ora") ||
+         holds(folded, "starttime startdate startzeit startdatum starttimestamp startedat recordingstart messbeginn "
+                       "messstart begintime recordedat startat timeofstart startofrecording triggertime "
+                       "acquisitiondate aufnahmebeginn recordingdate recordingtime datetime timestamp");
 }
 
 static struct eo_stated nothing(void)
@@ -231,9 +156,8 @@ static struct eo_stated nothing(void)
 /* The key without the words that only say whose it is. */
 static void strip_owner(const char *key, char *rest, size_t size)
 {
-  static const char owners[] =
-      "pinion|gear|ritzel|rad|wheel|input|output|antrieb|abtrieb|eingang|ausgang|channel|chan|ch|"
-      "kanal|encoder|enc|geber|of|the|for|des|der|von|1|2";
+  static const char owners[] = EO_PINION_WORDS "|" EO_GEAR_WORDS "|channel|chan|ch|kanal|canal|canale|voie|encoder|enc|"
+                                               "geber|codeur|of|the|for|des|der|von|du|de|del|della|1|2";
   size_t n = 0;
   for (const char *p = key; *p;) {
     char word[KEY];
@@ -250,11 +174,18 @@ static void strip_owner(const char *key, char *rest, size_t size)
 /* "counts/rev" and "pulses per revolution". */
 static bool is_turn_unit(const char *unit)
 {
-  static const char *const none[] = {NULL};
-  static const char *const part[] = {"perrev", "perturn", "/rev", "/turn", "/umdr", "proumdr", NULL};
   char folded[KEY];
   fold(unit, folded);
-  return matches(folded, none, part);
+  return holds(folded, "perrev perturn /rev /turn /umdr proumdr");
+}
+
+/* "kS/s" and the like: whatever stands before it, the number is a sampling rate. */
+static bool is_sampling_unit(const char *unit)
+{
+  char folded[KEY];
+  double factor;
+  fold(unit, folded);
+  return holds(folded, "s/s sps sa/s samples") && eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
 }
 
 /* What a key of one meaning says; folded: in lower case, its unit taken off. */
@@ -297,6 +228,8 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   stated.member = eo_stated_member(name);
   fold(bare, folded);
   judge_key(folded, number, quantity, factor, is_turn_unit(unit), &stated);
+  if (!stated.kind && number > 0 && is_sampling_unit(*unit ? unit : own) && !holds(folded, NOT_SAMPLING))
+    stated.kind = EO_STATED_INTERVAL, stated.value = 1 / (number * factor);
   if (!stated.kind) {
     char rest[KEY];
     strip_owner(bare, rest, sizeof rest);

@@ -2,6 +2,7 @@
 #include "recording/text_facts.h"
 #include "recording/decimal.h"
 #include "recording/moment.h"
+#include "recording/recorded_unit.h"
 #include "recording/stated.h"
 #include "recording/text_cell.h"
 
@@ -37,8 +38,10 @@ static const char *skip_digits(const char *p, const char *end)
 }
 
 /* A number of the header. A comma with digits behind it is a decimal comma wherever commas part no cells or nothing
-   else makes sense of "0,00025"; before groups of three of a file with decimal points it marks thousands. */
-static const char *number_at(const struct eo_text_format *format, const char *p, const char *end, double *value)
+   else makes sense of "0,00025"; before groups of three of a file with decimal points it marks thousands. in_one_cell:
+   its key stands in the same cell, as that of "rate: 5,000", so that no comma parts it from the next. */
+static const char *number_at(const struct eo_text_format *format, const char *p, const char *end, bool in_one_cell,
+                             double *value)
 {
   const char *after = eo_decimal_read(p, '.', value);
   if (!after || after >= end || *after != ',' || !isdigit((unsigned char)after[1]) ||
@@ -46,7 +49,7 @@ static const char *number_at(const struct eo_text_format *format, const char *p,
     return after;
   const char *group = skip_digits(after + 1, end);
   bool thousands = group - after == 4 && *value >= 1 && *value < 1000 && format->point == '.';
-  if (format->separator == ',' && *value != 0)
+  if (format->separator == ',' && *value != 0 && !(thousands && in_one_cell))
     return after;
   if (!thousands)
     return eo_decimal_read(p, ',', value);
@@ -143,6 +146,14 @@ static void use_moment(struct begin *begin, const char *from, const char *at, co
     begin->moment.has_time = true, begin->moment.seconds = moment->seconds;
 }
 
+/* "Sampling rate: " */
+static bool is_key_before(const char *from, const char *number)
+{
+  while (number > from && (number[-1] == ' ' || number[-1] == '\t'))
+    number--;
+  return number > from && (number[-1] == ':' || number[-1] == '=');
+}
+
 /* Every number of a line with the words before and behind it. */
 static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct begin *begin)
 {
@@ -160,7 +171,7 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
       from = p = after;
       continue;
     }
-    after = number_at(format, p, line->end, &value);
+    after = number_at(format, p, line->end, is_key_before(from, p), &value);
     if (!after || after > line->end)
       continue;
     behind = unit_behind(after, line->end, unit, sizeof unit);
@@ -190,7 +201,7 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
          eo_text_next_cell(&below, values->end, format->separator, &value)) {
     char key[KEY];
     double number;
-    const char *end = value.length ? number_at(format, value.text, value.text + value.length, &number) : NULL;
+    const char *end = value.length ? number_at(format, value.text, value.text + value.length, true, &number) : NULL;
     copy_cell(key, sizeof key, &name);
     if (end != value.text + value.length)
       continue;
@@ -212,7 +223,7 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   copy_cell(key, sizeof key, &cell);
   for (int c = 1; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;
-    if (!cell.length || number_at(format, cell.text, cell.text + cell.length, &number) != cell.text + cell.length)
+    if (!cell.length || number_at(format, cell.text, cell.text + cell.length, true, &number) != cell.text + cell.length)
       continue;
     stated[c] = eo_stated_read(key, number, "");
     count += stated[c].kind != EO_STATED_NOTHING;
@@ -243,17 +254,56 @@ static void fill_clocks(struct eo_text_format *format)
   }
 }
 
+static void skip_cells(const struct eo_text_format *format, struct eo_header_line *line)
+{
+  struct eo_cell cell;
+  const char *at = line->start;
+  for (int c = 0; c < format->cells && at; c++)
+    if (!eo_text_next_cell(&at, line->end, format->separator, &cell))
+      at = NULL;
+  line->start = at ? at : line->end;
+}
+
+/* "5000 Hz" in every cell of a line, without a word, where nothing else tells the rate. */
+static void take_bare_rates(struct eo_text_format *format, const struct eo_header_line *line)
+{
+  struct eo_cell cell;
+  double interval[EO_TEXT_CELLS] = {0};
+  int count = 0;
+  const char *at = line->start;
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
+    char unit[32];
+    double value, factor;
+    const char *end = cell.text + cell.length,
+               *after = cell.length ? number_at(format, cell.text, end, true, &value) : NULL;
+    if (!after || after > end || !(value > 0))
+      return;
+    unit_behind(after, end, unit, sizeof unit);
+    if (eo_unit_find(unit, &factor) != EO_QUANTITY_FREQUENCY)
+      return;
+    interval[c] = 1 / (value * factor);
+    count++;
+  }
+  for (int c = 0; c < format->cells && count == format->cells; c++)
+    if (!(format->clock[c].interval > 0))
+      format->clock[c].interval = interval[c];
+}
+
 void eo_header_facts(const struct eo_header *header, struct eo_text_format *format, int names)
 {
   struct begin begin = {0};
   for (int i = 0; i < header->lines; i++) {
-    if (i != names)
-      take_facts(format, &header->line[i], &begin);
+    struct eo_header_line line = header->line[i];
+    if (i == names) /* facts stand behind the names, as in "CH1,CH2,t0 = 0 s,tInc = 2.0E-4" */
+      skip_cells(format, &line);
+    take_facts(format, &line, &begin);
     if (i + 1 < header->lines && format->separator != ' ')
       take_below(format, &header->line[i], &header->line[i + 1]);
   }
   for (int i = 0; i < header->lines; i++)
     take_for_columns(format, &header->line[i]);
+  for (int i = 0; i < header->lines; i++)
+    take_bare_rates(format, &header->line[i]);
   fill_clocks(format);
   if (begin.moment.has_day)
     for (int c = 0; c < format->cells; c++)

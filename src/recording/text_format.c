@@ -192,11 +192,21 @@ static enum eo_code no_table(const struct lines *lines, const char *head, struct
                       lines->count, start);
 }
 
+/* "20260304115959.7": a number, too, so that it is a moment only where all of its column are. */
+static bool is_compact_moment(const struct eo_cell *cell)
+{
+  struct eo_moment moment;
+  size_t digits = 0;
+  while (digits < cell->length && cell->text[digits] >= '0' && cell->text[digits] <= '9')
+    digits++;
+  return digits == 14 && cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment);
+}
+
 /* What each place holds, by the rows of the run: the first cell that is not empty decides, and one hexadecimal number
    makes a place hexadecimal. */
 static void find_content(struct eo_text_format *format, const struct lines *lines, const struct run *run)
 {
-  bool known[EO_TEXT_CELLS] = {false};
+  bool known[EO_TEXT_CELLS] = {false}, other[EO_TEXT_CELLS] = {false};
   for (int c = 0; c < format->cells; c++)
     format->content[c] = EO_TEXT_NUMBER;
   for (int i = run->first; i < lines->count && i < run->first + run->lines; i++) {
@@ -216,8 +226,12 @@ static void find_content(struct eo_text_format *format, const struct lines *line
                              : kind == EO_CELL_UNIT   ? EO_TEXT_UNIT
                                                       : EO_TEXT_NUMBER;
       known[c] = known[c] || kind != EO_CELL_MISSING;
+      other[c] = other[c] || (kind != EO_CELL_MISSING && !is_compact_moment(&cell));
     }
   }
+  for (int c = 0; c < format->cells; c++)
+    if (known[c] && !other[c])
+      format->content[c] = EO_TEXT_MOMENT;
 }
 
 /* A date beside a time of day makes one moment with it. Dates alone tell no time between rows. */

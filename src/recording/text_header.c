@@ -79,7 +79,7 @@ static int units_score(const struct eo_header_line *line, char separator, int ce
   }
   if (known && known == filled)
     return 3;
-  if (known && key && known == filled - 1)
+  if (known > 1 && key && known == filled - 1)
     return 2;
   return known > 1 && known >= filled - 1 && !first_known ? 1 : 0;
 }
@@ -98,17 +98,25 @@ static int name_score(const struct eo_cell *cell, char point)
   return 1 + (known || eo_column_named(name, TELLING_WORDS) ? 2 : 0);
 }
 
-/* How much a line reads like the names of the columns; not at all when all its cells are equal. */
+static bool same_text(const struct eo_cell *a, const struct eo_cell *b)
+{
+  return a->length && a->length == b->length && !memcmp(a->text, b->text, a->length);
+}
+
+/* How much a line reads like the names of the columns: not at all when all its cells are equal, and a cell like the one
+   before ("X_Dimension Time Time") says nothing. */
 static int names_score(const struct eo_header_line *line, char separator, int cells, char point)
 {
-  struct eo_cell cell, first = {0};
+  struct eo_cell cell, first = {0}, before = {0};
   int score = 0, filled = 0, equal = 0;
   const char *at = line->start;
   for (int c = 0; c < cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
-    score += name_score(&cell, point);
+    if (!same_text(&cell, &before))
+      score += name_score(&cell, point);
+    before = cell;
     if (cell.length && !filled++)
       first = cell;
-    equal += cell.length && cell.length == first.length && !memcmp(cell.text, first.text, cell.length);
+    equal += same_text(&cell, &first);
   }
   return filled > 1 && equal == filled ? 0 : score;
 }
@@ -154,7 +162,7 @@ static int find_names(const struct eo_text_format *format, const struct eo_heade
     char separator = header_separator(format, &header->line[i]);
     int as_units = units_score(&header->line[i], separator ? separator : format->separator, format->cells);
     int as_names = separator ? names_score(&header->line[i], separator, format->cells, format->point) : 0;
-    if (as_units >= (separator ? 3 : 2) || (as_units && i > 0 && names == i - 1)) {
+    if (as_units == 2 || (separator && as_units == 3) || (as_units && i > 0 && names == i - 1)) {
       if (as_units >= most)
         most = as_units, *units = i;
     } else if (as_names > 0 && as_names >= best)

@@ -63,12 +63,19 @@ static void test_axis(void)
   }
   ok(worst < 1e-8, "the angle behind a swing of 1e-3 rad: within %.2g rad", worst);
   close_to(eo_axis_loss(&axis, 136, axis.share), cabs(line), 1e-6, "what is left of order 136");
-  struct eo_axis_noise *noise = calloc(1, sizeof *noise);
-  for (int i = 0; i < 100000 && noise; i++)
-    eo_axis_noise_add(noise, 0.01 * i + 1e-7 * i * i + (i > 5000) +
-                                 3e-6 * eo_random_normal(eo_random_at(8, 0, 0, 0), (uint64_t)i));
-  close_to(eo_axis_noise_sigma(noise), 3e-6, 1e-7, "noise of readings with a change of speed and a gap");
-  free(noise);
+  static const char *const rows[] = {"even rows", "rows that jitter", "rows whose times jitter"};
+  struct eo_random random = eo_random_at(8, 0, 0, 0);
+  for (int kind = 0; kind < 3; kind++) {
+    struct eo_axis_noise *noise = calloc(1, sizeof *noise);
+    for (int i = 0; i < 100000 && noise; i++) {
+      double jitter = kind ? 0.3 * eo_random_normal(random, (uint64_t)i + 200000) : 0, t = i + (kind == 1 ? jitter : 0);
+      eo_axis_noise_add(noise, 1e-4 * (i + jitter),
+                        0.01 * t + 1e-7 * t * t + (i > 5000) + 3e-6 * eo_random_normal(random, (uint64_t)i));
+    }
+    double sigma = eo_axis_noise_sigma(noise);
+    ok(fabs(sigma - 3e-6) < 1e-7, "noise of readings, %s, with a change of speed and a gap: %.3g", rows[kind], sigma);
+    free(noise);
+  }
 }
 
 /* What interpolation leaves of a wave is what it leaves of its samples. */

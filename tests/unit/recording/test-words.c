@@ -43,6 +43,10 @@ static void test_moments(void)
   moment("08:59:59:500", -1, time);
   moment("59:59.5", -1, 3599.5);
   moment("0 days 00:00:01.25", -1, 1.25);
+  moment("03/05/2024 08:59:59.5 a.m.", day, time);
+  moment("Mar 05, 2024 08:59:59.5", day, time);
+  moment("20240305T085959.5Z", day, time);
+  moment("20240305085959.5", day, time);
   struct eo_moment m;
   ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000, "as an epoch");
   no_moment("12.5");
@@ -52,6 +56,7 @@ static void test_moments(void)
   no_moment("08:61:00");
   no_moment("1-2");
   no_moment("3:4 parts");
+  no_moment("20241305085959");
 }
 
 static void unit(const char *text, enum eo_quantity quantity, double expected)
@@ -81,6 +86,9 @@ static void test_units(void)
   unit("lbf ft", EO_QUANTITY_TORQUE, 1.3558179483314);
   unit("nm", EO_QUANTITY_OTHER, 1);
   unit("S", EO_QUANTITY_NONE, 1);
+  unit("degr\xc3\xa9s", EO_QUANTITY_ANGLE, degree);
+  unit("gradi", EO_QUANTITY_ANGLE, degree);
+  unit("vueltas", EO_QUANTITY_ANGLE, 2 * M_PI);
   unit("foo", EO_QUANTITY_NONE, 1);
   char name[32], text[32];
   eo_unit_split("Winkel in Grad", name, sizeof name, text, sizeof text);
@@ -111,6 +119,32 @@ static void test_stated(void)
   stated("dt_ms", 0.25, "", EO_STATED_INTERVAL, 2.5e-4);
   stated("Interval", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
   stated("Rate pinion", 4000, "Hz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Fr\xc3\xa9quence d'\xc3\xa9"
+         "chantillonnage",
+         4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Fr\xe9quence d'\xe9"
+         "chantillonnage",
+         4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("P\xc3\xa9riode d'\xc3\xa9"
+         "chantillonnage (ms)",
+         0.25, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Cadence d'acquisition", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Pas de temps", 2.5e-4, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Frecuencia de muestreo", 4000, "Hz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Intervalo de muestreo", 0.25, "ms", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Frequenza di campionamento", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Passo di campionamento [ms]", 0.25, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Zeitabstand", 250, "\xc2\xb5s", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Sample clock rate", 4000, "Hz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("", 4, "kS/s", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Tinterval", 2.5e-4, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("wf_samples", 4000, "", EO_STATED_NOTHING, 0);
+  stated("Number of samples", 4000, "", EO_STATED_NOTHING, 0);
+  stated("Anzahl Abtastwerte je Messintervall", 4000, "", EO_STATED_NOTHING, 0);
+  stated("Max. sampling rate", 4000, "Hz", EO_STATED_NOTHING, 0);
+  stated("Filter frequency of the data", 4000, "Hz", EO_STATED_NOTHING, 0);
+  stated("Calibrated data", 1, "", EO_STATED_NOTHING, 0);
+  stated("Recording time", 3, "s", EO_STATED_NOTHING, 0);
   stated("Timebase", 80, "MHz", EO_STATED_TICK, 1.25e-8);
   stated("Encoder resolution", 18000, "counts/rev", EO_STATED_TURN, 18000);
   stated("Pinion", 3600, "pulses per revolution", EO_STATED_TURN, 3600);
