@@ -13,61 +13,9 @@
 
 #define WIDE 64                   /* a data set with more columns is no table of channels */
 #define FIELDS 64                 /* fields of a record that are looked at */
-#define TEXTS 64                  /* texts of a list */
 #define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
 #define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
 #define PATH EO_TREE_PATH
-
-static bool join(char *path, const char *group, const char *name)
-{
-  return snprintf(path, PATH, "%s%s%s", group, *group ? "/" : "", name) < PATH;
-}
-
-/* The texts of an attribute or data set with `count` of them, one a line; size bytes of fixed length, else variable. */
-static void join_texts(const char *bytes, size_t width, char **variable, hssize_t count, char *list, size_t size)
-{
-  size_t used = 0;
-  list[0] = '\0';
-  for (hssize_t i = 0; i < count; i++) {
-    const char *text = variable ? variable[i] ? variable[i] : "" : bytes + (size_t)i * width;
-    size_t n = variable ? strlen(text) : strnlen(text, width);
-    while (n && text[n - 1] == ' ')
-      n--;
-    if (used + n + 2 > size)
-      return;
-    used += (size_t)snprintf(list + used, size - used, "%s%.*s", i ? "\n" : "", (int)n, text);
-  }
-}
-
-/* Reads texts of an attribute (set: data set) into one list; false when they are none. */
-static bool read_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, size_t size)
-{
-  hssize_t count = H5Sget_simple_extent_npoints(space);
-  size_t width = H5Tget_size(type);
-  if (H5Tget_class(type) != H5T_STRING || count < 1 || count > TEXTS || width > 4096)
-    return false;
-  bool variable = H5Tis_variable_str(type) > 0, done = false;
-  char **pointers = variable ? calloc((size_t)count, sizeof(char *)) : NULL,
-       *bytes = variable ? NULL : calloc((size_t)count, width + 1);
-  void *to = variable ? (void *)pointers : (void *)bytes;
-  if (to && (set ? H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) : H5Aread(object, type, to)) >= 0) {
-    join_texts(bytes, width, pointers, count, list, size);
-    if (variable)
-      H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers);
-    done = true;
-  }
-  free(pointers);
-  free(bytes);
-  return done;
-}
-
-static void add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list)
-{
-  if (strchr(list, '\n'))
-    eo_tree_add_list(hdf5->tree, path, list);
-  else if (*list)
-    eo_tree_add_text(hdf5->tree, path, list);
-}
 
 struct attributes {
   struct eo_hdf5 *h;
@@ -81,14 +29,15 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
   double value = 0;
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   (void)info;
-  if (attribute < 0 || !join(path, attributes->path, name))
+  if (attribute < 0 || !eo_hdf5_join(path, attributes->path, name))
     return 0;
   hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
   H5T_class_t class = H5Tget_class(type);
-  if (read_texts(attribute, false, type, space, list, sizeof list))
-    add_texts(attributes->h, path, list);
-  else if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
-           H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
+  if (eo_hdf5_texts(attribute, false, type, space, list, sizeof list)) {
+    eo_hdf5_add_texts(attributes->h, path, list);
+    eo_hdf5_add_frame(attributes->h, attributes->path, name, list);
+  } else if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
+             H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
     eo_tree_add_number(attributes->h->tree, path, value);
   H5Sclose(space);
   H5Tclose(type);
@@ -118,7 +67,7 @@ static void matlab_class(hid_t set, char *class, size_t size)
     return;
   hid_t attribute = H5Aopen(set, "MATLAB_class", H5P_DEFAULT), type = H5Aget_type(attribute),
         space = H5Aget_space(attribute);
-  if (!read_texts(attribute, false, type, space, class, size))
+  if (!eo_hdf5_texts(attribute, false, type, space, class, size))
     *class = '\0';
   H5Sclose(space);
   H5Tclose(type);
@@ -246,7 +195,7 @@ static bool add_records(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const struc
     char *name = H5Tget_member_name(type, (unsigned)i), below[PATH];
     hid_t field = H5Tget_member_type(type, (unsigned)i);
     struct nest nest = {outer, name};
-    if (name && join(below, path, name))
+    if (name && eo_hdf5_join(below, path, name))
       any = add_field(hdf5, set, field, &nest, below, length, depth) || any;
     H5Tclose(field);
     H5free_memory(name);
@@ -335,8 +284,8 @@ static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth
     add_characters(hdf5, set, (hsize_t)count, path);
   else if (class == H5T_REFERENCE && depth < 8)
     add_references(hdf5, set, (hsize_t)count, !strcmp(class_name, "cell"), path, depth);
-  else if (read_texts(set, true, type, space, list, sizeof list))
-    add_texts(hdf5, path, list);
+  else if (eo_hdf5_texts(set, true, type, space, list, sizeof list))
+    eo_hdf5_add_texts(hdf5, path, list);
   else if (number && count == 1)
     add_number(hdf5, set, path);
   else if (hdf5->sets < EO_HDF5_CHANNELS &&
@@ -367,7 +316,8 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
 {
   const struct group *this_group = context;
   char path[PATH];
-  if (info->type == H5L_TYPE_EXTERNAL || !join(path, this_group->path, name))
+  bool index = !strncmp(name, "_i_", 3); /* PyTables keeps the sorted index of a table there */
+  if (info->type == H5L_TYPE_EXTERNAL || index || !eo_hdf5_join(path, this_group->path, name))
     return 0;
   hid_t object = H5Oopen(group, name, H5P_DEFAULT);
   if (object >= 0)

@@ -31,6 +31,18 @@ struct eo_hdf5 {
   struct eo_notes *notes;
 };
 
+/* path[EO_TREE_PATH]: of a name below a group; false when it is too long. */
+bool eo_hdf5_join(char *path, const char *group, const char *name);
+
+/* Reads texts of an attribute (set: data set) into one list, one a line; false when they are none. */
+bool eo_hdf5_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, size_t size);
+
+void eo_hdf5_add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list);
+
+/* Tables of pandas say at the records what their fields hold: the names of the columns in "values_block_0_kind", and in
+   "index_kind" whether the index counts the rows or is the time. text: of an attribute of the records. */
+void eo_hdf5_add_frame(struct eo_hdf5 *hdf5, const char *records, const char *name, const char *text);
+
 /* Values first .. first + count - 1 of a channel, as the file's scale has them; context: struct eo_hdf5. Errors:
    EO_ERROR_INPUT, also without memory. */
 enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t count, double *values,

@@ -158,7 +158,7 @@ static bool is_whole(enum matio_classes class)
   return class != MAT_C_DOUBLE && class != MAT_C_SINGLE;
 }
 
-/* A text of one row; characters of two bytes beyond ASCII become '?'. */
+/* A text of one row; characters of two bytes beyond Latin 1 become '?'. */
 static bool text_of(struct matlab *matlab, matvar_t *this_t, char *text, size_t size)
 {
   *text = '\0';
@@ -168,6 +168,8 @@ static bool text_of(struct matlab *matlab, matvar_t *this_t, char *text, size_t 
   if (!this_t->data && Mat_VarReadDataAll(matlab->file, this_t))
     return false;
   size_t n = this_t->dims[1];
+  if (this_t->data_type == MAT_T_UTF8 && this_t->nbytes > n) /* the dimensions count letters, some have two bytes */
+    n = this_t->nbytes < size ? this_t->nbytes : size - 1;
   if (!this_t->data || this_t->nbytes < n * (size_t)this_t->data_size)
     return false;
   bool wide = this_t->data_type == MAT_T_UINT16 || this_t->data_type == MAT_T_UTF16;
@@ -177,6 +179,33 @@ static bool text_of(struct matlab *matlab, matvar_t *this_t, char *text, size_t 
     text[i] = (char)(wide ? words[i] < 256 ? words[i] : '?' : bytes[i]);
   text[n] = '\0';
   return true;
+}
+
+/* Texts below each other, filled up with blanks: a list. */
+static void add_text_rows(struct matlab *matlab, matvar_t *this_t, const char *path)
+{
+  char list[4096];
+  if (this_t->rank != 2 || !this_t->dims || this_t->dims[0] < 2 || this_t->dims[0] > ELEMENTS ||
+      this_t->dims[0] * (this_t->dims[1] + 1) > sizeof list ||
+      (!this_t->data && Mat_VarReadDataAll(matlab->file, this_t)))
+    return;
+  size_t rows = this_t->dims[0], columns = this_t->dims[1], used = 0;
+  bool wide = this_t->data_type == MAT_T_UINT16 || this_t->data_type == MAT_T_UTF16;
+  const unsigned char *bytes = this_t->data;
+  const uint16_t *words = this_t->data;
+  if (!this_t->data || this_t->nbytes != rows * columns * (wide ? 2 : 1))
+    return;
+  for (size_t row = 0; row < rows; row++) {
+    size_t begin = used;
+    for (size_t c = 0; c < columns; c++) {
+      unsigned letter = wide ? words[c * rows + row] : bytes[c * rows + row];
+      list[used++] = letter < 256 && letter >= ' ' ? (char)letter : '?';
+    }
+    while (used > begin && list[used - 1] == ' ')
+      used--;
+    list[used++] = row + 1 < rows ? '\n' : '\0';
+  }
+  eo_tree_add_list(matlab->tree, path, list);
 }
 
 static void add_number(struct matlab *matlab, matvar_t *this_t, const char *path)
@@ -277,6 +306,8 @@ static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const 
   case MAT_C_CHAR:
     if (text_of(matlab, this_t, text, sizeof text))
       eo_tree_add_text(matlab->tree, path, text);
+    else
+      add_text_rows(matlab, this_t, path);
     return EO_OK;
   case MAT_C_OBJECT:
   case MAT_C_OPAQUE:

@@ -29,7 +29,7 @@ struct workbook {
   bool since_1904, failed;
   /* sheets */
   char best[NAME], current[NAME];
-  int64_t numbers, most; /* of the current sheet, of the best one */
+  int64_t cells, most; /* of the current sheet, of the best one */
   /* the cell or text that is being read */
   bool in_value, in_text, writing;
   char type[16], value[VALUE];
@@ -212,7 +212,7 @@ static void XMLCALL end_cell(void *context, const char *name)
   const char *element = local(name);
   workbook->in_value = workbook->in_text = false;
   if (!strcmp(element, "c")) {
-    workbook->numbers += !strcmp(workbook->type, "n") && workbook->length > 0;
+    workbook->cells += workbook->length > 0; /* a table may hold its numbers as texts */
     if (workbook->writing)
       write_cell(workbook);
   } else if (!strcmp(element, "row") && workbook->writing)
@@ -262,10 +262,10 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
     return parse(workbook, begin_book, end_nothing);
   if (!is_sheet(name))
     return true;
-  workbook->numbers = 0;
+  workbook->cells = 0;
   bool good = parse(workbook, begin_cell, end_cell);
-  if (workbook->numbers > workbook->most) {
-    workbook->most = workbook->numbers;
+  if (workbook->cells > workbook->most) {
+    workbook->most = workbook->cells;
     snprintf(workbook->best, sizeof workbook->best, "%s", name);
   }
   return good;
@@ -291,7 +291,7 @@ enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *nam
   workbook->out.file = file;
   enum eo_code code = eo_archive_visit(archive, look, workbook);
   if (!code && !workbook->most)
-    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds numbers.");
+    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
   if (!code)
     code = eo_archive_visit(archive, write_best, workbook);
   const char *base = strrchr(workbook->best, '/');
