@@ -114,7 +114,7 @@ static bool is_flawed_row(const struct shape *run, const struct shape *row)
 {
   uint64_t both = ~(run->missing | row->missing);
   return as_many(run, row) && row->numbers > 0 && !(run->text & ~row->text & both) &&
-         !((run->moment ^ row->moment) & both & ~row->text);
+         !(((run->moment ^ row->moment) | (run->unit ^ row->unit)) & both & ~row->text);
 }
 
 static bool is_row(const struct shape *shape)

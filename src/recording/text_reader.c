@@ -7,6 +7,7 @@
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_format.h"
+#include "recording/text_sections.h"
 #include "recording/recorded_unit.h"
 
 #include <math.h>
@@ -32,11 +33,12 @@ struct text {
   int64_t faults; /* rows with cells that are no numbers, or of another length */
   int64_t missing, missing_line;
   int missing_cell;
-  int64_t expected;                   /* line of the next row when no line is skipped */
-  int batched, batch_rows;            /* rows in batch, rows that fit */
-  bool based[EO_TEXT_CELLS];          /* [cells] of moments: day and before are known */
-  int64_t day[EO_TEXT_CELLS];         /* from whose beginning moments are counted */
-  double before[EO_TEXT_CELLS];       /* s, the moment of the row before */
+  int64_t expected;             /* line of the next row when no line is skipped */
+  int batched, batch_rows;      /* rows in batch, rows that fit */
+  bool based[EO_TEXT_CELLS];    /* [cells] of moments: day and before are known */
+  int64_t day[EO_TEXT_CELLS];   /* from whose beginning moments are counted */
+  double before[EO_TEXT_CELLS]; /* s, the moment of the row before */
+  struct eo_text_sections sections;
   struct eo_cell cell[EO_TEXT_CELLS]; /* of the row that is being read */
   double batch[BATCH];                /* [batched][columns] and the row that is being read */
   size_t filled;                      /* bytes in block */
@@ -59,6 +61,11 @@ static enum eo_code flush(struct text *text, struct eo_error *error)
 /* Takes the row that was read to the end of the batch. */
 static enum eo_code keep_row(struct text *text, struct eo_error *error)
 {
+  if (text->sections.used) {
+    enum eo_code code = eo_text_sections_place(&text->sections, next_row(text), text->line, error);
+    if (code)
+      return code;
+  }
   if (text->line != text->expected) {
     const double *row = next_row(text);
     enum eo_code code = flush(text, error);
@@ -213,6 +220,9 @@ static enum eo_code read_slowly(struct text *text, const char *line, const char 
 {
   const struct eo_text_format *format = &text->format;
   if (eo_text_empty(line, end) || eo_text_comment(line, end, format->separator))
+    return EO_OK;
+  if (text->sections.used &&
+      eo_text_sections_take(&text->sections, line, end, eo_recording_rows(text->recording) + text->batched))
     return EO_OK;
   const char *at = line;
   int c = 0;
@@ -396,6 +406,7 @@ static enum eo_code read_text(struct text *text, const struct eo_reader_options 
   if (code)
     return code;
   eo_text_read_header(&text->format, text->block);
+  eo_text_sections_find(&text->sections, &text->format, text->block);
   text->block[size] = next;
   code = make_recording(text, options->spool_directory, error);
   if (!code)
