@@ -97,6 +97,13 @@ static void judge_still(struct eo_angles_maker *maker, int channel)
   }
 }
 
+/* A counter overflows at a power of two: the jumps only tell where within a step or so. */
+static double exact_overflow(const struct eo_scan_column *column, double period)
+{
+  double width = exp2(round(log2(period)));
+  return fabs(period - width) <= 2 * column->typical && width > 8 * column->typical ? width : period;
+}
+
 /* Where an angle starts again and what that says about its unit. */
 static void judge_turns(struct eo_angles_maker *maker, int channel)
 {
@@ -119,6 +126,9 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
+  } else if (column->quantum >= 1) {
+    period = exact_overflow(column, period);
+    turn = period * scale;
   }
   int64_t index = eo_scan_index_row(column, turn / maker->sampler.scale[channel]);
   if (index) {

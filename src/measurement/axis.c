@@ -50,6 +50,7 @@ static void third_differences(const struct eo_axis_reading reading[4], double *b
     sum += reading[i].angle / product;
     weights += 1 / (product * product);
   }
+  /* theory (M6) */
   *by_row = reading[3].angle - 3 * reading[2].angle + 3 * reading[1].angle - reading[0].angle;
   *by_time = isfinite(sum) && isfinite(weights) ? sum * sqrt(EO_AXIS_WEIGHTS / weights) : *by_row;
 }

@@ -7,11 +7,19 @@
 #include "measurement/orientation.h"
 #include "measurement/units_probe.h"
 
-/* Turns, lines per turn and a stated speed leave no doubt about the unit. */
+/* What is open about both scales. */
+static enum eo_track_doubt doubt_of(const struct eo_tracks *tracks)
+{
+  return tracks->channel[0].doubt == tracks->channel[1].doubt ? tracks->channel[0].doubt : EO_DOUBT_NONE;
+}
+
+/* Turns and a stated speed leave no doubt about the unit; the overflow of a counter and its lines per turn do. */
 static bool unit_is_open(const struct eo_angles *angles, const struct eo_tracks *tracks, double stated)
 {
-  return isnan(stated) && !angles->wrapped[0] && !angles->wrapped[1] && tracks->channel[0].track == EO_TRACK_ANGLE &&
-         tracks->channel[1].track == EO_TRACK_ANGLE;
+  enum eo_track_doubt doubt = doubt_of(tracks);
+  bool whole = !angles->wrapped[0] && !angles->wrapped[1];
+  return isnan(stated) && (whole || doubt == EO_DOUBT_WIDTH || doubt == EO_DOUBT_EDGES) &&
+         tracks->channel[0].track == EO_TRACK_ANGLE && tracks->channel[1].track == EO_TRACK_ANGLE;
 }
 
 /* Torque and speed beside the encoders; a speed that cannot be forbids the result. */
@@ -54,7 +62,7 @@ enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct
   }
   if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED &&
       unit_is_open(&angles, tracks, settings->stated_speed))
-    code = eo_units_judge(&angles, &settings->transmission, &measurement->findings, error);
+    code = eo_units_judge(&angles, &settings->transmission, doubt_of(tracks), &measurement->findings, error);
   if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED)
     code = eo_transmission_measure(&measurement->transmission, &angles, &settings->transmission, &measurement->findings,
                                    progress, error);

@@ -7,6 +7,7 @@
 #include "measurement/terms.h"
 
 enum { MOST_ROWS = 1 << 18, LINES = 5, FLOOR = 6 };
+static const double LEAST_SEEN = 3; /* decades, of all lines together */
 
 /* Rows as read, the drift of the TE taken off, under a Hann window. */
 struct probe {
@@ -53,14 +54,14 @@ static double power_at(const struct probe *probe, double order)
   return creal(sum) * creal(sum) + cimag(sum) * cimag(sum);
 }
 
-/* How much the lines stand out when both angles are multiplied by the factor, in decades; 0 when they cannot be seen.
- */
+/* How much the lines stand out when both angles are multiplied by the factor, in decades; NaN where the recording is
+   too short or too coarse to show them. */
 static double lines_seen(const struct probe *probe, const int teeth[2], double factor)
 {
   const double order[LINES] = {(double)teeth[0] / teeth[1], 1, teeth[0], 2.0 * teeth[0], 3.0 * teeth[0]};
   double turns = fabs(probe->row[probe->rows - 1][1] - probe->row[0][1]) * factor / (2 * M_PI), seen = 0;
-  if (turns < 3 || (double)probe->rows / turns < 2.5)
-    return 0;
+  if (turns < 3 || teeth[0] > 0.45 * probe->rows / turns)
+    return NAN;
   for (int k = 0; k < LINES && order[k] < 0.45 * probe->rows / turns; k++) {
     double floor = 0;
     for (int j = 0; j < FLOOR; j++) {
@@ -73,13 +74,41 @@ static double lines_seen(const struct probe *probe, const int teeth[2], double f
   return seen;
 }
 
-enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            double *factor, struct eo_error *error)
+/* What the angles may be in, with the factor for what is read as degrees, or as lines of which one edge counts. */
+struct unit {
+  double factor;
+  const char *sentence; /* behind "Both angles are" or "The counters take" */
+};
+
+enum { UNITS = 5 };
+
+/* The units that a doubt leaves, the one that was read first; returns how many. */
+static int open_units(enum eo_track_doubt doubt, struct unit unit[UNITS])
 {
-  static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
+  int n = 0;
+  unit[n++] = (struct unit){1, ""};
+  unit[n++] = (struct unit){180 / M_PI, "Both angles are in radians, not in the stated unit"};
+  unit[n++] = (struct unit){M_PI / 180, "Both angles are in degrees, not in the stated unit"};
+  if (doubt == EO_DOUBT_GRAD)
+    unit[n++] = (struct unit){0.9, "Both angles are in gon, which \"grad\" means outside Germany"};
+  if (doubt == EO_DOUBT_EDGES) {
+    unit[n++] = (struct unit){0.5, "Both counters take two edges of each line"};
+    unit[n++] = (struct unit){0.25, "Both counters take four edges of each line"};
+  }
+  if (doubt == EO_DOUBT_UNIT) {
+    unit[n++] = (struct unit){0.9, "Both angles are in gon, not in degrees"};
+    unit[n++] = (struct unit){360, "Both angles are in turns, not in degrees"};
+  }
+  return n;
+}
+
+enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
+                            enum eo_track_doubt doubt, double *factor, struct eo_error *error)
+{
+  struct unit unit[UNITS];
   struct probe probe = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
-  double seen[3];
-  int best = 0;
+  double seen[UNITS];
+  int best = 0, units = open_units(doubt, unit);
   probe.row = malloc(sizeof *probe.row * (size_t)probe.rows);
   enum eo_code code = probe.row ? eo_angles_read(angles, 0, probe.rows, probe.row[0], error) : eo_error_memory(error);
   for (int i = 0; i < probe.rows && !code; i++)
@@ -87,33 +116,47 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
                       settings->base_radius[EO_PINION] * probe.row[i][1];
   if (!code)
     code = flatten(&probe, error);
-  for (int i = 0; i < 3 && !code; i++) {
-    seen[i] = lines_seen(&probe, settings->teeth, unit[i]);
-    best = seen[i] > seen[best] ? i : best;
+  for (int i = 0; i < units && !code; i++) {
+    seen[i] = lines_seen(&probe, settings->teeth, unit[i].factor);
+    best = fmax(seen[i], 0) > fmax(seen[best], 0) ? i : best;
   }
+  /* A recording that is too short as it is read does not speak against that. */
   if (!code)
-    *factor = seen[best] > 3 ? unit[best] : NAN;
+    *factor = seen[best] > (isnan(seen[0]) ? 2 : 1) * LEAST_SEEN ? unit[best].factor : NAN;
   free(probe.row);
   return code;
 }
 
+static void repair(struct eo_angles *angles, enum eo_track_doubt doubt, double factor, double speed,
+                   struct eo_findings *findings)
+{
+  struct unit unit[UNITS];
+  const char *sentence = "";
+  int units = open_units(doubt, unit);
+  for (int i = 0; i < units; i++)
+    sentence = unit[i].factor == factor ? unit[i].sentence : sentence;
+  angles->factor[0] *= factor;
+  angles->factor[1] *= factor;
+  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, factor,
+                  "%s: shaft and mesh orders only show at %.6g rpm, not at %.6g rpm; read so.", sentence,
+                  speed * factor, speed);
+}
+
 enum eo_code eo_units_judge(struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            struct eo_findings *findings, struct eo_error *error)
+                            enum eo_track_doubt doubt, struct eo_findings *findings, struct eo_error *error)
 {
   double factor, speed = fabs(angles->rate[angles->from[0]] * angles->factor[0]) * 30 / M_PI;
-  enum eo_code code = eo_units_probe(angles, settings, &factor, error);
+  enum eo_code code = eo_units_probe(angles, settings, doubt, &factor, error);
   if (code)
     return code;
   if (isnan(factor) && angles->units_in_doubt)
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
                     "Which channel is in degrees and which in radians cannot be told; state the speed.");
-  else if (!isnan(factor) && factor != 1) {
-    angles->factor[0] *= factor;
-    angles->factor[1] *= factor;
-    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, factor,
-                    "Both angles are in %s, not in the stated unit: shaft and mesh orders only show at %.6g rpm, not "
-                    "at %.6g rpm; read so.",
-                    factor > 1 ? "radians" : "degrees", speed * factor, speed);
-  }
+  else if (isnan(factor) && doubt == EO_DOUBT_WIDTH)
+    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
+                    "The counts start again where a counter overflows, nothing says that this is a turn, and no mesh "
+                    "orders show as if it were: give the counts per turn.");
+  else if (!isnan(factor) && factor != 1)
+    repair(angles, doubt, factor, speed, findings);
   return EO_OK;
 }

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Degrees or radians, when neither turns nor a stated speed tell: in the right unit the transmission error has lines at
-   the shaft and mesh orders, in the wrong one it has none there. */
+/* The unit of the angles, when neither turns nor a stated speed tell: in the right one the transmission error has lines
+   at the shaft and mesh orders, in a wrong one it has none there. */
 #ifndef EASEOFF_MEASUREMENT_UNITS_PROBE_H
 #define EASEOFF_MEASUREMENT_UNITS_PROBE_H
 
 #include "measurement/transmission.h"
+#include "recording/tracks.h"
 
-/* *factor: 1, 180/pi or pi/180 by which both angles have to be multiplied, NaN when no unit shows lines. Looks at no
-   more than the first quarter of a million rows. Errors: memory, files. */
+/* *factor: by which both angles have to be multiplied, of those that the doubt leaves open (180/pi and pi/180 always),
+   NaN when none shows lines, or when the recording is too short to show them as it is read. Looks at no more than the
+   first quarter of a million rows. Errors: memory, files. */
 enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            double *factor, struct eo_error *error);
+                            enum eo_track_doubt doubt, double *factor, struct eo_error *error);
 
 /* The same, with its finding. */
 enum eo_code eo_units_judge(struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            struct eo_findings *findings, struct eo_error *error);
+                            enum eo_track_doubt doubt, struct eo_findings *findings, struct eo_error *error);
 
 #endif

@@ -21,7 +21,10 @@
   "trigger|index|sample|count_no|status|couple|coppia|vitesse|velocidad|velocita"
 #define INCREMENT_WORDS "increment|increments|inkrement|inkremente|delta|diff|difference|differenz|dcount|dcounts"
 
-static const char *const member_names[2] = {"pinion", "gear"};
+const char *eo_layout_member(int member)
+{
+  return member ? "gear" : "pinion";
+}
 
 const char *eo_layout_label(const struct eo_guess *guess, int column, char *text, size_t size)
 {
@@ -213,82 +216,6 @@ static enum eo_code assign(struct eo_guess *guess, struct eo_error *error)
   return EO_OK;
 }
 
-/* Without a unit and without turns: degrees unless the shaft would then crawl. */
-static double scale_by_speed(const struct eo_guess *guess, int member)
-{
-  double rpm = fabs(eo_layout_rate(guess, guess->tracks->channel[member].column[0], &guess->clock[member])) /
-               6; /* as degrees */
-  return rpm < 60 && rpm * 180 / M_PI < 30000 ? 1 : TURN / 360;
-}
-
-static const char *scale_name(double scale)
-{
-  return scale == 1 ? "radians" : scale == TURN ? "turns" : fabs(scale - TURN / 360) < 1e-9 ? "degrees" : "counts";
-}
-
-/* Counts per turn: as chosen, as the file states, or by where they start again; 0: not known. */
-static double counts_per_turn(const struct eo_guess *guess, int member)
-{
-  int column = guess->tracks->channel[member].column[0];
-  if (guess->choice->lines[member] > 0)
-    return guess->choice->lines[member];
-  if (eo_recording_turn(guess->recording, column) > 0)
-    return eo_recording_turn(guess->recording, column);
-  return eo_column_turn(&guess->look[column]);
-}
-
-/* A unit that the file states must be known: a guess in its place would be a wrong speed. */
-static enum eo_code check_unit(const struct eo_guess *guess, int member, struct eo_error *error)
-{
-  int column = guess->tracks->channel[member].column[0];
-  const char *unit = eo_recording_unit(guess->recording, column);
-  enum eo_quantity q = guess->look[column].quantity;
-  char text[80];
-  bool none = !*unit || !strcmp(unit, "-") || !strcmp(unit, "1") || !strcasecmp(unit, "none") || !strcmp(unit, "--");
-  if (guess->choice->unit || none || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
-    return EO_OK;
-  if (q == EO_QUANTITY_NONE)
-    return eo_error_set(error, EO_ERROR_INPUT, "/unit",
-                        "The file states \"%s\" as the unit of %s, which is not known here: give the unit (deg, rad, "
-                        "turn, or count with the counts per turn).",
-                        unit, eo_layout_label(guess, column, text, sizeof text));
-  return eo_error_set(
-      error, EO_ERROR_INPUT, "/unit",
-      "%s is in %s, which is no angle: choose other columns, or the kind (sine-cosine for raw tracks), or "
-      "give the unit of an angle.",
-      eo_layout_label(guess, column, text, sizeof text), unit);
-}
-
-static enum eo_code find_scale(struct eo_guess *guess, int member, struct eo_error *error)
-{
-  struct eo_track_channel *channel = &guess->tracks->channel[member];
-  const struct eo_column *look = &guess->look[channel->column[0]];
-  bool counts = guess->choice->unit == EO_LAYOUT_COUNT || (!guess->choice->unit && look->quantity == EO_QUANTITY_COUNT);
-  double turn = counts_per_turn(guess, member);
-  bool stated = guess->choice->lines[member] > 0 || eo_recording_turn(guess->recording, channel->column[0]) > 0;
-  enum eo_code code = check_unit(guess, member, error);
-  if (code)
-    return code;
-  channel->scale = guess->choice->unit == EO_LAYOUT_DEGREE   ? TURN / 360
-                   : guess->choice->unit == EO_LAYOUT_RADIAN ? 1
-                   : guess->choice->unit == EO_LAYOUT_TURN   ? TURN
-                                                             : 0;
-  if (!guess->choice->unit && look->quantity == EO_QUANTITY_ANGLE)
-    channel->scale = look->factor;
-  else if (turn > 0 && (counts || (!guess->choice->unit && (!stated || look->whole))))
-    channel->scale = TURN / turn;
-  if (channel->scale > 0)
-    return EO_OK;
-  char text[80];
-  if (counts || look->whole)
-    return eo_error_set(error, EO_ERROR_INPUT, "/lines", "%s counts; give the counts per turn of the %s's encoder.",
-                        eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member]);
-  channel->scale = scale_by_speed(guess, member);
-  eo_notes_add(guess->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
-               eo_layout_label(guess, channel->column[0], text, sizeof text), scale_name(channel->scale));
-  return EO_OK;
-}
-
 /* Counts since the row before go up as often as down, and stay on one side of 0. (Where they have two values, every
    step looks like a reset.) */
 static bool are_increments(const struct eo_guess *guess, int member)
@@ -312,8 +239,8 @@ static void note_angle(const struct eo_guess *guess, int member)
     snprintf(turns, sizeof turns, "starting again after %.6g",
              eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
   eo_notes_add(guess->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
-               eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member],
-               scale_name(channel->scale), channel->scale, turns);
+               eo_layout_label(guess, channel->column[0], text, sizeof text), eo_layout_member(member),
+               eo_layout_scale_name(channel->scale), channel->scale, turns);
 }
 
 static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_error *error)
@@ -326,10 +253,10 @@ static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_e
   channel->factor = 1;
   if (!(channel->lines > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "Give the %s per turn of the %s's encoder.",
-                        guess->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", member_names[member]);
+                        guess->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", eo_layout_member(member));
   if (guess->kind == EO_LAYOUT_PULSES) {
     eo_notes_add(guess->notes, "%s is taken as the times of the pulses of the %s.",
-                 eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member]);
+                 eo_layout_label(guess, channel->column[0], text, sizeof text), eo_layout_member(member));
     return EO_OK;
   }
   if (look->quantity == EO_QUANTITY_VOLTAGE) {
@@ -341,7 +268,7 @@ static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_e
   }
   eo_notes_add(guess->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
                eo_layout_label(guess, channel->column[0], text, sizeof text),
-               eo_layout_label(guess, channel->column[1], second, sizeof second), member_names[member]);
+               eo_layout_label(guess, channel->column[1], second, sizeof second), eo_layout_member(member));
   return EO_OK;
 }
 
@@ -378,7 +305,7 @@ static enum eo_code settle(struct eo_guess *guess, struct eo_error *error)
                                          [EO_LAYOUT_PULSES] = EO_TRACK_PULSES};
   for (int member = 0; member < 2; member++) {
     guess->tracks->channel[member].track = tracks[guess->kind];
-    enum eo_code code = guess->kind == EO_LAYOUT_ANGLES ? find_scale(guess, member, error)
+    enum eo_code code = guess->kind == EO_LAYOUT_ANGLES ? eo_layout_find_scale(guess, member, error)
                                                         : settle_lines(guess, member, error);
     if (code)
       return code;

@@ -18,13 +18,23 @@ enum eo_track {
 
 enum eo_track_unit { EO_TRACK_UNKNOWN, EO_TRACK_VOLT, EO_TRACK_MICROAMPERE }; /* of raw tracks */
 
+/* What is open about the scale of an angle; the lines of the transmission error may settle it. */
+enum eo_track_doubt {
+  EO_DOUBT_NONE,
+  EO_DOUBT_UNIT,  /* nothing states the unit: it is a guess */
+  EO_DOUBT_GRAD,  /* "grad": degrees in German, gon elsewhere */
+  EO_DOUBT_EDGES, /* counts, where lines per turn are stated: a counter takes one, two or four edges of each */
+  EO_DOUBT_WIDTH, /* counts that start again where a counter overflows, which need not be a turn */
+};
+
 struct eo_track_channel {
   enum eo_track track;
-  int column[2];           /* of the recording: the angle, the sine and the cosine, or the pulse times */
-  double scale;            /* of an angle: rad per unit of the column */
-  double lines;            /* sine periods, or pulses, per turn; of raw tracks and pulses */
-  enum eo_track_unit unit; /* of raw tracks as scaled by factor */
-  double factor;           /* raw tracks: V or uA per unit of the column; 1 when the unit is not known */
+  int column[2];             /* of the recording: the angle, the sine and the cosine, or the pulse times */
+  double scale;              /* of an angle: rad per unit of the column */
+  enum eo_track_doubt doubt; /* of that scale */
+  double lines;              /* sine periods, or pulses, per turn; of raw tracks and pulses */
+  enum eo_track_unit unit;   /* of raw tracks as scaled by factor */
+  double factor;             /* raw tracks: V or uA per unit of the column; 1 when the unit is not known */
 };
 
 /* A column beside the encoders. */

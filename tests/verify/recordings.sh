@@ -8,6 +8,8 @@
 result $? "shapes of recordings: $(tail -n 1 "$folder/out")"
 "$EASEOFF" verify "$CASES/rig-public/speeds.json" >"$folder/out" 2>&1
 result $? "speeds that change: $(tail -n 1 "$folder/out")"
+"$EASEOFF" verify "$CASES/rig-held-out/cases.json" >"$folder/out" 2>&1
+result $? "shapes nobody had tried: $(tail -n 1 "$folder/out")"
 "$EASEOFF" example paper >"$folder/design.json"
 
 measure() # PATTERN WHAT ARGUMENT...
