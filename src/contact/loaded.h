@@ -19,6 +19,8 @@
 #include "contact/field.h"
 #include "contact/grid.h"
 
+#include <stdbool.h>
+
 /* Gaps of one end at all points of a grid, from one gap field. */
 struct eo_loaded_gaps {
   double *gap;      /* [grid->points], m */
@@ -31,12 +33,18 @@ void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps);
 void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                         const struct eo_gap_field *field);
 
+/* Loads about P, as shares of it, at which Z is known where that was asked for. */
+enum { EO_LOADED_NEARBY = 4 };
+static const double EO_LOADED_NEARBY_SHARE[EO_LOADED_NEARBY] = {0.84, 0.92, 1.08, 1.16};
+
 /* One end under one load. */
 struct eo_loaded_end {
   double *load;      /* [positions]: P of the end, N (equal but for axially held pinions) */
   double *approach;  /* [positions]: Z, m, normal; the loaded transmission error is Z / cos(beta_b) */
   double *tangent;   /* [positions]: k_tan = dP/dZ, N/m */
   double *line_load; /* [grid->points]: q, N/m, load per length of contact line */
+  double *nearby;    /* [positions][EO_LOADED_NEARBY]: Z, m, at the loads about P; where they are asked for */
+  bool around;       /* they are asked for */
   int failures;      /* positions that did not converge: 0 in a sound result */
 };
 
@@ -91,6 +99,10 @@ bool eo_loaded_balance_position(const struct eo_loaded_half half[2], double comp
    there. */
 void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
                        double compliance_factor, int j, double load, struct eo_loaded_end *result);
+
+/* Every position again at its own load, and Z at the loads about it, of a result at these gaps. */
+void eo_loaded_find_nearby(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
+                           double compliance_factor, struct eo_loaded_end *result);
 
 /* Makes Newton's matrix of the position solved last at its solution, for the answers below. */
 void eo_loaded_prepare_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position);

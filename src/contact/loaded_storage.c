@@ -11,12 +11,14 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
   if (!ws)
     return eo_error_memory(error);
   long points = grid->most_points + EO_GRAM_LANE, width = eo_gram_width(grid->most_rank);
-  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction, &ws->local, &ws->spread};
-  double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
+  double **vector[] = {&ws->load,  &ws->rate,   &ws->gap,       &ws->bend,      &ws->correction,
+                       &ws->local, &ws->spread, &ws->course[0], &ws->course[1], &ws->course[2]};
+  double **modal[] = {&ws->mode,    &ws->trial,           &ws->residual,        &ws->step,
+                      &ws->tangent, &ws->modal_course[0], &ws->modal_course[1], &ws->modal_course[2]};
   bool complete = eo_local_inverse_init(&ws->inverse, error) == EO_OK;
-  for (int i = 0; i < 7; i++)
+  for (int i = 0; i < 10; i++)
     complete = (*vector[i] = eo_gram_allocate(points)) && complete;
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 8; i++)
     complete = (*modal[i] = eo_gram_allocate(width)) && complete;
   complete = (ws->matrix = eo_gram_allocate(width * width / 2)) && complete;
   complete = (ws->packed = eo_gram_allocate(points * width / 2)) && complete;
@@ -37,6 +39,10 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
     return;
   double *const owned[] = {ws->load,   ws->rate, ws->gap,   ws->bend,     ws->correction, ws->local,
                            ws->spread, ws->mode, ws->trial, ws->residual, ws->step,       ws->tangent};
+  for (int i = 0; i < 3; i++) {
+    free(ws->course[i]);
+    free(ws->modal_course[i]);
+  }
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
     free(owned[i]);
   free(ws->matrix);
@@ -70,8 +76,9 @@ enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_conta
   *end = (struct eo_loaded_end){.load = calloc(n, sizeof(double)),
                                 .approach = calloc(n, sizeof(double)),
                                 .tangent = calloc(n, sizeof(double)),
+                                .nearby = calloc(n * EO_LOADED_NEARBY, sizeof(double)),
                                 .line_load = calloc((size_t)grid->points, sizeof(double))};
-  if (end->load && end->approach && end->tangent && end->line_load)
+  if (end->load && end->approach && end->tangent && end->nearby && end->line_load)
     return EO_OK;
   eo_loaded_end_done(end);
   return eo_error_memory(error);
@@ -82,6 +89,7 @@ void eo_loaded_end_done(struct eo_loaded_end *end)
   free(end->load);
   free(end->approach);
   free(end->tangent);
+  free(end->nearby);
   free(end->line_load);
   *end = (struct eo_loaded_end){0};
 }

@@ -74,10 +74,20 @@ static enum eo_code refuse_values(const char *what, struct eo_error *error)
   return eo_error_set(error, EO_ERROR_INPUT, "", "The mesh law's %s must be finite numbers.", what);
 }
 
+/* Below this a series never comes. */
+static double lower_bound(int order, const double *series)
+{
+  double bound = series[0];
+  for (int k = 1; k <= order; k++)
+    bound -= hypot(series[2 * k - 1], series[2 * k]);
+  return bound;
+}
+
 /* A stiffness that is not positive somewhere would make the law meaningless, whatever the solver then does with it. */
 static enum eo_code check_positive(int order, const double *series, const char *what, struct eo_error *error)
 {
-  for (int i = 0; i < CHECKED_PHASES; i++) {
+  bool bounded = lower_bound(order, series) > 0;
+  for (int i = 0; i < CHECKED_PHASES && !bounded; i++) {
     double value = eo_fourier_value(order, series, (double)i / CHECKED_PHASES);
     if (!(value > 0))
       return eo_error_set(error, EO_ERROR_INPUT, "", "The mesh law's %s must be positive; at phase %.3f it is %g.",
@@ -226,8 +236,17 @@ enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *
 
 void eo_law_rows(const struct eo_law *law, double phase, double *row)
 {
+  double c = cos(2 * M_PI * phase), s = sin(2 * M_PI * phase), ck = 1, sk = 0;
+  int terms = eo_fourier_terms(law->order);
   for (int i = 0; i < law->rows; i++)
-    row[i] = eo_fourier_value(law->order, law->series + (size_t)i * eo_fourier_terms(law->order), phase);
+    row[i] = law->series[i * terms];
+  for (int k = 1; k <= law->order; k++) {
+    double next = ck * c - sk * s;
+    sk = sk * c + ck * s;
+    ck = next;
+    for (int i = 0; i < law->rows; i++)
+      row[i] += law->series[i * terms + 2 * k - 1] * ck + law->series[i * terms + 2 * k] * sk;
+  }
 }
 
 static struct eo_mesh_force stiffness_force(double k, double x, double front, double back, int attached)
@@ -324,12 +343,13 @@ double eo_law_deflection(const struct eo_law *law, const double *row, double loa
   return 0;
 }
 
-double eo_law_least(const struct eo_law *law)
+bool eo_law_touches_above(const struct eo_law *law, double x)
 {
-  double least = INFINITY;
-  for (int i = 0; i < CHECKED_PHASES; i++)
-    least = fmin(least, law->front + eo_fourier_value(law->order, law->series, (double)i / CHECKED_PHASES));
-  return least;
+  bool above = x < law->front;
+  bool bounded = x < law->front + lower_bound(law->order, law->series);
+  for (int i = 0; i < CHECKED_PHASES && above && !bounded; i++)
+    above = x < law->front + eo_fourier_value(law->order, law->series, (double)i / CHECKED_PHASES);
+  return above;
 }
 
 /* Sines change their sign. */

@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
+
 enum eo_law_kind {
   EO_MESH_STIFFNESS, /* F = k(phi) (X - front) while X > front: the secant law, theory (L1); rows: k */
   EO_MESH_POWER,     /* F = K(phi) (X - front - e(phi))^exponent; rows: K, e */
@@ -92,8 +94,9 @@ int eo_law_is_affine(const struct eo_law *law);
 /* Deflection at which rows of these values carry the load > 0: the static guess, m. */
 double eo_law_deflection(const struct eo_law *law, const double *row, double load);
 
-/* The least deflection at which the front flanks of a table law touch, over 256 equidistant phases, m. */
-double eo_law_least(const struct eo_law *law);
+/* Whether the front flanks of a table law touch above the deflection x, m, at every one of 256 equidistant phases and
+   from contact on. */
+bool eo_law_touches_above(const struct eo_law *law, double x);
 
 /* Non-zero when the two laws are the same function. */
 int eo_law_equal(const struct eo_law *a, const struct eo_law *b);

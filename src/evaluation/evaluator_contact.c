@@ -196,10 +196,12 @@ void eo_evaluator_solve_cases(struct eo_evaluator *evaluator, const struct eo_ru
   for (int end = 0; end < result->ends; end++)
     for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++)
       for (int k = 0; k < result->cases; k++)
-        if (evaluator->meeting_of[k] == m)
+        if (evaluator->meeting_of[k] == m) {
+          struct eo_loaded_end *loaded = &result->load_case[k].end[end].loaded;
+          loaded->around = evaluator->solved_for[end].around && !evaluator->bodies_are_elastic;
           solution[solutions++] = (struct eo_solution){end, &evaluator->meeting[m]->gaps[end],
-                                                       result->load_case[k].end_force[end],
-                                                       &result->load_case[k].end[end].loaded};
+                                                       result->load_case[k].end_force[end], loaded};
+        }
   eo_evaluator_solve(evaluator, run, solutions, solution);
 }
 
@@ -209,6 +211,7 @@ static void copy_loads(const struct eo_contact_grid *grid, struct eo_loaded_end 
   memcpy(to->load, from->load, n * sizeof(double));
   memcpy(to->approach, from->approach, n * sizeof(double));
   memcpy(to->tangent, from->tangent, n * sizeof(double));
+  memcpy(to->nearby, from->nearby, n * EO_LOADED_NEARBY * sizeof(double));
   memcpy(to->line_load, from->line_load, (size_t)grid->points * sizeof(double));
   to->failures = from->failures;
 }
@@ -220,6 +223,17 @@ void eo_evaluator_copy_equal_end(struct eo_evaluator *evaluator)
   for (int k = 0; k < result->cases && result->equal_ends; k++)
     copy_loads(evaluator->pair->grid, &result->load_case[k].end[EO_RIGHT].loaded,
                &result->load_case[k].end[EO_LEFT].loaded);
+}
+
+/* The loads about that of an end, on bodies that stay as they are. */
+static void find_around(struct eo_evaluator *evaluator, const struct eo_run *run,
+                        const struct eo_case_result *load_case, struct eo_loaded_end both[2], int end)
+{
+  double *gap = evaluator->gaps_on_bent_bodies.gap;
+  eo_elastic_gaps(eo_meeting_bodies(evaluator, &load_case->running), eo_meeting_of(evaluator, load_case)->gaps,
+                  eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running), both, end, gap);
+  eo_loaded_find_nearby(eo_evaluator_workspace(evaluator, 0, end), eo_evaluator_grid(evaluator, end), gap,
+                        run->scenario.compliance, &both[end]);
 }
 
 /* A solution that failed to converge on elastic bodies is counted at the left end. */
@@ -236,6 +250,9 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_ru
   eo_elastic_solve(eo_meeting_bodies(evaluator, running), workspace, eo_meeting_of(evaluator, load_case)->gaps, &load,
                    both, report);
   both[EO_LEFT].failures += report->failures;
+  for (int end = 0; end < 2; end++)
+    if (evaluator->solved_for[end].around)
+      find_around(evaluator, run, load_case, both, end);
 }
 
 void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run *run)

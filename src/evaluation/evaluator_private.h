@@ -14,7 +14,12 @@
 #include <stddef.h>
 
 /* BATCH: loads that pass over the mesh cycle together, so that what they share stays in the cache. */
-enum { EO_EVALUATOR_SAMPLES = 256, EO_EVALUATOR_TABLE_LOADS = 12, EO_EVALUATOR_BATCH = 12 };
+enum {
+  EO_EVALUATOR_SAMPLES = 256,
+  EO_EVALUATOR_TABLE_LOADS = 12,
+  EO_EVALUATOR_TABLE_ROWS = 15,
+  EO_EVALUATOR_BATCH = 12
+};
 
 /* Beside EO_WANT_...: stop after the entering impact. */
 enum { EO_WANT_CONTACT_ALONE = 1 << 8 };
@@ -32,7 +37,8 @@ struct eo_run {
 struct eo_end_key {
   struct eo_flank_modification flank[2][2]; /* [flank side][member] */
   double offset, compliance;
-  int cases; /* 0: nothing is stored */
+  bool around; /* with Z at neighbouring loads */
+  int cases;   /* 0: nothing is stored */
   struct eo_running running[EO_MAX_LOAD_CASES];
   double force[EO_MAX_LOAD_CASES];
 };
@@ -88,7 +94,7 @@ struct eo_evaluator {
 
   /* mesh laws and vibration */
   struct eo_loaded_end *table; /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */
-  double *table_rows;          /* [EO_EVALUATOR_TABLE_LOADS][positions] */
+  double *table_rows;          /* [EO_EVALUATOR_TABLE_ROWS][positions] scratch of one mesh law */
   double *shifted;             /* [positions] scratch of one mesh law */
   struct eo_law (*law)[2];     /* [most_cases][end] */
   struct eo_vibration_solver *vibration;
@@ -267,6 +273,9 @@ enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct e
  */
 const struct eo_loaded_gaps *eo_evaluator_gaps_of(struct eo_evaluator *evaluator, const struct eo_run *run,
                                                   const struct eo_case_result *load_case, int end);
+
+/* Whether a law will be made from Z at the loads about P too. */
+bool eo_evaluator_wants_around(const struct eo_evaluator *evaluator, const struct eo_design *design);
 
 /* Whether the law is a table of loaded contact at many loads. */
 bool eo_evaluator_law_is_table(const struct eo_evaluator *evaluator, const struct eo_design *design,

@@ -70,8 +70,9 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   evaluator->law_of = calloc(most, sizeof *evaluator->law_of);
   evaluator->problem = calloc(most, sizeof *evaluator->problem);
   evaluator->shifted = calloc((size_t)grid->positions, sizeof *evaluator->shifted);
+  evaluator->table_rows = calloc(EO_EVALUATOR_TABLE_ROWS * (size_t)grid->positions, sizeof *evaluator->table_rows);
   if (!result->load_case || !result->objective || !evaluator->law || !evaluator->law_of || !evaluator->problem ||
-      !evaluator->shifted)
+      !evaluator->shifted || !evaluator->table_rows)
     return eo_error_memory(error);
   for (int k = 0; k < evaluator->most_cases; k++)
     EO_TRY(init_case(&result->load_case[k], both, error));

@@ -204,6 +204,7 @@ static void load_spare_ends(struct eo_evaluator *evaluator, const struct eo_run 
   for (int end = 0; end < evaluator->result.ends; end++) {
     int stored = eo_reuse_stored_at(evaluator, end);
     loaded[end] = &spare[stored];
+    spare[stored].around = evaluator->solved_for[stored].around && !evaluator->bodies_are_elastic;
     if (stored == end)
       eo_loaded_solve(eo_evaluator_workspace(evaluator, 0, end), eo_evaluator_grid(evaluator, end),
                       &eo_meeting_of(evaluator, load_case)->gaps[end], run->scenario.compliance, 1,

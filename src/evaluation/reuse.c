@@ -75,6 +75,8 @@ static struct eo_end_key key_of(const struct eo_evaluator *evaluator, const stru
   const double *offset = run->design->alignment.apex_offset;
   struct eo_end_key key = {.offset = end == EO_LEFT ? 0 : offset[EO_PINION] - offset[EO_GEAR],
                            .compliance = run->scenario.compliance,
+                           .around = !(run->want & EO_WANT_CONTACT_ALONE) &&
+                                     eo_evaluator_wants_around(evaluator, run->design),
                            .cases = evaluator->result.cases};
   for (int member = 0; member < 2; member++) {
     key.flank[EO_DRIVE_FLANK][member] = modification->flank[member][end];
@@ -95,7 +97,8 @@ static bool same_running(const struct eo_running *a, const struct eo_running *b)
 
 static bool differs_from_solved(const struct eo_end_key *key, const struct eo_end_key *solved)
 {
-  bool same = key->cases == solved->cases && key->offset == solved->offset && key->compliance == solved->compliance;
+  bool same = key->cases == solved->cases && key->offset == solved->offset && key->compliance == solved->compliance &&
+              key->around <= solved->around;
   for (int i = 0; i < 4 && same; i++)
     same = eo_modification_equal(&key->flank[i / 2][i % 2], &solved->flank[i / 2][i % 2]);
   for (int k = 0; k < key->cases && same; k++)
@@ -117,6 +120,7 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
     evaluator->root_valid[end] = evaluator->root_valid[end] && alone && !copied && !evaluator->needs_solving[end];
     if (!alone || copied || evaluator->needs_solving[end])
       eo_reuse_forget_laws(evaluator, end);
+    key.around = key.around || (!evaluator->needs_solving[end] && evaluator->solved_for[end].around);
     evaluator->solved_for[end] = key;
     if (copied || !alone)
       evaluator->solved_for[end].cases = 0;

@@ -3,6 +3,7 @@
    tangent, mirrored input, warm starts, axially held pinions, threads, and three hundred random gear pairs under any
    load. */
 #include "support/contact-fixture.h"
+#include "contact/load_bow.h"
 #include "contact/loaded.h"
 
 #include <pthread.h>
@@ -360,6 +361,55 @@ static void test_warm_starts(void)
   bench_close(&b);
 }
 
+/* Z at the loads about P against solutions of their own, where lines come into contact between them too; what they make
+   of the curve over the load; and that asking for them changes nothing. */
+static void test_loads_about(void)
+{
+  struct eo_geometry g = paper_geometry();
+  struct eo_flank_modification none = {0}, a = case_a();
+  struct bench b;
+  double load = force_of(&g, 828), worst = 0, between = 0, bent = 0;
+  bool grows = true;
+  bench_open(&b, &g, kernel_of(1), true, POSITIONS, CELLS);
+  set_gaps(&b, EO_RIGHT, &a, &none, 0.1 * degree, 0);
+  eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[0]);
+  b.result[1].around = true;
+  eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[1]);
+  ok(same_end(&b, &b.result[0], &b.result[1]), "loads about it are asked for: the same bytes");
+  for (int i = -1; i <= EO_LOADED_NEARBY; i++) {
+    double share = i < 0 ? 0.96 : i == EO_LOADED_NEARBY ? 1.12 : EO_LOADED_NEARBY_SHARE[i], there = share * load;
+    eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &there, &b.result[2]);
+    for (int j = 0; j < b.grid->positions; j++) {
+      struct eo_load_bow bow;
+      eo_load_bow_init(&bow, &b.result[1], j);
+      double off = fabs(eo_load_bow_at(&bow, share - 1) - b.result[2].approach[j]),
+             straight = b.result[1].approach[j] + (there - load) / b.result[1].tangent[j] - b.result[2].approach[j];
+      if (i < 0 || i == EO_LOADED_NEARBY)
+        between = fmax(between, off);
+      else
+        worst = fmax(worst, off);
+      bent = fmax(bent, straight);
+    }
+  }
+  ok(worst < 1e-8, "Z at the loads about P: within %.2g nm of solutions of their own", 1e9 * worst);
+  ok(between < 1e-8 && bent > 5e-8, "between them within %.2g nm; the tangent is off by up to %.2g nm", 1e9 * between,
+     1e9 * bent);
+  for (int j = 0; j < b.grid->positions; j++) {
+    struct eo_load_bow bow;
+    eo_load_bow_init(&bow, &b.result[1], j);
+    for (double x = -0.99; x < 1; x += 0.01)
+      grows = grows && eo_load_bow_at(&bow, x) > eo_load_bow_at(&bow, x - 0.01);
+  }
+  ok(grows, "Z grows with the load");
+  eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[2]);
+  eo_loaded_find_nearby(b.workspace, b.grid, b.gaps[EO_RIGHT].gap, 1, &b.result[2]);
+  worst = 0;
+  for (int i = 0; i < b.grid->positions * EO_LOADED_NEARBY; i++)
+    worst = fmax(worst, fabs(b.result[2].nearby[i] - b.result[1].nearby[i]));
+  ok(worst < 5e-10, "of a result that is there already: within %.2g nm of the same", 1e9 * worst);
+  bench_close(&b);
+}
+
 struct worker {
   struct bench *bench;
   struct eo_loaded_workspace *workspace;
@@ -554,6 +604,7 @@ int main(void)
   test_monotony();
   test_mirror();
   test_warm_starts();
+  test_loads_about();
   test_threads();
   test_axial();
   test_released_end();
