@@ -235,11 +235,19 @@ static const struct eo_outline_row factor_rows[] = {
 };
 static const struct eo_outline factors = EO_OUTLINE("LoadFactors", factor_rows);
 
+/* Factors of the contact analysis and the vibration. */
+struct computed {
+  double dynamic, face, share;
+  struct eo_series leaning;
+};
+
+#define OF_COMPUTED(name) EO_AT(struct computed, name)
 static const struct eo_outline_row computed_rows[] = {
-    EO_KEY("K_V", "number?", "largest dynamic over static mesh force of the vibration; null without a periodic one"),
-    EO_KEY("K_Hbeta", "number?", "of the load distribution as designed"),
-    EO_KEY("K_Hbeta_tolerances", "[number?]", "with f_ma laid on in each direction"),
-    EO_KEY("K_Halpha", "number?", "of the load distribution as designed, without pitch deviations"),
+    EO_KEY("K_V", "number?", "largest dynamic over static mesh force of the vibration; null without a periodic one",
+           OF_COMPUTED(dynamic)),
+    EO_KEY("K_Hbeta", "number?", "of the load distribution as designed", OF_COMPUTED(face)),
+    EO_KEY("K_Hbeta_tolerances", "[number?]", "with f_ma laid on in each direction", OF_COMPUTED(leaning)),
+    EO_KEY("K_Halpha", "number?", "of the load distribution as designed, without pitch deviations", OF_COMPUTED(share)),
 };
 static const struct eo_outline computed = EO_OUTLINE("ComputedLoadFactors", computed_rows);
 
@@ -287,109 +295,106 @@ static const struct eo_outline_row rated_member_rows[] = {
 };
 static const struct eo_outline rated_member = EO_OUTLINE("RatedMember", rated_member_rows);
 
-static json_t *encode_rated_member(const struct eo_rated_case *this_case, int i)
+static struct rated_member find_member(const struct eo_rated_case *this_case, int i)
 {
-  const struct rated_member member = {.single = this_case->contact.single_contact[i],
-                                      .cycles = this_case->cycles[i],
-                                      .z = this_case->influence[i],
-                                      .flank_life = this_case->flank_life_factor[i],
-                                      .stress = this_case->contact.stress[i],
-                                      .permissible = this_case->flank_permissible[i],
-                                      .safety = this_case->flank_safety[i],
-                                      .flank_static = this_case->flank_static[i],
-                                      .local_stress = this_case->local_flank,
-                                      .local_safety = this_case->local_flank_safety[i],
-                                      .local_root = this_case->local_root[i],
-                                      .local_root_safety = this_case->local_root_safety[i],
-                                      .root_life = this_case->root_life_factor[i],
-                                      .root_nominal = this_case->root_nominal[i],
-                                      .root_stress = this_case->root_stress[i],
-                                      .root_permissible = this_case->root_permissible[i],
-                                      .root_safety = this_case->root_safety[i],
-                                      .root_static = this_case->root_static[i]};
-  return eo_outline_encode(&rated_member, &member);
+  return (struct rated_member){.single = this_case->contact.single_contact[i],
+                               .cycles = this_case->cycles[i],
+                               .z = this_case->influence[i],
+                               .flank_life = this_case->flank_life_factor[i],
+                               .stress = this_case->contact.stress[i],
+                               .permissible = this_case->flank_permissible[i],
+                               .safety = this_case->flank_safety[i],
+                               .flank_static = this_case->flank_static[i],
+                               .local_stress = this_case->local_flank,
+                               .local_safety = this_case->local_flank_safety[i],
+                               .local_root = this_case->local_root[i],
+                               .local_root_safety = this_case->local_root_safety[i],
+                               .root_life = this_case->root_life_factor[i],
+                               .root_nominal = this_case->root_nominal[i],
+                               .root_stress = this_case->root_stress[i],
+                               .root_permissible = this_case->root_permissible[i],
+                               .root_safety = this_case->root_safety[i],
+                               .root_static = this_case->root_static[i]};
 }
 
 static const char *const ranges[] = {"subcritical", "main_resonance", "between", "supercritical", NULL};
 
+/* One end under one load case. */
+struct rated_end {
+  struct eo_rated_case found;
+  int range;
+  struct computed computed;
+  struct rated_member member[2];
+};
+
+#define OF_END(name) EO_AT(struct rated_end, name)
 static const struct eo_outline_row rated_end_rows[] = {
-    EO_KEY("F_t_N", "number", "tangential force at the reference cylinder, even share of the ends", .unit = &eo_unit_N),
-    EO_KEY("v_m_per_s", "number", "at the reference cylinder", .unit = &eo_unit_m_per_s),
-    EO_KEY("K_gamma", "number", "this end's mean load over that of an even share"),
-    EO_KEY("N", "number", "speed over n_E1"),
-    EO_KEY("speed_range", "word", "of K_V", .words = ranges),
+    EO_KEY("F_t_N", "number", "tangential force at the reference cylinder, even share of the ends", .unit = &eo_unit_N,
+           OF_END(found.tangential_force)),
+    EO_KEY("v_m_per_s", "number", "at the reference cylinder", .unit = &eo_unit_m_per_s, OF_END(found.velocity)),
+    EO_KEY("K_gamma", "number", "this end's mean load over that of an even share", OF_END(found.load.sharing)),
+    EO_KEY("N", "number", "speed over n_E1", OF_END(found.resonance_ratio)),
+    EO_KEY("speed_range", "word", "of K_V", .words = ranges, OF_END(range)),
     EO_KEY("f_sh_um", "number?", "deflection of the pinion shaft, method C; null when it does not apply",
-           .unit = &eo_unit_um),
-    EO_KEY("F_beta_x_um", "number?", "helix deviation before running in, method C", .unit = &eo_unit_um),
-    EO_KEY("y_beta_um", "number?", "what running in takes off, method C", .unit = &eo_unit_um),
-    EO_KEY("method_c", "object", "K_V method B, K_Hbeta method C, K_Halpha method B", .outline = &factors),
-    EO_KEY("computed", "object", "of the contact analysis and the vibration", .outline = &computed),
-    EO_KEY("used", "object", "what rates", .outline = &factors),
-    EO_KEY("Z_H", "number", "zone"),
-    EO_KEY("Z_E_sqrt_MPa", "number", "elasticity", .unit = &eo_unit_sqrt_MPa),
-    EO_KEY("Z_eps", "number", "contact ratio"),
-    EO_KEY("Z_beta", "number", "helix"),
-    EO_KEY("sigma_H0_MPa", "number", "nominal contact stress", .unit = &eo_unit_MPa),
-    EO_KEY("pinion", "object", "pinion", .outline = &rated_member),
-    EO_KEY("gear", "object", "gear", .outline = &rated_member),
+           .unit = &eo_unit_um, OF_END(found.shaft_deviation)),
+    EO_KEY("F_beta_x_um", "number?", "helix deviation before running in, method C", .unit = &eo_unit_um,
+           OF_END(found.helix_deviation)),
+    EO_KEY("y_beta_um", "number?", "what running in takes off, method C", .unit = &eo_unit_um,
+           OF_END(found.helix_running_in)),
+    EO_KEY("method_c", "object", "K_V method B, K_Hbeta method C, K_Halpha method B", .outline = &factors,
+           OF_END(found.method_c)),
+    EO_KEY("computed", "object", "of the contact analysis and the vibration", .outline = &computed, OF_END(computed)),
+    EO_KEY("used", "object", "what rates", .outline = &factors, OF_END(found.used)),
+    EO_KEY("Z_H", "number", "zone", OF_END(found.contact.zone)),
+    EO_KEY("Z_E_sqrt_MPa", "number", "elasticity", .unit = &eo_unit_sqrt_MPa, OF_END(found.contact.elasticity)),
+    EO_KEY("Z_eps", "number", "contact ratio", OF_END(found.contact.contact_ratio)),
+    EO_KEY("Z_beta", "number", "helix", OF_END(found.contact.helix)),
+    EO_KEY("sigma_H0_MPa", "number", "nominal contact stress", .unit = &eo_unit_MPa, OF_END(found.contact.nominal)),
+    EO_KEY("pinion", "object", "pinion", .outline = &rated_member, OF_END(member[EO_PINION])),
+    EO_KEY("gear", "object", "gear", .outline = &rated_member, OF_END(member[EO_GEAR])),
 };
 static const struct eo_outline rated_end = EO_OUTLINE("RatedEnd", rated_end_rows);
 
-static json_t *encode_computed(const struct eo_rated_case *this_case, const struct eo_face_factors *face)
+static void find_rated_end(const struct eo_rated_case *found, const struct eo_face_factors *face,
+                           struct rated_end *view)
 {
-  struct eo_object object = eo_object_open_as(&computed);
-  eo_object_put_number(&object, "K_V", this_case->load.dynamic);
-  eo_object_put_number(&object, "K_Hbeta", face->nominal);
-  eo_object_put(&object, "K_Hbeta_tolerances", eo_json_reals(2, face->leaning, 1, NULL, EO_DIGITS_NUMBER));
-  eo_object_put_number(&object, "K_Halpha", this_case->load.share);
-  return eo_object_close(&object);
+  *view = (struct rated_end){.found = *found,
+                             .range = (int)found->dynamic.range,
+                             .computed = {found->load.dynamic, face->nominal, found->load.share,
+                                          eo_series_of(2, face->leaning, EO_DIGITS_NUMBER)}};
+  for (int member = 0; member < 2; member++)
+    view->member[member] = find_member(found, member);
 }
 
-static json_t *encode_rated_end(const struct eo_rated_case *this_case, const struct eo_face_factors *face)
-{
-  struct eo_object object = eo_object_open_as(&rated_end);
-  eo_object_put_number(&object, "F_t_N", this_case->tangential_force);
-  eo_object_put_number(&object, "v_m_per_s", this_case->velocity);
-  eo_object_put_number(&object, "K_gamma", this_case->load.sharing);
-  eo_object_put_number(&object, "N", this_case->resonance_ratio);
-  eo_object_put(&object, "speed_range", json_string(ranges[this_case->dynamic.range]));
-  eo_object_put_number(&object, "f_sh_um", this_case->shaft_deviation);
-  eo_object_put_number(&object, "F_beta_x_um", this_case->helix_deviation);
-  eo_object_put_number(&object, "y_beta_um", this_case->helix_running_in);
-  eo_object_put(&object, "method_c", eo_outline_encode(&factors, &this_case->method_c));
-  eo_object_put(&object, "computed", encode_computed(this_case, face));
-  eo_object_put(&object, "used", eo_outline_encode(&factors, &this_case->used));
-  eo_object_put_number(&object, "Z_H", this_case->contact.zone);
-  eo_object_put_number(&object, "Z_E_sqrt_MPa", this_case->contact.elasticity);
-  eo_object_put_number(&object, "Z_eps", this_case->contact.contact_ratio);
-  eo_object_put_number(&object, "Z_beta", this_case->contact.helix);
-  eo_object_put_number(&object, "sigma_H0_MPa", this_case->contact.nominal);
-  for (int i = 0; i < 2; i++)
-    eo_object_put(&object, eo_result_member[i], encode_rated_member(this_case, i));
-  return eo_object_close(&object);
-}
+/* All ends under one load case. */
+struct rated_case {
+  bool two;
+  double torque, speed, time;
+  struct rated_end end[2];
+};
 
+#define OF_CASE(name) EO_AT(struct rated_case, name)
 static const struct eo_outline_row rated_case_rows[] = {
-    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
-    EO_KEY("time_h", "number", "of the required life", .unit = &eo_unit_h),
-    EO_KEY("left", "object", "left end", .outline = &rated_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &rated_end),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm, OF_CASE(torque)),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm, OF_CASE(speed)),
+    EO_KEY("time_h", "number", "of the required life", .unit = &eo_unit_h, OF_CASE(time)),
+    EO_KEY("left", "object", "left end", .outline = &rated_end, OF_CASE(end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &rated_end, OF_CASE(end[EO_RIGHT]),
+           EO_IF(struct rated_case, two)),
 };
 static const struct eo_outline rated_case = EO_OUTLINE("RatedLoadCase", rated_case_rows);
 
 static json_t *encode_rated_case(const struct eo_result_source *source, int k)
 {
-  const struct eo_design_rating *rating = source->analysis->rating;
+  const struct eo_case_rating *rating = &source->analysis->rating->load_case[k];
   const struct eo_load_case *load_case = &source->evaluation->load_case[k].load_case;
-  struct eo_object object = eo_object_open_as(&rated_case);
-  eo_object_put_number(&object, "torque_Nm", load_case->torque);
-  eo_object_put_number(&object, "speed_rpm", load_case->speed);
-  eo_object_put_number(&object, "time_h", rating->load_case[k].end[0].load.time);
+  struct rated_case view = {.two = source->ends == 2,
+                            .torque = load_case->torque,
+                            .speed = load_case->speed,
+                            .time = rating->end[0].load.time};
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&object, eo_result_end[end],
-                  encode_rated_end(&rating->load_case[k].end[end], &rating->load_case[k].face[end]));
-  return eo_object_close(&object);
+    find_rated_end(&rating->end[end], &rating->face[end], &view.end[end]);
+  return eo_outline_encode(&rated_case, &view);
 }
 
 /* ---- spectrum ---- */
@@ -416,63 +421,75 @@ static const struct eo_outline_row spectrum_member_rows[] = {
 };
 static const struct eo_outline spectrum_member = EO_OUTLINE("RatedSpectrumMember", spectrum_member_rows);
 
+struct spectrum {
+  bool two;
+  struct spectrum_end {
+    struct spectrum_member member[2];
+  } end[2];
+};
+
 static const struct eo_outline_row spectrum_end_rows[] = {
-    EO_KEY("pinion", "object", "pinion", .outline = &spectrum_member),
-    EO_KEY("gear", "object", "gear", .outline = &spectrum_member),
+    EO_KEY("pinion", "object", "pinion", .outline = &spectrum_member, EO_AT(struct spectrum_end, member[EO_PINION])),
+    EO_KEY("gear", "object", "gear", .outline = &spectrum_member, EO_AT(struct spectrum_end, member[EO_GEAR])),
 };
 static const struct eo_outline spectrum_end = EO_OUTLINE("RatedSpectrumEnd", spectrum_end_rows);
 
 static const struct eo_outline_row spectrum_rows[] = {
-    EO_KEY("left", "object", "left end", .outline = &spectrum_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &spectrum_end),
+    EO_KEY("left", "object", "left end", .outline = &spectrum_end, EO_AT(struct spectrum, end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &spectrum_end,
+           EO_AT(struct spectrum, end[EO_RIGHT]), EO_IF(struct spectrum, two)),
 };
 static const struct eo_outline spectrum = EO_OUTLINE("RatedSpectrum", spectrum_rows);
 
 static json_t *encode_spectrum(const struct eo_result_source *source)
 {
-  struct eo_object object = eo_object_open_as(&spectrum);
+  struct spectrum view = {.two = source->ends == 2};
   for (int end = 0; end < source->ends; end++) {
-    const struct eo_rated_spectrum *rated_spectrum = &source->analysis->rating->end[end];
-    struct eo_object members = eo_object_open_as(&spectrum_end);
-    for (int i = 0; i < 2; i++) {
-      const struct spectrum_member member = {rated_spectrum->flank[i], rated_spectrum->root[i]};
-      eo_object_put(&members, eo_result_member[i], eo_outline_encode(&spectrum_member, &member));
-    }
-    eo_object_put(&object, eo_result_end[end], eo_object_close(&members));
+    const struct eo_rated_spectrum *found = &source->analysis->rating->end[end];
+    for (int member = 0; member < 2; member++)
+      view.end[end].member[member] = (struct spectrum_member){found->flank[member], found->root[member]};
   }
-  return eo_object_close(&object);
+  return eo_outline_encode(&spectrum, &view);
 }
 
 /* ---- all ---- */
 
 static const char *const outcomes[] = {"rated", "not_rated", NULL};
 
+struct rating {
+  bool uneven;
+  int outcome;
+  const char *reason; /* "": rated */
+  json_t *settings, *standards, *unchecked, *verdict, *basis[2], *cases, *spectrum;
+};
+
+#define OF_DOCUMENT(name) EO_AT(struct rating, name)
 static const struct eo_outline_row rating_rows[] = {
     EO_KEY("outcome", "word", "not_rated: ISO 6336 does not rate such a pair, or an input is missing",
-           .words = outcomes),
-    EO_KEY("reason", "text?", "of not_rated, for people"),
+           .words = outcomes, OF_DOCUMENT(outcome)),
+    EO_KEY("reason", "text?", "of not_rated, for people", OF_DOCUMENT(reason)),
     EO_KEY("settings", "object", "what it goes by, with every default", .table = &eo_rating_table,
-           .name = "RatingSettings"),
-    EO_KEY("standards", "[text]", "with their editions and methods"),
-    EO_KEY("unchecked", "[text]", "what no published report has confirmed"),
-    EO_KEY("verdict", "object", "what may be signed", .outline = &verdict),
-    EO_KEY("pair", "object?", "what no load changes; null when it is not rated", .outline = &basis),
-    EO_KEY("right_pair", "object?", "the same of the right end", .outline = &basis, .when = EO_UNEVEN),
-    EO_KEY("load_cases", "[object]?", "in the order of the design; null when it is not rated", .outline = &rated_case),
+           .name = "RatingSettings", OF_DOCUMENT(settings)),
+    EO_KEY("standards", "[text]", "with their editions and methods", OF_DOCUMENT(standards)),
+    EO_KEY("unchecked", "[text]", "what no published report has confirmed", OF_DOCUMENT(unchecked)),
+    EO_KEY("verdict", "object", "what may be signed", .outline = &verdict, OF_DOCUMENT(verdict)),
+    EO_KEY("pair", "object?", "what no load changes; null when it is not rated", .outline = &basis,
+           OF_DOCUMENT(basis[EO_LEFT])),
+    EO_KEY("right_pair", "object?", "the same of the right end", .outline = &basis, .when = EO_UNEVEN,
+           OF_DOCUMENT(basis[EO_RIGHT]), EO_IF(struct rating, uneven)),
+    EO_KEY("load_cases", "[object]?", "in the order of the design; null when it is not rated", .outline = &rated_case,
+           OF_DOCUMENT(cases)),
     EO_KEY("spectrum", "object?", "all load cases together, ISO 6336-6; null when it is not rated",
-           .outline = &spectrum),
+           .outline = &spectrum, OF_DOCUMENT(spectrum)),
 };
 const struct eo_outline eo_outline_rating = EO_OUTLINE("Rating", rating_rows);
 
 static json_t *encode_cases(const struct eo_result_source *source)
 {
-  json_t *cases = json_array();
-  for (int k = 0; k < source->evaluation->cases && cases; k++)
-    if (json_array_append_new(cases, encode_rated_case(source, k)) != 0) {
-      json_decref(cases);
-      cases = NULL;
-    }
-  return cases;
+  struct eo_object cases = eo_list_open();
+  for (int k = 0; k < source->evaluation->cases; k++)
+    eo_list_add(&cases, encode_rated_case(source, k));
+  return eo_object_close(&cases);
 }
 
 json_t *eo_result_rating(const struct eo_result_source *source)
@@ -481,18 +498,17 @@ json_t *eo_result_rating(const struct eo_result_source *source)
   if (!(source->analysis->want & EO_WANT_RATING))
     return json_null();
   bool new = source->design->rating.edition == EO_ISO6336_2019;
-  struct eo_object object = eo_object_open_as(&eo_outline_rating);
-  eo_object_put(&object, "outcome", json_string(outcomes[rating->rated ? 0 : 1]));
-  eo_object_put(&object, "reason", rating->rated ? json_null() : json_string(rating->reason.text));
-  eo_object_put(&object, "settings", eo_table_encode(&eo_rating_table, &source->design->rating));
-  eo_object_put(&object, "standards", texts_of(new ? standards_2019 : standards_2006));
-  eo_object_put(&object, "unchecked", texts_of(new ? unchecked_2019 : unchecked_2006));
-  eo_object_put(&object, "verdict", eo_outline_encode(&verdict, rating));
-  eo_object_put(&object, "pair", rating->rated ? eo_outline_encode(&basis, &rating->basis[EO_LEFT]) : json_null());
-  if (source->pair->right)
-    eo_object_put(&object, "right_pair",
-                  rating->rated ? eo_outline_encode(&basis, &rating->basis[EO_RIGHT]) : json_null());
-  eo_object_put(&object, "load_cases", rating->rated ? encode_cases(source) : json_null());
-  eo_object_put(&object, "spectrum", rating->rated ? encode_spectrum(source) : json_null());
-  return eo_object_close(&object);
+  bool rated = rating->rated;
+  struct rating view = {.uneven = source->pair->right,
+                        .outcome = rated ? 0 : 1,
+                        .reason = rated ? "" : rating->reason.text,
+                        .settings = eo_table_encode(&eo_rating_table, &source->design->rating),
+                        .standards = texts_of(new ? standards_2019 : standards_2006),
+                        .unchecked = texts_of(new ? unchecked_2019 : unchecked_2006),
+                        .verdict = eo_outline_encode(&verdict, rating),
+                        .cases = rated ? encode_cases(source) : json_null(),
+                        .spectrum = rated ? encode_spectrum(source) : json_null()};
+  for (int half = 0; half < eo_pair_halves(source->pair); half++)
+    view.basis[half] = rated ? eo_outline_encode(&basis, &rating->basis[half]) : json_null();
+  return eo_outline_encode(&eo_outline_rating, &view);
 }

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "format/json.h"
@@ -11,70 +12,59 @@
 
 #include <config.h>
 
-/* One column: its place in the document (a slash opens an object), its heading in CSV, its member. */
+/* One column of the CSV: its heading, its member. */
 struct column {
-  const char *path, *heading;
+  const char *heading;
   size_t offset;
   const struct eo_unit *unit;
   int end; /* -1: of the pair */
 };
 
-#define AT_TORQUE(path_, heading_, member, unit_, end_)                    \
-  {                                                                        \
-    path_, heading_, offsetof(struct eo_sweep_torque, member), unit_, end_ \
+#define AT_TORQUE(heading_, member, unit_, end_)                    \
+  {                                                                 \
+    heading_, offsetof(struct eo_sweep_torque, member), unit_, end_ \
   }
 static const struct column torque_columns[] = {
-    AT_TORQUE("peak_to_peak_um", "peak_to_peak_um", peak_to_peak, &eo_unit_um, -1),
-    AT_TORQUE("mean_um", "mean_um", mean, &eo_unit_um, -1),
-    AT_TORQUE("left/stiffness_N_per_um", "left_stiffness_N_per_um", stiffness[0], &eo_unit_N_per_um, 0),
-    AT_TORQUE("left/tangent_stiffness_N_per_um", "left_tangent_stiffness_N_per_um", tangent[0], &eo_unit_N_per_um, 0),
-    AT_TORQUE("left/max_pressure_MPa", "left_max_pressure_MPa", max_pressure[0], &eo_unit_MPa, 0),
-    AT_TORQUE("left/max_line_load_N_per_mm", "left_max_line_load_N_per_mm", max_line_load[0], &eo_unit_N_per_mm, 0),
-    AT_TORQUE("left/edge_load_share", "left_edge_load_share", edge_share[0], NULL, 0),
-    AT_TORQUE("right/stiffness_N_per_um", "right_stiffness_N_per_um", stiffness[1], &eo_unit_N_per_um, 1),
-    AT_TORQUE("right/tangent_stiffness_N_per_um", "right_tangent_stiffness_N_per_um", tangent[1], &eo_unit_N_per_um, 1),
-    AT_TORQUE("right/max_pressure_MPa", "right_max_pressure_MPa", max_pressure[1], &eo_unit_MPa, 1),
-    AT_TORQUE("right/max_line_load_N_per_mm", "right_max_line_load_N_per_mm", max_line_load[1], &eo_unit_N_per_mm, 1),
-    AT_TORQUE("right/edge_load_share", "right_edge_load_share", edge_share[1], NULL, 1),
+    AT_TORQUE("peak_to_peak_um", peak_to_peak, &eo_unit_um, -1),
+    AT_TORQUE("mean_um", mean, &eo_unit_um, -1),
+    AT_TORQUE("left_stiffness_N_per_um", stiffness[0], &eo_unit_N_per_um, 0),
+    AT_TORQUE("left_tangent_stiffness_N_per_um", tangent[0], &eo_unit_N_per_um, 0),
+    AT_TORQUE("left_max_pressure_MPa", max_pressure[0], &eo_unit_MPa, 0),
+    AT_TORQUE("left_max_line_load_N_per_mm", max_line_load[0], &eo_unit_N_per_mm, 0),
+    AT_TORQUE("left_edge_load_share", edge_share[0], NULL, 0),
+    AT_TORQUE("right_stiffness_N_per_um", stiffness[1], &eo_unit_N_per_um, 1),
+    AT_TORQUE("right_tangent_stiffness_N_per_um", tangent[1], &eo_unit_N_per_um, 1),
+    AT_TORQUE("right_max_pressure_MPa", max_pressure[1], &eo_unit_MPa, 1),
+    AT_TORQUE("right_max_line_load_N_per_mm", max_line_load[1], &eo_unit_N_per_mm, 1),
+    AT_TORQUE("right_edge_load_share", edge_share[1], NULL, 1),
 };
 enum { TORQUE_COLUMNS = sizeof torque_columns / sizeof *torque_columns };
 
-#define AT_POINT(path_, heading_, member, unit_, end_)                    \
-  {                                                                       \
-    path_, heading_, offsetof(struct eo_sweep_point, member), unit_, end_ \
+#define AT_POINT(heading_, member, unit_, end_)                    \
+  {                                                                \
+    heading_, offsetof(struct eo_sweep_point, member), unit_, end_ \
   }
 static const struct column point_columns[] = {
-    AT_POINT("rms_m_per_s2/normal", "rms_normal_m_per_s2", rms_pair[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_m_per_s2/transverse", "rms_transverse_m_per_s2", rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2,
-             -1),
-    AT_POINT("rms_m_per_s2/rotational", "rms_rotational_m_per_s2", rms_pair[EO_READING_ROTATIONAL], &eo_unit_m_per_s2,
-             -1),
-    AT_POINT("rms_of_mean_m_per_s2/normal", "rms_of_mean_normal_m_per_s2", rms_of_mean[EO_READING_NORMAL],
-             &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_of_mean_m_per_s2/transverse", "rms_of_mean_transverse_m_per_s2", rms_of_mean[EO_READING_TRANSVERSE],
-             &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_of_mean_m_per_s2/rotational", "rms_of_mean_rotational_m_per_s2", rms_of_mean[EO_READING_ROTATIONAL],
-             &eo_unit_m_per_s2, -1),
-    AT_POINT("left/impact_force_N", "left_impact_force_N", impact[0], &eo_unit_N, 0),
-    AT_POINT("left/rms_m_per_s2/normal", "left_rms_normal_m_per_s2", rms[EO_READING_NORMAL][0], &eo_unit_m_per_s2, 0),
-    AT_POINT("left/rms_m_per_s2/transverse", "left_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][0],
-             &eo_unit_m_per_s2, 0),
-    AT_POINT("left/rms_m_per_s2/rotational", "left_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][0],
-             &eo_unit_m_per_s2, 0),
-    AT_POINT("left/dynamic_factor", "left_dynamic_factor", dynamic_factor[0], NULL, 0),
-    AT_POINT("left/contact_loss", "left_contact_loss", contact_loss[0], NULL, 0),
-    AT_POINT("right/impact_force_N", "right_impact_force_N", impact[1], &eo_unit_N, 1),
-    AT_POINT("right/rms_m_per_s2/normal", "right_rms_normal_m_per_s2", rms[EO_READING_NORMAL][1], &eo_unit_m_per_s2, 1),
-    AT_POINT("right/rms_m_per_s2/transverse", "right_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][1],
-             &eo_unit_m_per_s2, 1),
-    AT_POINT("right/rms_m_per_s2/rotational", "right_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][1],
-             &eo_unit_m_per_s2, 1),
-    AT_POINT("right/dynamic_factor", "right_dynamic_factor", dynamic_factor[1], NULL, 1),
-    AT_POINT("right/contact_loss", "right_contact_loss", contact_loss[1], NULL, 1),
+    AT_POINT("rms_normal_m_per_s2", rms_pair[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_transverse_m_per_s2", rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_rotational_m_per_s2", rms_pair[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_normal_m_per_s2", rms_of_mean[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_transverse_m_per_s2", rms_of_mean[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_rotational_m_per_s2", rms_of_mean[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("left_impact_force_N", impact[0], &eo_unit_N, 0),
+    AT_POINT("left_rms_normal_m_per_s2", rms[EO_READING_NORMAL][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left_dynamic_factor", dynamic_factor[0], NULL, 0),
+    AT_POINT("left_contact_loss", contact_loss[0], NULL, 0),
+    AT_POINT("right_impact_force_N", impact[1], &eo_unit_N, 1),
+    AT_POINT("right_rms_normal_m_per_s2", rms[EO_READING_NORMAL][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right_dynamic_factor", dynamic_factor[1], NULL, 1),
+    AT_POINT("right_contact_loss", contact_loss[1], NULL, 1),
 };
 enum { POINT_COLUMNS = sizeof point_columns / sizeof *point_columns };
-
-static const char *const variant_name[EO_SWEEP_VARIANTS] = {"modified", "unmodified"};
 
 static const char *const outcome_names[] = {"converged", "contact_lost", "not_converged", NULL};
 
@@ -90,218 +80,256 @@ static double member_of(const void *row, const struct column *column)
   return value;
 }
 
+/* Rows of a sweep as one end has them: members that are arrays by end, moved so that the first is its own. */
+struct end_rows {
+  int count;
+  const void *row;
+};
+
+static struct end_rows rows_of_end(int count, const void *row, int end)
+{
+  return (struct end_rows){count, (const char *)row + (size_t)end * sizeof(double)};
+}
+
+#define OF_TORQUE_END(name) EO_COLUMN_AT(struct end_rows, row, count, struct eo_sweep_torque, name[EO_LEFT])
 static const struct eo_outline_row torque_end_rows[] = {
     EO_KEY("stiffness_N_per_um", "[number?]", "mean mesh stiffness, load over approach, normal",
-           .unit = &eo_unit_N_per_um),
-    EO_KEY("tangent_stiffness_N_per_um", "[number?]", "the same, tangent", .unit = &eo_unit_N_per_um),
-    EO_KEY("max_pressure_MPa", "[number?]", "largest contact pressure", .unit = &eo_unit_MPa),
-    EO_KEY("max_line_load_N_per_mm", "[number?]", "largest load per length of contact line", .unit = &eo_unit_N_per_mm),
-    EO_KEY("edge_load_share", "[number?]", "largest share of the load on tip edges"),
+           .unit = &eo_unit_N_per_um, OF_TORQUE_END(stiffness)),
+    EO_KEY("tangent_stiffness_N_per_um", "[number?]", "the same, tangent", .unit = &eo_unit_N_per_um,
+           OF_TORQUE_END(tangent)),
+    EO_KEY("max_pressure_MPa", "[number?]", "largest contact pressure", .unit = &eo_unit_MPa,
+           OF_TORQUE_END(max_pressure)),
+    EO_KEY("max_line_load_N_per_mm", "[number?]", "largest load per length of contact line", .unit = &eo_unit_N_per_mm,
+           OF_TORQUE_END(max_line_load)),
+    EO_KEY("edge_load_share", "[number?]", "largest share of the load on tip edges", OF_TORQUE_END(edge_share)),
 };
 static const struct eo_outline torque_end = EO_OUTLINE("SweepTorqueEnd", torque_end_rows);
 
+struct torques {
+  bool two;
+  int count;
+  const struct eo_sweep_torque *row;
+  struct end_rows end[2];
+};
+
+#define OF_TORQUES(name) EO_COLUMN_AT(struct torques, row, count, struct eo_sweep_torque, name)
 static const struct eo_outline_row by_torque_rows[] = {
-    EO_KEY("peak_to_peak_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um),
-    EO_KEY("mean_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um),
-    EO_KEY("left", "object", "left end", .outline = &torque_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &torque_end),
-    EO_KEY("contact_failures", "[integer]", "mesh positions at which the loaded contact did not converge"),
+    EO_KEY("peak_to_peak_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um,
+           OF_TORQUES(peak_to_peak)),
+    EO_KEY("mean_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um, OF_TORQUES(mean)),
+    EO_KEY("left", "object", "left end", .outline = &torque_end, EO_AT(struct torques, end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &torque_end,
+           EO_AT(struct torques, end[EO_RIGHT]), EO_IF(struct torques, two)),
+    EO_KEY("contact_failures", "[integer]", "mesh positions at which the loaded contact did not converge",
+           OF_TORQUES(contact_failures)),
 };
 static const struct eo_outline by_torque = EO_OUTLINE("SweepByTorque", by_torque_rows);
 
-static const struct eo_outline_row reading_rows[] = {
-    EO_KEY("normal", "[number?]", "relative acceleration normal to the teeth", .unit = &eo_unit_m_per_s2),
-    EO_KEY("transverse", "[number?]", "in the transverse plane", .unit = &eo_unit_m_per_s2),
-    EO_KEY("rotational", "[number?]", "of the rotations alone", .unit = &eo_unit_m_per_s2),
-};
+/* Readings of every point, one behind the other; of an end, whose readings lie two apart. */
+#define OF_READINGS(reading, apart)                                                                           \
+  .offset = offsetof(struct end_rows, row), .count_offset = offsetof(struct end_rows, count), .column = true, \
+  .stride = sizeof(struct eo_sweep_point), .column_offset = sizeof(double[apart]) * EO_READING_##reading,     \
+  .member = EO_MEMBER_NUMBER
+#define READING_ROWS(apart)                                                                             \
+  EO_KEY("normal", "[number?]", "relative acceleration normal to the teeth", .unit = &eo_unit_m_per_s2, \
+         OF_READINGS(NORMAL, apart)),                                                                   \
+      EO_KEY("transverse", "[number?]", "in the transverse plane", .unit = &eo_unit_m_per_s2,           \
+             OF_READINGS(TRANSVERSE, apart)),                                                           \
+      EO_KEY("rotational", "[number?]", "of the rotations alone", .unit = &eo_unit_m_per_s2,            \
+             OF_READINGS(ROTATIONAL, apart))
+static const struct eo_outline_row reading_rows[] = {READING_ROWS(1)};
 static const struct eo_outline reading_columns = EO_OUTLINE("SweepReadings", reading_rows);
+static const struct eo_outline_row end_reading_rows[] = {READING_ROWS(2)};
+static const struct eo_outline end_reading_columns = EO_OUTLINE("SweepReadings", end_reading_rows);
 
+struct point_end {
+  struct end_rows own, rms;
+};
+
+#define OF_POINT_END(name) EO_COLUMN_AT(struct point_end, own.row, own.count, struct eo_sweep_point, name[EO_LEFT])
 static const struct eo_outline_row point_end_rows[] = {
-    EO_KEY("impact_force_N", "[number?]", "general entering impact", .unit = &eo_unit_N),
-    EO_KEY("rms_m_per_s2", "object", "RMS of the end", .outline = &reading_columns),
-    EO_KEY("dynamic_factor", "[number?]", "largest over static mesh force"),
-    EO_KEY("contact_loss", "[number?]", "share of the mesh cycle without contact"),
+    EO_KEY("impact_force_N", "[number?]", "general entering impact", .unit = &eo_unit_N, OF_POINT_END(impact)),
+    EO_KEY("rms_m_per_s2", "object", "RMS of the end", .outline = &end_reading_columns, EO_AT(struct point_end, rms)),
+    EO_KEY("dynamic_factor", "[number?]", "largest over static mesh force", OF_POINT_END(dynamic_factor)),
+    EO_KEY("contact_loss", "[number?]", "share of the mesh cycle without contact", OF_POINT_END(contact_loss)),
 };
 static const struct eo_outline point_end = EO_OUTLINE("SweepPointEnd", point_end_rows);
 
+struct points {
+  bool two;
+  int count;
+  const struct eo_sweep_point *row;
+  struct end_rows rms_pair, rms_of_mean;
+  struct point_end end[2];
+};
+
+#define OF_POINTS(name) EO_COLUMN_AT(struct points, row, count, struct eo_sweep_point, name)
 static const struct eo_outline_row point_rows[] = {
     EO_KEY("outcome", "[word]", "not_converged: no periodic state was found, its numbers are null",
-           .words = outcome_names),
-    EO_KEY("rms_m_per_s2", "object", "mean of the ends' RMS", .outline = &reading_columns),
-    EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &reading_columns),
-    EO_KEY("left", "object", "left end", .outline = &point_end),
-    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &point_end),
-    EO_KEY("back_contact", "[flag]", "the back flanks touch"),
+           .words = outcome_names, OF_POINTS(outcome)),
+    EO_KEY("rms_m_per_s2", "object", "mean of the ends' RMS", .outline = &reading_columns,
+           EO_AT(struct points, rms_pair)),
+    EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &reading_columns,
+           EO_AT(struct points, rms_of_mean)),
+    EO_KEY("left", "object", "left end", .outline = &point_end, EO_AT(struct points, end[EO_LEFT])),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &point_end,
+           EO_AT(struct points, end[EO_RIGHT]), EO_IF(struct points, two)),
+    EO_KEY("back_contact", "[flag]", "the back flanks touch", OF_POINTS(back_contact)),
 };
 static const struct eo_outline point_outline = EO_OUTLINE("SweepPoints", point_rows);
 
+struct variant {
+  struct torques by_torque;
+  struct points up;
+  json_t *down;
+};
+
 static const struct eo_outline_row variant_rows[] = {
-    EO_KEY("by_torque", "object", "columns over torque_Nm", .outline = &by_torque),
+    EO_KEY("by_torque", "object", "columns over torque_Nm", .outline = &by_torque, EO_AT(struct variant, by_torque)),
     EO_KEY("points", "object",
            "columns over all points, torque by torque: entry i * (number of speeds) + j; upward in speed",
-           .outline = &point_outline),
+           .outline = &point_outline, EO_AT(struct variant, up)),
     EO_KEY("down", "object?", "the same downward in speed; null when both are the same everywhere",
-           .outline = &point_outline),
+           .outline = &point_outline, EO_AT(struct variant, down)),
 };
 static const struct eo_outline variant_outline = EO_OUTLINE("SweepVariant", variant_rows);
 
+struct modes {
+  json_t *frequency, *damping;
+};
+
 static const struct eo_outline_row mode_rows[] = {
-    EO_KEY("frequency_Hz", "[[number?]]", "a row for every torque", .unit = &eo_unit_Hz),
-    EO_KEY("damping_ratio", "[[number?]]", "a row for every torque"),
+    EO_KEY("frequency_Hz", "[[number?]]", "a row for every torque", .unit = &eo_unit_Hz,
+           EO_AT(struct modes, frequency)),
+    EO_KEY("damping_ratio", "[[number?]]", "a row for every torque", EO_AT(struct modes, damping)),
 };
 static const struct eo_outline mode_outline = EO_OUTLINE("SweepModes", mode_rows);
 
+struct crossing {
+  double torque, frequency, speed;
+  int mode, order; /* from 1 */
+};
+struct crossings {
+  int count;
+  struct crossing *row;
+};
+
+#define OF_CROSSING(name) EO_COLUMN_AT(struct crossings, row, count, struct crossing, name)
 static const struct eo_outline_row crossing_rows[] = {
-    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm),
-    EO_KEY("mode", "[integer]", "number of the mode, from 1"),
-    EO_KEY("order", "[integer]", "mesh order, from 1"),
-    EO_KEY("frequency_Hz", "[number]", "of the mode", .unit = &eo_unit_Hz),
-    EO_KEY("speed_rpm", "[number]", "at which they meet", .unit = &eo_unit_rpm),
+    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm, OF_CROSSING(torque)),
+    EO_KEY("mode", "[integer]", "number of the mode, from 1", OF_CROSSING(mode)),
+    EO_KEY("order", "[integer]", "mesh order, from 1", OF_CROSSING(order)),
+    EO_KEY("frequency_Hz", "[number]", "of the mode", .unit = &eo_unit_Hz, OF_CROSSING(frequency)),
+    EO_KEY("speed_rpm", "[number]", "at which they meet", .unit = &eo_unit_rpm, OF_CROSSING(speed)),
 };
 static const struct eo_outline crossing_outline = EO_OUTLINE("SweepCrossings", crossing_rows);
 
+struct sweep {
+  const char *program;
+  char hash[EO_HASH_LENGTH + 1];
+  struct eo_series torque, speed;
+  json_t *design, *variant[EO_SWEEP_VARIANTS], *modes, *crossings, *warnings;
+};
+
 static const struct eo_outline_row sweep_rows[] = {
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("torque_Nm", "[number]", "axis of torques", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "[number]", "axis of speeds", .unit = &eo_unit_rpm),
-    EO_KEY("modified", "object", "the design", .outline = &variant_outline),
-    EO_KEY("unmodified", "object", "without its modification", .outline = &variant_outline),
-    EO_KEY("eigenfrequencies", "object", "damped modes of the design", .outline = &mode_outline),
-    EO_KEY("crossings", "object", "where mesh orders meet eigenfrequencies, as columns", .outline = &crossing_outline),
-    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("program", "text", "name and version", EO_AT(struct sweep, program)),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
+           EO_AT(struct sweep, design)),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design", EO_AT(struct sweep, hash)),
+    EO_KEY("torque_Nm", "[number]", "axis of torques", .unit = &eo_unit_Nm, EO_AT(struct sweep, torque)),
+    EO_KEY("speed_rpm", "[number]", "axis of speeds", .unit = &eo_unit_rpm, EO_AT(struct sweep, speed)),
+    EO_KEY("modified", "object", "the design", .outline = &variant_outline,
+           EO_AT(struct sweep, variant[EO_SWEEP_DESIGN])),
+    EO_KEY("unmodified", "object", "without its modification", .outline = &variant_outline,
+           EO_AT(struct sweep, variant[EO_SWEEP_UNMODIFIED])),
+    EO_KEY("eigenfrequencies", "object", "damped modes of the design", .outline = &mode_outline,
+           EO_AT(struct sweep, modes)),
+    EO_KEY("crossings", "object", "where mesh orders meet eigenfrequencies, as columns", .outline = &crossing_outline,
+           EO_AT(struct sweep, crossings)),
+    EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct sweep, warnings)),
 };
 const struct eo_outline eo_sweep_outline = EO_OUTLINE("Sweep", sweep_rows);
 
-/* Puts a value below the objects that the path names, which are made when missing. */
-static void put_at(struct eo_object *object, const char *path, json_t *value)
+static struct points find_points(const struct eo_sweep *sweep, int variant, int direction)
 {
-  json_t *at = object->json;
-  const char *slash;
-  for (; (slash = strchr(path, '/')); path = slash + 1) {
-    char key[40];
-    snprintf(key, sizeof key, "%.*s", (int)(slash - path), path);
-    if (!json_object_get(at, key))
-      eo_json_put(at, key, json_object(), &object->failed);
-    at = json_object_get(at, key);
-  }
-  eo_json_put(at, path, value, &object->failed);
-}
-
-static void put_columns(struct eo_object *object, const struct eo_sweep *sweep, int columns,
-                        const struct column *column, int rows, const void *row, size_t size)
-{
-  for (int i = 0; i < columns; i++)
-    if (column[i].end < sweep->ends)
-      put_at(object, column[i].path,
-             eo_json_reals(rows, (const double *)(const void *)((const char *)row + column[i].offset),
-                           (int)(size / sizeof(double)), column[i].unit, EO_DIGITS_NUMBER));
-}
-
-static json_t *encode_torques(const struct eo_sweep *sweep, int variant)
-{
-  struct eo_object object = eo_object_open();
-  json_t *failures = json_array();
-  for (int i = 0; i < sweep->torques; i++)
-    object.failed = object.failed ||
-                    json_array_append_new(failures, json_integer(sweep->at_torque[variant][i].contact_failures)) != 0;
-  put_columns(&object, sweep, TORQUE_COLUMNS, torque_columns, sweep->torques, sweep->at_torque[variant],
-              sizeof *sweep->at_torque[variant]);
-  eo_object_put(&object, "contact_failures", failures);
-  return eo_object_close(&object);
-}
-
-static json_t *encode_points(const struct eo_sweep *sweep, int variant, int direction)
-{
-  int points = sweep->torques * sweep->speeds;
-  const struct eo_sweep_point *point = sweep->point[variant][direction];
-  struct eo_object object = eo_object_open();
-  json_t *outcomes = json_array(), *back = json_array();
-  for (int i = 0; i < points && !object.failed; i++)
-    object.failed = json_array_append_new(outcomes, json_string(outcome_of(&point[i]))) != 0 ||
-                    json_array_append_new(back, json_boolean(point[i].back_contact)) != 0;
-  eo_object_put(&object, "outcome", outcomes);
-  put_columns(&object, sweep, POINT_COLUMNS, point_columns, points, point, sizeof *point);
-  eo_object_put(&object, "back_contact", back);
-  return eo_object_close(&object);
+  int count = sweep->torques * sweep->speeds;
+  const struct eo_sweep_point *row = sweep->point[variant][direction];
+  struct points view = {
+      .two = sweep->ends == 2,
+      .count = count,
+      .row = row,
+      .rms_pair = {count, row->rms_pair},
+      .rms_of_mean = {count, row->rms_of_mean},
+  };
+  for (int end = 0; end < sweep->ends; end++)
+    view.end[end] = (struct point_end){rows_of_end(count, row, end), rows_of_end(count, row->rms, end)};
+  return view;
 }
 
 static json_t *encode_variant(const struct eo_sweep *sweep, int variant)
 {
-  struct eo_object object = eo_object_open_as(&variant_outline);
-  eo_object_put(&object, "by_torque", encode_torques(sweep, variant));
-  eo_object_put(&object, "points", encode_points(sweep, variant, EO_SWEEP_UP));
-  eo_object_put(&object, "down", sweep->branches[variant] ? encode_points(sweep, variant, EO_SWEEP_DOWN) : json_null());
-  return eo_object_close(&object);
+  const struct eo_sweep_torque *row = sweep->at_torque[variant];
+  struct variant view = {.by_torque = {.two = sweep->ends == 2, .count = sweep->torques, .row = row},
+                         .up = find_points(sweep, variant, EO_SWEEP_UP),
+                         .down = json_null()};
+  for (int end = 0; end < sweep->ends; end++)
+    view.by_torque.end[end] = rows_of_end(sweep->torques, row, end);
+  if (sweep->branches[variant]) {
+    const struct points down = find_points(sweep, variant, EO_SWEEP_DOWN);
+    view.down = eo_outline_encode(&point_outline, &down);
+  }
+  return eo_outline_encode(&variant_outline, &view);
 }
 
 static json_t *encode_modes(const struct eo_sweep *sweep)
 {
-  struct eo_object object = eo_object_open_as(&mode_outline);
-  json_t *frequencies = json_array(), *ratios = json_array();
-  for (int i = 0; i < sweep->torques && !object.failed; i++) {
+  struct eo_object frequencies = eo_list_open(), ratios = eo_list_open();
+  for (int i = 0; i < sweep->torques; i++) {
     const struct eo_dynamics_modes *modes = &sweep->at_torque[EO_SWEEP_DESIGN][i].modes;
-    object.failed =
-        json_array_append_new(frequencies,
-                              eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
-        json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
+    eo_list_add(&frequencies, eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER));
+    eo_list_add(&ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER));
   }
-  eo_object_put(&object, "frequency_Hz", frequencies);
-  eo_object_put(&object, "damping_ratio", ratios);
-  return eo_object_close(&object);
+  const struct modes view = {eo_object_close(&frequencies), eo_object_close(&ratios)};
+  return eo_outline_encode(&mode_outline, &view);
 }
 
 /* Modes count from 1, like orders. */
 static json_t *encode_crossings(const struct eo_sweep *sweep)
 {
-  struct eo_object object = eo_object_open_as(&crossing_outline);
-  json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(),
-         *speed = json_array();
-  for (int i = 0; i < sweep->crossings && !object.failed; i++) {
-    const struct eo_sweep_crossing *crossing = &sweep->crossing[i];
-    object.failed = json_array_append_new(torque, eo_json_quantity(sweep->torque[crossing->torque], &eo_unit_Nm)) !=
-                        0 ||
-                    json_array_append_new(mode, json_integer(crossing->mode + 1)) != 0 ||
-                    json_array_append_new(order, json_integer(crossing->order)) != 0 ||
-                    json_array_append_new(frequency, eo_json_quantity(crossing->frequency, &eo_unit_Hz)) != 0 ||
-                    json_array_append_new(speed, eo_json_quantity(crossing->speed, &eo_unit_rpm)) != 0;
+  struct crossings view = {sweep->crossings, malloc(sizeof *view.row * ((size_t)sweep->crossings + 1))};
+  for (int i = 0; i < sweep->crossings && view.row; i++) {
+    const struct eo_sweep_crossing *found = &sweep->crossing[i];
+    view.row[i] = (struct crossing){sweep->torque[found->torque], found->frequency, found->speed, found->mode + 1,
+                                    found->order};
   }
-  eo_object_put(&object, "torque_Nm", torque);
-  eo_object_put(&object, "mode", mode);
-  eo_object_put(&object, "order", order);
-  eo_object_put(&object, "frequency_Hz", frequency);
-  eo_object_put(&object, "speed_rpm", speed);
-  return eo_object_close(&object);
+  json_t *encoded = view.row ? eo_outline_encode(&crossing_outline, &view) : NULL;
+  free(view.row);
+  return encoded;
 }
 
 static json_t *encode_warnings(const struct eo_warnings *warnings)
 {
-  json_t *list = json_array();
-  for (int i = 0; warnings && i < warnings->count && list; i++)
-    if (json_array_append_new(list, json_string(warnings->text[i])) != 0) {
-      json_decref(list);
-      list = NULL;
-    }
-  return list;
+  struct eo_object list = eo_list_open();
+  for (int i = 0; warnings && i < warnings->count; i++)
+    eo_list_add(&list, json_string(warnings->text[i]));
+  return eo_object_close(&list);
 }
 
 json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design,
                         const struct eo_warnings *warnings)
 {
-  char hash[EO_HASH_LENGTH + 1];
-  struct eo_object object = eo_object_open_as(&eo_sweep_outline);
-  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&object, "design", eo_design_encode(design));
-  eo_object_put(&object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&object, "torque_Nm", eo_json_reals(sweep->torques, sweep->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
-  eo_object_put(&object, "speed_rpm", eo_json_reals(sweep->speeds, sweep->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
+  struct sweep view = {.program = PACKAGE_STRING,
+                       .torque = eo_series_of(sweep->torques, sweep->torque, EO_DIGITS_NUMBER),
+                       .speed = eo_series_of(sweep->speeds, sweep->speed, EO_DIGITS_NUMBER)};
+  if (eo_design_hash(design, view.hash, NULL))
+    return NULL;
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    eo_object_put(&object, variant_name[v], encode_variant(sweep, v));
-  eo_object_put(&object, "eigenfrequencies", encode_modes(sweep));
-  eo_object_put(&object, "crossings", encode_crossings(sweep));
-  eo_object_put(&object, "warnings", encode_warnings(warnings));
-  return eo_object_close(&object);
+    view.variant[v] = encode_variant(sweep, v);
+  view.design = eo_design_encode(design);
+  view.modes = encode_modes(sweep);
+  view.crossings = encode_crossings(sweep);
+  view.warnings = encode_warnings(warnings);
+  return eo_outline_encode(&eo_sweep_outline, &view);
 }
 
 void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,

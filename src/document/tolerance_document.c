@@ -12,100 +12,168 @@
 
 #include <config.h>
 
+struct input {
+  const char *key;
+  char words[120];
+  double nominal, mean, deviation;
+};
+
 static const struct eo_outline_row input_rows[] = {
-    EO_KEY("key", "text", "what scatters"),
-    EO_KEY("distribution", "text", "of the deviation, in words"),
-    EO_KEY("nominal", "number", "in the unit of the key, as all below"),
-    EO_KEY("mean", "number", "of the distribution"),
-    EO_KEY("deviation", "number", "standard deviation, of what is drawn"),
+    EO_KEY("key", "text", "what scatters", EO_AT(struct input, key)),
+    EO_KEY("distribution", "text", "of the deviation, in words", EO_AT(struct input, words)),
+    EO_KEY("nominal", "number", "in the unit of the key, as all below", EO_AT(struct input, nominal)),
+    EO_KEY("mean", "number", "of the distribution", EO_AT(struct input, mean)),
+    EO_KEY("deviation", "number", "standard deviation, of what is drawn", EO_AT(struct input, deviation)),
 };
 static const struct eo_outline input_outline = EO_OUTLINE("ScatterInput", input_rows);
 
 static const struct eo_outline_row percentile_rows[] = {
-    EO_KEY("percent", "number", "0 .. 100"),
-    EO_KEY("value", "number", "by linear interpolation of the sorted values (type 7)"),
-    EO_KEY("low", "number?", "95 % interval by the ranks, whatever the distribution; null: open"),
-    EO_KEY("high", "number?", "the other end"),
+    EO_KEY("percent", "number", "0 .. 100", EO_AT(struct eo_report_percentile, percent)),
+    EO_KEY("value", "number", "by linear interpolation of the sorted values (type 7)",
+           EO_AT(struct eo_report_percentile, value)),
+    EO_KEY("low", "number?", "95 % interval by the ranks, whatever the distribution; null: open",
+           EO_AT(struct eo_report_percentile, low)),
+    EO_KEY("high", "number?", "the other end", EO_AT(struct eo_report_percentile, high)),
 };
 static const struct eo_outline percentile_outline = EO_OUTLINE("ScatterPercentile", percentile_rows);
 
+struct histogram {
+  double least, largest;
+  json_t *count;
+};
+
 static const struct eo_outline_row histogram_rows[] = {
-    EO_KEY("least", "number", "least value"),
-    EO_KEY("largest", "number", "largest value"),
-    EO_KEY("count", "[integer]", "pairs in equal parts of that range"),
+    EO_KEY("least", "number", "least value", EO_AT(struct histogram, least)),
+    EO_KEY("largest", "number", "largest value", EO_AT(struct histogram, largest)),
+    EO_KEY("count", "[integer]", "pairs in equal parts of that range", EO_AT(struct histogram, count)),
 };
 static const struct eo_outline histogram_outline = EO_OUTLINE("ScatterHistogram", histogram_rows);
 
+struct influence {
+  const char *key;
+  struct eo_report_influence found;
+};
+
 static const struct eo_outline_row influence_rows[] = {
-    EO_KEY("key", "text", "of the input"),
+    EO_KEY("key", "text", "of the input", EO_AT(struct influence, key)),
     EO_KEY("coefficient", "number?",
-           "standardised regression: change in deviations of the output per deviation of the input"),
-    EO_KEY("first", "number?", "first Sobol index of the surface: share of the variance that the input has alone"),
-    EO_KEY("total", "number?", "total Sobol index: with what it has in common with others"),
+           "standardised regression: change in deviations of the output per deviation of the input",
+           EO_AT(struct influence, found.coefficient)),
+    EO_KEY("first", "number?", "first Sobol index of the surface: share of the variance that the input has alone",
+           EO_AT(struct influence, found.first)),
+    EO_KEY("total", "number?", "total Sobol index: with what it has in common with others",
+           EO_AT(struct influence, found.total)),
 };
 static const struct eo_outline influence_outline = EO_OUTLINE("ScatterInfluence", influence_rows);
 
+struct output {
+  const char *key;
+  int load_case, rows, largest;
+  double nominal, mean, deviation, r2, r2_adjusted, q2, residual;
+  struct eo_series mean_interval, deviation_interval;
+  struct histogram histogram;
+  json_t *percentiles, *influences;
+};
+
 static const struct eo_outline_row output_rows[] = {
-    EO_KEY("key", "text", "what is counted; the unit stands in it"),
-    EO_KEY("load_case", "integer", "from 1"),
-    EO_KEY("rows", "integer", "pairs that have this number"),
-    EO_KEY("nominal", "number?", "of the design as drawn"),
-    EO_KEY("mean", "number", "over the pairs"),
-    EO_KEY("mean_interval", "[number]", "95 %, bootstrap"),
-    EO_KEY("std", "number", "standard deviation"),
-    EO_KEY("std_interval", "[number]", "95 %, bootstrap"),
-    EO_KEY("percentiles", "[object]", "of the pairs", .outline = &percentile_outline),
-    EO_KEY("histogram", "object", "25 parts", .outline = &histogram_outline),
-    EO_KEY("R2", "number?", "share of the variance that the linear regression explains"),
-    EO_KEY("R2_adjusted", "number?", "the same for the number of inputs"),
-    EO_KEY("Q2", "number?", "of the quadratic surface, with each pair left out of its own fit: 1 carries all"),
-    EO_KEY("surface_error", "number?", "root mean square error of the surface, the same way, in the output's unit"),
-    EO_KEY("influences", "[object]", "inputs, those that decide first", .outline = &influence_outline),
-    EO_KEY("largest_pair", "integer", "number of the pair with the largest value, from 1"),
+    EO_KEY("key", "text", "what is counted; the unit stands in it", EO_AT(struct output, key)),
+    EO_KEY("load_case", "integer", "from 1", EO_AT(struct output, load_case)),
+    EO_KEY("rows", "integer", "pairs that have this number", EO_AT(struct output, rows)),
+    EO_KEY("nominal", "number?", "of the design as drawn", EO_AT(struct output, nominal)),
+    EO_KEY("mean", "number", "over the pairs", EO_AT(struct output, mean)),
+    EO_KEY("mean_interval", "[number]", "95 %, bootstrap", EO_AT(struct output, mean_interval)),
+    EO_KEY("std", "number", "standard deviation", EO_AT(struct output, deviation)),
+    EO_KEY("std_interval", "[number]", "95 %, bootstrap", EO_AT(struct output, deviation_interval)),
+    EO_KEY("percentiles", "[object]", "of the pairs", .outline = &percentile_outline,
+           EO_AT(struct output, percentiles)),
+    EO_KEY("histogram", "object", "25 parts", .outline = &histogram_outline, EO_AT(struct output, histogram)),
+    EO_KEY("R2", "number?", "share of the variance that the linear regression explains", EO_AT(struct output, r2)),
+    EO_KEY("R2_adjusted", "number?", "the same for the number of inputs", EO_AT(struct output, r2_adjusted)),
+    EO_KEY("Q2", "number?", "of the quadratic surface, with each pair left out of its own fit: 1 carries all",
+           EO_AT(struct output, q2)),
+    EO_KEY("surface_error", "number?", "root mean square error of the surface, the same way, in the output's unit",
+           EO_AT(struct output, residual)),
+    EO_KEY("influences", "[object]", "inputs, those that decide first", .outline = &influence_outline,
+           EO_AT(struct output, influences)),
+    EO_KEY("largest_pair", "integer", "number of the pair with the largest value, from 1",
+           EO_AT(struct output, largest)),
 };
 static const struct eo_outline output_outline = EO_OUTLINE("ScatterOutput", output_rows);
 
+struct yield {
+  const char *output;
+  double load_case, most, fraction;
+  int inside, pairs;
+  json_t *exact, *wilson;
+};
+
 static const struct eo_outline_row yield_rows[] = {
-    EO_KEY("output", "text?", "null: all limits together"),
-    EO_KEY("load_case", "integer?", "null: every one"),
-    EO_KEY("at_most", "number?", "the limit"),
-    EO_KEY("inside", "integer", "pairs that meet it; without a number a pair does not"),
-    EO_KEY("pairs", "integer", "of so many"),
-    EO_KEY("fraction", "number", "the yield"),
-    EO_KEY("clopper_pearson", "[number]", "95 % interval that never covers less"),
-    EO_KEY("wilson", "[number]", "95 % interval, shorter"),
+    EO_KEY("output", "text?", "null: all limits together", EO_AT(struct yield, output)),
+    EO_KEY("load_case", "integer?", "null: every one", EO_AT(struct yield, load_case)),
+    EO_KEY("at_most", "number?", "the limit", EO_AT(struct yield, most)),
+    EO_KEY("inside", "integer", "pairs that meet it; without a number a pair does not", EO_AT(struct yield, inside)),
+    EO_KEY("pairs", "integer", "of so many", EO_AT(struct yield, pairs)),
+    EO_KEY("fraction", "number", "the yield", EO_AT(struct yield, fraction)),
+    EO_KEY("clopper_pearson", "[number]", "95 % interval that never covers less", EO_AT(struct yield, exact)),
+    EO_KEY("wilson", "[number]", "95 % interval, shorter", EO_AT(struct yield, wilson)),
 };
 static const struct eo_outline yield_outline = EO_OUTLINE("ScatterYield", yield_rows);
 
+struct correlation {
+  int load_case;
+  json_t *keys, *pearson, *spearman;
+};
+
 static const struct eo_outline_row correlation_rows[] = {
-    EO_KEY("load_case", "integer", "that with the largest share"),
-    EO_KEY("keys", "[text]", "outputs"),
-    EO_KEY("pearson", "[[number?]]", "a row for each of them"),
-    EO_KEY("spearman", "[[number?]]", "of ranks"),
+    EO_KEY("load_case", "integer", "that with the largest share", EO_AT(struct correlation, load_case)),
+    EO_KEY("keys", "[text]", "outputs", EO_AT(struct correlation, keys)),
+    EO_KEY("pearson", "[[number?]]", "a row for each of them", EO_AT(struct correlation, pearson)),
+    EO_KEY("spearman", "[[number?]]", "of ranks", EO_AT(struct correlation, spearman)),
 };
 static const struct eo_outline correlation_outline = EO_OUTLINE("ScatterCorrelation", correlation_rows);
 
+struct worst {
+  int pair;
+  const char *output;
+  struct eo_series inputs;
+  json_t *design;
+};
+
 static const struct eo_outline_row worst_rows[] = {
-    EO_KEY("pair", "integer", "from 1"),
-    EO_KEY("output", "text", "the number by which it is the worst"),
-    EO_KEY("inputs", "[number]", "in the order of inputs, in the units of their keys"),
-    EO_KEY("design", "object", "this pair as a design", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("pair", "integer", "from 1", EO_AT(struct worst, pair)),
+    EO_KEY("output", "text", "the number by which it is the worst", EO_AT(struct worst, output)),
+    EO_KEY("inputs", "[number]", "in the order of inputs, in the units of their keys", EO_AT(struct worst, inputs)),
+    EO_KEY("design", "object", "this pair as a design", .table = &eo_design_table, .name = "ResolvedDesign",
+           EO_AT(struct worst, design)),
 };
 static const struct eo_outline worst_outline = EO_OUTLINE("ScatterWorst", worst_rows);
 
+struct tolerance {
+  const char *program;
+  char hash[EO_HASH_LENGTH + 1];
+  int pairs, failed, bounded;
+  json_t *design, *inputs, *outputs, *yields, *correlation, *worst, *warnings;
+};
+
 static const struct eo_outline_row tolerance_rows[] = {
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("pairs", "integer", "drawn"),
-    EO_KEY("failed", "integer", "of them without a converged contact at the first load case"),
-    EO_KEY("bounded", "integer", "drawn values that met a bound of their key and were put there"),
-    EO_KEY("inputs", "[object]", "what scatters", .outline = &input_outline),
-    EO_KEY("outputs", "[object]", "numbers of every load case", .outline = &output_outline),
-    EO_KEY("yields", "[object]", "against the limits; the last row: all of them", .outline = &yield_outline),
-    EO_KEY("correlation", "object", "between the numbers of one load case", .outline = &correlation_outline),
-    EO_KEY("worst", "object", "the worst pair", .outline = &worst_outline),
-    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("program", "text", "name and version", EO_AT(struct tolerance, program)),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
+           EO_AT(struct tolerance, design)),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design", EO_AT(struct tolerance, hash)),
+    EO_KEY("pairs", "integer", "drawn", EO_AT(struct tolerance, pairs)),
+    EO_KEY("failed", "integer", "of them without a converged contact at the first load case",
+           EO_AT(struct tolerance, failed)),
+    EO_KEY("bounded", "integer", "drawn values that met a bound of their key and were put there",
+           EO_AT(struct tolerance, bounded)),
+    EO_KEY("inputs", "[object]", "what scatters", .outline = &input_outline, EO_AT(struct tolerance, inputs)),
+    EO_KEY("outputs", "[object]", "numbers of every load case", .outline = &output_outline,
+           EO_AT(struct tolerance, outputs)),
+    EO_KEY("yields", "[object]", "against the limits; the last row: all of them", .outline = &yield_outline,
+           EO_AT(struct tolerance, yields)),
+    EO_KEY("correlation", "object", "between the numbers of one load case", .outline = &correlation_outline,
+           EO_AT(struct tolerance, correlation)),
+    EO_KEY("worst", "object", "the worst pair", .outline = &worst_outline, EO_AT(struct tolerance, worst)),
+    EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct tolerance, warnings)),
 };
 const struct eo_outline eo_tolerance_outline = EO_OUTLINE("Tolerance", tolerance_rows);
 
@@ -120,132 +188,95 @@ static json_t *two(double from, double to)
   return eo_json_reals(2, both, 1, NULL, EO_DIGITS_NUMBER);
 }
 
-/* Appends; false, and the list is gone, without memory. */
-static bool append(json_t **list, json_t *value)
-{
-  if (*list && json_array_append_new(*list, value) == 0)
-    return true;
-  json_decref(*list);
-  *list = NULL;
-  return false;
-}
-
 static json_t *encode_inputs(const struct eo_tolerance_report *report)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < report->scatter->inputs; i++) {
-    const struct eo_scatter_input *input = &report->scatter->input[i];
+    const struct eo_scatter_input *found = &report->scatter->input[i];
     struct eo_moments moments = eo_scatter_moments(report->scatter, i);
-    struct eo_object object = eo_object_open_as(&input_outline);
-    char words[120];
-    eo_scatter_words(input, words, sizeof words);
-    eo_object_put(&object, "key", json_string(input->key));
-    eo_object_put(&object, "distribution", json_string(words));
-    eo_object_put(&object, "nominal", number(input->nominal));
-    eo_object_put(&object, "mean", number(moments.mean));
-    eo_object_put(&object, "deviation", number(moments.deviation));
-    if (!append(&list, eo_object_close(&object)))
-      break;
+    struct input view = {
+        .key = found->key, .nominal = found->nominal, .mean = moments.mean, .deviation = moments.deviation};
+    eo_scatter_words(found, view.words, sizeof view.words);
+    eo_list_add(&list, eo_outline_encode(&input_outline, &view));
   }
-  return list;
+  return eo_object_close(&list);
 }
 
 static json_t *encode_percentiles(const struct eo_output_report *report)
 {
-  json_t *list = json_array();
-  for (int i = 0; i < EO_REPORT_PERCENTS; i++) {
-    const struct eo_report_percentile *percentile = &report->percentile[i];
-    struct eo_object object = eo_object_open_as(&percentile_outline);
-    eo_object_put(&object, "percent", number(percentile->percent));
-    eo_object_put(&object, "value", number(percentile->value));
-    eo_object_put(&object, "low", number(percentile->low));
-    eo_object_put(&object, "high", number(percentile->high));
-    if (!append(&list, eo_object_close(&object)))
-      break;
-  }
-  return list;
+  struct eo_object list = eo_list_open();
+  for (int i = 0; i < EO_REPORT_PERCENTS; i++)
+    eo_list_add(&list, eo_outline_encode(&percentile_outline, &report->percentile[i]));
+  return eo_object_close(&list);
 }
 
-static json_t *encode_histogram(const struct eo_output_report *report)
+static struct histogram find_histogram(const struct eo_output_report *report)
 {
-  struct eo_object object = eo_object_open_as(&histogram_outline);
-  json_t *counts = json_array();
+  struct eo_object counts = eo_list_open();
   for (int i = 0; i < EO_REPORT_BINS; i++)
-    if (!append(&counts, json_integer(report->count[i])))
-      break;
-  eo_object_put(&object, "least", number(report->summary.least));
-  eo_object_put(&object, "largest", number(report->summary.largest));
-  eo_object_put(&object, "count", counts);
-  return eo_object_close(&object);
+    eo_list_add(&counts, json_integer(report->count[i]));
+  return (struct histogram){report->summary.least, report->summary.largest, eo_object_close(&counts)};
 }
 
 static json_t *encode_influences(const struct eo_tolerance_report *report, const struct eo_output_report *output_report)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < output_report->inputs; i++) {
-    const struct eo_report_influence *influence = &output_report->influence[i];
-    struct eo_object object = eo_object_open_as(&influence_outline);
-    eo_object_put(&object, "key", json_string(report->scatter->input[influence->input].key));
-    eo_object_put(&object, "coefficient", number(influence->coefficient));
-    eo_object_put(&object, "first", number(influence->first));
-    eo_object_put(&object, "total", number(influence->total));
-    if (!append(&list, eo_object_close(&object)))
-      break;
+    const struct eo_report_influence *found = &output_report->influence[i];
+    const struct influence view = {report->scatter->input[found->input].key, *found};
+    eo_list_add(&list, eo_outline_encode(&influence_outline, &view));
   }
-  return list;
+  return eo_object_close(&list);
 }
 
 static json_t *encode_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *tolerance_case)
 {
-  const struct eo_output_report *output_report = &tolerance_case->report;
-  struct eo_object object = eo_object_open_as(&output_outline);
-  eo_object_put(&object, "key", json_string(tolerance_case->scalar->key));
-  eo_object_put(&object, "load_case", json_integer(tolerance_case->load_case + 1));
-  eo_object_put(&object, "rows", json_integer(output_report->rows));
-  eo_object_put(&object, "nominal", number(tolerance_case->nominal));
-  eo_object_put(&object, "mean", number(output_report->summary.mean));
-  eo_object_put(&object, "mean_interval", two(output_report->mean_interval[0], output_report->mean_interval[1]));
-  eo_object_put(&object, "std", number(output_report->summary.deviation));
-  eo_object_put(&object, "std_interval",
-                two(output_report->deviation_interval[0], output_report->deviation_interval[1]));
-  eo_object_put(&object, "percentiles", encode_percentiles(output_report));
-  eo_object_put(&object, "histogram", encode_histogram(output_report));
-  eo_object_put(&object, "R2", number(output_report->r2));
-  eo_object_put(&object, "R2_adjusted", number(output_report->r2_adjusted));
-  eo_object_put(&object, "Q2", number(output_report->q2));
-  eo_object_put(&object, "surface_error", number(output_report->residual));
-  eo_object_put(&object, "influences", encode_influences(report, output_report));
-  eo_object_put(&object, "largest_pair", json_integer(output_report->largest + 1));
-  return eo_object_close(&object);
+  const struct eo_output_report *found = &tolerance_case->report;
+  const struct output view = {
+      .key = tolerance_case->scalar->key,
+      .load_case = tolerance_case->load_case + 1,
+      .rows = found->rows,
+      .nominal = tolerance_case->nominal,
+      .mean = found->summary.mean,
+      .mean_interval = eo_series_of(2, found->mean_interval, EO_DIGITS_NUMBER),
+      .deviation = found->summary.deviation,
+      .deviation_interval = eo_series_of(2, found->deviation_interval, EO_DIGITS_NUMBER),
+      .percentiles = encode_percentiles(found),
+      .histogram = find_histogram(found),
+      .r2 = found->r2,
+      .r2_adjusted = found->r2_adjusted,
+      .q2 = found->q2,
+      .residual = found->residual,
+      .influences = encode_influences(report, found),
+      .largest = found->largest + 1,
+  };
+  return eo_outline_encode(&output_outline, &view);
 }
 
 static json_t *encode_outputs(const struct eo_tolerance_report *report)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < report->outputs; i++)
-    if (!append(&list, encode_output(report, &report->output[i])))
-      break;
-  return list;
+    eo_list_add(&list, encode_output(report, &report->output[i]));
+  return eo_object_close(&list);
 }
 
 static json_t *encode_yields(const struct eo_tolerance_report *report)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < report->yields; i++) {
-    const struct eo_yield_row *row = &report->yield[i];
-    struct eo_object object = eo_object_open_as(&yield_outline);
-    eo_object_put(&object, "output", *row->output ? json_string(row->output) : json_null());
-    eo_object_put(&object, "load_case", row->load_case ? json_integer(row->load_case) : json_null());
-    eo_object_put(&object, "at_most", number(row->most));
-    eo_object_put(&object, "inside", json_integer(row->inside));
-    eo_object_put(&object, "pairs", json_integer(row->pairs));
-    eo_object_put(&object, "fraction", number(row->fraction));
-    eo_object_put(&object, "clopper_pearson", two(row->exact.low, row->exact.high));
-    eo_object_put(&object, "wilson", two(row->wilson.low, row->wilson.high));
-    if (!append(&list, eo_object_close(&object)))
-      break;
+    const struct eo_yield_row *found = &report->yield[i];
+    const struct yield view = {.output = found->output,
+                               .load_case = found->load_case ? (double)found->load_case : NAN,
+                               .most = found->most,
+                               .inside = found->inside,
+                               .pairs = found->pairs,
+                               .fraction = found->fraction,
+                               .exact = two(found->exact.low, found->exact.high),
+                               .wilson = two(found->wilson.low, found->wilson.high)};
+    eo_list_add(&list, eo_outline_encode(&yield_outline, &view));
   }
-  return list;
+  return eo_object_close(&list);
 }
 
 static int heaviest(const struct eo_design *design)
@@ -277,52 +308,50 @@ static int collect_columns(const struct eo_tolerance_report *report, int load_ca
 
 static json_t *encode_matrix(int count, int n, const double *column)
 {
-  json_t *rows = json_array();
+  struct eo_object rows = eo_list_open();
   for (int i = 0; i < count; i++) {
-    json_t *row = json_array();
-    for (int j = 0; j < count && row; j++)
-      append(&row, number(eo_correlation(n, column + (size_t)i * (size_t)n, column + (size_t)j * (size_t)n)));
-    if (!append(&rows, row))
-      break;
+    struct eo_object row = eo_list_open();
+    for (int j = 0; j < count; j++)
+      eo_list_add(&row, number(eo_correlation(n, column + (size_t)i * (size_t)n, column + (size_t)j * (size_t)n)));
+    eo_list_add(&rows, eo_object_close(&row));
   }
-  return rows;
+  return eo_object_close(&rows);
+}
+
+/* of[outputs + 1], column[2 (outputs + 1) pairs]: working space */
+static json_t *correlate(const struct eo_tolerance_report *report, int *of, double *column)
+{
+  int load_case = heaviest(report->design), n = report->run->pairs,
+      count = collect_columns(report, load_case, of, column);
+  double *rank = column + (size_t)count * (size_t)n;
+  struct eo_object keys = eo_list_open();
+  for (int i = 0; i < count; i++) {
+    eo_list_add(&keys, json_string(report->output[of[i]].scalar->key));
+    keys.failed |= eo_ranks(n, column + (size_t)i * (size_t)n, rank + (size_t)i * (size_t)n, NULL) != EO_OK;
+  }
+  const struct correlation view = {load_case + 1, eo_object_close(&keys), encode_matrix(count, n, column),
+                                   encode_matrix(count, n, rank)};
+  return eo_outline_encode(&correlation_outline, &view);
 }
 
 static json_t *encode_correlation(const struct eo_tolerance_report *report)
 {
-  int load_case = heaviest(report->design), n = report->run->pairs, count, *of;
   size_t most = (size_t)report->outputs + 1;
-  double *column = malloc(sizeof *column * most * (size_t)n * 2);
-  struct eo_object object = eo_object_open_as(&correlation_outline);
-  json_t *keys = json_array();
-  of = malloc(sizeof *of * most);
-  object.failed = object.failed || !column || !of;
-  count = object.failed ? 0 : collect_columns(report, load_case, of, column);
-  double *rank = column ? column + (size_t)count * (size_t)n : NULL;
-  for (int i = 0; i < count; i++) {
-    append(&keys, json_string(report->output[of[i]].scalar->key));
-    object.failed |= eo_ranks(n, column + (size_t)i * (size_t)n, rank + (size_t)i * (size_t)n, NULL) != EO_OK;
-  }
-  eo_object_put(&object, "load_case", json_integer(load_case + 1));
-  eo_object_put(&object, "keys", keys);
-  eo_object_put(&object, "pearson", encode_matrix(count, n, column));
-  eo_object_put(&object, "spearman", encode_matrix(count, n, rank));
+  double *column = malloc(sizeof *column * most * (size_t)report->run->pairs * 2);
+  int *of = malloc(sizeof *of * most);
+  json_t *encoded = column && of ? correlate(report, of, column) : NULL;
   free(column);
   free(of);
-  return eo_object_close(&object);
+  return encoded;
 }
 
 static json_t *encode_worst(const struct eo_tolerance_report *report)
 {
   const struct eo_scatter_run *run = report->run;
-  struct eo_object object = eo_object_open_as(&worst_outline);
-  eo_object_put(&object, "pair", json_integer(report->worst + 1));
-  eo_object_put(&object, "output", json_string(report->worst_of));
-  eo_object_put(
-      &object, "inputs",
-      eo_json_reals(run->inputs, run->input + (size_t)report->worst * (size_t)run->inputs, 1, NULL, EO_DIGITS_NUMBER));
-  eo_object_put(&object, "design", eo_design_encode(&report->worst_design));
-  return eo_object_close(&object);
+  const double *inputs = run->input + (size_t)report->worst * (size_t)run->inputs;
+  const struct worst view = {report->worst + 1, report->worst_of, eo_series_of(run->inputs, inputs, EO_DIGITS_NUMBER),
+                             eo_design_encode(&report->worst_design)};
+  return eo_outline_encode(&worst_outline, &view);
 }
 
 static const char assumed_text[] =
@@ -330,31 +359,30 @@ static const char assumed_text[] =
 
 static json_t *encode_warnings(const struct eo_tolerance_report *report, const struct eo_warnings *warnings)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   if (report->assumed)
-    append(&list, json_string(assumed_text));
-  for (int i = 0; warnings && i < warnings->count && list; i++)
-    append(&list, json_string(warnings->text[i]));
-  return list;
+    eo_list_add(&list, json_string(assumed_text));
+  for (int i = 0; warnings && i < warnings->count; i++)
+    eo_list_add(&list, json_string(warnings->text[i]));
+  return eo_object_close(&list);
 }
 
 json_t *eo_tolerance_encode(const struct eo_tolerance_report *report, const struct eo_warnings *warnings)
 {
-  char hash[EO_HASH_LENGTH + 1];
-  struct eo_object object = eo_object_open_as(&eo_tolerance_outline);
-  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&object, "design", eo_design_encode(report->design));
-  eo_object_put(&object, "design_hash", eo_design_hash(report->design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&object, "pairs", json_integer(report->run->pairs));
-  eo_object_put(&object, "failed", json_integer(report->failed));
-  eo_object_put(&object, "bounded", json_integer(report->run->bounded));
-  eo_object_put(&object, "inputs", encode_inputs(report));
-  eo_object_put(&object, "outputs", encode_outputs(report));
-  eo_object_put(&object, "yields", encode_yields(report));
-  eo_object_put(&object, "correlation", encode_correlation(report));
-  eo_object_put(&object, "worst", encode_worst(report));
-  eo_object_put(&object, "warnings", encode_warnings(report, warnings));
-  return eo_object_close(&object);
+  struct tolerance view = {.program = PACKAGE_STRING,
+                           .pairs = report->run->pairs,
+                           .failed = report->failed,
+                           .bounded = report->run->bounded};
+  if (eo_design_hash(report->design, view.hash, NULL))
+    return NULL;
+  view.design = eo_design_encode(report->design);
+  view.inputs = encode_inputs(report);
+  view.outputs = encode_outputs(report);
+  view.yields = encode_yields(report);
+  view.correlation = encode_correlation(report);
+  view.worst = encode_worst(report);
+  view.warnings = encode_warnings(report, warnings);
+  return eo_outline_encode(&eo_tolerance_outline, &view);
 }
 
 void eo_tolerance_write(const struct eo_tolerance_report *report, const struct eo_warnings *warnings,
