@@ -45,7 +45,7 @@ build() {
 }
 
 check_lintian() {
-  lintian --allow-root --fail-on error,warning --no-tag-display-limit "$scratch"/*.changes >"$scratch/lintian.log" 2>&1 || {
+  lintian --allow-root --fail-on error,warning "$scratch"/*.changes >"$scratch/lintian.log" 2>&1 || {
     cat "$scratch/lintian.log"
     fail "silent: lintian"
   }
