@@ -66,7 +66,7 @@ export class SearchForm {
         this.weights,
         this.terms,
       ]),
-      group('constraints', 'Limits', false, [this.fields.fieldsOf('/objective/constraints'), this.limits]),
+      group('constraints', 'Limits', false, [...this.fields.fieldsOf('/objective/constraints'), this.limits]),
       group('algorithm', 'The algorithm in detail', false, [this.details]),
     );
     this.store.addEventListener('change', () => this.refresh());
@@ -166,11 +166,11 @@ export class SearchForm {
    * @param {string} pointer of the list
    * @param {string} name of a row
    * @param {string[]} keys
-   * @param {any} fresh what a new row has
+   * @param {object} fresh what a new row has
    */
   #drawRows(place, pointer, name, keys, fresh) {
     const { store } = this;
-    const rows = () => /** @type {any[]} */ (store.get(pointer) ?? []);
+    const rows = () => /** @type {object[]} */ (store.get(pointer) ?? []);
     /** @param {number} i */
     const remove = i =>
       store.set(
