@@ -163,7 +163,7 @@ static const struct eo_field objective[] = {
      .fallback = NAN,
      .derived = "2 of more than 4 scatter_pairs, all of them where a front is sought",
      .help = "of scatter_pairs: every flank is looked at with these; of each batch the best go on to all, so many that "
-             "both cost the same; as many as scatter_pairs: every flank with all"},
+             "this costs less than the first look; as many as scatter_pairs: every flank with all"},
     EO_INTEGER(struct eo_objective, check_pairs, "check_pairs", 0, 10000, 200,
                "other pairs as made, on which a search with scatter_pairs ends: what it found beside the unmodified "
                "pair, with intervals; 0: none"),

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A race over pairs as made: every flank is looked at with the first pairs, the best of each batch go on to all of
-   them, so many that both cost the same (one bracket of Li et al. 2018, Hyperband, with two rungs). The
-   pairs are the same for every flank, so the first ones tell which of two is the better; what they do not tell, the
-   rest between the rank over all and that over the first, changes slowly from flank to flank and is taken from the
-   nearest whole row. A row of the first look is told behind the best whole one and never is the result. */
+   them, so many that the second looks cost less than the first (one bracket of Li et al. 2018, Hyperband, with two
+   rungs). The pairs are the same for every flank, so the first ones tell which of two is the better; what they do not
+   tell, the rest between the rank over all and that over the first, changes slowly from flank to flank and is taken
+   from the nearest whole row. A row of the first look is told behind the best whole one and never is the result. */
 #include "study/study_private.h"
 
 #include <math.h>
@@ -56,11 +56,10 @@ static double nearest_rest(const struct study *study, const struct eo_row_data *
   return rest;
 }
 
-/* theory (O7): so many whole rows that all but the first look of them costs what the first looks do. */
+/* theory (O7): so many whole rows that all but the first look of them costs less than the first looks do. */
 static int allowed(const struct race *race, int scenarios)
 {
-  double share = fmin(1, (double)race->first / (scenarios - race->first));
-  return (int)ceil(share * race->asked) - race->whole;
+  return (race->first * race->asked + scenarios - 1) / scenarios - race->whole;
 }
 
 void eo_race_choose(struct study *study)

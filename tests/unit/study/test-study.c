@@ -277,7 +277,7 @@ static void test_robust_front(void)
 }
 
 /* Most flanks are looked at with the first pairs alone: the same bytes for any number of threads and once more, the
-   best one is known over all pairs, and both looks cost about the same. */
+   best one is known over all pairs, and the second looks cost less than the first. */
 static void test_race(void)
 {
   char *text[2];
@@ -297,7 +297,7 @@ static void test_race(void)
   ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "a race over pairs: the same bytes for 1 and 3 threads");
   int first = design.objective.first_pairs, looked = first * result.true_evaluations,
       more = (design.objective.scatter_pairs - first) * result.whole;
-  ok(first == 2 && result.whole < 40 && abs(more - looked) <= 8,
+  ok(first == 2 && result.whole < 40 && more < looked && 2 * more > looked,
      "%d of %d flanks were looked at with all pairs: %d and %d evaluations of a pair", result.whole,
      result.true_evaluations, looked, more);
   int there = 0;
