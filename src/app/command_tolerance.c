@@ -8,13 +8,15 @@
 #include "app/data.h"
 #include "app/number.h"
 #include "app/watch.h"
+#include "app/work_note.h"
 #include "document/pair_log.h"
 #include "document/tolerance_document.h"
 #include "format/json.h"
 #include "study/scatter_crew.h"
+#include "study/tolerance_job.h"
 
 struct request {
-  const char *file, *pairs, *grade, *seed, *csv, *worst, *keep;
+  const char *file, *pairs, *grade, *seed, *csv, *worst, *keep, *work;
   const char *data, *cache, *threads; /* read by eo_app_crew_begin(), like --no-cache */
   bool json, no_cache, no_vibration;
   struct eo_app_crew *crew;
@@ -23,6 +25,8 @@ struct request {
   struct eo_warnings warnings;
   struct eo_scatter scatter;
   bool assumed;
+  struct eo_watch watch;
+  struct eo_work_note note;
 };
 
 /* A whole number of an option; *value stays where it is not given. */
@@ -123,26 +127,120 @@ static enum eo_code run_pairs(struct request *request, const struct eo_progress 
 
 static int run_request(struct request *request)
 {
-  struct eo_watch watch;
+  struct eo_watch *watch = &request->watch;
   struct eo_error error;
   struct eo_scatter_run run = {0};
   struct eo_tolerance_report *report = NULL;
-  eo_watch_start(&watch);
+  eo_watch_start(watch);
   enum eo_code code = eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, &error);
   if (!code)
-    code = run_pairs(request, &watch.progress, &run, &error);
+    code = eo_tolerance_check_limits(&request->design, &error);
   if (!code)
-    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed, &error);
-  eo_watch_clear(&watch);
-  if (watch.stopped)
+    code = run_pairs(request, &watch->progress, &run, &error);
+  if (!code)
+    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed, &watch->progress,
+                                   &error);
+  eo_watch_clear(watch);
+  if (watch->stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.%s",
                         request->keep ? " The same command goes on from here." : "");
   if (!code)
     code = save_files(request, report, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, report);
-  eo_watch_end(&watch);
+  eo_watch_end(watch);
   eo_tolerance_report_free(report);
   eo_scatter_run_done(&run);
+  return status;
+}
+
+/* For a server: its job, of which the table says everything. */
+
+static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct request *request = context;
+  if (job->kind != EO_JOB_TOLERANCE)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is no tolerance analysis.", (long long)job->id);
+  return eo_design_read(job->design, strlen(job->design), &request->design, &request->geometry, &request->warnings,
+                        error);
+}
+
+static int follow_pairs(void *context, const struct eo_tolerance_progress *progress)
+{
+  struct request *request = context;
+  eo_tolerance_job_follow(&request->note.live, progress);
+  return eo_work_note_shall_stop(&request->note, &request->watch);
+}
+
+static enum eo_code run_job(struct request *request, struct eo_tolerance_outcome *outcome, struct eo_error *error)
+{
+  const struct eo_pair_options options = {.cache_directory = request->crew->cache.data};
+  struct eo_tolerance_job job = {.store = request->note.store,
+                                 .job = request->note.job,
+                                 .design = &request->design,
+                                 .warnings = &request->warnings,
+                                 .threads = request->crew->crew.place.threads,
+                                 .watch = follow_pairs,
+                                 .context = request};
+  struct eo_pair *pair = NULL;
+  if (request->crew->crew.size > 1)
+    job.crew = &request->crew->crew;
+  else
+    EO_TRY(eo_pair_new(&pair, &request->design, &options, &request->watch.progress, error));
+  job.pair = pair;
+  enum eo_code code = eo_tolerance_job_run(&job, outcome, error);
+  eo_pair_free(pair);
+  return code;
+}
+
+static enum eo_code find_job(struct request *request, struct eo_error *error)
+{
+  int job;
+  enum eo_job_outcome outcome;
+  struct eo_text directory = {0};
+  if (!eo_app_read_whole(request->work, "--work", 1, INT32_MAX, &job, error))
+    return error->code;
+  enum eo_code code = eo_app_data_directory(request->data, &directory, error);
+  if (!code)
+    code = eo_store_open(&request->note.store, directory.data, EO_STORE_WRITE, error);
+  eo_text_done(&directory);
+  if (!code)
+    code = eo_queue_find(request->note.store, job, take_job, request, &outcome, error);
+  if (!code && outcome != EO_JOB_OUTCOME_DONE)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
+  request->note.job = code ? 0 : job;
+  return code;
+}
+
+static int work(struct request *request)
+{
+  struct eo_error error;
+  struct eo_tolerance_outcome outcome;
+  enum eo_code code = find_job(request, &error);
+  if (!code) {
+    eo_watch_start(&request->watch);
+    code = run_job(request, &outcome, &error);
+    if (!code)
+      eo_tolerance_job_conclude(&request->note.live, &outcome);
+    eo_work_note_end(&request->note, code, &error);
+    eo_watch_end(&request->watch);
+  }
+  eo_store_close(request->note.store);
+  return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
+}
+
+/* A design, or with --work none. */
+static int run_design_or_job(const struct eo_command *command, struct request *request, int operands)
+{
+  int status = EO_EXIT_INPUT;
+  if (request->work && !operands)
+    return work(request);
+  if (!request->work && operands)
+    return eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+                   read_options(request, &status)
+               ? run_request(request)
+               : status;
+  fprintf(stderr, "easeoff tolerance: %s; usage: easeoff tolerance %s\n",
+          operands ? "--work names a job, no design is needed" : "an argument is missing", command->usage);
   return status;
 }
 
@@ -161,6 +259,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--no-vibration", .flag = &request->no_vibration},
                                       {.name = "--worst", .value = &request->worst},
                                       {.name = "--keep", .value = &request->keep},
+                                      {.name = "--work", .value = &request->work},
                                       {.name = "--json", .flag = &request->json},
                                       {.name = "--csv", .value = &request->csv},
                                       {.name = "--data", .value = &request->data},
@@ -169,10 +268,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--cache", .value = &request->cache},
                                       {.name = NULL}};
   request->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
-      read_options(request, &status))
-    status = run_request(request);
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
+    status = run_design_or_job(command, request, operands);
   free(request);
   eo_app_crew_end(&crew);
   return status;
@@ -181,7 +278,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_tolerance = {
     "tolerance",
     "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] [--worst FILE] [--keep FILE] [--json] "
-    "[--csv FILE] [--threads N] [--data DIR] [--cache DIR] [--no-cache]",
+    "[--csv FILE] [--threads N] [--data DIR] [--cache DIR] [--no-cache] | --work N",
     "many pairs as they are made: percentiles, what decides, yield",
     "The design's block \"tolerance\" says what scatters: a preset, inputs by their keys, limits that a good pair "
     "meets;\n"
@@ -193,6 +290,6 @@ const struct eo_command eo_command_tolerance = {
     "design, --csv a line\n"
     "per pair. --keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work "
     "unless --threads\n"
-    "says otherwise; the numbers do not depend on it.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
+    "says otherwise; the numbers do not depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
     "--no-cache neither reads nor keeps it.\n",
     run};

@@ -13,6 +13,14 @@ static inline double eo_clock_milliseconds(void)
   return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
+/* Seconds of a processor that the calling thread has had. */
+static inline double eo_clock_thread_seconds(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /* A time that is being taken. */
 struct eo_stopwatch {
   double *slot, start; /* ms */

@@ -16,12 +16,8 @@ struct eo_pair_log {
   char path[200];
 };
 
-/* What the rows belong to: the design with its scatter. How many pairs are asked for does not change a pair, but for
-   Latin points. */
-static enum eo_code head_line(const struct eo_design *design, int outputs, char *line, size_t size,
-                              struct eo_error *error)
+enum eo_code eo_pair_log_hash(const struct eo_design *design, char hash[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
-  char hash[EO_HASH_LENGTH + 1];
   struct eo_design *own = malloc(sizeof *own);
   if (!own)
     return eo_error_memory(error);
@@ -32,6 +28,14 @@ static enum eo_code head_line(const struct eo_design *design, int outputs, char 
   own->tolerance.limits = 0;
   enum eo_code code = eo_design_hash(own, hash, error);
   free(own);
+  return code;
+}
+
+static enum eo_code head_line(const struct eo_design *design, int outputs, char *line, size_t size,
+                              struct eo_error *error)
+{
+  char hash[EO_HASH_LENGTH + 1];
+  enum eo_code code = eo_pair_log_hash(design, hash, error);
   snprintf(line, size, "easeoff pairs %d %d %s\n", EO_EVALUATOR_VERSION, outputs, hash);
   return code;
 }
@@ -127,8 +131,9 @@ static bool find(void *context, int pair, double *output)
   return true;
 }
 
-static enum eo_code keep(void *context, int pair, const double *output, struct eo_error *error)
+static enum eo_code keep(void *context, int pair, const double *output, double cost, struct eo_error *error)
 {
+  (void)cost;
   struct eo_pair_log *log = context;
   fprintf(log->file, "%d", pair);
   for (int i = 0; i < log->outputs; i++)

@@ -8,6 +8,10 @@
 
 struct eo_pair_log;
 
+/* What the rows of pairs belong to: the design with its scatter. How many pairs are asked for does not change a pair,
+   but for Latin points; nor do limits. Errors: memory. */
+enum eo_code eo_pair_log_hash(const struct eo_design *design, char hash[EO_HASH_LENGTH + 1], struct eo_error *error);
+
 /* Opens or makes the file. What it holds of the same design, scatter and program counts as known; a row that was cut
    off is not. Errors: EO_ERROR_INPUT (another file, or one of another design), file, memory. outputs: numbers of a row.
  */

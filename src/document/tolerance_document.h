@@ -41,11 +41,11 @@ struct eo_tolerance_report {
   struct eo_design worst_design;  /* it, as a complete design; the compliance stays nominal */
 };
 
-/* Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not there), memory. eo_tolerance_report_free()
-   accepts NULL. */
+/* Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not there), cancelled, memory.
+   eo_tolerance_report_free() accepts NULL. */
 enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **report, const struct eo_design *design,
                                      const struct eo_scatter *scatter, const struct eo_scatter_run *run, bool assumed,
-                                     struct eo_error *error);
+                                     const struct eo_progress *progress, struct eo_error *error);
 void eo_tolerance_report_free(struct eo_tolerance_report *report);
 
 extern const struct eo_outline eo_tolerance_outline;
@@ -61,6 +61,13 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
 
 /* A line for each pair: number, inputs, outputs. */
 void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text);
+
+/* What can be told before any pair is computed. Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not
+   there). */
+enum eo_code eo_tolerance_check_limits(const struct eo_design *design, struct eo_error *error);
+
+/* Bytes that rows and statistics of the pairs take at their most crowded moment. */
+double eo_tolerance_memory(const struct eo_design *design, const struct eo_scatter *scatter);
 
 /* What a block asks for. */
 struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *settings);

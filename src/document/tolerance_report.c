@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "document/tolerance_document.h"
+#include "tolerance/response_surface.h"
 
 struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tolerance_settings)
 {
@@ -15,13 +16,18 @@ struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tol
                                   .root_stress = tolerance_settings->root_stress};
 }
 
+double eo_tolerance_memory(const struct eo_design *design, const struct eo_scatter *scatter)
+{
+  double pairs = design->tolerance.pairs, numbers = 2. * eo_scatter_outputs(design) + 2. * scatter->inputs + 2;
+  return sizeof(double) * pairs * numbers + eo_surface_memory(design->tolerance.pairs, scatter->inputs);
+}
+
 static double value_at(const struct eo_scatter_run *run, int pair, int scalar, int load_case)
 {
   return run->output[(size_t)pair * (size_t)run->outputs + (size_t)(scalar * run->cases + load_case)];
 }
 
-static enum eo_code check_limit(const struct eo_scatter_run *run, const struct eo_tolerance_limit *limit, int index,
-                                struct eo_error *error)
+static enum eo_code check_limit(const struct eo_tolerance_limit *limit, int cases, int index, struct eo_error *error)
 {
   char pointer[64];
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/output", index);
@@ -31,9 +37,16 @@ static enum eo_code check_limit(const struct eo_scatter_run *run, const struct e
                         "rms_m_per_s2, K_Hbeta, edge_load_share and others of the documentation are.",
                         limit->output);
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/load_case", index);
-  if (limit->load_case > run->cases)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer, "There is no load case %d of %d.", limit->load_case,
-                        run->cases);
+  if (limit->load_case > cases)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "There is no load case %d of %d.", limit->load_case, cases);
+  return EO_OK;
+}
+
+enum eo_code eo_tolerance_check_limits(const struct eo_design *design, struct eo_error *error)
+{
+  const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
+  for (int i = 0; i < tolerance_settings->limits; i++)
+    EO_TRY(check_limit(&tolerance_settings->limit[i], design->load_cases, i, error));
   return EO_OK;
 }
 
@@ -64,8 +77,7 @@ static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_e
   const struct eo_tolerance_settings *tolerance_settings = &report->design->tolerance;
   const struct eo_scatter_run *run = report->run;
   int inside[EO_MAX_TOLERANCE_LIMITS + 1] = {0};
-  for (int i = 0; i < tolerance_settings->limits; i++)
-    EO_TRY(check_limit(run, &tolerance_settings->limit[i], i, error));
+  EO_TRY(eo_tolerance_check_limits(report->design, error));
   for (int pair = 0; pair < run->pairs; pair++) {
     bool all = true;
     for (int i = 0; i < tolerance_settings->limits; i++) {
@@ -137,7 +149,8 @@ static void find_worst(struct eo_tolerance_report *report)
            report->worst + 1);
 }
 
-static enum eo_code report_outputs(struct eo_tolerance_report *report, struct eo_error *error)
+static enum eo_code report_outputs(struct eo_tolerance_report *report, const struct eo_progress *progress,
+                                   struct eo_error *error)
 {
   const struct eo_scatter_run *run = report->run;
   struct eo_moments moments[EO_MAX_SCATTER_INPUTS];
@@ -149,6 +162,8 @@ static enum eo_code report_outputs(struct eo_tolerance_report *report, struct eo
     return eo_error_memory(error);
   for (int i = 0; i < run->outputs; i++) {
     struct eo_tolerance_case *output = &report->output[report->outputs];
+    if (eo_progress_report(progress, "statistics", (double)i / run->outputs))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "The analysis was stopped.");
     *output = (struct eo_tolerance_case){
         .scalar = eo_scalar_at(i / run->cases), .load_case = i % run->cases, .nominal = run->nominal[i]};
     report->outputs++; /* so that it is freed */
@@ -164,7 +179,7 @@ static enum eo_code report_outputs(struct eo_tolerance_report *report, struct eo
 
 enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **result, const struct eo_design *design,
                                      const struct eo_scatter *scatter, const struct eo_scatter_run *run, bool assumed,
-                                     struct eo_error *error)
+                                     const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_tolerance_report *report = calloc(1, sizeof *report);
   if (!report)
@@ -175,7 +190,7 @@ enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **result, const 
   report->assumed = assumed;
   enum eo_code code = count_yields(report, error);
   if (!code)
-    code = report_outputs(report, error);
+    code = report_outputs(report, progress, error);
   if (!code)
     find_worst(report);
   if (code)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 
 struct eo_scatter_bench {
@@ -86,13 +87,13 @@ struct work {
   pthread_mutex_t keeping;
 };
 
-static enum eo_code keep(struct work *work, int pair, const double *output, struct eo_error *error)
+static enum eo_code keep(struct work *work, int pair, const double *output, double cost, struct eo_error *error)
 {
   const struct eo_scatter_log *log = &work->plan->log;
   if (!log->keep)
     return EO_OK;
   pthread_mutex_lock(&work->keeping);
-  enum eo_code code = log->keep(log->context, pair, output, error);
+  enum eo_code code = log->keep(log->context, pair, output, cost, error);
   pthread_mutex_unlock(&work->keeping);
   return code;
 }
@@ -105,8 +106,9 @@ static enum eo_code run_pair(void *context, int thread, int pair, struct eo_erro
   const struct eo_scatter_log *log = &work->plan->log;
   if (log->find && log->find(log->context, pair, output))
     return EO_OK;
+  double start = eo_clock_thread_seconds();
   EO_TRY(eo_scatter_bench_run(work->bench[thread], run->input + (size_t)pair * (size_t)run->inputs, output, error));
-  return keep(work, pair, output, error);
+  return keep(work, pair, output, eo_clock_thread_seconds() - start, error);
 }
 
 static enum eo_code allocate(struct eo_scatter_run *run, const struct eo_design *design,

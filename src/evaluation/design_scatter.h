@@ -13,7 +13,8 @@ enum { EO_SCATTER_MOST_PAIRS = 100000 };
    a time. */
 struct eo_scatter_log {
   bool (*find)(void *context, int pair, double *output); /* fills output[outputs]; NULL: nothing is known */
-  enum eo_code (*keep)(void *context, int pair, const double *output, struct eo_error *error); /* NULL: nowhere */
+  /* cost: s of a processor; output stays until the run is done. NULL: nowhere */
+  enum eo_code (*keep)(void *context, int pair, const double *output, double cost, struct eo_error *error);
   void *context;
 };
 

@@ -139,6 +139,18 @@ int eo_field_wait(const char *header)
   return 0;
 }
 
+bool eo_field_is_async(const char *header)
+{
+  static const char WORD[] = "respond-async";
+  while (header && *(header += strspn(header, " \t,;"))) {
+    size_t length = strcspn(header, " \t,;");
+    if (length == sizeof WORD - 1 && strncasecmp(header, WORD, length) == 0)
+      return true;
+    header += length;
+  }
+  return false;
+}
+
 static bool is_port(const char *text)
 {
   size_t digits = strspn(text, "0123456789");

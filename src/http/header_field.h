@@ -29,6 +29,9 @@ bool eo_field_lists_tag(const char *header, const char *tag, bool weak);
 /* Seconds of "wait=N" in a Prefer header (RFC 7240); 0: none. */
 int eo_field_wait(const char *header);
 
+/* Whether a Prefer header asks for the answer later (RFC 7240: respond-async). */
+bool eo_field_is_async(const char *header);
+
 /* Copies the host of "name", "name:port", "[v6]:port", lower case, without port and brackets; false: it is malformed.
  */
 bool eo_field_host(const char *header, char *host, size_t size);

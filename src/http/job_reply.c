@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "http/http_private.h"
 #include "http/route.h"
 
 void eo_reply_job_location(struct eo_reply *reply, int64_t id)
@@ -34,4 +35,32 @@ void eo_reply_job_outcome(struct eo_reply *reply, enum eo_job_outcome outcome)
   case EO_JOB_OUTCOME_REPEATED:
     break;
   }
+}
+
+static bool read_key(struct eo_request *request, const char **key)
+{
+  *key = eo_request_header(request, "Idempotency-Key");
+  if (!*key || eo_field_is_visible(*key, 129))
+    return true;
+  eo_reply_problem(&request->reply, 400, NULL, "Idempotency-Key takes 1 to 128 visible characters.");
+  return false;
+}
+
+void eo_request_order_job(struct eo_request *request, struct eo_job_order *order, bool ticket)
+{
+  enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
+  struct eo_error error;
+  struct eo_job_view job = {0};
+  if (!read_key(request, &order->key))
+    return;
+  if (eo_service_submit(request->http->service, order, &outcome, &job, &error))
+    eo_reply_error(&request->reply, "/design", &error);
+  else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
+    eo_reply_job_outcome(&request->reply, outcome);
+  else {
+    json_t *document = eo_job_view_encode(&job);
+    eo_reply_json(&request->reply, 202, ticket ? json_pack("{s:o}", "job", document) : document);
+    eo_reply_job_location(&request->reply, job.row.id);
+  }
+  eo_job_view_done(&job);
 }

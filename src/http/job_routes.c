@@ -58,28 +58,6 @@ static const struct eo_field change_fields[] = {
 };
 static const struct eo_table change_table = EO_TABLE("a change of a job", struct change, change_fields);
 
-static bool read_key(struct eo_request *request, const char **key)
-{
-  *key = eo_request_header(request, "Idempotency-Key");
-  if (!*key || eo_field_is_visible(*key, 129))
-    return true;
-  eo_reply_problem(&request->reply, 400, NULL, "Idempotency-Key takes 1 to 128 visible characters.");
-  return false;
-}
-
-static void submit(struct eo_request *request, const struct order *order, const struct eo_design *design)
-{
-  struct eo_job_order wanted = {
-      .kind = (enum eo_job_kind)order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
-  enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
-  struct eo_error error;
-  struct eo_job_view job = {0};
-  if (!read_key(request, &wanted.key))
-    return;
-  enum eo_code code = eo_service_submit(request->http->service, &wanted, &outcome, &job, &error);
-  reply_job(request, 202, code, outcome, &job, &error);
-}
-
 static void add(struct eo_request *request)
 {
   struct order order;
@@ -93,8 +71,11 @@ static void add(struct eo_request *request)
     eo_reply_problem(&request->reply, 400, NULL, "A study says what it varies: POST /studies takes it.");
   else if (order.kind == EO_JOB_OPTIMIZE && eo_study_space_init(&space, &design, &geometry, &error))
     eo_reply_error(&request->reply, "/design", &error);
-  else
-    submit(request, &order, &design);
+  else {
+    struct eo_job_order wanted = {
+        .kind = (enum eo_job_kind)order.kind, .design = &design, .priority = order.priority, .fresh = order.fresh};
+    eo_request_order_job(request, &wanted, false);
+  }
 }
 
 static void repeat(struct eo_request *request)
@@ -235,7 +216,8 @@ const struct eo_route eo_routes_jobs[] = {
      .pattern = "/jobs",
      .handle = add,
      .name = "addJob",
-     .summary = "Orders an optimization, or the preparation of a gear pair.",
+     .summary = "Orders an optimization, a tolerance analysis (the design's block `tolerance`), or the "
+                "preparation of a gear pair.",
      .takes = "JobOrder",
      .order = &order_table,
      .gives = "202 Job",
@@ -250,7 +232,7 @@ const struct eo_route eo_routes_jobs[] = {
      .query = {{"limit", 1, 200, 50, NULL, "most items"},
                {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
                {"state", 0, 0, 0, "queued|preparing|running|done|failed|cancelled", "only these"},
-               {"kind", 0, 0, 0, "optimize|prepare|study", "only these"}}},
+               {"kind", 0, 0, 0, "optimize|prepare|study|tolerance", "only these"}}},
     {.method = EO_GET,
      .pattern = "/jobs/{id}",
      .handle = get_one,
@@ -267,8 +249,9 @@ const struct eo_route eo_routes_jobs[] = {
      .pattern = "/jobs/{id}/result",
      .handle = get_result,
      .name = "getJobResult",
-     .summary = "What an optimization found: the document of `easeoff optimize --json`. 409 while it is not finished.",
-     .gives = "200 OptimizationResult",
+     .summary = "What a job found: the document of `easeoff optimize --json` or `easeoff tolerance --json`. 409 while it "
+                "is not finished.",
+     .gives = "200 OptimizationResult|Tolerance",
      .aside = true},
     {.method = EO_GET,
      .pattern = "/jobs/{id}/generations",

@@ -19,12 +19,13 @@ static json_t *reference(const char *name, size_t length)
 }
 
 /* "Name", or one of several: "One|Other". */
-static json_t *reference_any(const char *names)
+static json_t *reference_any(const char *names, size_t length)
 {
-  size_t length = strcspn(names, "|");
-  if (!names[length])
+  const char *bar = memchr(names, '|', length);
+  if (!bar)
     return reference(names, length);
-  return json_pack("{s:[o, o]}", "anyOf", reference(names, length), reference_any(names + length + 1));
+  size_t first = (size_t)(bar - names);
+  return json_pack("{s:[o, o]}", "anyOf", reference(names, first), reference_any(bar + 1, length - first - 1));
 }
 
 static json_t *encode_parameter(const char *name, size_t length, const char *place, json_t *schema, const char *help)
@@ -113,7 +114,8 @@ static void add_headers(json_t *list, const char *headers, unsigned method)
   } known[] = {
       {"If-Match", "the ETag of the version that is meant, or *"},
       {"If-None-Match", "an ETag that is known already: 304 when it still holds"},
-      {"Prefer", "wait=SECONDS (at most 60): wait for the preparation of the gear pair"},
+      {"Prefer", "wait=SECONDS (at most 60): wait for the preparation of the gear pair; respond-async: as a job, where "
+                 "the summary says so"},
       {"Easeoff-Lane",
        "a token of the client's own: a newer question with the same token takes the place of one that still waits"},
       {"Idempotency-Key", "a token of the client's own: the same order with the same token is one job"},
@@ -134,7 +136,7 @@ static json_t *encode_content(const char *what, size_t length, bool csv)
   if (memchr(what, '/', length))
     json_object_setn_new(content, what, length, json_pack("{s:{s:s}}", "schema", "type", "string"));
   else
-    json_object_set_new(content, "application/json", json_pack("{s:o}", "schema", reference(what, length)));
+    json_object_set_new(content, "application/json", json_pack("{s:o}", "schema", reference_any(what, length)));
   if (csv)
     json_object_set_new(content, "text/csv", json_pack("{s:{s:s}}", "schema", "type", "string"));
   return content;
@@ -262,7 +264,7 @@ static const char *body_type(const struct eo_route *route)
 static json_t *body_schema(const struct eo_route *route)
 {
   return strchr(route->takes, '/') ? json_pack("{s:s, s:s}", "type", "string", "format", "binary")
-                                   : reference_any(route->takes);
+                                   : reference_any(route->takes, strlen(route->takes));
 }
 
 static json_t *encode_operation(const struct eo_route *route)

@@ -26,30 +26,12 @@ static bool read_plan(struct eo_request *request, struct eo_variant_plan *plan)
 
 static void submit(struct eo_request *request, const struct eo_variant_plan *plan, const char *spec)
 {
-  const char *key = eo_request_header(request, "Idempotency-Key");
-  const struct eo_job_order order = {.kind = EO_JOB_STUDY,
-                                     .design = plan->design,
-                                     .spec = spec,
-                                     .name = plan->name,
-                                     .algorithm = plan->table ? "table" : eo_study_samplings[plan->sampling],
-                                     .key = key};
-  enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
-  struct eo_error error;
-  struct eo_job_view job = {0};
-  if (key && !eo_field_is_visible(key, 129)) {
-    eo_reply_problem(&request->reply, 400, NULL, "Idempotency-Key takes 1 to 128 visible characters.");
-    return;
-  }
-  enum eo_code code = eo_service_submit(request->http->service, &order, &outcome, &job, &error);
-  if (code)
-    eo_reply_error(&request->reply, "/design", &error);
-  else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
-    eo_reply_job_outcome(&request->reply, outcome);
-  else {
-    eo_reply_json(&request->reply, 202, eo_job_view_encode(&job));
-    eo_reply_job_location(&request->reply, job.row.id);
-  }
-  eo_job_view_done(&job);
+  struct eo_job_order order = {.kind = EO_JOB_STUDY,
+                               .design = plan->design,
+                               .spec = spec,
+                               .name = plan->name,
+                               .algorithm = plan->table ? "table" : eo_study_samplings[plan->sampling]};
+  eo_request_order_job(request, &order, false);
 }
 
 static void add(struct eo_request *request)

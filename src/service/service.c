@@ -133,7 +133,7 @@ static enum eo_code begin(struct eo_service *service, const struct eo_service_se
   if (!resolve(&service->settings, settings))
     return eo_error_memory(error);
   /* workers, an analysis and its second thread, sweeps, works, the members of a pair */
-  EO_TRY(eo_threads_reserve(3 * service->settings.threads + 2 * service->settings.analysis_threads + OTHER_THREADS,
+  EO_TRY(eo_threads_reserve(4 * service->settings.threads + 2 * service->settings.analysis_threads + OTHER_THREADS,
                             error));
   EO_TRY(open_store(service, error));
   const struct eo_service_limits *limits = &service->settings.limits;

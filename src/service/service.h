@@ -2,8 +2,8 @@
 /* What stands behind the server: the queue of jobs and the threads that work it off, prepared gear pairs, what-if
    analyses, events.
 
-   Threads. One optimizes and one works off studies: jobs run one after the other, each on all cores at a low priority
-   (or on the machines of a launcher, service/launcher.h). One prepares gear pairs,
+   Threads. One optimizes, one works off studies and one tolerance analyses: jobs of a kind run one after the other, each
+   on all cores at a low priority (or on the machines of a launcher, service/launcher.h). One prepares gear pairs,
    so that a new pair need not wait for an optimization. Small lanes of their own answer analyses, sweeps, and work on
    measurements; they come before jobs wherever they meet. Every function below may be called from any thread at any
    time between new and free, and none of them computes: they look something up, write a row, answer.
@@ -37,9 +37,9 @@ struct eo_service_settings {
   const char *cache;    /* flexibility cache; NULL: keep none on disk */
   const char *program;  /* easeoff, which prepares gear pairs in a process of its own (service/preparation.h); NULL, or
                            no  cache: they are prepared in this one, which nobody can end then */
-  const char *launcher; /* words of a command that runs optimizations and studies (service/launcher.h); NULL: here */
+  const char *launcher; /* words of a command that runs all jobs but preparations (service/launcher.h); NULL: here */
   const char *worker;   /* path of easeoff on the machines of the launcher; NULL: that of this process */
-  int threads;          /* of an optimization, a study or a sweep; 0: eo_parallel_cores() */
+  int threads;          /* of a job or a sweep; 0: eo_parallel_cores() */
   int analysis_threads; /* 0: 2 */
   struct eo_service_limits limits; /* all 0: the defaults of the table */
 };
@@ -91,7 +91,7 @@ enum eo_code eo_service_jobs(struct eo_service *service, int state, int kind, in
                              struct eo_job_page *page, struct eo_error *error);
 void eo_job_page_done(struct eo_job_page *page);
 
-/* The result document of a finished optimization as compact JSON, appended to text. Outcomes: DONE, MISSING, STATE (not
+/* The result document of a finished optimization or tolerance analysis as compact JSON, appended to text. Outcomes: DONE, MISSING, STATE (not
    finished, or of a kind that has none). */
 enum eo_code eo_service_result(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
                                struct eo_text *text, struct eo_error *error);
@@ -187,6 +187,12 @@ struct eo_work {
 enum eo_code eo_service_compute(struct eo_service *service, const struct eo_question *question,
                                 const struct eo_work *work, enum eo_admission *admission, int64_t *job,
                                 struct eo_error *error);
+
+/* Whether the pairs as made that a design asks for may be evaluated here: its scatter and its limits are sound and
+   they fit in memory.
+   Errors: EO_ERROR_INPUT with the place in the block, memory. */
+enum eo_code eo_service_admit_pairs(const struct eo_service *service, const struct eo_design *design,
+                                    struct eo_error *error);
 
 /* Whether the design's pair is in memory (an analysis would be answered at once). */
 bool eo_service_is_prepared(struct eo_service *service, const struct eo_design *design);

@@ -2,6 +2,10 @@
 /* Jobs ordered and changed: each is one row of the queue, told to whoever listens and to the worker. */
 #include "service/service_private.h"
 
+#include <stdlib.h>
+
+#include "document/tolerance_document.h"
+
 static bool is_closed(struct eo_service *service, enum eo_job_outcome *outcome)
 {
   *outcome = EO_JOB_OUTCOME_CLOSED;
@@ -63,6 +67,24 @@ static enum eo_code add_job(struct eo_service *service, const struct eo_job_orde
   return code;
 }
 
+enum eo_code eo_service_admit_pairs(const struct eo_service *service, const struct eo_design *design,
+                                    struct eo_error *error)
+{
+  double most = eo_service_preparation(service).memory;
+  struct eo_scatter *scatter = malloc(sizeof *scatter);
+  enum eo_code code = scatter ? eo_scatter_of_design(scatter, design, true, NULL, error) : eo_error_memory(error);
+  if (!code)
+    code = eo_tolerance_check_limits(design, error);
+  double memory = code ? 0 : eo_tolerance_memory(design, scatter);
+  free(scatter);
+  if (code || memory <= most)
+    return code;
+  return eo_error_set(error, EO_ERROR_INPUT, "/tolerance/pairs",
+                      "%d pairs would take about %.0f MB; this server allows %.0f MB. Fewer pairs or load cases take "
+                      "less.",
+                      design->tolerance.pairs, memory / 1e6, most / 1e6);
+}
+
 /* Queues; nobody is told yet, nor begins. */
 static enum eo_code queue(struct eo_service *service, const struct eo_job_order *order, int64_t *id,
                           enum eo_job_outcome *outcome, struct eo_error *error)
@@ -70,6 +92,8 @@ static enum eo_code queue(struct eo_service *service, const struct eo_job_order 
   struct eo_text design = {0};
   const struct eo_preparation_settings preparation = eo_service_preparation(service);
   EO_TRY(eo_preparation_admit(&preparation, order->design, error));
+  if (order->kind == EO_JOB_TOLERANCE)
+    EO_TRY(eo_service_admit_pairs(service, order->design, error));
   eo_design_write(order->design, &design);
   enum eo_code code = design.failed ? eo_error_memory(error) : add_job(service, order, &design, id, outcome, error);
   eo_text_done(&design);

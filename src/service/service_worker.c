@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "service/launcher.h"
+#include "study/tolerance_job.h"
 #include "variants/variant_job.h"
 
 enum { EVENT_MS = 120, NOTE_MS = 1000, LAUNCH_EVENT_MS = 500, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
@@ -96,6 +97,15 @@ static int follow_variants(void *context, const struct eo_variant_report *report
   return follow_on(worker, evaluated, reused);
 }
 
+static int follow_pairs(void *context, const struct eo_tolerance_progress *progress)
+{
+  struct eo_service_worker *worker = context;
+  pthread_mutex_lock(&worker->service->live_mutex);
+  int evaluated = worker->live.true_evaluations, reused = worker->live.reused;
+  eo_tolerance_job_follow(&worker->live, progress);
+  return follow_on(worker, evaluated, reused);
+}
+
 static int follow_study(void *context, const struct eo_study_report *report)
 {
   struct eo_service_worker *worker = context;
@@ -175,6 +185,27 @@ static enum eo_code vary(struct eo_service_worker *worker, const struct task *ta
   pthread_mutex_lock(&worker->service->live_mutex);
   if (!code)
     eo_variant_job_conclude(&worker->live, &result);
+  pthread_mutex_unlock(&worker->service->live_mutex);
+  return code;
+}
+
+static enum eo_code draw_pairs(struct eo_service_worker *worker, const struct task *task, bool *stopped,
+                               struct eo_error *error)
+{
+  const struct eo_tolerance_job job = {.store = worker->store,
+                                       .job = task->id,
+                                       .design = task->design,
+                                       .warnings = &task->warnings,
+                                       .pair = eo_held_pair(task->held),
+                                       .threads = worker->service->settings.threads,
+                                       .watch = follow_pairs,
+                                       .context = worker};
+  struct eo_tolerance_outcome outcome;
+  enum eo_code code = eo_tolerance_job_run(&job, &outcome, error);
+  *stopped = !code && outcome.cancelled;
+  pthread_mutex_lock(&worker->service->live_mutex);
+  if (!code)
+    eo_tolerance_job_conclude(&worker->live, &outcome);
   pthread_mutex_unlock(&worker->service->live_mutex);
   return code;
 }
@@ -270,7 +301,9 @@ static enum eo_code run_job(struct eo_service_worker *worker, struct task *task,
     return vary(worker, task, stopped, error);
   EO_TRY(read_design(task, error));
   EO_TRY(eo_pairs_obtain(worker->service->pairs, task->design, &progress, &task->held, error));
-  return worker->kind == EO_JOB_OPTIMIZE ? optimize(worker, task, stopped, error) : EO_OK;
+  return worker->kind == EO_JOB_OPTIMIZE    ? optimize(worker, task, stopped, error)
+         : worker->kind == EO_JOB_TOLERANCE ? draw_pairs(worker, task, stopped, error)
+                                            : EO_OK;
 }
 
 /* A stop that nobody asked for by name is the service's: the job waits for the next one. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "document/scatter_document.h"
 #include "evaluation/pair.h"
@@ -60,12 +61,15 @@ static enum eo_code compute_row(struct shop *shop, int thread, const double *inp
   if (!shop->bench[thread])
     EO_TRY(eo_scatter_bench_new(&shop->bench[thread], shop->pair, &shop->design, &shop->scatter, settings->vibration,
                                 settings->root_stress, error));
-  double *output = malloc(bytes);
+  double *output = malloc(bytes), cost = eo_clock_thread_seconds();
   if (!output)
     return eo_error_memory(error);
   enum eo_code code = eo_scatter_bench_run(shop->bench[thread], input, output, error);
-  if (!code)
+  cost = eo_clock_thread_seconds() - cost;
+  if (!code) {
     eo_text_add_bytes(answer, output, bytes);
+    eo_text_add_bytes(answer, &cost, sizeof cost);
+  }
   free(output);
   return code;
 }
@@ -109,12 +113,14 @@ static enum eo_code take_answer(void *context, int item, const char *answer, siz
   struct lead *lead = context;
   struct eo_scatter_run *run = lead->run;
   int pair = item ? lead->missing[item - 1] : -1;
-  double *output = item ? run->output + (size_t)pair * (size_t)run->outputs : run->nominal;
-  if (size != sizeof *output * (size_t)run->outputs)
+  double *output = item ? run->output + (size_t)pair * (size_t)run->outputs : run->nominal, cost;
+  size_t bytes = sizeof *output * (size_t)run->outputs;
+  if (size != bytes + sizeof cost)
     return eo_error_set(error, EO_ERROR_FILE, "", "A rank sent a row of the wrong length.");
-  memcpy(output, answer, size);
+  memcpy(output, answer, bytes);
+  memcpy(&cost, answer + bytes, sizeof cost);
   lead->taken = item;
-  return item && lead->log->keep ? lead->log->keep(lead->log->context, pair, output, error) : EO_OK;
+  return item && lead->log->keep ? lead->log->keep(lead->log->context, pair, output, cost, error) : EO_OK;
 }
 
 static int watch(void *context)

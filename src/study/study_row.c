@@ -4,17 +4,10 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "evaluation/objective_terms.h"
 #include "store/evaluations.h"
-
-static double thread_seconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void eo_study_weigh(struct study *study, struct eo_study_point *point)
 {
@@ -77,11 +70,11 @@ enum eo_code eo_study_compute_row(struct study *study, struct worker *worker, st
   enum eo_code code = prepare_worker(study, worker, error);
   if (code)
     return code;
-  double start = thread_seconds();
+  double start = eo_clock_thread_seconds();
   worker->design->modification = row->point.modification;
   worker->design->drawn.first = states < study->result->scenarios ? states : 0;
   code = eo_evaluator_raw_from(worker->evaluator, worker->design, row->states, row->point.raw, &found);
-  row->cost += thread_seconds() - start;
+  row->cost += eo_clock_thread_seconds() - start;
   if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC) {
     *error = found;
     return code;

@@ -26,6 +26,20 @@ static int terms_of(int inputs, int leading)
   return 1 + inputs + leading * (leading + 1) / 2;
 }
 
+static int leading_of(int n, int inputs)
+{
+  int leading = 0;
+  while (leading < inputs && leading < MOST_LEADING && ROWS_PER_TERM * terms_of(inputs, leading + 1) <= n)
+    leading++;
+  return leading;
+}
+
+double eo_surface_memory(int n, int inputs)
+{
+  double terms = terms_of(inputs, leading_of(n, inputs));
+  return ROWS_PER_TERM * terms > n ? 0 : sizeof(double) * terms * (2. * n + terms);
+}
+
 static double standard(const struct eo_surface *surface, int i, const double *input)
 {
   const struct eo_moments *moments = &surface->moments[i];
@@ -64,9 +78,7 @@ static enum eo_code choose_leading(struct eo_surface *surface, int n, const doub
       size[i] = fmax(isnan(plain) ? 0 : fabs(plain), isnan(even) ? 0 : fabs(even));
     }
     eo_order_by_size(k, size, order);
-    while (surface->leading < k && surface->leading < MOST_LEADING &&
-           ROWS_PER_TERM * terms_of(k, surface->leading + 1) <= n)
-      surface->leading++;
+    surface->leading = leading_of(n, k);
     memcpy(surface->lead, order, sizeof *order * (size_t)surface->leading);
   }
   free(order);

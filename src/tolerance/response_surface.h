@@ -25,6 +25,9 @@ enum eo_code eo_surface_fit(struct eo_surface *surface, int n, int inputs, const
                             const double *input, const double *output, struct eo_error *error);
 void eo_surface_done(struct eo_surface *surface);
 
+/* Bytes that the fit takes; 0: the rows are too few for one. */
+double eo_surface_memory(int n, int inputs);
+
 double eo_surface_at(const struct eo_surface *surface, const double *input);
 
 /* Sobol indices of the surface for independent inputs with these moments, exact: first[inputs], total[inputs]. */

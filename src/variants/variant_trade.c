@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+#include "base/clock.h"
 
 #include "base/parallel.h"
 #include "evaluation/analysis.h"
@@ -120,13 +120,6 @@ static void close(struct eo_crew_bench *bench)
 
 /* An item: */
 
-static double thread_seconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static enum eo_code ready_tool(const struct shop *shop, struct tool *tool, struct eo_error *error)
 {
   if (!tool->design)
@@ -174,13 +167,13 @@ static enum eo_code evaluate(struct shop *shop, struct tool *tool, struct eo_var
                              struct eo_text *modification, struct eo_error *error)
 {
   EO_TRY(fetch_pair(shop, tool, error));
-  double start = thread_seconds();
+  double start = eo_clock_thread_seconds();
   EO_TRY(eo_analysis_run(tool->analysis, tool->design, shop->scalars.want, error));
   EO_TRY(eo_scalars_read(&shop->scalars, tool->analysis, tool->design, tool->number, error));
   judge(tool->analysis, answer);
   forget_root(tool->design, tool->analysis);
   EO_TRY(eo_modification_write(&tool->design->modification, tool->design->gear_pair.ends, modification, error));
-  answer->cost = thread_seconds() - start;
+  answer->cost = eo_clock_thread_seconds() - start;
   answer->numbers = shop->scalars.count;
   answer->number = tool->number;
   answer->cases = tool->analysis->scenarios == 1 ? tool->analysis->cases : 0;

@@ -204,6 +204,12 @@ class Client:
         request = {"design": design, "pairs": pairs}
         return self._computed("POST", "/tolerance", document=request, lane=easeoff_lane).json
 
+    @operation("tolerance")
+    def tolerance_job(self, design: Design, pairs: int | None = None, idempotency_key: str | None = None) -> doc.Job:
+        """The same as a job, of up to 100000 pairs: job_result() has the document when it is done."""
+        headers = {"Prefer": "respond-async", "Idempotency-Key": idempotency_key}
+        return self._json("POST", "/tolerance", document={"design": design, "pairs": pairs}, headers=headers)["job"]
+
     @operation("listExports")
     def exports(self) -> doc.Exports:
         """The formats of exported files."""
@@ -242,7 +248,7 @@ class Client:
 
     @operation("addJob")
     def add_job(self, order: Mapping[str, Any], idempotency_key: str | None = None) -> doc.Job:
-        """Orders an optimization or the preparation of a gear pair: {"kind": "optimize", "design": ..}."""
+        """Orders an optimization, a tolerance analysis or a preparation: {"kind": "optimize", "design": ..}."""
         return self._json("POST", "/jobs", document=order, headers={"Idempotency-Key": idempotency_key})
 
     @operation("addStudy")
@@ -298,9 +304,14 @@ class Client:
         self.transport.request("DELETE", f"/jobs/{id}")
 
     @operation("getJobResult")
-    def job_result(self, id: int) -> doc.OptimizationResult:
-        """What an optimization found."""
+    def job_result(self, id: int) -> doc.OptimizationResult | doc.Tolerance:
+        """What an optimization or a tolerance analysis found."""
         return self._json("GET", f"/jobs/{id}/result")
+
+    @operation("getJobPairs")
+    def job_pairs(self, id: int) -> str:
+        """The pairs of a tolerance analysis that is done, as CSV."""
+        return self.transport.request("GET", f"/jobs/{id}/pairs", accept="text/csv").text
 
     @operation("getJobGenerations")
     def job_generations(self, id: int) -> doc.Generations:
