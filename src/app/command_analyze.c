@@ -39,13 +39,14 @@ static enum eo_code prepare(struct request *request, const struct eo_progress *p
   return code;
 }
 
-static enum eo_code analyze(const struct request *request, const struct eo_pair *pair, json_t **result,
-                            struct eo_error *error)
+static enum eo_code analyze(const struct request *request, const struct eo_pair *pair,
+                            const struct eo_progress *progress, json_t **result, struct eo_error *error)
 {
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, pair, error);
   if (!code) {
     analysis->threads = eo_parallel_cores() > 1 ? 2 : 1;
+    analysis->progress = progress;
     code = eo_analysis_run(analysis, &request->design,
                            EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING | EO_WANT_PITCH, error);
   }
@@ -84,7 +85,7 @@ static int run_request(struct request *request)
   eo_watch_start(&watch);
   enum eo_code code = prepare(request, &watch.progress, &pair, &error);
   if (!code)
-    code = analyze(request, pair, &result, &error);
+    code = analyze(request, pair, &watch.progress, &result, &error);
   eo_watch_clear(&watch);
   if (watch.stopped)
     code = cancelled(&error);

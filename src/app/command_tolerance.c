@@ -138,8 +138,8 @@ static int run_request(struct request *request)
   if (!code)
     code = run_pairs(request, &watch->progress, &run, &error);
   if (!code)
-    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed, &watch->progress,
-                                   &error);
+    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed,
+                                   &watch->progress, &error);
   eo_watch_clear(watch);
   if (watch->stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.%s",
@@ -253,20 +253,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
     free(request);
     return status;
   }
-  const struct eo_option options[] = {{.name = "--pairs", .value = &request->pairs},
-                                      {.name = "--class", .value = &request->grade},
-                                      {.name = "--seed", .value = &request->seed},
-                                      {.name = "--no-vibration", .flag = &request->no_vibration},
-                                      {.name = "--worst", .value = &request->worst},
-                                      {.name = "--keep", .value = &request->keep},
-                                      {.name = "--work", .value = &request->work},
-                                      {.name = "--json", .flag = &request->json},
-                                      {.name = "--csv", .value = &request->csv},
-                                      {.name = "--data", .value = &request->data},
-                                      {.name = "--no-cache", .flag = &request->no_cache},
-                                      {.name = "--threads", .value = &request->threads},
-                                      {.name = "--cache", .value = &request->cache},
-                                      {.name = NULL}};
+  const struct eo_option options[] = {
+      {.name = "--pairs", .value = &request->pairs},      {.name = "--class", .value = &request->grade},
+      {.name = "--seed", .value = &request->seed},        {.name = "--no-vibration", .flag = &request->no_vibration},
+      {.name = "--worst", .value = &request->worst},      {.name = "--keep", .value = &request->keep},
+      {.name = "--work", .value = &request->work},        {.name = "--json", .flag = &request->json},
+      {.name = "--csv", .value = &request->csv},          {.name = "--data", .value = &request->data},
+      {.name = "--no-cache", .flag = &request->no_cache}, {.name = "--threads", .value = &request->threads},
+      {.name = "--cache", .value = &request->cache},      {.name = NULL}};
   request->crew = &crew;
   if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
     status = run_design_or_job(command, request, operands);
@@ -290,6 +284,6 @@ const struct eo_command eo_command_tolerance = {
     "design, --csv a line\n"
     "per pair. --keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work "
     "unless --threads\n"
-    "says otherwise; the numbers do not depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n",
+    "says otherwise; the numbers do not depend on it. --work N works on that job of a server's "
+    "queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

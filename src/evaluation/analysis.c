@@ -172,7 +172,7 @@ static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_desig
   eo_pitch_analysis_done(&analysis->pitch);
   if (want & EO_WANT_PITCH && design->pitch.stated)
     EO_TRY(eo_pitch_analysis_run(&analysis->pitch, analysis->evaluator, design, want & EO_WANT_ROOT, analysis->threads,
-                                 error));
+                                 analysis->progress, error));
   if (want & EO_WANT_RATING)
     EO_TRY(find_rating(analysis, design, error));
   if (own_reference)

@@ -27,6 +27,8 @@ struct eo_analysis {
   int most_cases, most_scenarios;
   bool known_root;
   int threads; /* that one run may use: 1 or 2; may be set between runs, the numbers do not depend on it */
+  const struct eo_progress *progress; /* borrowed; NULL: nobody watches. Single teeth alone ask it, the rest of a run is
+                                         over before it would */
 };
 
 enum eo_code eo_analysis_new(struct eo_analysis **analysis, const struct eo_pair *pair, struct eo_error *error);
@@ -35,7 +37,7 @@ void eo_analysis_free(struct eo_analysis *analysis);
 /* design: resolved, served by the pair (see eo_pair_serves()). want: EO_WANT_..., for the design; the unmodified pair
    gets its root stress when the design does. What the last run found out about the unmodified pair is used again while
    nothing but the modification, the name and the optimization changes; the numbers are the same either way. Errors:
-   those of eo_evaluator_run(). */
+   those of eo_evaluator_run(), cancelled. */
 enum eo_code eo_analysis_run(struct eo_analysis *analysis, const struct eo_design *design, int want,
                              struct eo_error *error);
 

@@ -19,7 +19,20 @@ struct work {
   double *gap[2];                           /* [end] of the case at hand */
   bool root;
   int threads;
+  const struct eo_progress *progress; /* of the load case at hand, then of the vibrations */
 };
+
+/* Contact takes most of the time, so that what is left is told by the load cases that are done. */
+struct share {
+  const struct eo_progress *of;
+  int load_case, load_cases;
+};
+
+static int report_share(void *context, const char *what, double fraction)
+{
+  const struct share *share = context;
+  return eo_progress_report(share->of, what, (share->load_case + fraction) / share->load_cases);
+}
 
 /* Drive flanks carry ahead when the member drives that does so in every load case. */
 static int lead_driver(const struct eo_load_case *load_case, const struct eo_running *running)
@@ -95,7 +108,9 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
   for (int i = 0; i < 4 && work->root; i++)
     input.root[i / 2][i % 2] = eo_pair_half(pair, i / 2)->root[i % 2];
-  return eo_hunting_run(&own->hunting, &input, NULL, error);
+  struct share share = {work->progress, (int)(own - work->result->load_case), work->result->cases};
+  const struct eo_progress progress = {report_share, &share};
+  return eo_hunting_run(&own->hunting, &input, &progress, error);
 }
 
 static double swing(int n, const double *value)
@@ -321,14 +336,22 @@ static enum eo_code run_cases(struct work *work, struct eo_error *error)
     EO_TRY(read_curves(work, own, error));
     EO_TRY(average_turns(own, load_case->running.backwards, error));
   }
-  const struct eo_parallel parallel = {.threads = work->threads, .work = respond, .context = work};
+  const struct eo_parallel parallel = {.threads = work->threads,
+                                       .work = respond,
+                                       .context = work,
+                                       .progress = work->progress,
+                                       .what = "vibration over the hunting period",
+                                       .first = 1,
+                                       .last = 1};
   return eo_parallel_run(&parallel, work->result->cases, error);
 }
 
 enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, bool root, int threads, struct eo_error *error)
+                                   const struct eo_design *design, bool root, int threads,
+                                   const struct eo_progress *progress, struct eo_error *error)
 {
   struct work work = {.result = analysis,
+                      .progress = progress,
                       .evaluator = evaluator,
                       .design = design,
                       .root = root && evaluator->pair->root[0],

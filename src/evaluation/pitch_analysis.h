@@ -48,9 +48,11 @@ struct eo_pitch_analysis {
 };
 
 /* Of a design that states single teeth, after the evaluator has run it. root: with root stresses, where the pair has
-   them. Errors: as eo_hunting_run() and eo_long_response_find(). eo_pitch_analysis_done() also after an error. */
+   them. Errors: as eo_hunting_run() and eo_long_response_find(), cancelled. eo_pitch_analysis_done() also after an
+   error. */
 enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, bool root, int threads, struct eo_error *error);
+                                   const struct eo_design *design, bool root, int threads,
+                                   const struct eo_progress *progress, struct eo_error *error);
 void eo_pitch_analysis_done(struct eo_pitch_analysis *analysis);
 
 #endif

@@ -249,8 +249,9 @@ const struct eo_route eo_routes_jobs[] = {
      .pattern = "/jobs/{id}/result",
      .handle = get_result,
      .name = "getJobResult",
-     .summary = "What a job found: the document of `easeoff optimize --json` or `easeoff tolerance --json`. 409 while it "
-                "is not finished.",
+     .summary =
+         "What a job found: the document of `easeoff optimize --json` or `easeoff tolerance --json`. 409 while it "
+         "is not finished.",
      .gives = "200 OptimizationResult|Tolerance",
      .aside = true},
     {.method = EO_GET,

@@ -80,7 +80,8 @@ static const struct eo_field fields[] = {
      .high = EO_SCATTER_MOST_PAIRS,
      .fallback = NAN,
      .derived = "as the block says",
-     .help = "how many, at most 5000 unless it is a job; the first ones are the same for any number, but of Latin points"},
+     .help =
+         "how many, at most 5000 unless it is a job; the first ones are the same for any number, but of Latin points"},
 };
 static const struct eo_table order_table = EO_TABLE("a tolerance analysis", struct tolerance_order, fields);
 
@@ -195,6 +196,7 @@ const struct eo_route eo_routes_tolerance[] = {
      .name = "getJobPairs",
      .gives = "200 text/csv",
      .aside = true,
-     .summary = "The pairs of a tolerance analysis that is done as CSV, a line for each: `easeoff tolerance --csv`. 409 "
-                "while it is not."},
+     .summary =
+         "The pairs of a tolerance analysis that is done as CSV, a line for each: `easeoff tolerance --csv`. 409 "
+         "while it is not."},
     {0}};

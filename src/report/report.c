@@ -195,6 +195,7 @@ enum eo_code eo_report_make(const struct eo_pair *pair, const struct eo_design *
 {
   struct eo_analysis *analysis;
   EO_TRY(eo_analysis_new(&analysis, pair, error));
+  analysis->progress = progress;
   enum eo_code code = eo_analysis_run(
       analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING | EO_WANT_PITCH, error);
   if (!code && eo_progress_report(progress, "report", 1))

@@ -88,12 +88,12 @@ static enum eo_code make_lanes(struct eo_service *service, struct eo_error *erro
 {
   struct eo_lane_settings settings = {.threads = service->settings.analysis_threads,
                                       .most = service->settings.limits.waiting_questions,
+                                      .overtakes_running = true, /* single teeth take a while */
                                       .function = eo_service_run_task,
                                       .release = eo_service_release_task,
                                       .context = service};
   EO_TRY(eo_lane_new(&service->analyses, &settings, error));
   settings.threads = 1;
-  settings.overtakes_running = true;
   settings.nice = SWEEP_NICE;
   EO_TRY(eo_lane_new(&service->sweeps, &settings, error));
   return eo_lane_new(&service->works, &settings, error);

@@ -2,8 +2,8 @@
 /* What stands behind the server: the queue of jobs and the threads that work it off, prepared gear pairs, what-if
    analyses, events.
 
-   Threads. One optimizes, one works off studies and one tolerance analyses: jobs of a kind run one after the other, each
-   on all cores at a low priority (or on the machines of a launcher, service/launcher.h). One prepares gear pairs,
+   Threads. One optimizes, one works off studies and one tolerance analyses: jobs of a kind run one after the other,
+   each on all cores at a low priority (or on the machines of a launcher, service/launcher.h). One prepares gear pairs,
    so that a new pair need not wait for an optimization. Small lanes of their own answer analyses, sweeps, and work on
    measurements; they come before jobs wherever they meet. Every function below may be called from any thread at any
    time between new and free, and none of them computes: they look something up, write a row, answer.
@@ -91,8 +91,8 @@ enum eo_code eo_service_jobs(struct eo_service *service, int state, int kind, in
                              struct eo_job_page *page, struct eo_error *error);
 void eo_job_page_done(struct eo_job_page *page);
 
-/* The result document of a finished optimization or tolerance analysis as compact JSON, appended to text. Outcomes: DONE, MISSING, STATE (not
-   finished, or of a kind that has none). */
+/* The result document of a finished optimization or tolerance analysis as compact JSON, appended to text. Outcomes:
+   DONE, MISSING, STATE (not finished, or of a kind that has none). */
 enum eo_code eo_service_result(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
                                struct eo_text *text, struct eo_error *error);
 

@@ -68,29 +68,32 @@ static void note_parts(struct eo_answer *answer, double start, double computed)
   answer->written_ms = eo_clock_milliseconds() - computed;
 }
 
-static enum eo_code run_analysis(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
-{
-  struct eo_service *service = asked->service;
-  uint64_t user = user_of(asked->task.token);
-  struct eo_analysis *analysis;
-  double start = eo_clock_milliseconds();
-  EO_TRY(eo_pairs_borrow(service->pairs, held, user, &analysis, &answer->error));
-  analysis->threads = service->cores > 1 ? 2 : 1;
-  enum eo_code code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
-  double computed = eo_clock_milliseconds();
-  if (!code)
-    code = write_analysis(asked, analysis, answer);
-  note_parts(answer, start, computed);
-  eo_pairs_give_back(service->pairs, held, user, analysis);
-  return code;
-}
-
 static int watch_task(void *context, const char *what, double fraction)
 {
   const struct asked *asked = context;
   (void)what;
   (void)fraction;
   return atomic_load(&asked->task.overtaken) || atomic_load(&asked->service->stopping);
+}
+
+static enum eo_code run_analysis(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
+{
+  struct eo_service *service = asked->service;
+  uint64_t user = user_of(asked->task.token);
+  const struct eo_progress progress = {watch_task, asked};
+  struct eo_analysis *analysis;
+  double start = eo_clock_milliseconds();
+  EO_TRY(eo_pairs_borrow(service->pairs, held, user, &analysis, &answer->error));
+  analysis->threads = service->cores > 1 ? 2 : 1;
+  analysis->progress = &progress;
+  enum eo_code code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
+  double computed = eo_clock_milliseconds();
+  analysis->progress = NULL;
+  if (!code)
+    code = write_analysis(asked, analysis, answer);
+  note_parts(answer, start, computed);
+  eo_pairs_give_back(service->pairs, held, user, analysis);
+  return code;
 }
 
 static void write_sweep(const struct asked *asked, const struct eo_sweep *sweep, struct eo_text *text)

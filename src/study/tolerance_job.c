@@ -40,7 +40,7 @@ struct run {
   pthread_mutex_t mutex; /* guards what follows: pairs are finished on any thread and written by one */
   struct waiting *waiting;
   int waiting_count, waiting_room;
-  struct waiting *writing; /* those that the thread that writes has taken */
+  struct waiting *writing;            /* those that the thread that writes has taken */
   double started, computing, written; /* ms of the clock */
   struct eo_error fault;              /* of writing, where it could not be told at once */
 };

@@ -21,8 +21,8 @@ struct eo_tolerance_progress {
 typedef int eo_tolerance_watch(void *context, const struct eo_tolerance_progress *progress);
 
 struct eo_tolerance_job {
-  struct eo_store *store; /* of the calling thread, which alone uses it */
-  int64_t job;            /* queued */
+  struct eo_store *store;         /* of the calling thread, which alone uses it */
+  int64_t job;                    /* queued */
   const struct eo_design *design; /* complete, of the job */
   const struct eo_warnings *warnings;
   const struct eo_pair *pair; /* serves the design, on `threads` of this process (0: eo_parallel_cores()); NULL: crew */

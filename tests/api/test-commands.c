@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep, *pairs, *spur, *stages, *study;
+static char *coarse, *order, *named, *sweep, *pairs, *many_pairs, *tolerance_order, *limited, *spur, *stages, *study;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -207,7 +207,7 @@ static const struct command analyses[] = {
     {"tolerance", "POST", API "/tolerance", .body = &pairs, .status = 200, .pointer = "pairs", .value = "6"},
     {"tolerance as CSV", "POST", API "/tolerance.csv", .body = &pairs, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
-    {"tolerance of too many pairs", "POST", API "/tolerance", .text = "{\"design\":{},\"pairs\":100000}", .status = 422,
+    {"tolerance of too many pairs", "POST", API "/tolerance", .text = "{\"design\":{},\"pairs\":100001}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/pairs"},
     {"sweep without a design", "POST", API "/sweep", .text = "{\"speed\":{\"from\":1,\"to\":2}}", .status = 422},
     {"sweep with a wrong key", "POST", API "/sweep",
@@ -344,25 +344,51 @@ static const struct command studied[] = {
      .value = "1"},
 };
 
+static const struct command tolerances[] = {
+    {"too many pairs at once", "POST", API "/tolerance", .body = &many_pairs, .status = 422,
+     .pointer = "errors/0/pointer", .value = "/design/tolerance/pairs"},
+    {"a limit on nothing", "POST", API "/jobs", .body = &limited, .status = 422, .pointer = "errors/0/pointer",
+     .value = "/design/tolerance/limits/0/output"},
+    {"many pairs later", "POST", API "/tolerance", "Prefer: respond-async\r\nIdempotency-Key: pairs\r\n",
+     .body = &pairs, .status = 202, .header = "Location", .holds = API "/jobs/6", .pointer = "job/kind",
+     .value = "tolerance"},
+    {"the same pairs again", "POST", API "/tolerance", "Prefer: wait=1, respond-async\r\nIdempotency-Key: pairs\r\n",
+     .body = &pairs, .status = 202, .pointer = "job/id", .value = "6"},
+    {"pairs as any job", "POST", API "/jobs", .body = &tolerance_order, .status = 202, .header = "Location",
+     .holds = API "/jobs/7"},
+    {"no pairs of no job", "GET", API "/jobs/99/pairs", .status = 404},
+    {"no pairs of a study", "GET", API "/jobs/5/pairs", .status = 404},
+};
+static const struct command toleranced[] = {
+    {"what they come to", "GET", API "/jobs/6/result", .status = 200, .pointer = "pairs", .value = "6"},
+    {"the pairs", "GET", API "/jobs/6/pairs", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"pairs that were known", "GET", API "/jobs/7", .status = 200, .pointer = "progress/reused", .value = "6"},
+    {"tolerance analyses among the jobs", "GET", API "/jobs?kind=tolerance", .status = 200, .pointer = "items/1/state",
+     .value = "done"},
+};
+
 /* A launcher that starts one process, and one that starts none. */
 static const struct command launched[] = {
     {"a study for a launcher", "POST", API "/studies", .body = &study, .status = 202, .header = "Location",
-     .holds = API "/jobs/6"},
+     .holds = API "/jobs/8"},
     {"a search for a launcher", "POST", API "/jobs", .body = &order, .status = 202, .header = "Location",
-     .holds = API "/jobs/7"},
+     .holds = API "/jobs/9"},
+    {"pairs for a launcher", "POST", API "/jobs", .body = &tolerance_order, .status = 202, .header = "Location",
+     .holds = API "/jobs/10"},
 };
 static const struct command after_launch[] = {
-    {"its table", "GET", API "/studies/6/table", .status = 200, .pointer = "items/5/outcome", .value = "converged"},
-    {"its progress", "GET", API "/jobs/6", .status = 200, .pointer = "progress/true_evaluations", .value = "6"},
-    {"the result of its search", "GET", API "/jobs/7/result", .status = 200, .pointer = "true_evaluations",
+    {"its table", "GET", API "/studies/8/table", .status = 200, .pointer = "items/5/outcome", .value = "converged"},
+    {"its progress", "GET", API "/jobs/8", .status = 200, .pointer = "progress/true_evaluations", .value = "6"},
+    {"the result of its search", "GET", API "/jobs/9/result", .status = 200, .pointer = "true_evaluations",
      .value = "60"},
+    {"what its pairs come to", "GET", API "/jobs/10/result", .status = 200, .pointer = "pairs", .value = "12"},
 };
 static const struct command not_launched[] = {
     {"a study for no launcher", "POST", API "/studies", .body = &study, .status = 202, .header = "Location",
-     .holds = API "/jobs/8"},
+     .holds = API "/jobs/11"},
 };
 static const struct command after_no_launch[] = {
-    {"why it failed", "GET", API "/jobs/8", .status = 200, .pointer = "error/detail",
+    {"why it failed", "GET", API "/jobs/11", .status = 200, .pointer = "error/detail",
      .value = "The launcher ended without a result (status 1); the server's log has what it said."},
 };
 
@@ -612,6 +638,17 @@ int main(void)
   sweep = json_dumps(range, JSON_COMPACT);
   json_t *many = json_pack("{s:O, s:i}", "design", document, "pairs", 6);
   pairs = json_dumps(many, JSON_COMPACT);
+  json_object_set_new(many, "pairs", json_integer(6000));
+  many_pairs = json_dumps(many, JSON_COMPACT);
+  json_object_del(many, "pairs");
+  json_t *own = json_deep_copy(document);
+  json_object_set_new(own, "tolerance", json_pack("{s:i}", "pairs", 12));
+  json_object_set_new(many, "kind", json_string("tolerance"));
+  json_object_set(many, "design", own);
+  tolerance_order = json_dumps(many, JSON_COMPACT);
+  json_object_set_new(own, "tolerance", json_pack("{s:[{s:s, s:i}]}", "limits", "output", "loudness", "at_most", 1));
+  limited = json_dumps(many, JSON_COMPACT);
+  json_decref(own);
   json_decref(many);
   json_t *varied = json_pack("{s:O, s:[{s:s, s:[i,i,i]}, {s:s, s:[i,f]}]}", "design", document, "vary", "key",
                              "modification.pinion.*.tip_relief_um", "values", 0, 10, 20, "key",
@@ -634,16 +671,19 @@ int main(void)
   RUN(studies);
   ok(wait_for_job(5, "done", 60), "the study ends");
   RUN(studied);
+  RUN(tolerances);
+  ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "the pairs are computed");
+  RUN(toleranced);
   check_export();
   ok(stop_server(SIGTERM) == 0, "it stops when told");
   ok(start_server("--quiet", "--launcher", "env"), "a server with a launcher");
   RUN(launched);
-  ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "its jobs end");
+  ok(wait_for_job(8, "done", 60) && wait_for_job(9, "done", 60) && wait_for_job(10, "done", 60), "its jobs end");
   RUN(after_launch);
   ok(stop_server(SIGTERM) == 0, "it stops");
   ok(start_server("--quiet", "--launcher", "false"), "a server with a launcher that does nothing");
   RUN(not_launched);
-  ok(wait_for_job(8, "failed", 60), "its job fails");
+  ok(wait_for_job(11, "failed", 60), "its job fails");
   RUN(after_no_launch);
   ok(stop_server(SIGTERM) == 0, "it stops");
   setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
@@ -664,6 +704,9 @@ int main(void)
   free(named);
   free(sweep);
   free(pairs);
+  free(many_pairs);
+  free(tolerance_order);
+  free(limited);
   free(spur);
   free(stages);
   free(study);

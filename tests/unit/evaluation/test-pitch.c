@@ -107,6 +107,38 @@ static void test_drawn(void)
      "drawn crownings of single teeth are uniform within the share of f_fbeta (%.3f, %.3f, %.3f)", most, mean, square);
 }
 
+struct patience {
+  int asked, most;
+};
+
+static int lose_patience(void *context, const char *what, double fraction)
+{
+  struct patience *patience = context;
+  (void)what;
+  return fraction > 1 || ++patience->asked > patience->most;
+}
+
+/* Stopped in the contact and in the vibrations; what comes after it is as if nothing had been. */
+static void test_stop(void)
+{
+  struct eo_design design = plain_design();
+  struct eo_error error;
+  struct patience patience = {.most = 1000000};
+  const struct eo_progress progress = {lose_patience, &patience};
+  design.pitch.member[EO_PINION].eccentricity = 1e-6;
+  double undisturbed = amplitude(run(&design), "pinion 1");
+  analysis->progress = &progress;
+  run(&design);
+  int asked = patience.asked;
+  for (int most = 1; most < asked; most += asked > 2 ? asked - 2 : 1) {
+    patience = (struct patience){.most = most};
+    ok(asked > 2 && eo_analysis_run(analysis, &design, EO_WANT_PITCH, &error) == EO_ERROR_CANCELLED,
+       "stopped when asked for the %dth of %d times", most + 1, asked);
+  }
+  analysis->progress = NULL;
+  ok(amplitude(run(&design), "pinion 1") == undisturbed, "and whole again");
+}
+
 /* LTE of amplitude e at the member's order, less what pairs in contact average. */
 static void test_eccentricity(void)
 {
@@ -354,6 +386,7 @@ int main(void)
       eo_analysis_new(&analysis, pair, &error))
     stop(&error);
   test_drawn();
+  test_stop();
   test_eccentricity();
   test_eccentricity_phase();
   test_wobble();

@@ -359,6 +359,73 @@ static void test_cancel(void)
   eo_service_free(service);
 }
 
+/* Pairs as made: cancelled in the middle they are kept, taken up again they give what an undisturbed job gives. */
+static void test_tolerance(void)
+{
+  struct eo_service *service = start();
+  enum eo_job_outcome outcome;
+  struct eo_job_view job;
+  struct eo_design many = design, few = design;
+  many.tolerance.pairs = 300;
+  few.tolerance.pairs = 20;
+  few.tolerance.limits = 1;
+  few.tolerance.limit[0] = (struct eo_tolerance_limit){.output = "peak_to_peak_um", .most = 1};
+  int64_t id = submit(service, EO_JOB_TOLERANCE, &many, "pairs", &outcome);
+  ok(wait_for_evaluations(service, id, 30), "pairs as made are computed");
+  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && !outcome && wait_for(service, id, "cancelled"),
+     "and stopped");
+  eo_job_view_done(&job);
+  int kept = progress_of(service, id, "true_evaluations");
+  int64_t other = submit(service, EO_JOB_TOLERANCE, &few, NULL, &outcome);
+  ok(wait_for(service, other, "done") && progress_of(service, other, "reused") == 20,
+     "another job takes its pairs over, whatever its limits and their number");
+  eo_service_free(service);
+  service = start();
+  ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome && wait_for(service, id, "done"),
+     "it goes on from %d pairs", kept);
+  eo_job_view_done(&job);
+  ok(kept < 300 && progress_of(service, id, "true_evaluations") == 300 && progress_of(service, id, "reused") == 0,
+     "to all of them");
+  char *interrupted = result_of(service, id);
+  eo_service_free(service);
+  empty_folder();
+  service = start();
+  id = submit(service, EO_JOB_TOLERANCE, &many, NULL, &outcome);
+  ok(wait_for(service, id, "done"), "undisturbed");
+  char *result = result_of(service, id);
+  ok(interrupted && result && strcmp(interrupted, result) == 0, "the same bytes");
+  free(interrupted);
+  free(result);
+  eo_service_free(service);
+}
+
+/* An order of any size is refused before it costs anything. */
+static void test_tolerance_bounds(void)
+{
+  struct eo_service_settings settings = {.data = folder, .threads = 2};
+  struct eo_service *service = NULL;
+  struct eo_design many = design;
+  enum eo_job_outcome outcome;
+  struct eo_job_view job;
+  const struct eo_job_order order = {.kind = EO_JOB_TOLERANCE, .design = &many};
+  eo_table_defaults(&eo_service_limits_table, &settings.limits);
+  settings.limits.pair_memory_MB = 200;
+  many.tolerance.pairs = 100000;
+  ok(!eo_service_new(&service, &settings, &error), "a service with little memory");
+  ok(eo_service_submit(service, &order, &outcome, &job, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/tolerance/pairs") == 0,
+     "%s", error.text);
+  eo_job_view_done(&job);
+  many.tolerance.pairs = 100;
+  many.tolerance.limits = 1;
+  many.tolerance.limit[0] = (struct eo_tolerance_limit){.output = "loudness"};
+  ok(eo_service_submit(service, &order, &outcome, &job, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/tolerance/limits/0/output") == 0,
+     "%s", error.text);
+  eo_job_view_done(&job);
+  eo_service_free(service);
+}
+
 static void test_full(void)
 {
   struct eo_service *service = start_with(2, 0);
@@ -517,8 +584,9 @@ static void test_park(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_analysis, test_left_out, test_overtaking, test_sweep, test_pairs,      test_job,
-                                test_cancel,   test_full,     test_failure,    test_ends,  test_stale_note, test_park};
+  void (*const test[])(void) = {
+      test_analysis,  test_left_out,         test_overtaking, test_sweep,   test_pairs, test_job,        test_cancel,
+      test_tolerance, test_tolerance_bounds, test_full,       test_failure, test_ends,  test_stale_note, test_park};
   if (!make_folder())
     return 99;
   make_design(&design, BUDGET);
