@@ -10,16 +10,13 @@
 #include "format/json.h"
 #include "format/text_table.h"
 #include "document/study_result.h"
-#include "evaluation/evaluator.h"
 #include "study/history_document.h"
+#include "study/history_prune.h"
 #include "store/merge.h"
-#include "store/evaluations.h"
-#include "store/jobs.h"
-#include "store/lock.h"
 
 struct request {
   const char *data, *job, *problem;
-  bool json, predictions, outdated, damaged;
+  bool json, predictions, outdated, damaged, unused;
   const char *operand[2];
   struct eo_store *store;
 };
@@ -142,76 +139,19 @@ static int run_export(struct request *request)
   return eo_app_fail(NULL, &error);
 }
 
-struct outdated {
-  int count;
-  int64_t problem[1000];
-};
-
-static enum eo_code note_outdated(void *context, const struct eo_stored_problem *problem, struct eo_error *error)
-{
-  struct outdated *list = context;
-  (void)error;
-  if (problem->evaluator != EO_EVALUATOR_VERSION && list->count < (int)(sizeof list->problem / sizeof list->problem[0]))
-    list->problem[list->count++] = problem->id;
-  return EO_OK;
-}
-
-static enum eo_code remove_outdated(struct eo_store *store, int64_t *rows, struct eo_error *error)
-{
-  struct outdated list = {0};
-  enum eo_code code = eo_store_each_problem(store, note_outdated, &list, error);
-  for (int i = 0; i < list.count && !code; i++) {
-    int64_t removed;
-    code = eo_store_remove_problem(store, list.problem[i], &removed, error);
-    *rows += code ? 0 : removed;
-  }
-  return code;
-}
-
-static enum eo_code refuse_running(void *context, const struct eo_stored_job *job, struct eo_error *error)
-{
-  if (job->state != EO_JOB_RUNNING || !eo_store_job_is_taken(context, job->id))
-    return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is running; prune when it has ended.", (long long)job->id);
-}
-
-static enum eo_code prune(struct request *request, int64_t *rows, int64_t *predictions, struct eo_error *error)
-{
-  int problem = 0;
-  int64_t removed = 0;
-  enum eo_code code = eo_store_each_job(request->store, 0, refuse_running, request->store, error);
-  if (!code && request->problem)
-    code = read_id(request->problem, "--problem", &problem, error);
-  if (!code && (request->predictions ||
-                (!request->outdated && !request->damaged && !request->problem))) /* in steps: others write between */
-    code = eo_store_remove_predictions(request->store, predictions, error);
-  if (!code)
-    code = eo_store_begin(request->store, error);
-  if (!code && request->outdated)
-    code = remove_outdated(request->store, rows, error);
-  if (!code && request->problem) {
-    code = eo_store_remove_problem(request->store, problem, &removed, error);
-    *rows += removed;
-  }
-  if (!code && request->damaged) {
-    code = eo_store_remove_damaged(request->store, &removed, error);
-    *rows += removed;
-  }
-  if (!code)
-    code = eo_store_commit(request->store, error);
-  if (code)
-    eo_store_rollback(request->store);
-  return code ? code : eo_store_compact(request->store, error);
-}
-
 static int run_prune(struct request *request)
 {
   struct eo_error error;
   struct eo_text text = {0};
-  int64_t rows = 0, predictions = 0;
-  if (prune(request, &rows, &predictions, &error))
+  struct eo_pruned pruned;
+  struct eo_prune prune = {.outdated = request->outdated, .damaged = request->damaged, .unused = request->unused};
+  bool other = prune.outdated || prune.damaged || prune.unused || request->problem;
+  prune.predictions = request->predictions || !other;
+  if ((request->problem && read_id(request->problem, "--problem", &prune.problem, &error)) ||
+      eo_history_prune(request->store, &prune, &pruned, &error))
     return eo_app_fail(NULL, &error);
-  eo_text_print(&text, "%lld true rows and %lld predictions removed\n", (long long)rows, (long long)predictions);
+  eo_text_print(&text, "%lld true rows and %lld predictions removed\n", (long long)pruned.rows,
+                (long long)pruned.predictions);
   return eo_app_print(&text);
 }
 
@@ -281,6 +221,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--predictions", .flag = &request.predictions},
                                       {.name = "--outdated", .flag = &request.outdated},
                                       {.name = "--damaged", .flag = &request.damaged},
+                                      {.name = "--unused", .flag = &request.unused},
                                       {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 2, request.operand, &operands, &status))
     status = run_action(&request, operands);
@@ -300,5 +241,6 @@ const struct eo_command eo_command_history = {
     "                  once more then finds them\n"
     "  prune           removes predictions of searches that have ended; or instead\n"
     "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check "
-    "sum)\n\n" EO_APP_HISTORY_HELP,
+    "sum),\n"
+    "    --unused (rows of studies and tolerance analyses that no job has any more)\n\n" EO_APP_HISTORY_HELP,
     run};

@@ -193,9 +193,9 @@ const struct eo_command eo_command_serve = {
     "plain address and there is no token.\n\n"
     "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
     "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-    "--launcher \"mpirun -n 64 --hostfile F\" (or srun, or a script) runs optimizations and studies: the command is "
+    "--launcher \"mpirun -n 64 --hostfile F\" (or srun, or a script) runs all jobs but preparations: the command is "
     "started with\n"
-    "easeoff study|optimize --work N --data DIR behind it, on the same data folder.\n\n"
+    "easeoff optimize|study|tolerance --work N --data DIR behind it, on the same data folder.\n\n"
     "A service manager that gives $NOTIFY_SOCKET hears when requests are "
     "answered. On SIGTERM, SIGHUP and Ctrl-C running jobs are parked; they go on\n"
     "when the server starts again.\n",

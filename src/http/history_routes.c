@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was evaluated: by one job, and by all. */
+#include <math.h>
+
 #include "http/job_reply.h"
+#include "http/request_body.h"
 #include "http/route.h"
 #include "http/http_private.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
+#include "study/history_prune.h"
 
 static void reply_rows(struct eo_request *request, int64_t id)
 {
@@ -99,6 +103,39 @@ static void get_path(struct eo_request *request)
   eo_text_done(&text);
 }
 
+static const struct eo_field prune_fields[] = {
+    EO_FLAG(struct eo_prune, predictions, "predictions", 0, "fitness values that searches predicted"),
+    EO_FLAG(struct eo_prune, outdated, "outdated", 0, "rows of older versions of the model"),
+    EO_FLAG(struct eo_prune, damaged, "damaged", 0, "rows that are not what was written"),
+    EO_FLAG(struct eo_prune, unused, "unused", 0, "rows of studies and tolerance analyses that no job has any more"),
+    {.key = "problem",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_prune, problem),
+     .low = 1,
+     .high = 2000000000,
+     .fallback = NAN,
+     .derived = "none",
+     .help = "every row of this problem"},
+};
+static const struct eo_table prune_table = EO_TABLE("what goes out of the history", struct eo_prune, prune_fields);
+
+static void prune(struct eo_request *request)
+{
+  struct eo_prune wanted;
+  struct eo_pruned pruned;
+  struct eo_error error;
+  if (!eo_body_read(request, &wanted))
+    return;
+  enum eo_code code = eo_history_prune(request->store, &wanted, &pruned, &error);
+  if (code == EO_ERROR_INPUT) /* a job runs */
+    eo_reply_problem(&request->reply, 409, "state", "%s", error.text);
+  else if (code)
+    eo_reply_error(&request->reply, "", &error);
+  else
+    eo_reply_json(&request->reply, 200, eo_outline_encode(&eo_pruned_outline, &pruned));
+}
+
 const struct eo_route eo_routes_history[] = {
     {.method = EO_GET,
      .pattern = "/jobs/{id}/history",
@@ -133,4 +170,14 @@ const struct eo_route eo_routes_history[] = {
      .aside = true,
      .summary = "The problems that were worked on with the number of their evaluations, and all jobs: `easeoff history "
                 "list --json`."},
+    {.method = EO_POST,
+     .pattern = "/history/prune",
+     .handle = prune,
+     .name = "pruneHistory",
+     .takes = "PruneOrder",
+     .order = &prune_table,
+     .gives = "200 Pruned",
+     .aside = true,
+     .rate = EO_RATE_START,
+     .summary = "Removes what is no longer wanted of the history: `easeoff history prune`. 409 while a job runs."},
     {0}};

@@ -21,6 +21,7 @@
 #include "study/job_document.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
+#include "study/history_prune.h"
 #include "document/rig_answer.h"
 
 static const char *const states[] = {"ok", "failing", NULL};
@@ -246,6 +247,7 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_tolerance_outline,
                                                     &eo_study_outline,
                                                     &eo_job_outline,
+                                                    &eo_pruned_outline,
                                                     &eo_job_generations_outline,
                                                     &eo_job_history_outline,
                                                     &eo_records_outline,

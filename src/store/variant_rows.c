@@ -119,6 +119,29 @@ enum eo_code eo_store_add_variant(struct eo_store *store, struct eo_stored_varia
   return EO_OK;
 }
 
+static enum eo_code find_last(struct eo_store *store, int64_t *last, struct eo_error *error)
+{
+  struct eo_statement statement = eo_statement_begin(store, "SELECT ifnull(max(id), 0) FROM variant_row", "");
+  *last = eo_statement_step(&statement) ? eo_column_integer(&statement, 0) : 0;
+  return eo_statement_end(&statement, error);
+}
+
+enum eo_code eo_store_remove_variants(struct eo_store *store, int evaluator, bool unused, int64_t *removed,
+                                      struct eo_error *error)
+{
+  enum { STEP = 2000 };
+  int64_t last;
+  EO_TRY(find_last(store, &last, error));
+  for (int64_t first = 1; first <= last; first += STEP) {
+    EO_TRY(EO_STATEMENT_RUN(store, error,
+                            "DELETE FROM variant_row WHERE id BETWEEN ?1 AND ?2 AND ((?3 <> 0 AND evaluator <> ?3) OR"
+                            " (?4 = 1 AND NOT EXISTS (SELECT 1 FROM variant WHERE row = variant_row.id)))",
+                            "iinn", first, first + STEP - 1, evaluator, (int)unused));
+    *removed += sqlite3_changes64(store->handle);
+  }
+  return EO_OK;
+}
+
 enum eo_code eo_store_mean_cost(struct eo_store *store, double *seconds, struct eo_error *error)
 {
   struct eo_statement statement = eo_statement_begin(

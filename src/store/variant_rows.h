@@ -35,6 +35,11 @@ enum eo_code eo_store_find_variant(struct eo_store *store, struct eo_stored_vari
 /* Adds a row unless the design is there already: then *row becomes what is there. Sets row->id. */
 enum eo_code eo_store_add_variant(struct eo_store *store, struct eo_stored_variant *row, struct eo_error *error);
 
+/* Removes rows of other versions of the model than this one (0: of none) and, unused, those that no job has; in steps
+   between which others can write. *removed counts on. */
+enum eo_code eo_store_remove_variants(struct eo_store *store, int evaluator, bool unused, int64_t *removed,
+                                      struct eo_error *error);
+
 /* Mean time of the newest rows, s of a processor; NaN: there is none. */
 enum eo_code eo_store_mean_cost(struct eo_store *store, double *seconds, struct eo_error *error);
 

@@ -7,7 +7,8 @@
 #include "crew/crew.h"
 #include "evaluation/design_scatter.h"
 
-/* The order is the complete design, an item the drawn values of a pair (none: the design itself), an answer its row and what it cost. */
+/* The order is the complete design, an item the drawn values of a pair (none: the design itself), an answer its row and
+ * what it cost. */
 extern const struct eo_crew_trade eo_scatter_trade;
 
 /* What eo_scatter_run_pairs() does, to the same bytes, without a pair of its own. scatter: that of the design's block,

@@ -120,18 +120,26 @@ __attribute__((unused)) static int stop_server(int signal)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-__attribute__((unused)) static int open_connection(void)
+/* source: an address of this machine that the server sees as the client's. */
+__attribute__((unused)) static int open_connection_from(uint32_t source)
 {
+  struct sockaddr_in own = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(source)};
   struct sockaddr_in address = {
       .sin_family = AF_INET, .sin_port = htons((uint16_t)server.port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
   struct timeval limit = {.tv_sec = 60};
   setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  if (connect(connection, (struct sockaddr *)&address, sizeof address) == 0)
+  if (bind(connection, (struct sockaddr *)&own, sizeof own) == 0 &&
+      connect(connection, (struct sockaddr *)&address, sizeof address) == 0)
     return connection;
   close(connection);
   return -1;
+}
+
+__attribute__((unused)) static int open_connection(void)
+{
+  return open_connection_from(INADDR_LOOPBACK);
 }
 
 __attribute__((unused)) static bool send_bytes(int connection, const char *data, size_t size)

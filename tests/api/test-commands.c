@@ -363,7 +363,14 @@ static const struct command toleranced[] = {
     {"what they come to", "GET", API "/jobs/6/result", .status = 200, .pointer = "pairs", .value = "6"},
     {"the pairs", "GET", API "/jobs/6/pairs", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"pairs that were known", "GET", API "/jobs/7", .status = 200, .pointer = "progress/reused", .value = "6"},
-    {"tolerance analyses among the jobs", "GET", API "/jobs?kind=tolerance", .status = 200, .pointer = "items/1/state",
+    {"nothing to prune", "POST", API "/history/prune", .text = "{}", .status = 200, .pointer = "rows", .value = "0"},
+    {"no such thing to prune", "POST", API "/history/prune", .text = "{\"all\":true}", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/all"},
+    {"a tolerance analysis goes", "DELETE", API "/jobs/7", .status = 204},
+    {"pairs that another job has stay", "POST", API "/history/prune", .text = "{\"unused\":true,\"outdated\":true}",
+     .status = 200, .pointer = "rows", .value = "6"},
+    {"the others are there", "GET", API "/jobs/6/pairs", .status = 200},
+    {"tolerance analyses among the jobs", "GET", API "/jobs?kind=tolerance", .status = 200, .pointer = "items/0/state",
      .value = "done"},
 };
 

@@ -5,6 +5,8 @@
 
 #include <dirent.h>
 #include <math.h>
+#include <poll.h>
+#include <zlib.h>
 
 #define EDGE "----edge"
 static const char form_type[] = "Content-Type: multipart/form-data; boundary=" EDGE "\r\n";
@@ -486,6 +488,67 @@ static void test_bodies(void)
   free(form.text);
 }
 
+/* A recording that takes a while to read and little to send: compressed, many rows alike. */
+static struct form make_slow_form(void)
+{
+  enum { ROWS = 4000000 };
+  struct form form = {0};
+  char path[300];
+  static char bytes[1 << 20];
+  snprintf(path, sizeof path, "%s/slow.csv.gz", server.folder);
+  gzFile file = gzopen(path, "wb1");
+  gzputs(file, "t_s,angle1_deg,angle2_deg\n");
+  for (int i = 0; i < ROWS; i++)
+    gzputs(file, "0.25,2.5,1.25\n");
+  gzclose(file);
+  FILE *packed = fopen(path, "rb");
+  size_t size = packed ? fread(bytes, 1, sizeof bytes, packed) : 0;
+  if (packed)
+    fclose(packed);
+  remove(path);
+  add_part(&form, "file", "slow.csv.gz", bytes, size);
+  end_form(&form);
+  return form;
+}
+
+static int begin_post(uint32_t source, const struct form *form)
+{
+  char head[300];
+  int connection = open_connection_from(source);
+  snprintf(head, sizeof head, "POST %s HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n", target, form_type,
+           form->size);
+  send_text(connection, head);
+  send_bytes(connection, form->text, form->size);
+  return connection;
+}
+
+/* One client's slow files leave a reader to others. */
+static void test_slow_files(void)
+{
+  enum { SLOW = 3 };
+  struct form slow = make_slow_form(), quick = {0};
+  struct reply reply = {0};
+  int connection[SLOW], unanswered = 0;
+  add_part(&quick, "file", "quick.csv", "t,a,b\n1,2,3\n", 12);
+  end_form(&quick);
+  for (int i = 0; i < SLOW; i++)
+    connection[i] = begin_post(INADDR_LOOPBACK, &slow);
+  for (int i = 0; i < 10; i++)
+    wait_a_little(); /* they are being read */
+  int other = begin_post(INADDR_LOOPBACK + 1, &quick);
+  read_reply(other, &reply, false);
+  for (int i = 0; i < SLOW; i++) {
+    unanswered += poll(&(struct pollfd){.fd = connection[i], .events = POLLIN}, 1, 0) == 0;
+    close(connection[i]);
+  }
+  close(other);
+  ok(reply.status == 422 && unanswered == SLOW, "another client's recording is answered (%d) before %d slow ones",
+     reply.status, unanswered);
+  free_reply(&reply);
+  free(slow.text);
+  free(quick.text);
+}
+
 /* The server dies while a file comes in: the next one knows nothing of it. */
 static void test_kill(void)
 {
@@ -646,6 +709,7 @@ int main(void)
   test_faults();
   test_words();
   test_bodies();
+  test_slow_files();
   test_kill();
   test_comparison();
   test_fit();

@@ -338,6 +338,11 @@ class Client:
         """The true evaluations of an optimization in its order."""
         return self._pages(f"/jobs/{id}/history")
 
+    @operation("pruneHistory")
+    def prune(self, what: Mapping[str, Any]) -> doc.Pruned:
+        """Removes rows of the history for good: {"predictions": True}, outdated, damaged, unused, {"problem": 3}."""
+        return self._json("POST", "/history/prune", document=what)
+
     @operation("getJobPath")
     def job_path(self, id: int) -> str:
         """The path of a search as CSV: each individual, whether computed, known or predicted."""

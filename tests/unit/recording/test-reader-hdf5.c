@@ -4,6 +4,7 @@
 #include "support/reader-fixture.h"
 
 #include <hdf5.h>
+#include <sys/resource.h>
 
 #define COUNT 5000
 
@@ -106,6 +107,55 @@ static void test_table(void)
   free(table);
 }
 
+/* Three channels of LONG rows, in chunks of so many. */
+enum { LONG = 400000 };
+
+static void write_long(hsize_t chunk)
+{
+  static const char *const names[] = {"t_s", "pinion_deg", "gear_deg"};
+  hsize_t count = LONG;
+  hid_t list = H5Pcreate(H5P_DATASET_CREATE), file = open_file();
+  double *value = malloc(sizeof *value * LONG);
+  if (!value)
+    exit(95);
+  H5Pset_chunk(list, 1, &chunk);
+  H5Pset_deflate(list, 1);
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < LONG; i++)
+      value[i] = k == 0 ? 1e-4 * i : 0.37 * i / k;
+    H5Dclose(put(file, names[k], 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, value, list));
+  }
+  free(value);
+  H5Pclose(list);
+  H5Fclose(file);
+}
+
+/* Seconds of a processor, in the process that reads. */
+static double time_to_read(int64_t *rows)
+{
+  struct eo_error error;
+  struct rusage before, after;
+  getrusage(RUSAGE_CHILDREN, &before);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  getrusage(RUSAGE_CHILDREN, &after);
+  *rows = r ? eo_recording_rows(r) : 0;
+  eo_recording_free(r);
+  return (double)(after.ru_utime.tv_sec - before.ru_utime.tv_sec) +
+         1e-6 * (double)(after.ru_utime.tv_usec - before.ru_utime.tv_usec);
+}
+
+/* A chunk that holds everything, as other programs write without malice, was unpacked again for every piece. */
+static void test_one_chunk(void)
+{
+  int64_t rows, same;
+  write_long(10000);
+  double many = time_to_read(&rows);
+  write_long(LONG);
+  double one = time_to_read(&same);
+  ok(rows == LONG && same == LONG, "%d rows, in chunks and in one", LONG);
+  ok(one < 3 * many + 0.2, "one chunk takes %.2f s of a processor, chunks of 10000 rows %.2f s", one, many);
+}
+
 static void test_hostile(void)
 {
   struct eo_error error;
@@ -159,6 +209,7 @@ int main(void)
   }
   test_channels();
   test_table();
+  test_one_chunk();
   test_hostile();
   return fixture_close();
 }

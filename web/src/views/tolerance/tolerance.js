@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Tolerance view: what scatters in gears as they are made, and what many pairs of this design come to.
+import { get, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
-import { duration, labelOf, unitText } from '../../base/format.js';
+import { dateText, duration, labelOf, unitText } from '../../base/format.js';
+import { ACTIVE } from '../../base/jobs.js';
 import { Lane } from '../../base/lane.js';
 import { readQuantity } from '../../base/quantity.js';
 import { documentOf } from '../../base/store.js';
@@ -10,9 +12,7 @@ import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, yields } from './tolerance_tables.js';
 
 const KEYS = ['preset', 'class', 'edition', 'pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
-const FIRST = 64; // pairs of the first answer; each next one has four times as many
-const GROWTH = 4;
-const MOST = 5000; // pairs that the service puts into one answer
+const FIRST = 64; // pairs of the first answer; a job has all of them
 const LIMITS = /** @type {[string, string, string][]} */ ([
   ['peak_to_peak_um', 'Peak to peak at most', 'um'],
   ['rms_m_per_s2', 'Vibration RMS at most', 'm_per_s2'],
@@ -27,9 +27,10 @@ class ToleranceView {
   /** @type {Api.Tolerance | null} */ #result = null;
   /** Pairs of the answer that is on its way; 0: none. */
   #asked = 0;
-  #began = 0;
+  /** The job that draws all pairs; 0: none. */
+  #job = 0;
   #stopped = false;
-  /** The design, as text, that the figures belong to. */
+  /** The design, as text, that the figures belong to; empty: one that was drawn before this page was opened. */
   #of = '';
 
   /** @param {import('../../app.js').App} app */
@@ -38,7 +39,7 @@ class ToleranceView {
     this.fields = app.form.set();
     /** @type {Lane<Api.Tolerance, number>} */
     this.lane = new Lane({
-      result: (task, data) => this.#take(task.note, data),
+      result: (task, data) => this.#takeFirst(task.note, data),
       refused: (_task, error) => this.#end(error.message),
       preparing: (_task, { progress }) =>
         this.#say(`The teeth are prepared, ${Math.round(100 * (progress?.fraction ?? 0))} %`),
@@ -72,6 +73,7 @@ class ToleranceView {
     this.head = h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst);
     this.element = this.#layOut();
     app.store.addEventListener('change', () => this.#note());
+    app.jobs.addEventListener('change', () => this.#follow());
     this.#drawLimits();
     this.#draw();
   }
@@ -132,53 +134,101 @@ class ToleranceView {
   }
 
   get #wanted() {
-    return Math.min(this.app.store.design.tolerance?.pairs ?? 1000, MOST);
+    return this.app.store.design.tolerance?.pairs ?? 1000;
   }
 
   #begin() {
     this.app.form.flush();
     this.#stopped = false;
     this.#of = JSON.stringify(this.app.store.design);
+    this.#lock();
+    this.#asked = Math.min(FIRST, this.#wanted);
+    this.lane.submit({
+      path: 'tolerance',
+      body: { design: JSON.parse(this.#of), pairs: this.#asked },
+      note: this.#asked,
+    });
+    this.#say(`${this.#asked} pairs are computed`);
+  }
+
+  #lock() {
     this.start.disabled = true;
     this.stop.hidden = false;
-    this.#ask(Math.min(FIRST, this.#wanted));
   }
 
-  /** @param {number} pairs */
-  #ask(pairs) {
-    this.#asked = pairs;
-    this.#began = performance.now();
-    this.lane.submit({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs }, note: pairs });
-    this.#say(`${pairs} pairs are computed`);
-  }
-
-  /**
-   * Each answer is shown; the next one has more pairs, the first of them the same.
-   * @param {number} pairs @param {Api.Tolerance} data
-   */
-  #take(pairs, data) {
-    const seconds = (performance.now() - this.#began) / 1000;
+  /** The first pairs are shown at once. @param {number} pairs @param {Api.Tolerance} data */
+  #takeFirst(pairs, data) {
     if (pairs !== this.#asked) return;
+    this.#show(data);
+    if (this.#stopped || pairs >= this.#wanted) this.#end(this.#stopped ? `Stopped at ${pairs} pairs.` : '');
+    else this.#order();
+  }
+
+  /** A job of the service for all of them: it goes on when this page is closed. */
+  async #order() {
+    const body = { design: JSON.parse(this.#of), pairs: this.#wanted };
+    try {
+      const { job } = await post('tolerance', body, { Prefer: 'respond-async' });
+      this.#job = job.id;
+      this.app.jobs.put(job);
+      if (this.#stopped) this.#halt();
+    } catch (error) {
+      this.#end(/** @type {Error} */ (error).message);
+    }
+  }
+
+  /** Where the job is. */
+  #follow() {
+    const job = this.app.jobs.all.get(this.#job);
+    if (!job) return;
+    if (!ACTIVE.includes(job.state)) this.#finish(job);
+    else {
+      const left = job.progress?.seconds_left;
+      const time = typeof left === 'number' ? `, ${duration(left)} left` : '';
+      fill(this.state, progressBar(job), ` ${job.progress?.what || job.state}${time}`);
+    }
+  }
+
+  /** @param {Api.Job} job */
+  async #finish(job) {
+    this.#job = 0;
+    if (job.state !== 'done') {
+      this.#end(job.state === 'failed' ? (job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
+      return;
+    }
+    try {
+      this.#show(await get(`jobs/${job.id}/result`));
+      this.#end(this.#of ? '' : `${job.name}, ${dateText(job.finished)}`);
+    } catch (error) {
+      this.#end(/** @type {Error} */ (error).message);
+    }
+  }
+
+  /** @param {Api.Tolerance} data */
+  #show(data) {
     this.#result = data;
     this.#drawChoice();
     this.#draw();
-    if (this.#stopped || pairs >= this.#wanted) {
-      this.#end(this.#stopped ? `Stopped at ${pairs} pairs.` : '');
-      return;
-    }
-    const next = Math.min(pairs * GROWTH, this.#wanted);
-    this.#ask(next);
-    fill(
-      this.state,
-      progressBar({ name: 'the pairs', progress: { fraction: pairs / this.#wanted } }),
-      ` ${pairs} of ${this.#wanted} pairs, the next answer in about ${duration((seconds * next) / pairs)}`,
-    );
   }
 
   #halt() {
     this.#stopped = true;
-    this.lane.overtake({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs: 1 } });
-    this.#end(this.#result ? `Stopped at ${this.#result.pairs} pairs.` : 'Stopped.');
+    if (this.#job) post(`jobs/${this.#job}/cancel`).catch(() => {});
+    else {
+      this.lane.overtake({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs: 1 } });
+      this.#end(this.#result ? `Stopped at ${this.#result.pairs} pairs.` : 'Stopped.');
+    }
+  }
+
+  /** The newest job, when this page has drawn nothing yet: its pairs, or how far it is. */
+  #recall() {
+    const [newest] = [...this.app.jobs.all.values()]
+      .filter(job => job.kind === 'tolerance' && (ACTIVE.includes(job.state) || job.state === 'done'))
+      .sort((a, b) => b.id - a.id);
+    if (!newest || this.#result || this.#asked || this.#job) return;
+    this.#job = newest.id;
+    this.#lock();
+    this.#follow();
   }
 
   /** @param {string} text */
@@ -196,7 +246,7 @@ class ToleranceView {
 
   /** The design has changed: what is shown belongs to the one before. */
   #note() {
-    if (this.#result && !this.#asked && JSON.stringify(this.app.store.design) !== this.#of)
+    if (this.#result && this.#of && !this.#asked && JSON.stringify(this.app.store.design) !== this.#of)
       this.#say('The design has changed since these pairs were drawn.');
   }
 
@@ -259,6 +309,7 @@ class ToleranceView {
 
   show() {
     this.#note();
+    this.#recall();
   }
 }
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs as made from the page: the first at once, all of them from a job that another page finds again and can stop.
+import { Server, chapter, finish, ok, openBrowser } from './harness.mjs';
+
+const LOOSE =
+  'resolution.positions=16&resolution.cells_per_line=6&resolution.sector_teeth=3&resolution.neighbour_coupling=false&' +
+  'resolution.layers=6&resolution.flank_rows=4&resolution.fillet_elements=6&resolution.harmonics=6&' +
+  'resolution.te_harmonics=6';
+
+const server = await Server.start();
+const browser = await openBrowser();
+const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: 'reduce' });
+await context.addInitScript(() => {
+  if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
+});
+const page = await context.newPage();
+const troubles = [];
+page.on('pageerror', error => troubles.push(error.message));
+const state = page.locator('.tolerance-view [role=status]').first();
+const draw = page.getByRole('button', { name: 'Draw the pairs' });
+const jobs = async () => (await (await fetch(new URL('api/v1/jobs?kind=tolerance', server.address))).json()).items;
+
+await chapter('a job draws them all', async () => {
+  await page.goto(`${server.address}#tolerance?from=paper-case-a&${LOOSE}&tolerance.pairs=150`);
+  await draw.click();
+  await page.getByText(/\b64 pairs/).first().waitFor({ timeout: 60000 });
+  ok(true, 'the first pairs are shown');
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  const [job] = await jobs();
+  ok(job.state === 'done' && job.progress.true_evaluations === 150, 'all of them come from a job');
+  ok(await draw.isEnabled(), 'it can be done again');
+});
+
+await chapter('another page', async () => {
+  await page.reload();
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  ok((await state.textContent()).includes('20'), 'shows what was drawn, with its date');
+});
+
+await chapter('stopping', async () => {
+  await page.goto('about:blank');
+  await page.goto(`${server.address}#tolerance?from=paper-case-a&${LOOSE}&tolerance.pairs=50000`);
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  await draw.click();
+  await page.getByText(/of 50000/).first().waitFor({ timeout: 60000 });
+  await page.reload();
+  await page.getByText(/of 50000/).first().waitFor({ timeout: 60000 });
+  ok(true, 'a job that runs is found again');
+  await page.getByRole('button', { name: 'Stop' }).click();
+  await page.getByText('what was drawn is kept').waitFor({ timeout: 60000 });
+  ok((await jobs())[0].state === 'cancelled', 'and is stopped');
+});
+
+ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+await browser.close();
+await server.remove();
+finish();
