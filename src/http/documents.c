@@ -43,22 +43,24 @@ static enum eo_code put_examples(struct eo_documents *documents, struct eo_error
 }
 
 static enum eo_code put_all(struct eo_documents *documents, const struct eo_route *const *routes,
+                            const struct eo_http_limits *http, const struct eo_service_limits *work,
                             struct eo_error *error)
 {
   json_t *schema = json_pack("{s:o, s:o}", "design", eo_table_fields(&eo_design_table), "sweep",
                              eo_table_fields(&eo_sweep_request_table));
   EO_TRY(put(&documents->schema, schema, error));
-  EO_TRY(put(&documents->openapi, eo_openapi(routes), error));
+  EO_TRY(put(&documents->openapi, eo_openapi(routes, http, work), error));
   return put_examples(documents, error);
 }
 
 enum eo_code eo_documents_new(struct eo_documents **documents, const struct eo_route *const *routes,
+                              const struct eo_http_limits *http, const struct eo_service_limits *work,
                               struct eo_error *error)
 {
   struct eo_documents *made = calloc(1, sizeof *made);
   if (!made)
     return eo_error_memory(error);
-  enum eo_code code = put_all(made, routes, error);
+  enum eo_code code = put_all(made, routes, http, work, error);
   if (code)
     eo_documents_free(made);
   else

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/json.h"
 #include "http/guard.h"
+#include "http/openapi_examples.h"
 #include "http/problems.h"
 #include "http/route.h"
 #include "http/schemas.h"
@@ -130,6 +132,12 @@ static void add_headers(json_t *list, const char *headers, unsigned method)
                           method == EO_PUT && strcmp(known[i].name, "If-Match") == 0));
 }
 
+static void add_example(json_t *content, const char *type, json_t *example)
+{
+  if (example)
+    json_object_set_new(json_object_get(content, type), "example", example);
+}
+
 static json_t *encode_content(const char *what, size_t length, bool csv)
 {
   json_t *content = json_object();
@@ -137,6 +145,7 @@ static json_t *encode_content(const char *what, size_t length, bool csv)
     json_object_setn_new(content, what, length, json_pack("{s:{s:s}}", "schema", "type", "string"));
   else
     json_object_set_new(content, "application/json", json_pack("{s:o}", "schema", reference_any(what, length)));
+  add_example(content, "application/json", eo_openapi_answer_example(what, length));
   if (csv)
     json_object_set_new(content, "text/csv", json_pack("{s:{s:s}}", "schema", "type", "string"));
   return content;
@@ -204,6 +213,8 @@ static void add_problems(json_t *answers, const struct eo_route *route)
       text.data[text.size -= 2] = '\0';
     json_t *answer = json_object_get(answers, status),
            *problem = json_pack("{s:{s:o}}", "application/problem+json", "schema", reference("Problem", 7));
+    if (known[i].status == 422)
+      add_example(problem, "application/problem+json", eo_openapi_answer_example("Problem", 7));
     if (!answer)
       json_object_set_new(answers, status,
                           json_pack("{s:s, s:o}", "description", text.failed ? "" : text.data, "content", problem));
@@ -267,6 +278,27 @@ static json_t *body_schema(const struct eo_route *route)
                                    : reference_any(route->takes, strlen(route->takes));
 }
 
+/* With the size that it may have; of a form what the limits say. */
+static json_t *encode_body(const struct eo_route *route)
+{
+  json_t *content = json_pack("{s:{s:o}}", body_type(route), "schema", body_schema(route));
+  add_example(content, body_type(route), eo_openapi_body_example(route));
+  json_t *body = json_pack("{s:b, s:o}", "required", !route->takes_nothing, "content", content);
+  if (!route->form)
+    json_object_set_new(body, "x-max-bytes",
+                        json_integer((json_int_t)(route->body ? route->body : EO_JSON_DESIGN_BYTES)));
+  return body;
+}
+
+/* What of x-limits counts a request. */
+static void add_rate(json_t *operation, const struct eo_route *route)
+{
+  static const char *const names[EO_RATE_KINDS] = {NULL, "questions_at_once, questions_per_second",
+                                                   "starts_at_once, starts_per_second", "wrong_tokens_per_minute"};
+  if (names[route->rate])
+    json_object_set_new(operation, "x-rate", json_string(names[route->rate]));
+}
+
 static json_t *encode_operation(const struct eo_route *route)
 {
   json_t *parameters = json_array();
@@ -276,9 +308,8 @@ static json_t *encode_operation(const struct eo_route *route)
   json_t *operation = json_pack("{s:s, s:s, s:o, s:o}", "operationId", route->name, "summary", route->summary,
                                 "parameters", parameters, "responses", encode_answers(route));
   if (route->takes)
-    json_object_set_new(operation, "requestBody",
-                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content", body_type(route),
-                                  "schema", body_schema(route)));
+    json_object_set_new(operation, "requestBody", encode_body(route));
+  add_rate(operation, route);
   if (route->csv)
     json_object_set_new(operation, "description",
                         json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));
@@ -306,12 +337,26 @@ static json_t *encode_paths(const struct eo_route *const *routes)
   return paths;
 }
 
-json_t *eo_openapi(const struct eo_route *const *routes)
+/* What this server allows, key by key as `easeoff serve --help` describes it. */
+static json_t *encode_limits(const struct eo_http_limits *http, const struct eo_service_limits *work)
+{
+  json_t *requests = eo_table_encode(&eo_http_limits_table, http);
+  static const char *const own[] = {"base_path", "trusted_proxies", "log_level"}; /* of whoever runs it */
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    json_object_del(requests, own[i]);
+  return json_pack("{s:o, s:o}", "requests", requests, "work", eo_table_encode(&eo_service_limits_table, work));
+}
+
+json_t *eo_openapi(const struct eo_route *const *routes, const struct eo_http_limits *http,
+                   const struct eo_service_limits *work)
 {
   return json_pack(
-      "{s:s, s:{s:s, s:s, s:s}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}",
+      "{s:s, s:{s:s, s:s, s:s, s:o}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}",
       "openapi", "3.1.0", "info", "title", "Easeoff", "version", PACKAGE_VERSION, "description",
-      "Quiet herringbone gears by tooth micro-geometry.", "servers", "url", EO_API, "security", "token", "session",
-      "paths", encode_paths(routes), "components", "schemas", eo_openapi_schemas(routes), "securitySchemes", "token",
-      "type", "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name", eo_guard_cookie);
+      "Quiet herringbone gears by tooth micro-geometry. x-limits: what this server allows; x-rate of an operation: "
+      "which "
+      "of them count it; x-max-bytes of a body: its most.",
+      "x-limits", encode_limits(http, work), "servers", "url", EO_API, "security", "token", "session", "paths",
+      encode_paths(routes), "components", "schemas", eo_openapi_schemas(routes), "securitySchemes", "token", "type",
+      "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name", eo_guard_cookie);
 }

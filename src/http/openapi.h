@@ -5,9 +5,13 @@
 
 #include <jansson.h>
 
+#include "http/limits.h"
+#include "service/service_limits.h"
+
 struct eo_route;
 
-/* routes: NULL after the last table. NULL without memory. */
-json_t *eo_openapi(const struct eo_route *const *routes);
+/* routes: NULL after the last table; http, work: what this server allows. NULL without memory. */
+json_t *eo_openapi(const struct eo_route *const *routes, const struct eo_http_limits *http,
+                   const struct eo_service_limits *work);
 
 #endif

@@ -318,7 +318,8 @@ static enum eo_code open_all(struct eo_http *http, struct eo_error *error)
   EO_TRY(eo_background_new(&http->aside, settings->data, 1, error));
   EO_TRY(eo_background_new(&http->readings, settings->data, EO_READERS, error));
   EO_TRY(eo_pages_new(&http->pages, settings->pages, error));
-  return eo_documents_new(&http->documents, http->routes, error);
+  return eo_documents_new(&http->documents, http->routes, &http->settings.limits, eo_service_limits_of(http->service),
+                          error);
 }
 
 static void log_job(void *context, int64_t job, const char *kind, const char *what, const char *detail)

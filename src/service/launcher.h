@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Jobs handed to a launcher (mpirun, srun, a script): it starts this program on the machines of its own, with
-   `easeoff optimize|study|tolerance --work N --data DIR`, which works on the job's row like anybody else, notes how far it is
-   there and looks there whether it shall stop. */
+   `easeoff optimize|study|tolerance --work N --data DIR`, which works on the job's row like anybody else, notes how far
+   it is there and looks there whether it shall stop. */
 #ifndef EASEOFF_SERVICE_LAUNCHER_H
 #define EASEOFF_SERVICE_LAUNCHER_H
 

@@ -162,6 +162,11 @@ enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_
   return code;
 }
 
+const struct eo_service_limits *eo_service_limits_of(const struct eo_service *service)
+{
+  return &service->settings.limits;
+}
+
 void eo_service_stop(struct eo_service *service)
 {
   pthread_mutex_lock(&service->work_mutex);

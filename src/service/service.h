@@ -49,6 +49,9 @@ struct eo_service_settings {
 enum eo_code eo_service_new(struct eo_service **service, const struct eo_service_settings *settings,
                             struct eo_error *error);
 
+/* What it allows; as long as the service is there. */
+const struct eo_service_limits *eo_service_limits_of(const struct eo_service *service);
+
 /* Begins to stop: running jobs are parked within an evaluation (they go on when a service starts again), every request
    that waits is answered with EO_ANSWER_STOPPED, new ones are refused with EO_ADMISSION_CLOSED. Returns at once;
    calling it again is fine. */

@@ -25,6 +25,8 @@ static const json_t *find(const json_t *value, const char *pointer)
     char key[100];
     size_t length = strcspn(pointer, "/");
     snprintf(key, sizeof key, "%.*s", (int)length, pointer);
+    for (char *c = key; (c = strchr(c, '~'));)
+      *c = '/';
     value = json_is_array(value) ? json_array_get(value, strtoul(key, NULL, 10)) : json_object_get(value, key);
     pointer += length + (pointer[length] == '/');
   }
@@ -470,6 +472,74 @@ static int check_references(const json_t *value)
   return wrong;
 }
 
+/* Every key of an example is in what came, and is of its kind or null. */
+static bool is_like(const json_t *example, const json_t *value)
+{
+  const char *key;
+  json_t *member;
+  if (json_is_null(example) || json_is_null(value))
+    return value;
+  if (json_is_number(example) && json_is_number(value))
+    return true;
+  if (json_is_boolean(example) && json_is_boolean(value))
+    return true;
+  if (!json_is_object(example))
+    return json_typeof(example) == json_typeof(value);
+  json_object_foreach((json_t *)example, key, member) if (!is_like(member, json_object_get(value, key))) return false;
+  return json_is_object(value);
+}
+
+/* Sends an operation's example to it; 1 in place of a number. */
+static void send_example(const char *path, const char *method, const json_t *operation, int *bodies, int *answers)
+{
+  const json_t *body = find(operation, "requestBody/content/application~json/example"), *example;
+  char real[200] = API, upper[8] = "", pointer[100];
+  size_t length = strlen(API);
+  for (const char *c = path; *c && length < sizeof real - 1; c++) {
+    real[length++] = *c == '{' ? '1' : *c;
+    if (*c == '{')
+      c += strcspn(c, "}");
+  }
+  real[length] = '\0';
+  for (int i = 0; method[i] && i < 7; i++)
+    upper[i] = (char)(method[i] & ~32);
+  bool reads = strcmp(method, "get") == 0 && !strstr(path, "events");
+  if (!body && !reads)
+    return;
+  char *text = body ? json_dumps(body, JSON_COMPACT) : NULL;
+  struct reply reply = call(upper, real, "If-Match: *\r\nPrefer: respond-async\r\n", text);
+  json_t *document = json_loadb(reply.body ? reply.body : "", reply.size, 0, NULL);
+  if (body) {
+    bool taken = reply.status < 400 || (strstr(path, "/export/") && reply.status == 404) || /* format 1 */
+                 (reply.status == 409 && strstr(path, "clone")) ||
+                 (reply.status == 422 && strcmp(path, "/designs/{id}/fit") == 0 &&
+                  stands_there(&reply, "errors/0/pointer", "/measurements/0"));
+    ok(taken, "the example of %s %s is taken: %d", upper, path, reply.status);
+    if (!taken)
+      printf("# %.400s\n", reply.body ? reply.body : "");
+    *bodies += 1;
+  }
+  snprintf(pointer, sizeof pointer, "responses/%d/content/application~json/example", reply.status);
+  if (reply.status < 400 && (example = find(operation, pointer))) {
+    ok(is_like(example, document), "what %s %s answers is like its example", upper, path);
+    *answers += 1;
+  }
+  json_decref(document);
+  free_reply(&reply);
+  free(text);
+}
+
+/* On a server where design 1 and job 1 are. */
+static void check_examples(void)
+{
+  const char *path, *method;
+  json_t *item, *operation;
+  int bodies = 0, answers = 0;
+  json_object_foreach(json_object_get(description, "paths"), path, item) json_object_foreach(item, method, operation)
+      send_example(path, method, operation, &bodies, &answers);
+  ok(bodies > 15 && answers > 10, "%d examples of bodies, %d of answers", bodies, answers);
+}
+
 static void check_description(void)
 {
   const char *key;
@@ -680,6 +750,7 @@ int main(void)
   RUN(studied);
   RUN(tolerances);
   ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "the pairs are computed");
+  ok(wait_for_job(3, "done", 60) && wait_for_job(4, "done", 60), "and nothing else runs");
   RUN(toleranced);
   check_export();
   ok(stop_server(SIGTERM) == 0, "it stops when told");
@@ -698,6 +769,12 @@ int main(void)
   check_token();
   ok(stop_server(SIGINT) == 0, "it stops on Ctrl-C");
   unsetenv("EASEOFF_TOKEN");
+  remove_data_folder();
+  ok(make_data_folder() && start_server("--quiet"), "a server with nothing in it");
+  json_decref(call_json("POST", API "/designs", NULL, coarse, NULL));
+  json_decref(call_json("POST", API "/jobs", NULL, order, NULL));
+  check_examples();
+  ok(stop_server(SIGTERM) == 0, "it stops");
   char folder[300];
   make_pages(folder);
   ok(start_server("--quiet", "--web", folder), "a server with a page");

@@ -109,7 +109,7 @@ def form(data, **fields):
 
 def post_recording(server, data, design_id):
     headers = {"Content-Type": f"multipart/form-data; boundary={BOUNDARY}"}
-    return server.ask("POST", "/measurements", headers=headers, body=form(data, design=design_id))
+    return server.ask("POST", "/measurements", headers=headers, body=form(data, design=design_id, label="modified", torque_Nm=400, speed_rpm=1500))
 
 
 def shortened(rig, number):
