@@ -282,7 +282,8 @@ class CompareView {
         load: async () => {
           const { design } = await get(`jobs/${job.id}`);
           const best = jobs.all.get(job.id)?.best?.modification ?? job.best?.modification;
-          const modification = best ?? (await get(`jobs/${job.id}/result`)).best?.modification;
+          const result = best ? null : await get(`jobs/${job.id}/result`);
+          const modification = best ?? (result && 'best' in result ? result.best?.modification : null);
           return design && modification ? documentOf({ ...design, modification }) : null;
         },
       }));

@@ -63,7 +63,8 @@ export class JobDetail {
       const start = documentOf(design);
       const rows = await list(`jobs/${job.id}/history`, MOST_ROWS);
       const done = job.state === 'done' && job.has_result !== false;
-      const result = done ? (this.#result ?? (await get(`jobs/${job.id}/result`))) : null;
+      const answer = done ? (this.#result ?? (await get(`jobs/${job.id}/result`))) : null;
+      const result = answer && 'best' in answer ? answer : null;
       if (gone()) return;
       this.#design = start;
       this.#rows = rows;

@@ -73,7 +73,10 @@ class ToleranceView {
     this.head = h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst);
     this.element = this.#layOut();
     app.store.addEventListener('change', () => this.#note());
-    app.jobs.addEventListener('change', () => this.#follow());
+    app.jobs.addEventListener('change', () => {
+      if (this.element.isConnected) this.#recall();
+      this.#follow();
+    });
     this.#drawLimits();
     this.#draw();
   }
@@ -168,9 +171,10 @@ class ToleranceView {
   async #order() {
     const body = { design: JSON.parse(this.#of), pairs: this.#wanted };
     try {
-      const { job } = await post('tolerance', body, { Prefer: 'respond-async' });
-      this.#job = job.id;
-      this.app.jobs.put(job);
+      const ticket = await post('tolerance', body, { Prefer: 'respond-async' });
+      if (!('job' in ticket) || !ticket.job) return;
+      this.#job = ticket.job.id;
+      this.app.jobs.put(ticket.job);
       if (this.#stopped) this.#halt();
     } catch (error) {
       this.#end(/** @type {Error} */ (error).message);
@@ -197,7 +201,8 @@ class ToleranceView {
       return;
     }
     try {
-      this.#show(await get(`jobs/${job.id}/result`));
+      const result = await get(`jobs/${job.id}/result`);
+      if ('pairs' in result) this.#show(result);
       this.#end(this.#of ? '' : `${job.name}, ${dateText(job.finished)}`);
     } catch (error) {
       this.#end(/** @type {Error} */ (error).message);
@@ -213,7 +218,7 @@ class ToleranceView {
 
   #halt() {
     this.#stopped = true;
-    if (this.#job) post(`jobs/${this.#job}/cancel`).catch(() => {});
+    if (this.#job) post(`jobs/${this.#job}/cancel`, {}).catch(() => {});
     else {
       this.lane.overtake({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs: 1 } });
       this.#end(this.#result ? `Stopped at ${this.#result.pairs} pairs.` : 'Stopped.');
@@ -228,7 +233,6 @@ class ToleranceView {
     if (!newest || this.#result || this.#asked || this.#job) return;
     this.#job = newest.id;
     this.#lock();
-    this.#follow();
   }
 
   /** @param {string} text */
@@ -310,6 +314,7 @@ class ToleranceView {
   show() {
     this.#note();
     this.#recall();
+    this.#follow();
   }
 }
 
