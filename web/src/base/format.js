@@ -22,7 +22,21 @@ export function unitText(unit) {
   return SYMBOLS[unit] ?? unit;
 }
 
-const SUFFIX = /_(um|mm|deg|Nm|rpm|MPa|GPa|N|N_per_um|Nm_per_rad|kg|kg_m2|kg_per_m3|per_mm|m_per_s2|Hz)$/;
+const SUFFIX = new RegExp(
+  '_(um|mm|deg|C|Nm|rpm|MPa|GPa|per_GPa|N|N_per_um|Nm_per_rad|kg|kg_m2|kg_per_m3|per_mm|per_inch|mm2_per_s|m_per_s2|' +
+    'W_per_m_K|J_per_kg_K|Hz)$',
+);
+/** Keys whose words are not those of their name. */
+const NAMES = /** @type {Record<string, string>} */ ({
+  viscosity_40: 'Viscosity at 40 °C',
+  viscosity_100: 'Viscosity at 100 °C',
+  pressure_viscosity: 'Pressure-viscosity coefficient',
+  te_harmonics: 'TE harmonics',
+  hub_windup: 'Wind-up of the hub',
+  f1: 'f1',
+  f2: 'f2',
+  f3: 'f3',
+});
 const CHOICES = /** @type {Record<string, string>} */ ({
   ga: 'plain genetic (GA)',
   fpga: 'published method (FPGA)',
@@ -61,7 +75,9 @@ const CHOICES = /** @type {Record<string, string>} */ ({
 
 /** "tip_relief_start_mm" -> "Tip relief start". @param {string} key */
 export function labelOf(key) {
-  const text = key.replace(SUFFIX, '').replaceAll('_', ' ');
+  const name = key.replace(SUFFIX, '');
+  if (NAMES[name]) return NAMES[name];
+  const text = name.replaceAll('_', ' ');
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 

@@ -4,6 +4,7 @@
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
+import { ROW, nameRows } from './axis_names.js';
 import { Painting, SMALL } from './canvas.js';
 import { scaleColour } from './colours.js';
 import { placeTip } from './frame.js';
@@ -233,9 +234,12 @@ export class Parallel {
       ),
     );
     const last = columns.length - 1;
-    const [left, right, top, bottom] = [34, width - 34, 16, height - 36];
+    const [left, right, top] = [34, width - 34, 16];
     /** @param {number} k */
     const across = k => left + ((right - left) * k) / last;
+    pen.font = SMALL;
+    const { places, rows } = nameRows(pen, columns, across, width);
+    const bottom = height - 14 - rows * ROW;
     const ordered = [...dots].sort((a, b) => (b.values[last] ?? Infinity) - (a.values[last] ?? Infinity));
     ordered.forEach((dot, rank) => {
       const part = ordered.length > 1 ? rank / (ordered.length - 1) : 1;
@@ -266,8 +270,7 @@ export class Parallel {
       pen.fillStyle = colour('muted');
       pen.fillText(sig(ranges[k][1], 3), across(k), top - 5);
       pen.fillText(sig(ranges[k][0], 3), across(k), bottom + 10);
-      const half = pen.measureText(name).width / 2;
-      pen.fillText(name, Math.min(Math.max(across(k), half + 2), width - half - 2), height - 2 - (k % 2) * 11);
+      pen.fillText(name, places[k].x, height - 2 - (rows - 1 - places[k].row) * ROW);
     });
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields made from the field tables: label, unit, range, help, live check. A set comes and goes as a whole.
 import { h, newId } from '../base/dom.js';
-import { choiceText, labelOf, plain } from '../base/format.js';
+import { choiceText, labelOf, plain, sig } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
 import { fallbackOf, fieldAt, isNumeric, numberFault, unitOf } from '../base/schema.js';
@@ -31,6 +31,12 @@ function readNumber(text, field) {
   if (fault !== undefined) return { fault };
   const outside = numberFault(field, value);
   return outside ? { fault: outside } : { value };
+}
+
+/** A value that follows, in the width of a field. @param {number} value */
+function derivedText(value) {
+  const text = plain(Number(value.toPrecision(6)));
+  return text.length > 8 ? sig(value, 4) : text;
 }
 
 export class FieldSet {
@@ -115,7 +121,7 @@ export class FieldSet {
     const refresh = () => {
       const derived = valueAt(this.form.resolved, pointer);
       const open = field.derived === 'off' ? 'off' : 'auto';
-      const known = typeof derived === 'number' ? plain(Number(shownValue(derived, field.unit).toPrecision(6))) : open;
+      const known = typeof derived === 'number' ? derivedText(shownValue(derived, field.unit)) : open;
       input.placeholder = field.nullable ? known : '';
       entry.refresh();
     };

@@ -33,7 +33,7 @@ export class Teeth {
     const begin = () =>
       this.store.set('/pitch', Object.fromEntries(MEMBERS.map(member => [member, { tolerance_class: 5 }])));
     return [
-      h('p.figure-note', null, `The teeth are alike. ${note}.`),
+      h('p.figure-note', null, `The teeth are alike. ${note.charAt(0).toUpperCase()}${note.slice(1)}.`),
       h('button.small', { type: 'button', onclick: begin }, 'Draw teeth of class 5'),
     ];
   }

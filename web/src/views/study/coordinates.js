@@ -2,11 +2,12 @@
 // Parallel coordinates: a vertical axis for each number, a line across them for each variant; a range dragged along an
 // axis keeps the rows in it.
 import { h } from '../../base/dom.js';
+import { ROW, nameRows } from '../../figures/axis_names.js';
 import { shortName } from './rows.js';
 
 const MOST_AXES = 10;
 const HEIGHT = 230;
-const TOP = 30;
+const LEAST_TOP = 30;
 const BOTTOM = 22;
 const SIDE = 46;
 const PIECE = 300; // lines drawn at a time: a few milliseconds
@@ -16,6 +17,8 @@ export class Coordinates {
   /** Columns that have an axis. @type {number[]} */ #axes = [];
   /** @type {Map<number, [number, number]>} */ #ranges = new Map();
   #turn = 0;
+  /** Where the axes begin, below their names. */
+  #top = LEAST_TOP;
   /** @type {{ axis: number, from: number, to: number } | null} */ #drag = null;
 
   /** @param {import('./rows.js').Rows} rows */
@@ -66,13 +69,13 @@ export class Coordinates {
   /** @param {number} column @param {number} number */
   #y(column, number) {
     const [low, high] = this.#ranges.get(column) ?? [0, 1];
-    return TOP + (1 - (number - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
+    return this.#top + (1 - (number - low) / (high - low)) * (HEIGHT - this.#top - BOTTOM);
   }
 
   /** @param {number} column @param {number} y */
   #number(column, y) {
     const [low, high] = this.#ranges.get(column) ?? [0, 1];
-    return low + (1 - (y - TOP) / (HEIGHT - TOP - BOTTOM)) * (high - low);
+    return low + (1 - (y - this.#top) / (HEIGHT - this.#top - BOTTOM)) * (high - low);
   }
 
   #draw() {
@@ -90,8 +93,14 @@ export class Coordinates {
       line: style.getPropertyValue('--accent').trim(),
       ink: style.getPropertyValue('--ink').trim() || style.color,
     };
+    pen.font = '11px system-ui, sans-serif';
+    const names = this.#axes.map(column => shortName(this.rows.columns[column].name));
+    const { places, rows } = nameRows(pen, names, axis => this.#x(axis), width);
+    this.#top = Math.max(LEAST_TOP, 6 + rows * ROW);
     this.#drawLines(pen, colour.line, 0, ++this.#turn);
     this.#drawAxes(pen, colour);
+    pen.fillStyle = colour.ink;
+    names.forEach((name, axis) => pen.fillText(name, places[axis].x, 10 + places[axis].row * ROW));
   }
 
   /** @param {CanvasRenderingContext2D} pen @param {string} colour @param {number} from @param {number} turn */
@@ -122,22 +131,20 @@ export class Coordinates {
 
   /** @param {CanvasRenderingContext2D} pen @param {{ line: string, ink: string }} colour */
   #drawAxes(pen, colour) {
-    pen.font = '11px system-ui, sans-serif';
     pen.textAlign = 'center';
     this.#axes.forEach((column, axis) => {
       const x = this.#x(axis);
       const [low, high] = this.#ranges.get(column) ?? [0, 1];
-      const { name, words } = this.rows.columns[column];
+      const { words } = this.rows.columns[column];
       pen.fillStyle = pen.strokeStyle = colour.ink;
       pen.lineWidth = 1;
       pen.beginPath();
-      pen.moveTo(x, TOP);
+      pen.moveTo(x, this.#top);
       pen.lineTo(x, HEIGHT - BOTTOM);
       pen.stroke();
-      pen.fillText(shortName(name), x, axis % 2 ? 22 : 10);
       /** @param {number} number */
       const text = number => (words ? (words[number] ?? '') : String(Number(number.toPrecision(3))));
-      pen.fillText(text(high), x + 22, TOP + 8);
+      pen.fillText(text(high), x + 22, this.#top + 8);
       pen.fillText(text(low), x, HEIGHT - 8);
       const brush = this.#drag?.axis === axis ? [this.#drag.from, this.#drag.to] : this.rows.brushes.get(column);
       if (!brush) return;

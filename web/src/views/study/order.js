@@ -3,20 +3,10 @@
 import { Refusal, ask, post, token } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
 import { duration } from '../../base/format.js';
+import { KeyField } from './key_field.js';
+import { keysOf } from './key_words.js';
 
 const PAUSE = 400; // ms after the last key before the cost is asked for
-
-/** Paths of the numbers of a design. @param {unknown} value @param {string} path @returns {string[]} */
-function numberPaths(value, path = '') {
-  if (typeof value === 'number') return [path];
-  if (!value || typeof value !== 'object') return [];
-  if (Array.isArray(value) && typeof value[0] !== 'object') return [];
-  return Object.entries(value).flatMap(([key, part]) =>
-    ['optimization', 'version'].includes(key)
-      ? []
-      : numberPaths(part, `${path}${path ? '.' : ''}${Array.isArray(value) ? Number(key) + 1 : key}`),
-  );
-}
 
 /** "0:30:4", "0, 10, 20" or words, as the service takes them. @param {string} key @param {string} text */
 export function axisOf(key, text) {
@@ -41,7 +31,10 @@ export class StudyOrder {
   constructor(app, begun) {
     this.app = app;
     this.begun = begun;
-    this.keys = h('datalist', { id: 'study-keys' });
+    /** Numbers of the design. @type {import('./key_words.js').Key[]} */
+    this.keys = [];
+    /** @type {{ row: HTMLElement, key: KeyField, values: HTMLInputElement }[]} */
+    this.varied = [];
     this.axes = h('div.study-axes');
     this.sampling = h(
       'select',
@@ -80,7 +73,6 @@ export class StudyOrder {
             this.#submit();
           },
         },
-        this.keys,
         h('h3', null, 'What varies'),
         this.axes,
         h('button', { type: 'button', onclick: () => this.#add('', '') }, 'One more'),
@@ -102,49 +94,46 @@ export class StudyOrder {
     });
   }
 
-  /** @param {string} key @param {string} values */
-  #add(key, values) {
+  /** @param {string} path @param {string} text values */
+  #add(path, text) {
     const number = this.axes.childElementCount + 1;
+    const changed = () => this.#changed();
+    const key = new KeyField(`Key ${number}`, path, () => this.keys, changed);
+    const values = h('input.text.study-values', {
+      'aria-label': `Values ${number}`,
+      placeholder: '0:30:4',
+      value: text,
+      oninput: changed,
+    });
+    const drop = () => {
+      row.remove();
+      this.varied = this.varied.filter(each => each.row !== row);
+      this.#changed();
+    };
     const row = h(
       '.study-axis',
       null,
-      h('input.text.study-key', {
-        list: 'study-keys',
-        'aria-label': `Key ${number}`,
-        value: key,
-        oninput: () => this.#changed(),
-      }),
-      h('input.text.study-values', { 'aria-label': `Values ${number}`, value: values, oninput: () => this.#changed() }),
-      h(
-        'button.quiet',
-        {
-          type: 'button',
-          'aria-label': `Leave out ${number}`,
-          onclick: () => {
-            row.remove();
-            this.#changed();
-          },
-        },
-        '×',
-      ),
+      key.element,
+      values,
+      h('button.quiet', { type: 'button', 'aria-label': `Leave out ${number}`, onclick: drop }, '×'),
     );
+    this.varied.push({ row, key, values });
     this.axes.append(row);
     this.#changed();
   }
 
   refresh() {
-    const paths = numberPaths(this.app.store.design);
-    const both = paths.flatMap(path => (/\.left\./.test(path) ? [path.replace('.left.', '.*.')] : []));
-    const all = paths.flatMap(path => (/^load_cases\.1\./.test(path) ? [path.replace('.1.', '.*.')] : []));
-    fill(this.keys, ...[...both, ...all, ...paths].map(path => h('option', { value: path })));
+    const { form, store } = this.app;
+    this.keys = keysOf(form.fields, store.design.load_cases?.length ?? 0);
+    for (const { key } of this.varied) key.refresh();
     this.#changed();
   }
 
   /** @returns {Api.StudyOrder} */
   #document() {
-    const vary = [...this.axes.children].flatMap(row => {
-      const [key, values] = [...row.querySelectorAll('input')].map(input => input.value.trim());
-      return key && values ? [axisOf(key, values)] : [];
+    const vary = this.varied.flatMap(({ key, values }) => {
+      const text = values.value.trim();
+      return key.value && text ? [axisOf(key.value, text)] : [];
     });
     return {
       design: this.app.store.design,

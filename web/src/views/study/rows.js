@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rows of a study in columns of numbers: which are shown, in which order.
+import { labelOf } from '../../base/format.js';
 import { get } from '../../base/api.js';
 
 const PAGE = 2500; // rows of one answer
@@ -150,5 +151,5 @@ function numberOf(column, given) {
 /** The end of a name, with its load case: "2 impact_N". @param {string} name */
 export function shortName(name) {
   const loadCase = /load_cases\.(\d+|\*)\./.exec(name)?.[1];
-  return `${loadCase ? `${loadCase} ` : ''}${name.slice(name.lastIndexOf('.') + 1)}`;
+  return `${labelOf(name.slice(name.lastIndexOf('.') + 1))}${loadCase ? `, case ${loadCase}` : ''}`;
 }
