@@ -54,7 +54,12 @@ await chapter('a study is ordered', async () => {
   await page.getByLabel('Key 2').fill('gear_pair.teeth');
   await page.getByText('of which member').waitFor();
   ok(true, 'a key that could be two is asked about');
-  await page.getByLabel('Key 2').fill('modification.pinion.*.lead_crowning_um');
+  await page.getByLabel('Key 2').fill('crowning both');
+  await page.getByRole('option', { name: /^Lead crowning, pinion, both ends µm/ }).click();
+  const row = page.locator('.study-axis').nth(1);
+  const words = await page.getByLabel('Key 2').inputValue();
+  ok(words === 'Lead crowning, pinion, both ends', 'a number is found by words');
+  ok(/modification\.pinion\.\*\.lead_crowning_um in µm/.test(await row.innerText()), 'its path and unit stand below it');
   await page.getByText(/^24 variants of 1 gear pair/).waitFor();
   await page.getByRole('button', { name: 'Start the study' }).click();
 });

@@ -22,6 +22,8 @@ const SHOWN = 6000; // ms of a notice
 /** @param {DragEvent} event */
 const hasFiles = event => Boolean(event.dataTransfer?.types.includes('Files'));
 
+const HEAD_ROOM = 60; // px of the tabs before the current one, where they do not all fit
+
 export class Shell {
   #timer = 0;
 
@@ -148,8 +150,11 @@ export class Shell {
     document.title = `${store.design.name || 'unnamed'} – Easeoff`;
     this.undo.disabled = !store.canUndo;
     this.redo.disabled = !store.canRedo;
-    for (const tab of this.tabs.children)
-      tab.setAttribute('aria-current', String(/** @type {HTMLElement} */ (tab).dataset.view === current));
+    for (const tab of /** @type {HTMLCollectionOf<HTMLElement>} */ (this.tabs.children)) {
+      const here = tab.dataset.view === current;
+      if (here && tab.getAttribute('aria-current') !== 'true') this.tabs.scrollLeft = tab.offsetLeft - HEAD_ROOM;
+      tab.setAttribute('aria-current', String(here));
+    }
   }
 
   #drawState() {

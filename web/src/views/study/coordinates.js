@@ -2,6 +2,7 @@
 // Parallel coordinates: a vertical axis for each number, a line across them for each variant; a range dragged along an
 // axis keeps the rows in it.
 import { h } from '../../base/dom.js';
+import { unitText } from '../../base/format.js';
 import { ROW, nameRows } from '../../figures/axis_names.js';
 import { shortName } from './rows.js';
 
@@ -94,7 +95,10 @@ export class Coordinates {
       ink: style.getPropertyValue('--ink').trim() || style.color,
     };
     pen.font = '11px system-ui, sans-serif';
-    const names = this.#axes.map(column => shortName(this.rows.columns[column].name));
+    const names = this.#axes.map(column => {
+      const { name, unit } = this.rows.columns[column];
+      return unit ? `${shortName(name)}, ${unitText(unit)}` : shortName(name);
+    });
     const { places, rows } = nameRows(pen, names, axis => this.#x(axis), width);
     this.#top = Math.max(LEAST_TOP, 6 + rows * ROW);
     this.#drawLines(pen, colour.line, 0, ++this.#turn);

@@ -19,7 +19,7 @@ export class KeyField {
     this.keys = keys;
     this.changed = changed;
     const id = newId('keys');
-    this.list = h('ul.key-list', { id, role: 'listbox', 'aria-label': `${name}: numbers of the design`, hidden: true });
+    this.list = h('ul.key-list', { id, role: 'listbox', 'aria-label': 'Numbers of the design', hidden: true });
     this.path = h('code.key-path');
     this.unit = h('span.unit');
     this.input = h('input.text.study-key', {

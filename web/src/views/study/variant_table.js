@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rows as a table of which only what is in sight is there: ten thousand rows cost no more than forty.
 import { fill, h } from '../../base/dom.js';
+import { unitText } from '../../base/format.js';
 import { shortName } from './rows.js';
 
 const HEIGHT = 24; // px of a row, as the style sheet has it
@@ -53,6 +54,7 @@ export class VariantTable {
             'button.link',
             { type: 'button', onclick: () => this.rows.sortBy(at) },
             shortName(column.name),
+            column.unit ? h('span.unit', null, ` ${unitText(column.unit)}`) : null,
             sort.column === at ? (sort.descending ? ' ▼' : ' ▲') : '',
           ),
         ),
