@@ -201,6 +201,21 @@ static enum eo_code check_gain(const struct eo_design *design, const struct eo_f
                       flank->grid_gain);
 }
 
+static enum eo_code check_nodes(const struct eo_design *design, const struct eo_flank_modification *flank,
+                                const struct flank_place *place, struct eo_error *error)
+{
+  const struct eo_grid_place *grid = &design->grids.place[place->side][place->member][place->end];
+  char key[128];
+  for (int i = 0; i < flank->nodes; i++)
+    if (flank->node[i].row > grid->u_knots || flank->node[i].column > grid->y_knots || grid->u_knots == 0) {
+      point_to(place, "grid_nodes", "", key);
+      return eo_error_set(error, EO_ERROR_INPUT, key,
+                          "Row %d, column %d: the grid of this flank has %d rows and %d columns (0: there is none).",
+                          flank->node[i].row, flank->node[i].column, grid->u_knots, grid->y_knots);
+    }
+  return EO_OK;
+}
+
 enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry,
                                    struct eo_error *error)
 {
@@ -213,6 +228,7 @@ enum eo_code eo_modification_check(const struct eo_design *design, const struct 
                                                                            : &design->modification.coast[i][end];
         EO_TRY(check_flank(flank, &place, error));
         EO_TRY(check_gain(design, flank, &place, error));
+        EO_TRY(check_nodes(design, flank, &place, error));
       }
   return EO_OK;
 }

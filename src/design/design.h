@@ -150,6 +150,8 @@ struct eo_listed_variable {
   int parameter;          /* index of eo_variable_parameters in document/design_document.h */
   struct eo_range bounds; /* in the unit of the parameter's key; NaN: the bounds of the optimization */
   int flank;              /* EO_DRIVE_FLANK, EO_COAST_FLANK, EO_BOTH_FLANKS */
+  int row, column;        /* of the flank's grid, from 1 on; 0: all; of its numbers alone */
+  bool of_grid;           /* the parameter is numbers of the grid; who sets the parameter says so */
 };
 
 struct eo_optimization {

@@ -97,7 +97,8 @@ static void check_alignments(const json_t *document, const struct eo_design *des
   }
 }
 
-/* A search that varies the slope by its earlier name varies twice as much by its present one. */
+/* A search that varies the slope by its earlier name varies twice as much by its present one; which variables are
+   numbers of a grid. */
 static void migrate_variables(struct eo_optimization *optimization)
 {
   int last = 0, helix = 0;
@@ -105,6 +106,7 @@ static void migrate_variables(struct eo_optimization *optimization)
     helix = strcmp(eo_variable_parameters[last], "helix_slope_um") == 0 ? last : helix;
   for (int i = 0; i < optimization->listed; i++) {
     struct eo_listed_variable *variable = &optimization->list[i];
+    variable->of_grid = strcmp(eo_variable_parameters[variable->parameter], EO_GRID_PARAMETER) == 0;
     if (variable->parameter == last) {
       variable->parameter = helix;
       variable->bounds.low *= 2;
@@ -189,13 +191,33 @@ void eo_design_note_migrations(const json_t *document, struct eo_warnings *warni
                               "width): the same flank.");
 }
 
+/* With the numbers that stand in place of a grid's. */
+static void encode_grids(const struct eo_design *design, json_t *modification, bool *failed)
+{
+  struct eo_flank_grids *laid = eo_modification_has_nodes(&design->modification) ? malloc(sizeof *laid) : NULL;
+  if (laid) {
+    const char *member, *end;
+    json_t *ends, *flank;
+    *laid = design->grids;
+    eo_modification_lay_nodes(&design->modification, laid);
+    json_object_foreach(modification, member, ends) json_object_foreach(ends, end, flank)
+    {
+      json_object_del(flank, "grid_nodes");
+      json_object_del(json_object_get(flank, "coast"), "grid_nodes");
+    }
+  } else
+    *failed = *failed || eo_modification_has_nodes(&design->modification);
+  eo_flank_grids_encode(laid ? laid : &design->grids, design->gear_pair.ends, modification, failed);
+  free(laid);
+}
+
 json_t *eo_design_encode(const struct eo_design *design)
 {
   json_t *document = eo_table_encode(&eo_design_table, design),
          *modification = json_object_get(document, "modification");
   bool failed = false;
   if (document)
-    eo_flank_grids_encode(&design->grids, design->gear_pair.ends, modification, &failed);
+    encode_grids(design, modification, &failed);
   if (document && design->pitch.stated)
     eo_json_put(document, "pitch", eo_pitch_encode(&design->pitch, design->gear_pair.ends), &failed);
   if (failed) {

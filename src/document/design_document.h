@@ -17,8 +17,10 @@ extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_ta
     eo_modification_table, eo_modification_terms_table, eo_tolerance_table, eo_rating_table, eo_rating_member_table,
     eo_lubricant_table, eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
-/* Keys of a flank's modification that may be optimized; ends with NULL. */
+/* Keys of a flank's modification that may be optimized, and numbers of its grid; ends with NULL. */
 extern const char *const eo_variable_parameters[];
+#define EO_GRID_PARAMETER "grid_um"
+extern const struct eo_field eo_grid_number_field; /* of struct eo_grid_node */
 
 /* What a designer should know of a design that is otherwise right: what was changed or left out in reading it, what is
    unusual, what a search would refuse. */

@@ -238,7 +238,12 @@ static const struct eo_field listed_variable[] = {
      .offset = offsetof(struct eo_listed_variable, parameter),
      .choices = eo_variable_parameters,
      .fallback = NAN,
-     .help = "key of the flank's modification"},
+     .help = "key of the flank's modification; " EO_GRID_PARAMETER
+             ": numbers of its grid, one for all the knots that row and column name"},
+    EO_INTEGER(struct eo_listed_variable, row, "row", 0, EO_GRID_KNOTS, 0,
+               "of " EO_GRID_PARAMETER ": row of the grid (place u), from 1 at the root; 0: all"),
+    EO_INTEGER(struct eo_listed_variable, column, "column", 0, EO_GRID_KNOTS, 0,
+               "of " EO_GRID_PARAMETER ": column of the grid (place y), from 1 on the side that meets last; 0: all"),
     EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -10000, 1e6,
                EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "those of the same key in bounds",
                "lowest and highest value in the unit of the parameter's key"),

@@ -299,12 +299,21 @@ bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *ge
                     int member, int end, struct eo_modification_shape *shape, struct eo_flank_spline **spline)
 {
   const struct eo_modification *modification = &design->modification;
+  const struct eo_flank_modification *flank = side == EO_DRIVE_FLANK ? &modification->flank[member][end]
+                                                                     : &modification->coast[member][end];
   struct eo_flank_grid grid = eo_flank_grid_at(&design->grids, side, member, end);
+  size_t size = sizeof(double) * (size_t)grid.u_knots * (size_t)grid.y_knots;
+  double *delta = flank->nodes && size ? malloc(size) : NULL;
   struct eo_error error;
   *spline = NULL;
-  bool failed = grid.u_knots && eo_flank_spline_new(spline, &grid, &error);
-  eo_modification_init(shape, geometry, member,
-                       side == EO_DRIVE_FLANK ? &modification->flank[member][end] : &modification->coast[member][end]);
+  if (delta) {
+    memcpy(delta, grid.delta, size);
+    eo_grid_nodes_lay(flank->nodes, flank->node, grid.u_knots, grid.y_knots, delta);
+    grid.delta = delta;
+  }
+  bool failed = (flank->nodes && size && !delta) || (grid.u_knots && eo_flank_spline_new(spline, &grid, &error));
+  free(delta);
+  eo_modification_init(shape, geometry, member, flank);
   eo_modification_complete(shape, *spline, false);
   return failed;
 }

@@ -96,6 +96,16 @@ static const char *const own_shape[] = {"as_relief_shape", "parabolic", "linear"
     .help = "C_Hbeta: over the face width, 0 at mid face, + takes more off at the face end that meets first"        \
   }
 
+static const struct eo_field grid_node[] = {
+    EO_INTEGER(struct eo_grid_node, row, "row", 0, EO_GRID_KNOTS, 0, "of u, from 1 at the root; 0: every one"),
+    EO_INTEGER(struct eo_grid_node, column, "column", 0, EO_GRID_KNOTS, 0,
+               "of y, from 1 at the face end that meets last; 0: every one"),
+    EO_NUMBER(struct eo_grid_node, delta, "delta_um", &eo_unit_um, -1000, 1000, 0, "what is taken off there, normal"),
+};
+static const struct eo_table grid_node_table = EO_TABLE("a knot of a grid", struct eo_grid_node, grid_node);
+const struct eo_field eo_grid_number_field = EO_NUMBER(struct eo_grid_node, delta, EO_GRID_PARAMETER, &eo_unit_um,
+                                                       -1000, 1000, 0, "number of a flank's grid at some of its knots");
+
 /* clang-format off */
 #define NUMBER_ROW(member, key, unit, low, high, fallback, help) \
   EO_NUMBER(struct eo_flank_modification, member, key, unit, low, high, fallback, help),
@@ -103,7 +113,13 @@ static const char *const own_shape[] = {"as_relief_shape", "parabolic", "linear"
   EO_NUMBER_DERIVED(struct eo_flank_modification, member, key, unit, 1e-6, high, derived, help),
 #define NUMBER_KEY(member, key, unit, low, high, fallback, help) key,
 #define PLACE_KEY(member, key, unit, high, derived, help) key,
-#define FLANK_ROWS FLANK_SHAPES FLANK_NUMBERS(NUMBER_ROW, PLACE_ROW) HELIX_SLOPE
+#define NODES_ROW \
+  {.key = "grid_nodes", .kind = EO_FIELD_LIST, .flags = EO_FIELD_OMIT, \
+   .offset = offsetof(struct eo_flank_modification, node), \
+   .count_offset = offsetof(struct eo_flank_modification, nodes), .count = EO_MOST_GRID_NODES, \
+   .high = EO_MOST_GRID_NODES, .table = &grid_node_table, \
+   .help = "numbers in place of what the flank's grid has at some of its knots; a complete design has them in its grid"}
+#define FLANK_ROWS FLANK_SHAPES FLANK_NUMBERS(NUMBER_ROW, PLACE_ROW) HELIX_SLOPE, NODES_ROW
 #define GRID_ROW \
   {.key = "grid", .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_ELSEWHERE | EO_FIELD_NULLABLE, \
    .table = &eo_flank_grid_table, .derived = "none", \
@@ -111,8 +127,8 @@ static const char *const own_shape[] = {"as_relief_shape", "parabolic", "linear"
 /* clang-format on */
 
 /* The last key is the earlier name of the helix slope. */
-const char *const eo_variable_parameters[] = {FLANK_NUMBERS(NUMBER_KEY, PLACE_KEY) "helix_slope_um", "lead_slope_um",
-                                              NULL};
+const char *const eo_variable_parameters[] = {FLANK_NUMBERS(NUMBER_KEY, PLACE_KEY) EO_GRID_PARAMETER, "helix_slope_um",
+                                              "lead_slope_um", NULL};
 
 static const struct eo_field flank[] = {FLANK_ROWS, GRID_ROW};
 enum { TERMS = sizeof flank / sizeof *flank - 1 };

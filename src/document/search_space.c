@@ -10,8 +10,15 @@
 #include "format/json.h"
 #include "design/check.h"
 
+static bool is_node(const struct eo_study_variable *variable)
+{
+  return variable->field == &eo_grid_number_field;
+}
+
 static const struct eo_field *flank_field(const char *key)
 {
+  if (strcmp(key, EO_GRID_PARAMETER) == 0)
+    return &eo_grid_number_field;
   for (int i = 0; i < eo_flank_modification_table.count; i++)
     if (strcmp(eo_flank_modification_table.field[i].key, key) == 0)
       return &eo_flank_modification_table.field[i];
@@ -52,6 +59,8 @@ static void add_preset(struct eo_study_space *space, const struct eo_optimizatio
 /* Which relief a variable starts, EO_ROOT_SIDE or EO_TIP_SIDE, and by what; -1: none. The rack coordinate is way 0. */
 static int start_of(const struct eo_field *field, int *way)
 {
+  if (field == &eo_grid_number_field)
+    return -1;
   for (int side = 0; side < 2; side++) {
     size_t rack = side == EO_TIP_SIDE ? offsetof(struct eo_flank_modification, tip_relief_start)
                                       : offsetof(struct eo_flank_modification, root_relief_start),
@@ -78,6 +87,9 @@ static bool overlap(const struct eo_study_variable *a, const struct eo_study_var
 {
   int unused, start = start_of(a->field, &unused);
   bool same = a->field == b->field || (start >= 0 && start == start_of(b->field, &unused));
+  if (is_node(a) && is_node(b))
+    same = (a->row == b->row || a->row == 0 || b->row == 0) &&
+           (a->column == b->column || a->column == 0 || b->column == 0);
   return same && a->member == b->member && (a->end == b->end || a->end == EO_BOTH_ENDS || b->end == EO_BOTH_ENDS) &&
          (a->side == b->side || a->side == EO_BOTH_FLANKS || b->side == EO_BOTH_FLANKS);
 }
@@ -100,6 +112,24 @@ static bool has_grids(const struct eo_study_variable *variable, const struct eo_
   return has;
 }
 
+/* Every grid that it covers has such knots. */
+static enum eo_code check_knots(const struct eo_study_variable *variable, const struct eo_design *design, int i,
+                                struct eo_error *error)
+{
+  for (int at = 0; at < 4; at++) {
+    const struct eo_grid_place *place = &design->grids.place[at / 2][variable->member][at % 2];
+    if (!covers(variable, at / 2, at % 2) || !is_node(variable) || place->u_knots == 0)
+      continue;
+    if (variable->row > place->u_knots)
+      return fault("/optimization/variable_list/%d/row", i, error, "Row %.0f: the grid has %.0f rows (places u).",
+                   variable->row, place->u_knots);
+    if (variable->column > place->y_knots)
+      return fault("/optimization/variable_list/%d/column", i, error,
+                   "Column %.0f: the grid has %.0f columns (places y).", variable->column, place->y_knots);
+  }
+  return EO_OK;
+}
+
 /* One list row, made a variable; the field's own range holds as everywhere. */
 static enum eo_code add_listed(struct eo_study_space *space, const struct eo_design *design, int i,
                                struct eo_error *error)
@@ -116,10 +146,16 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
   if (!(bounds.low < bounds.high) || bounds.low < field->low || bounds.high > field->high)
     return fault("/optimization/variable_list/%d/bounds", i, error,
                  "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
-  struct eo_study_variable variable = {row->member, end, row->flank, field, bounds.low, bounds.high};
-  if (field->offset == offsetof(struct eo_flank_modification, grid_gain) && !has_grids(&variable, design))
+  struct eo_study_variable variable = {row->member, end,         row->flank, field,
+                                       bounds.low,  bounds.high, row->row,   row->column};
+  if (!is_node(&variable) && (row->row != 0 || row->column != 0))
+    return fault(row->row ? "/optimization/variable_list/%d/row" : "/optimization/variable_list/%d/column", i, error,
+                 "Rows and columns are those of a grid: parameter " EO_GRID_PARAMETER " varies its numbers.", 0, 0);
+  bool of_grid = is_node(&variable) || field->offset == offsetof(struct eo_flank_modification, grid_gain);
+  if (of_grid && !has_grids(&variable, design))
     return fault("/optimization/variable_list/%d/parameter", i, error,
-                 "A flank that this variable covers has no grid to lay on more or less of.", 0, 0);
+                 "A flank that this variable covers has no grid: state one there.", 0, 0);
+  EO_TRY(check_knots(&variable, design, i, error));
   for (int j = 0; j < space->count; j++)
     if (overlap(&variable, &space->variable[j]))
       return fault("/optimization/variable_list/%d", i, error, "This parameter is a variable already.", 0, 0);
@@ -127,14 +163,21 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
   return EO_OK;
 }
 
-static void set_number(struct eo_flank_modification *flank, const struct eo_field *field, double value)
+static void set_number(struct eo_flank_modification *flank, const struct eo_study_variable *variable, double value)
 {
-  *(double *)(void *)((char *)flank + field->offset) = value;
+  if (is_node(variable))
+    eo_modification_set_node(flank, variable->row, variable->column, value);
+  else
+    *(double *)(void *)((char *)flank + variable->field->offset) = value;
 }
 
-static double number_at(const struct eo_flank_modification *flank, const struct eo_field *field)
+/* NaN: a number of the grid that is not stated. */
+static double number_at(const struct eo_flank_modification *flank, const struct eo_study_variable *variable)
 {
-  return *(const double *)(const void *)((const char *)flank + field->offset);
+  const double *node = is_node(variable) ? eo_modification_node(flank, variable->row, variable->column) : NULL;
+  if (is_node(variable))
+    return node ? *node : NAN;
+  return *(const double *)(const void *)((const char *)flank + variable->field->offset);
 }
 
 /* A start that varies takes the place of the one that is stated, in whichever way. */
@@ -154,7 +197,7 @@ static void set_value(const struct eo_study_variable *variable, struct eo_modifi
       if (covers(variable, side, end)) {
         struct eo_flank_modification *flank = flank_of(modification, side, variable->member, end);
         clear_start(flank, variable->field);
-        set_number(flank, variable->field, value);
+        set_number(flank, variable, value);
       }
 }
 
@@ -163,7 +206,7 @@ static double value_of(const struct eo_study_variable *variable, const struct eo
 {
   const struct eo_flank_modification *flank = variable->side == EO_COAST_FLANK ? modification->coast[variable->member]
                                                                                : modification->flank[variable->member];
-  return number_at(&flank[variable->end == EO_RIGHT], variable->field);
+  return number_at(&flank[variable->end == EO_RIGHT], variable);
 }
 
 /* Whether a flank comes nearer to an impossible one as the number falls: lengths of reliefs, and starts of root reliefs
@@ -174,7 +217,7 @@ static bool is_tight_when_low(const struct eo_study_variable *variable)
   if (side >= 0 && way > 0)
     return side == EO_ROOT_SIDE ||
            variable->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
-  return strstr(variable->field->key, "_length_mm") != NULL;
+  return !is_node(variable) && strstr(variable->field->key, "_length_mm") != NULL;
 }
 
 /* Both extremes must be flanks: everything at its upper bound, and the same with the shortest end reliefs. */
@@ -239,8 +282,7 @@ static bool is_tied(const struct eo_study_variable *variable, const struct eo_mo
     for (int end = 0; end < 2; end++) {
       const struct eo_flank_modification(*flank)[2] = side == EO_DRIVE_FLANK ? modification->flank
                                                                              : modification->coast;
-      same = same &&
-             (!covers(variable, side, end) || number_at(&flank[variable->member][end], variable->field) == value);
+      same = same && (!covers(variable, side, end) || number_at(&flank[variable->member][end], variable) == value);
     }
   return same;
 }
@@ -257,7 +299,10 @@ static void restore(const struct eo_study_variable *variable, const struct eo_mo
       struct eo_flank_modification *to = flank_of(rest, side, variable->member, end);
       if (!covers(variable, side, end))
         continue;
-      set_number(to, variable->field, number_at(from, variable->field));
+      if (is_node(variable) && !eo_modification_node(from, variable->row, variable->column))
+        eo_modification_drop_node(to, variable->row, variable->column);
+      else
+        set_number(to, variable, number_at(from, variable));
       if (start == EO_TIP_SIDE)
         to->tip_relief_start = from->tip_relief_start;
       if (start == EO_ROOT_SIDE)
@@ -291,12 +336,25 @@ double eo_study_variable_value(const struct eo_study_variable *variable, const s
   return eo_unit_out(variable->field->unit, value_of(variable, modification));
 }
 
+static void name_knot(int row, int column, char knot[40])
+{
+  char of_row[12] = "*", of_column[12] = "*";
+  if (row)
+    snprintf(of_row, sizeof of_row, "%d", row);
+  if (column)
+    snprintf(of_column, sizeof of_column, "%d", column);
+  snprintf(knot, 40, "[u%s y%s]", of_row, of_column);
+}
+
 void eo_study_variable_name(const struct eo_study_variable *variable, char *name, size_t size)
 {
   static const char *const member[2] = {"pinion", "gear"}, *const end[3] = {"left", "right", "both"};
   static const char *const flank[3] = {"", "coast/", "drive+coast/"};
-  snprintf(name, size, "%s/%s/%s%s", member[variable->member], end[variable->end], flank[variable->side],
-           variable->field->key);
+  char knot[40] = "";
+  if (is_node(variable))
+    name_knot(variable->row, variable->column, knot);
+  snprintf(name, size, "%s/%s/%s%s%s", member[variable->member], end[variable->end], flank[variable->side],
+           variable->field->key, knot);
 }
 
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1])
@@ -368,6 +426,32 @@ enum eo_code eo_modification_write(const struct eo_modification *modification, i
     eo_json_write(text, document, EO_JSON_CANONICAL);
   json_decref(document);
   return failed || text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+static void name_nodes(json_t *flank)
+{
+  json_t *nodes = json_object_get(flank, "grid_nodes"), *node;
+  size_t i;
+  json_array_foreach(nodes, i, node)
+  {
+    char knot[40], key[80];
+    name_knot((int)json_integer_value(json_object_get(node, "row")),
+              (int)json_integer_value(json_object_get(node, "column")), knot);
+    snprintf(key, sizeof key, EO_GRID_PARAMETER "%s", knot);
+    json_object_set(flank, key, json_object_get(node, "delta_um"));
+  }
+  json_object_del(flank, "grid_nodes");
+}
+
+void eo_modification_name_nodes(json_t *document)
+{
+  const char *member, *end;
+  json_t *ends, *flank;
+  json_object_foreach(document, member, ends) json_object_foreach(ends, end, flank)
+  {
+    name_nodes(flank);
+    name_nodes(json_object_get(flank, "coast"));
+  }
 }
 
 enum eo_code eo_modification_read(const char *text, struct eo_modification *modification, struct eo_error *error)

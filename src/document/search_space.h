@@ -3,6 +3,8 @@
 #ifndef EASEOFF_DOCUMENT_SEARCH_SPACE_H
 #define EASEOFF_DOCUMENT_SEARCH_SPACE_H
 
+#include <jansson.h>
+
 #include "base/hash.h"
 #include "format/table.h"
 #include "design/design.h"
@@ -12,8 +14,9 @@
 struct eo_study_variable {
   int member, end;              /* end: EO_LEFT, EO_RIGHT or EO_BOTH_ENDS (the same on both) */
   int side;                     /* EO_DRIVE_FLANK, EO_COAST_FLANK or EO_BOTH_FLANKS (the same on both) */
-  const struct eo_field *field; /* of eo_flank_modification_table */
+  const struct eo_field *field; /* of eo_flank_modification_table, or eo_grid_number_field */
   double low, high;             /* in the unit of its key */
+  int row, column;              /* of the grid, from 1 on; 0: all; of numbers of a grid */
 };
 
 struct eo_study_space {
@@ -47,6 +50,9 @@ void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LE
 /* A modification as canonical JSON without defaults, "{}" for none, and back. ends: of the pair. */
 enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text,
                                    struct eo_error *error);
+/* In such a document, numbers in place of a grid's under a name of their own, "grid_um[u2 y*]", as variables have it:
+   for tables. */
+void eo_modification_name_nodes(json_t *document);
 enum eo_code eo_modification_read(const char *text, struct eo_modification *modification, struct eo_error *error);
 
 #endif

@@ -36,6 +36,7 @@ struct variable {
   const struct eo_study_variable *variable;
   int member, end;
   const char *parameter;
+  int row, column;
   double best; /* in the unit of its key; NaN: none */
 };
 
@@ -56,6 +57,9 @@ static const struct eo_outline_row variable_rows[] = {
     EO_KEY("end", "word", "both: the same on both ends", .words = ends, EO_AT(struct variable, end)),
     EO_KEY("parameter", "word", "key of the flank's modification, with its unit", .words = eo_variable_parameters,
            EO_AT(struct variable, parameter)),
+    EO_KEY("row", "integer", "of the grid, from 1 on, of " EO_GRID_PARAMETER "; 0: all, or another parameter",
+           EO_AT(struct variable, row)),
+    EO_KEY("column", "integer", "the same of its columns", EO_AT(struct variable, column)),
     EO_KEY("bounds", "[number]", "lowest, highest", .write = write_bounds),
     EO_KEY("best", "number?", "of the best design; null while there is none", .write = write_best_value),
 };
@@ -67,6 +71,8 @@ static json_t *encode_variable(const struct eo_study_result *result, const struc
                          .member = variable->member,
                          .end = variable->end,
                          .parameter = variable->field->key,
+                         .row = variable->row,
+                         .column = variable->column,
                          .best = result->best.there ? eo_study_variable_value(variable, &result->best.modification)
                                                     : NAN};
   eo_study_variable_name(variable, row.name, sizeof row.name);

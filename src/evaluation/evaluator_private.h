@@ -78,6 +78,7 @@ struct eo_evaluator {
   struct eo_meeting *meeting[EO_MAX_LOAD_CASES]; /* owned; NULL until there is one */
   int meeting_of[EO_MAX_LOAD_CASES];             /* [load case] */
   struct eo_flank_grids grids;                   /* those of the splines */
+  struct eo_flank_grids laid_grids;              /* the design's, with the numbers that stand in their place */
   struct eo_flank_spline *spline[2][2][2];       /* [flank side][member][end]; owned; NULL: no grid */
   struct eo_loaded_workspace *loaded[2][2];      /* [thread][half]; of the second thread NULL until asked for, of the
                                                     second half NULL where it is like the first */

@@ -44,9 +44,14 @@ static enum eo_code add_meeting(struct eo_evaluator *evaluator, const struct eo_
   return EO_OK;
 }
 
-static enum eo_code fit_splines(struct eo_evaluator *evaluator, const struct eo_flank_grids *grids,
-                                struct eo_error *error)
+static enum eo_code fit_splines(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_error *error)
 {
+  const struct eo_flank_grids *grids = &design->grids;
+  if (eo_modification_has_nodes(&design->modification)) {
+    evaluator->laid_grids = *grids;
+    eo_modification_lay_nodes(&design->modification, &evaluator->laid_grids);
+    grids = &evaluator->laid_grids;
+  }
   if (eo_flank_grids_equal(grids, &evaluator->grids))
     return EO_OK;
   eo_reuse_forget(evaluator);
@@ -79,7 +84,7 @@ enum eo_code eo_evaluator_find_meetings(struct eo_evaluator *evaluator, const st
     evaluator->meeting_of[k] = m;
     result->load_case[k].running = running;
   }
-  return fit_splines(evaluator, &run->design->grids, error);
+  return fit_splines(evaluator, run->design, error);
 }
 
 struct eo_meeting *eo_meeting_of(const struct eo_evaluator *evaluator, const struct eo_case_result *load_case)

@@ -110,7 +110,8 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
     if (field->flags & (EO_FIELD_ENTRY | EO_FIELD_ELSEWHERE))
       continue;
     json_t *value = encode_field(field, source);
-    if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value, &failed))
+    if (value && field->flags & EO_FIELD_OMIT &&
+        (field->kind == EO_FIELD_LIST ? json_array_size(value) == 0 : is_default(field->table, value, &failed)))
       json_decref(value);
     else
       eo_json_put(object, field->key, value, &failed);

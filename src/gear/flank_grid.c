@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gear/flank_grid.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,32 @@ static void remove_grid(struct eo_flank_grids *grids, struct eo_grid_place *plac
     all[i].first -= all[i].first >= behind ? size : 0;
   grids->used -= size;
   *place = (struct eo_grid_place){0};
+}
+
+static bool covers(const struct eo_grid_node *node, int row, int column)
+{
+  return (node->row == 0 || node->row == row + 1) && (node->column == 0 || node->column == column + 1);
+}
+
+void eo_grid_nodes_lay(int nodes, const struct eo_grid_node *node, int u_knots, int y_knots, double *delta)
+{
+  for (int k = 0; k < nodes; k++)
+    for (int i = 0; i < u_knots * y_knots; i++)
+      if (covers(&node[k], i / y_knots, i % y_knots))
+        delta[i] = node[k].delta;
+}
+
+double eo_flank_grid_number(const struct eo_flank_grid *grid, int row, int column)
+{
+  const struct eo_grid_node node = {row, column, 0};
+  double number = NAN;
+  for (int i = 0, found = 0; i < grid->u_knots * grid->y_knots; i++)
+    if (covers(&node, i / grid->y_knots, i % grid->y_knots)) {
+      if (found++ && grid->delta[i] != number)
+        return NAN;
+      number = grid->delta[i];
+    }
+  return number;
 }
 
 enum eo_code eo_flank_grids_put(struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end,

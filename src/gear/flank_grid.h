@@ -37,6 +37,17 @@ struct eo_flank_grid eo_flank_grid_at(const struct eo_flank_grids *grids, enum e
 enum eo_code eo_flank_grids_put(struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end,
                                 const struct eo_flank_grid *grid, struct eo_error *error);
 
+/* A number in place of what a grid has at a knot; row of u, column of y, from 1 on; 0: at every one. */
+struct eo_grid_node {
+  int row, column;
+  double delta; /* m */
+};
+
+/* Puts the numbers into delta[u_knots][y_knots], in their order. */
+void eo_grid_nodes_lay(int nodes, const struct eo_grid_node *node, int u_knots, int y_knots, double *delta);
+/* The number that every knot of a node has; NaN where they differ or the grid has no such knot. */
+double eo_flank_grid_number(const struct eo_flank_grid *grid, int row, int column);
+
 bool eo_flank_grid_equal(const struct eo_flank_grid *a, const struct eo_flank_grid *b);
 
 /* The same grids everywhere. */

@@ -31,6 +31,73 @@ static bool same_triangles(const struct eo_flank_modification *a, const struct e
   return true;
 }
 
+static bool same_nodes(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
+{
+  bool same = a->nodes == b->nodes;
+  for (int i = 0; i < a->nodes && same; i++)
+    same = a->node[i].row == b->node[i].row && a->node[i].column == b->node[i].column &&
+           a->node[i].delta == b->node[i].delta;
+  return same;
+}
+
+static int find_node(const struct eo_flank_modification *flank, int row, int column)
+{
+  int i = 0;
+  while (i < flank->nodes && (flank->node[i].row != row || flank->node[i].column != column))
+    i++;
+  return i;
+}
+
+bool eo_modification_set_node(struct eo_flank_modification *flank, int row, int column, double delta)
+{
+  int i = find_node(flank, row, column);
+  if (i == EO_MOST_GRID_NODES)
+    return false;
+  flank->nodes += i == flank->nodes;
+  flank->node[i] = (struct eo_grid_node){row, column, delta};
+  return true;
+}
+
+const double *eo_modification_node(const struct eo_flank_modification *flank, int row, int column)
+{
+  int i = find_node(flank, row, column);
+  return i < flank->nodes ? &flank->node[i].delta : NULL;
+}
+
+void eo_modification_drop_node(struct eo_flank_modification *flank, int row, int column)
+{
+  int i = find_node(flank, row, column);
+  if (i == flank->nodes)
+    return;
+  flank->nodes--;
+  memmove(&flank->node[i], &flank->node[i + 1], sizeof flank->node[0] * (size_t)(flank->nodes - i));
+  memset(&flank->node[flank->nodes], 0, sizeof flank->node[0]);
+}
+
+static const struct eo_flank_modification *flank_at(const struct eo_modification *modification, int i)
+{
+  return i < 4 ? &modification->flank[i / 2][i % 2] : &modification->coast[i / 2 % 2][i % 2];
+}
+
+bool eo_modification_has_nodes(const struct eo_modification *modification)
+{
+  bool has = false;
+  for (int i = 0; i < 8; i++)
+    has = has || flank_at(modification, i)->nodes > 0;
+  return has;
+}
+
+bool eo_modification_lay_nodes(const struct eo_modification *modification, struct eo_flank_grids *grids)
+{
+  for (int i = 0; i < 8; i++) {
+    const struct eo_flank_modification *flank = flank_at(modification, i);
+    const struct eo_grid_place *place = &grids->place[i / 4][i / 2 % 2][i % 2];
+    eo_grid_nodes_lay(flank->nodes, flank->node, place->u_knots, place->y_knots,
+                      grids->number + place->first + place->u_knots + place->y_knots);
+  }
+  return eo_modification_has_nodes(modification);
+}
+
 bool eo_modification_equal(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
 {
   /* from the tip relief to the exponents there are doubles only: no padding */
@@ -40,7 +107,8 @@ bool eo_modification_equal(const struct eo_flank_modification *a, const struct e
          memcmp(a->end_shape, b->end_shape, sizeof a->end_shape) == 0 &&
          memcmp((const char *)a + from, (const char *)b + from, to - from) == 0 &&
          same_stated(2, a->end_exponent, b->end_exponent, 2) && same_stated(2, a->exponent, b->exponent, 2) &&
-         same_places(&a->place[0], &b->place[0]) && same_places(&a->place[1], &b->place[1]) && same_triangles(a, b);
+         same_places(&a->place[0], &b->place[0]) && same_places(&a->place[1], &b->place[1]) && same_triangles(a, b) &&
+         same_nodes(a, b);
 }
 
 bool eo_modification_is_none(const struct eo_flank_modification *modification)
@@ -49,6 +117,7 @@ bool eo_modification_is_none(const struct eo_flank_modification *modification)
               modification->lead_crowning == 0 && modification->helix_slope == 0 && modification->lead_offset == 0 &&
               modification->end_relief[0] == 0 && modification->end_relief[1] == 0 &&
               modification->profile_slope == 0 && modification->profile_barrel == 0 && modification->twist == 0;
+  none = none && modification->nodes == 0;
   for (int i = 0; i < 4 && none; i++)
     none = modification->triangular[i / 2][i % 2].amount == 0;
   return none;

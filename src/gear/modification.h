@@ -37,6 +37,8 @@ struct eo_triangular_relief {
   double exponent;       /* 0: 1 */
 };
 
+enum { EO_MOST_GRID_NODES = 48 };
+
 /* What is taken off one flank, normal to it; positive removes material. */
 struct eo_flank_modification {
   enum eo_relief_shape shape;        /* of both reliefs */
@@ -60,6 +62,8 @@ struct eo_flank_modification {
   double exponent[2];          /* of the reliefs [root, tip] with EO_RELIEF_EXPONENT; 0: 2 */
   struct eo_relief_place place[2];              /* [root, tip] */
   struct eo_triangular_relief triangular[2][2]; /* [root, tip][trailing, leading] */
+  int nodes;
+  struct eo_grid_node node[EO_MOST_GRID_NODES]; /* in place of what the flank's grid has there; what a search varies */
 };
 
 struct eo_modification {
@@ -107,6 +111,15 @@ struct eo_modification_shape {
   double grid_share;                  /* of it that is laid on: 1 as it stands */
   const struct eo_flank_spline *grid; /* borrowed; NULL: none */
 };
+
+/* Sets, or adds, a number in place of the grid's; false: there is room for no more. */
+bool eo_modification_set_node(struct eo_flank_modification *flank, int row, int column, double delta);
+/* That number; NULL: none is stated. */
+const double *eo_modification_node(const struct eo_flank_modification *flank, int row, int column);
+void eo_modification_drop_node(struct eo_flank_modification *flank, int row, int column);
+/* Puts the numbers of all flanks into the grids; false: there are none. */
+bool eo_modification_lay_nodes(const struct eo_modification *modification, struct eo_flank_grids *grids);
+bool eo_modification_has_nodes(const struct eo_modification *modification);
 
 /* member: whose flank it is (its active profile ends where the other member's tip leaves it). */
 void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "document/search_space.h"
 #include "document/result_private.h"
 #include "format/text_table.h"
 #include "store/evaluations.h"
@@ -316,7 +317,11 @@ enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, s
   const json_t *rows = json_object_get(document, "rows"), *row;
   json_t *paths = json_object();
   size_t i;
-  json_array_foreach((json_t *)rows, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
+  json_array_foreach((json_t *)rows, i, row)
+  {
+    eo_modification_name_nodes(json_object_get(row, "modification"));
+    collect_paths(json_object_get(row, "modification"), "", paths);
+  }
   int columns = 3 + (int)json_object_size(paths) +
                 VALUES * (int)json_array_size(first_scenario(json_array_get(rows, 0)));
   char **heading = calloc((size_t)columns, sizeof *heading);

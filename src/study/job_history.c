@@ -225,7 +225,11 @@ static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct 
 {
   json_t *paths = json_object(), *row;
   size_t i;
-  json_array_foreach((json_t *)items, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
+  json_array_foreach((json_t *)items, i, row)
+  {
+    eo_modification_name_nodes(json_object_get(row, "modification"));
+    collect_paths(json_object_get(row, "modification"), "", paths);
+  }
   const char **heading = calloc(PLAIN + json_object_size(paths), sizeof *heading);
   if (paths && heading)
     write_rows(items, paths, heading, text);

@@ -434,15 +434,110 @@ static void refuse(const char *what, const char *pointer, int count, const struc
   ok(code == EO_ERROR_INPUT && strcmp(error.pointer, pointer) == 0, "%s: %s: %s", what, error.pointer, error.text);
 }
 
+static struct eo_listed_variable knots_of(int row, int column, double low, double high)
+{
+  return (struct eo_listed_variable){.member = EO_PINION,
+                                     .end = EO_BOTH_ENDS,
+                                     .parameter = parameter("grid_um"),
+                                     .bounds = {low, high},
+                                     .row = row,
+                                     .column = column,
+                                     .of_grid = true};
+}
+
+/* A flat grid of 3 x 4 on both ends of the pinion; row 2 is 1 um. */
+static bool with_knots(int count, const struct eo_listed_variable *list)
+{
+  static const double u[3] = {-5e-3, 0, 5e-3}, y[4] = {-27e-3, -9e-3, 9e-3, 27e-3},
+                      delta[12] = {0, 0, 0, 0, 1e-6, 1e-6, 1e-6, 1e-6};
+  const struct eo_flank_grid grid = {3, 4, u, y, delta};
+  coarse_design(&design, "ga", 40);
+  design.optimization.variables = EO_VARIABLES_LISTED;
+  design.optimization.listed = count;
+  memcpy(design.optimization.list, list, sizeof *list * (size_t)count);
+  for (int end = 0; end < 2; end++)
+    eo_flank_grids_put(&design.grids, EO_DRIVE_FLANK, EO_PINION, end, &grid, &error);
+  memset(&error, 0, sizeof error);
+  return complete(&design);
+}
+
+static void test_grid_search(void)
+{
+  const struct eo_listed_variable list[3] = {knots_of(1, 0, 0, 30), knots_of(3, 0, 0, 30), knots_of(2, 4, -5, 10)};
+  ok(with_knots(3, list), "rows and a knot of a grid %s", error.text);
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  free(run(&plan, &result));
+  char name[80];
+  eo_study_variable_name(&result.space.variable[2], name, sizeof name);
+  ok(strcmp(name, "pinion/both/grid_um[u2 y4]") == 0, "a variable by its name: %s", name);
+  double start[3], x[3];
+  ok(eo_study_space_locate(&result.space, &design.modification, &design.modification, start) && start[0] == 0 &&
+         fabs(start[2] - 6. / 15) < 1e-12,
+     "the grid itself is the start");
+  ok(result.best.there && result.best.value.objective < 0.9 * result.unmodified.value.objective,
+     "a search over the grid improves the pair: J %.3g of %.3g", result.best.value.objective,
+     result.unmodified.value.objective);
+  static struct eo_design best, opened;
+  static struct eo_faults found;
+  struct eo_geometry geometry;
+  best = design;
+  best.modification = result.best.modification;
+  json_t *document = eo_design_encode(&best);
+  const json_t *grid = eo_json_find(document, "modification/pinion/right/grid/delta_um"),
+               *row = json_array_get(grid, 0);
+  double of_row = eo_study_variable_value(&result.space.variable[0], &best.modification);
+  ok(json_number_value(json_array_get(row, 0)) == of_row && json_number_value(json_array_get(row, 3)) == of_row &&
+         json_number_value(json_array_get(json_array_get(grid, 1), 0)) == 1,
+     "the best is a design with that grid: row 1 at %.4g um", of_row);
+  ok(eo_design_decode(document, &opened, NULL, &found) && !eo_design_complete(&opened, &geometry, &error) &&
+         eo_json_find(document, "modification/pinion/right/grid_nodes") == NULL,
+     "and opens as one");
+  ok(eo_study_space_locate(&result.space, &design.modification, &best.modification, x), "a row of it is in the space");
+  struct eo_text text = {0};
+  static struct eo_modification read;
+  ok(!eo_modification_write(&best.modification, 2, &text, &error) && !eo_modification_read(text.data, &read, &error) &&
+         eo_modification_equal(&read.flank[EO_PINION][EO_LEFT], &best.modification.flank[EO_PINION][EO_LEFT]),
+     "as text and back: %.120s", text.data ? text.data : "");
+  eo_text_done(&text);
+  json_decref(document);
+  eo_study_result_done(&result);
+}
+
+static void refuse_knots(const char *what, const char *pointer, int count, const struct eo_listed_variable *list)
+{
+  ok(!with_knots(count, list) && strcmp(error.pointer, pointer) == 0, "%s: %s: %s", what, error.pointer, error.text);
+}
+
+static void test_grid_refusals(void)
+{
+  const struct eo_listed_variable crossing[2] = {knots_of(1, 0, 0, 30), knots_of(0, 2, 0, 30)},
+                                  row = knots_of(4, 0, 0, 30), column = knots_of(0, 5, 0, 30),
+                                  unbounded = knots_of(1, 1, NAN, NAN);
+  struct eo_listed_variable twisted = {.member = EO_PINION,
+                                       .end = EO_BOTH_ENDS,
+                                       .parameter = parameter("twist_um"),
+                                       .bounds = {0, 5},
+                                       .row = 1},
+                            bare = knots_of(1, 0, 0, 30);
+  bare.member = EO_GEAR;
+  refuse_knots("a knot in two variables", "/optimization/variable_list/1", 2, crossing);
+  refuse_knots("a row that is not there", "/optimization/variable_list/0/row", 1, &row);
+  refuse_knots("a column that is not there", "/optimization/variable_list/0/column", 1, &column);
+  refuse_knots("no bounds", "/optimization/variable_list/0/bounds", 1, &unbounded);
+  refuse_knots("a row of what is no grid", "/optimization/variable_list/0/row", 1, &twisted);
+  refuse_knots("a flank without a grid", "/optimization/variable_list/0/parameter", 1, &bare);
+}
+
 static void test_variables(void)
 {
   const int tip = parameter("tip_relief_um"), slope = parameter("helix_slope_um"),
             start = parameter("tip_relief_start_mm");
   const int end = parameter("leading_end_relief_um"), length = parameter("leading_end_relief_length_mm");
   const struct eo_range open = {NAN, NAN};
-  struct eo_listed_variable three[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0},
-                                       {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0},
-                                       {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0}};
+  struct eo_listed_variable three[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0, 0, 0, false},
+                                       {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0, 0, 0, false},
+                                       {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0, 0, 0, false}};
   ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
       design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
@@ -473,18 +568,19 @@ static void test_variables(void)
   eo_text_done(&text);
   eo_study_result_done(&result);
 
-  struct eo_listed_variable twice[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_PINION, EO_RIGHT, tip, {0, 10}, 0}};
+  struct eo_listed_variable twice[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0, 0, 0, false},
+                                       {EO_PINION, EO_RIGHT, tip, {0, 10}, 0, 0, 0, false}};
   refuse("the same parameter twice", "/optimization/variable_list/1", 2, twice);
-  struct eo_listed_variable unbounded = {EO_PINION, EO_BOTH_ENDS, slope, open, 0};
+  struct eo_listed_variable unbounded = {EO_PINION, EO_BOTH_ENDS, slope, open, 0, 0, 0, false};
   refuse("no bounds", "/optimization/variable_list/0/bounds", 1, &unbounded);
-  struct eo_listed_variable fixed = {EO_PINION, EO_BOTH_ENDS, slope, {5, 5}, 0};
+  struct eo_listed_variable fixed = {EO_PINION, EO_BOTH_ENDS, slope, {5, 5}, 0, 0, 0, false};
   refuse("a fixed variable", "/optimization/variable_list/0/bounds", 1, &fixed);
-  struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}, 0};
+  struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}, 0, 0, 0, false};
   refuse("bounds outside the parameter's range", "/optimization/variable_list/0/bounds", 1, &negative);
-  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0},
-                                      {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0}};
+  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0, 0, 0, false},
+                                      {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0, 0, 0, false}};
   refuse("a relief that may start outside the active flank", "/optimization/variable_list", 2, late);
-  struct eo_listed_variable gain = {EO_PINION, EO_BOTH_ENDS, parameter("grid_gain"), {-1, 1}, 0};
+  struct eo_listed_variable gain = {EO_PINION, EO_BOTH_ENDS, parameter("grid_gain"), {-1, 1}, 0, 0, 0, false};
   refuse("the gain of a grid that is not there", "/optimization/variable_list/0/parameter", 1, &gain);
   static const double knots[2] = {-2e-3, 2e-3}, delta[4] = {1e-6, 2e-6, 0, 1e-6};
   const struct eo_flank_grid grid = {2, 2, knots, knots, delta};
@@ -502,18 +598,20 @@ static void test_variables(void)
   eo_study_space_apply(&gains, &with_grid.modification, &scale, &gained);
   ok(gained.flank[EO_PINION][0].grid_gain == 0.5 && gained.flank[EO_PINION][1].grid_gain == 0.5,
      "the search lays on more or less of it");
-  struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0};
+  struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false};
   refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
-  struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0}, {EO_PINION, EO_LEFT, length, {0, 10}, 0}};
+  struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false},
+                                      {EO_PINION, EO_LEFT, length, {0, 10}, 0, 0, 0, false}};
   refuse("an end relief whose length may vanish", "/optimization/variable_list", 2, zero);
-  struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0}, {EO_PINION, EO_LEFT, length, {1, 10}, 0}};
+  struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false},
+                                      {EO_PINION, EO_LEFT, length, {1, 10}, 0, 0, 0, false}};
   ok(with_list(2, good) == EO_OK, "an end relief with a length");
   refuse("no variable", "/optimization/variable_list", 0, good);
   with_list(1, good);
   design.optimization.variables = EO_VARIABLES_SHARED;
   ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s",
      error.text);
-  struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open, 0};
+  struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open, 0, 0, 0, false};
   coarse_design(&design, "ga", 20);
   design.gear_pair.ends = 1;
   design.gear_pair.groove_width = NAN;
@@ -540,6 +638,8 @@ int main(void)
   test_race();
   test_failures();
   test_constraints();
+  test_grid_search();
+  test_grid_refusals();
   test_variables();
   empty_folder();
   rmdir(folder);

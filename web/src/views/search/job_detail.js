@@ -8,7 +8,7 @@ import { documentOf } from '../../base/store.js';
 import { progressText } from '../../jobbar.js';
 import { JobFigures } from './job_figures.js';
 import { MEASURES, footnote, meanOf } from './measures.js';
-import { changedValues, withValues } from './variables.js';
+import { changedValues, withGrids, withValues } from './variables.js';
 
 const PAUSE = 700; // ms between two looks at a running search
 const MOST_ROWS = 4000;
@@ -85,7 +85,8 @@ export class JobDetail {
   #bestOf() {
     const best = this.#job?.best;
     if (!best) return null;
-    if (best.modification) return best;
+    if (best.modification)
+      return this.#design ? { ...best, modification: withGrids(this.#design, best.modification) } : best;
     const found = this.#result?.best;
     if (found) return { ...found.objectives, modification: found.modification };
     const rows = this.#rows.filter(row => typeof row.J === 'number');

@@ -28,6 +28,9 @@ function algorithmsOf(help) {
   return words.every(word => ALGORITHMS.includes(word)) ? words : [];
 }
 
+/** Keys of a variable that numbers of a grid alone have. */
+const OF_GRIDS = ['row', 'column'];
+
 export class SearchForm {
   #shape = '';
 
@@ -109,13 +112,14 @@ export class SearchForm {
     this.weights.textContent = sum ? `That is ${parts.join(', ')}.` : '';
     this.#drawCost(algorithm, COUNTS[variables] ?? rows.length);
     const [terms, limits] = ['terms', 'limits'].map(key => this.store.get(`/objective/${key}`) ?? []);
-    const shape = JSON.stringify([algorithm, variables, rows.length, terms.length, limits.length]);
+    const ofGrids = rows.map((/** @type {any} */ row) => row.parameter === 'grid_um');
+    const shape = JSON.stringify([algorithm, variables, ofGrids, terms.length, limits.length]);
     if (shape === this.#shape) return;
     this.#shape = shape;
     this.changing.release();
     this.#drawDetails(algorithm);
     const variable = { member: 'pinion', end: 'both', parameter: 'tip_relief_um', bounds: null };
-    const keys = ['member', 'end', 'parameter', 'bounds'];
+    const keys = ['member', 'end', 'flank', 'parameter', 'row', 'column', 'bounds'];
     if (variables === 'listed') this.#drawRows(this.listed, '/optimization/variable_list', 'variable', keys, variable);
     else fill(this.listed);
     const term = { output: 'order_1_um', load_case: null, weight: 0.2, scale: null, percent: null };
@@ -180,7 +184,7 @@ export class SearchForm {
     const title = name.charAt(0).toUpperCase() + name.slice(1);
     fill(
       place,
-      rows().map((_row, i) =>
+      rows().map((/** @type {any} */ row, i) =>
         h(
           'fieldset.listed-row',
           null,
@@ -194,7 +198,9 @@ export class SearchForm {
               '✕',
             ),
           ),
-          keys.map(key => this.changing.field(`${pointer}/${i}/${key}`)),
+          keys
+            .filter(key => row.parameter === 'grid_um' || !OF_GRIDS.includes(key))
+            .map(key => this.changing.field(`${pointer}/${i}/${key}`)),
         ),
       ),
       h('button.small', { type: 'button', onclick: () => store.set(pointer, [...rows(), fresh]) }, `+ ${name}`),

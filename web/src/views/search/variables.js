@@ -11,8 +11,50 @@ export function shortName(name) {
   const parts = name.split('/');
   const key = parts[parts.length - 1];
   const end = parts.length === 3 && parts[1] !== 'both' ? ` ${parts[1]}` : '';
-  const unit = unitText(/_(um|mm|per_mm)$/.exec(key)?.[1]);
+  const unit = unitText(/_(um|mm|per_mm)(\[|$)/.exec(key)?.[1]);
   return `${labelOf(key)}${end}${unit ? ` (${unit})` : ''}`;
+}
+
+/** Numbers in place of a grid's, each under the name that a variable has. @param {any} flank @returns {any} */
+function withNodes(flank) {
+  const nodes = (flank?.grid_nodes ?? []).map((/** @type {any} */ { row, column, delta_um: delta }) => [
+    `grid_um[u${row || '*'} y${column || '*'}]`,
+    delta,
+  ]);
+  return { ...flank, ...Object.fromEntries(nodes) };
+}
+
+const KNOT = /^grid_um\[u(\*|\d+) y(\*|\d+)\]$/;
+
+/**
+ * A grid with one number at all knots that the name of a variable covers.
+ * @param {any} grid @param {string} key @param {number} value
+ */
+function withKnots(grid, key, value) {
+  const [row, column] = (KNOT.exec(key) ?? []).slice(1).map(text => (text === '*' ? 0 : Number(text)));
+  const delta = grid.delta_um.map((/** @type {number[]} */ numbers, /** @type {number} */ i) =>
+    numbers.map((number, j) => ((!row || row === i + 1) && (!column || column === j + 1) ? value : number)),
+  );
+  return { ...grid, delta_um: delta };
+}
+
+/** A modification that lists terms alone, with the grids of the design. @param {any} design @param {any} modification */
+export function withGrids(design, modification) {
+  let next = modification;
+  for (const member of ['pinion', 'gear'])
+    for (const end of ['left', 'left/coast', 'right', 'right/coast']) {
+      const grid = valueAt(design.modification, `/${member}/${end}/grid`);
+      if (grid && !valueAt(next, `/${member}/${end}/grid`)) next = withValue(next, `/${member}/${end}/grid`, grid);
+    }
+  return next;
+}
+
+/** @param {any} design @param {string} flank pointer of it @param {string} key @param {number} value */
+function withNumber(design, flank, key, value) {
+  const grid = KNOT.test(key) && valueAt(design, `${flank}/grid`);
+  return grid
+    ? withValue(design, `${flank}/grid`, withKnots(grid, key, value))
+    : withValue(design, `${flank}/${key}`, value);
 }
 
 /** Numbers of a modification, both ends beside each other. @param {Flanks} modification */
@@ -21,9 +63,10 @@ function flankValues(modification) {
   const rows = [];
   for (const [member, ends] of Object.entries(modification ?? {})) {
     if (!ends || typeof ends !== 'object') continue;
-    for (const key of Object.keys(ends.left ?? {})) {
-      const left = ends.left[key];
-      const right = ends.right?.[key] ?? left;
+    const [ofLeft, ofRight] = [withNodes(ends.left), withNodes(ends.right)];
+    for (const key of Object.keys(ofLeft)) {
+      const left = ofLeft[key];
+      const right = ofRight[key] ?? left;
       if (typeof left === 'number') rows.push({ member, key, left, right });
     }
   }
@@ -53,7 +96,7 @@ export function variablesOf(row) {
 export function valuesOf(names, modification) {
   return names.map(name => {
     const [member, end, key] = name.split('/');
-    return valueAt(modification, `/${member}/${end === 'both' ? 'left' : end}/${key}`) ?? null;
+    return withNodes(valueAt(modification, `/${member}/${end === 'both' ? 'left' : end}`))[key] ?? null;
   });
 }
 
@@ -63,7 +106,7 @@ export function withValues(design, values) {
   for (const [name, value] of Object.entries(values)) {
     const [member, end, key] = name.split('/');
     for (const each of end === 'both' ? ['left', 'right'] : [end])
-      next = withValue(next, `/modification/${member}/${each}/${key}`, value);
+      next = withNumber(next, `/modification/${member}/${each}`, key, value);
   }
   return next;
 }
@@ -74,7 +117,7 @@ export function changedValues(modification) {
     .filter(({ left, right }) => left !== 0 || right !== 0)
     .map(({ member, key, left, right }) => ({
       label: `${labelOf(key)}${member === 'gear' ? ', gear' : ''}`,
-      unit: unitText(/_(um|mm|per_mm)$/.exec(key)?.[1]),
+      unit: unitText(/_(um|mm|per_mm)(\[|$)/.exec(key)?.[1]),
       values: left === right ? [left] : [left, right],
     }));
 }
