@@ -326,8 +326,33 @@ static void name_width(struct eo_rexs_import *import)
     }
 }
 
-/* Own widths where both members stand centred on each other and have as much beyond the common face on both ends; else
-   the common width is all that a design has. */
+static bool stands_out(const struct eo_rexs_import *import, int member)
+{
+  bool wider = false;
+  for (int end = 0; end < import->pair->ends; end++)
+    wider = wider || import->wheel[member][end].face_width > import->width[end] * (1 + same);
+  return wider;
+}
+
+/* What a design cannot carry: its members stand centred on each other, and what is beyond the common face is alike on
+   both ends. */
+static void refuse_own_width(struct eo_rexs_import *import, int member)
+{
+  for (int end = 0; end < import->pair->ends; end++) {
+    const struct eo_rexs_wheel *wheel = &import->wheel[member][end], *mate = &import->wheel[1 - member][end];
+    double from = fmax(wheel->left, mate->left), to = fmin(wheel->right, mate->right);
+    eo_import_say(
+        import->out, import->out->refused,
+        "own width of cylindrical_gear %d, %.6g mm: it stands out %.6g mm to the left and %.6g mm to the right "
+        "of the common %.6g mm, its mid face %.6g mm from its mate's, and a design has members centred on each "
+        "other. The common width alone is read: the tooth is supported and rated without what stands out.",
+        wheel->gear->id, wheel->face_width, fmax(0, from - wheel->left), fmax(0, wheel->right - to), to - from,
+        fabs(wheel->left + wheel->right - mate->left - mate->right) / 2);
+  }
+}
+
+/* Own widths where both members stand centred on each other and have as much beyond the common face on both ends.
+ */
 static void put_widths(struct eo_rexs_import *import, json_t *gear_pair)
 {
   static const char *const key[2] = {"pinion_face_width_mm", "gear_face_width_mm"};
@@ -346,6 +371,8 @@ static void put_widths(struct eo_rexs_import *import, json_t *gear_pair)
     }
     if (centred && beyond > same * width[EO_LEFT])
       eo_rexs_put(import, &eo_gear_pair_table, gear_pair, key[member], own);
+    else if (!centred && stands_out(import, member))
+      refuse_own_width(import, member);
   }
 }
 

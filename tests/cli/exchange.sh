@@ -110,6 +110,11 @@ prints ",f_Halpha,"
 run 1 "dimensions have no rows to choose" "$EASEOFF" export "$folder/single.json" --format dimensions --rows 5
 says "has no rows and columns"
 
+# A member beside its mate's middle.
+sed 's/\(u_coordinate_on_shaft" unit="mm">\)61/\160.5/; s/60\.5\.0/60.5/' "$files/single-shifted-1.6.rexs" >"$folder/beside.rexs"
+run 0 "a member off its mate's middle" "$EASEOFF" import "$folder/beside.rexs"
+says "cylindrical_gear 11, 44 mm: it stands out 0.5 mm to the left and 1.5 mm to the right of the common 42 mm"
+
 # Hostile files: a sentence, at once.
 deep=$(printf '<model version="1.7">'; seq 1 200 | sed 's/.*/<a>/' | tr -d '\n')
 printf '%s' "$deep" >"$folder/deep.rexs"
