@@ -7,10 +7,16 @@
 #include "format/json.h"
 #include "format/object.h"
 
+struct assumption {
+  const char *key, *rule;
+  json_t *value;
+};
+
 static const struct eo_outline_row assumption_rows[] = {
-    EO_KEY("key", "text", "JSON pointer of the key that was not stated"),
-    EO_KEY("value", "any", "what was taken, as the document says it; null: it follows from each load case"),
-    EO_KEY("rule", "text", "by which rule, or from where"),
+    EO_KEY("key", "text", "JSON pointer of the key that was not stated", EO_AT(struct assumption, key)),
+    EO_KEY("value", "any", "what was taken, as the document says it; null: it follows from each load case",
+           EO_AT(struct assumption, value)),
+    EO_KEY("rule", "text", "by which rule, or from where", EO_AT(struct assumption, rule)),
 };
 const struct eo_outline eo_outline_assumption = EO_OUTLINE("Assumption", assumption_rows);
 
@@ -92,11 +98,8 @@ void eo_assumptions_note(const json_t *document, struct eo_design *design)
 
 static void add(json_t *list, const char *key, json_t *value, const char *rule, bool *failed)
 {
-  struct eo_object object = eo_object_open_as(&eo_outline_assumption);
-  eo_object_put(&object, "key", json_string(key));
-  eo_object_put(&object, "value", value);
-  eo_object_put(&object, "rule", json_string(rule));
-  *failed = json_array_append_new(list, eo_object_close(&object)) != 0 || *failed;
+  const struct assumption view = {key, rule, value};
+  *failed = json_array_append_new(list, eo_outline_encode(&eo_outline_assumption, &view)) != 0 || *failed;
 }
 
 static const char *rule_of(const struct eo_field *field)

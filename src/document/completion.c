@@ -8,38 +8,35 @@
 #include "format/object.h"
 #include "format/text_table.h"
 
+struct completion {
+  json_t *design, *geometry, *dimensions, *assumed, *warnings, *findings;
+};
+
 static const struct eo_outline_row completion_rows[] = {
-    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
-    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
+           EO_AT(struct completion, design)),
+    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry",
+           EO_AT(struct completion, geometry)),
     EO_KEY("dimensions", "object", "what is measured on the members and between them",
-           .outline = &eo_outline_dimensions),
+           .outline = &eo_outline_dimensions, EO_AT(struct completion, dimensions)),
     EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
-           .outline = &eo_outline_assumption),
-    EO_KEY("warnings", "[text]", "in plain words"),
-    EO_KEY("findings", "[object]", "those of them that belong to a field of the design",
-           .outline = &eo_outline_finding),
+           .outline = &eo_outline_assumption, EO_AT(struct completion, assumed)),
+    EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct completion, warnings)),
+    EO_KEY("findings", "[object]", "those of them that belong to a field of the design", .outline = &eo_outline_finding,
+           EO_AT(struct completion, findings)),
 };
 const struct eo_outline eo_outline_completion = EO_OUTLINE("Completion", completion_rows);
-
-static json_t *encode_warnings(const struct eo_warnings *warnings)
-{
-  json_t *list = json_array();
-  for (int i = 0; list && warnings && i < warnings->count; i++)
-    json_array_append_new(list, json_string(warnings->text[i]));
-  return list;
-}
 
 json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geometry *geometry,
                              const struct eo_warnings *warnings)
 {
-  struct eo_object object = eo_object_open_as(&eo_outline_completion);
-  eo_object_put(&object, "design", eo_design_encode(design));
-  eo_object_put(&object, "geometry", eo_table_encode(&eo_geometry_table, geometry));
-  eo_object_put(&object, "dimensions", eo_dimensions_encode(&design->gear_pair, geometry));
-  eo_object_put(&object, "assumed", eo_assumptions_encode(design, true));
-  eo_object_put(&object, "warnings", encode_warnings(warnings));
-  eo_object_put(&object, "findings", eo_design_findings(warnings));
-  return eo_object_close(&object);
+  const struct completion view = {.design = eo_design_encode(design),
+                                  .geometry = eo_table_encode(&eo_geometry_table, geometry),
+                                  .dimensions = eo_dimensions_encode(&design->gear_pair, geometry),
+                                  .assumed = eo_assumptions_encode(design, true),
+                                  .warnings = eo_warnings_encode(warnings),
+                                  .findings = eo_design_findings(warnings)};
+  return eo_outline_encode(&eo_outline_completion, &view);
 }
 
 /* How the key's unit reads: length in inches where they are asked for. */

@@ -55,6 +55,9 @@ void eo_design_note_findings(const struct eo_design *design, const struct eo_geo
 extern const struct eo_outline eo_outline_finding;
 json_t *eo_design_findings(const struct eo_warnings *warnings);
 
+/* All of them as texts; NULL: none. New; NULL without memory. */
+json_t *eo_warnings_encode(const struct eo_warnings *warnings);
+
 /* Says which keys of an earlier form were read as what. */
 void eo_design_note_migrations(const json_t *document, struct eo_warnings *warnings);
 

@@ -11,30 +11,33 @@
 static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
 
+struct finding {
+  const char *key, *text;
+};
+
 static const struct eo_outline_row finding_rows[] = {
-    EO_KEY("key", "text", "JSON pointer of the field it belongs to"),
-    EO_KEY("text", "text", "in plain words: number, limit, remedy"),
+    EO_KEY("key", "text", "JSON pointer of the field it belongs to", EO_AT(struct finding, key)),
+    EO_KEY("text", "text", "in plain words: number, limit, remedy", EO_AT(struct finding, text)),
 };
 const struct eo_outline eo_outline_finding = EO_OUTLINE("DesignFinding", finding_rows);
 
 json_t *eo_design_findings(const struct eo_warnings *warnings)
 {
-  json_t *list = json_array();
-  bool failed = !list;
-  for (int i = 0; warnings && i < warnings->count && !failed; i++) {
-    struct eo_object object = eo_object_open_as(&eo_outline_finding);
-    if (!*warnings->key[i]) {
-      json_decref(object.json);
-      continue;
-    }
-    eo_object_put(&object, "key", json_string(warnings->key[i]));
-    eo_object_put(&object, "text", json_string(warnings->text[i]));
-    failed = json_array_append_new(list, eo_object_close(&object)) != 0;
+  struct eo_object list = eo_list_open();
+  for (int i = 0; warnings && i < warnings->count; i++) {
+    const struct finding view = {warnings->key[i], warnings->text[i]};
+    if (*view.key)
+      eo_list_add(&list, eo_outline_encode(&eo_outline_finding, &view));
   }
-  if (!failed)
-    return list;
-  json_decref(list);
-  return NULL;
+  return eo_object_close(&list);
+}
+
+json_t *eo_warnings_encode(const struct eo_warnings *warnings)
+{
+  struct eo_object list = eo_list_open();
+  for (int i = 0; warnings && i < warnings->count; i++)
+    eo_list_add(&list, json_string(warnings->text[i]));
+  return eo_object_close(&list);
 }
 
 /* Below the active profile undercut takes nothing off where the teeth touch, but it weakens the root. */

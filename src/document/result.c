@@ -14,9 +14,9 @@
 
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
-static const char *outcome_of(const struct eo_case_result *case_result)
+static int outcome_of(const struct eo_case_result *case_result)
 {
-  return outcomes[case_result->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : case_result->vibration.outcome];
+  return (int)(case_result->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : case_result->vibration.outcome);
 }
 
 static const char *const directions[] = {"ahead", "astern", NULL};
@@ -24,35 +24,58 @@ static const char *const drivers[] = {"pinion", "gear", NULL};
 static const char *const flank_sides[] = {"drive", "coast", NULL};
 static const char *const sequences[] = {"forwards", "backwards", NULL};
 
+struct contact_half {
+  struct eo_load_case load_case;
+  int flank, sequence, outcome;
+  double force;
+  json_t *axial, *position, *lte, *stiffness, *contact;
+};
+
 static const struct eo_outline_row contact_rows[] = {
-    EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
-    EO_KEY("share", "number", "of the operating time"),
-    EO_KEY("name", "text", "for people"),
-    EO_KEY("direction", "word", "of rotation", .words = directions),
-    EO_KEY("driver", "word", "which member drives", .words = drivers),
-    EO_KEY("flank", "word", "which flanks carry", .words = flank_sides),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm,
+           EO_AT(struct contact_half, load_case.torque)),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm, EO_AT(struct contact_half, load_case.speed)),
+    EO_KEY("share", "number", "of the operating time", EO_AT(struct contact_half, load_case.share)),
+    EO_KEY("name", "text", "for people", EO_AT(struct contact_half, load_case.name)),
+    EO_KEY("direction", "word", "of rotation", .words = directions, EO_AT(struct contact_half, load_case.direction)),
+    EO_KEY("driver", "word", "which member drives", .words = drivers, EO_AT(struct contact_half, load_case.driver)),
+    EO_KEY("flank", "word", "which flanks carry", .words = flank_sides, EO_AT(struct contact_half, flank)),
     EO_KEY("sequence", "word",
            "forwards: positions follow each other in time; backwards: the gear drives, time runs "
            "against position",
-           .words = sequences),
-    EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N),
-    EO_KEY("axial", "object", "rotation, first contact and forces along the axes", .outline = &eo_outline_axial),
+           .words = sequences, EO_AT(struct contact_half, sequence)),
+    EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N,
+           EO_AT(struct contact_half, force)),
+    EO_KEY("axial", "object", "rotation, first contact and forces along the axes", .outline = &eo_outline_axial,
+           EO_AT(struct contact_half, axial)),
     EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate",
-           .words = outcomes),
-    EO_KEY("position", "[number]", "phase of the mesh cycle of the left end, 0..1, over which the static curves run"),
-    EO_KEY("lte", "object", "loaded transmission error, transverse", .outline = &eo_outline_lte),
-    EO_KEY("mesh_stiffness", "object", "mesh stiffness, normal", .outline = &eo_outline_stiffness),
-    EO_KEY("contact", "object", "loads, pressure, contact pattern", .outline = &eo_outline_contact),
+           .words = outcomes, EO_AT(struct contact_half, outcome)),
+    EO_KEY("position", "[number]", "phase of the mesh cycle of the left end, 0..1, over which the static curves run",
+           EO_AT(struct contact_half, position)),
+    EO_KEY("lte", "object", "loaded transmission error, transverse", .outline = &eo_outline_lte,
+           EO_AT(struct contact_half, lte)),
+    EO_KEY("mesh_stiffness", "object", "mesh stiffness, normal", .outline = &eo_outline_stiffness,
+           EO_AT(struct contact_half, stiffness)),
+    EO_KEY("contact", "object", "loads, pressure, contact pattern", .outline = &eo_outline_contact,
+           EO_AT(struct contact_half, contact)),
 };
 static const struct eo_outline contact_half = EO_OUTLINE(NULL, contact_rows);
 
+struct consequence_half {
+  bool elastic; /* shafts */
+  json_t *bodies, *impact, *root, *vibration;
+};
+
 static const struct eo_outline_row consequence_rows[] = {
     EO_KEY("body_deflection", "object", "what shafts and bodies do to the gap", .when = "with elastic shafts",
-           .outline = &eo_outline_bodies),
-    EO_KEY("impact", "object", "entering impact", .outline = &eo_outline_impact),
-    EO_KEY("root_stress", "object?", "null when it was not asked for", .outline = &eo_outline_root_stress),
-    EO_KEY("vibration", "object", "vibration", .outline = &eo_outline_vibration),
+           .outline = &eo_outline_bodies, EO_AT(struct consequence_half, bodies),
+           EO_IF(struct consequence_half, elastic)),
+    EO_KEY("impact", "object", "entering impact", .outline = &eo_outline_impact,
+           EO_AT(struct consequence_half, impact)),
+    EO_KEY("root_stress", "object?", "null when it was not asked for", .outline = &eo_outline_root_stress,
+           EO_AT(struct consequence_half, root)),
+    EO_KEY("vibration", "object", "vibration", .outline = &eo_outline_vibration,
+           EO_AT(struct consequence_half, vibration)),
 };
 static const struct eo_outline consequence_half = EO_OUTLINE(NULL, consequence_rows);
 
@@ -62,36 +85,30 @@ static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_
 json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *case_result = &source->evaluation->load_case[k];
-  struct eo_object object = eo_object_open_as(&contact_half);
   source->lag = eo_evaluator_stagger(source->pair, source->design, &case_result->running);
-  eo_object_put_number(&object, "torque_Nm", case_result->load_case.torque);
-  eo_object_put_number(&object, "speed_rpm", case_result->load_case.speed);
-  eo_object_put_number(&object, "share", case_result->load_case.share);
-  eo_object_put(&object, "name", json_string(case_result->load_case.name));
-  eo_object_put(&object, "direction", json_string(directions[case_result->load_case.direction]));
-  eo_object_put(&object, "driver", json_string(drivers[case_result->load_case.driver]));
-  eo_object_put(&object, "flank", json_string(flank_sides[case_result->running.flank]));
-  eo_object_put(&object, "sequence", json_string(sequences[case_result->running.backwards]));
-  eo_object_put_number(&object, "normal_force_N", case_result->force);
-  eo_object_put(&object, "axial", eo_result_axial(source, case_result));
-  eo_object_put(&object, "outcome", json_string(outcome_of(case_result)));
-  eo_object_put(&object, "position", eo_result_position(source));
-  eo_object_put(&object, "lte", eo_result_lte(source, case_result));
-  eo_object_put(&object, "mesh_stiffness", eo_result_stiffness(source, case_result));
-  eo_object_put(&object, "contact", eo_result_contact(source, k));
-  return eo_object_close(&object);
+  const struct contact_half view = {.load_case = case_result->load_case,
+                                    .flank = (int)case_result->running.flank,
+                                    .sequence = case_result->running.backwards,
+                                    .force = case_result->force,
+                                    .axial = eo_result_axial(source, case_result),
+                                    .outcome = outcome_of(case_result),
+                                    .position = eo_result_position(source),
+                                    .lte = eo_result_lte(source, case_result),
+                                    .stiffness = eo_result_stiffness(source, case_result),
+                                    .contact = eo_result_contact(source, k)};
+  return eo_outline_encode(&contact_half, &view);
 }
 
 json_t *eo_result_case_consequences(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *case_result = &source->evaluation->load_case[k];
-  struct eo_object object = eo_object_open_as(&consequence_half);
-  if (source->design->shafts.enabled)
-    eo_object_put(&object, "body_deflection", eo_result_bodies(source, case_result));
-  eo_object_put(&object, "impact", eo_result_impact(source, case_result));
-  eo_object_put(&object, "root_stress", eo_result_root_stress(source, case_result));
-  eo_object_put(&object, "vibration", eo_result_vibration(source, case_result));
-  return eo_object_close(&object);
+  bool elastic = source->design->shafts.enabled;
+  const struct consequence_half view = {.elastic = elastic,
+                                        .bodies = elastic ? eo_result_bodies(source, case_result) : NULL,
+                                        .impact = eo_result_impact(source, case_result),
+                                        .root = eo_result_root_stress(source, case_result),
+                                        .vibration = eo_result_vibration(source, case_result)};
+  return eo_outline_encode(&consequence_half, &view);
 }
 
 /* Takes both; NULL when one is. */
@@ -112,13 +129,10 @@ static json_t *encode_case(struct eo_result_source *source, int k)
 
 static json_t *encode_cases(struct eo_result_source *source)
 {
-  json_t *cases = json_array();
-  for (int k = 0; k < source->evaluation->cases && cases; k++)
-    if (json_array_append_new(cases, encode_case(source, k)) != 0) {
-      json_decref(cases);
-      cases = NULL;
-    }
-  return cases;
+  struct eo_object cases = eo_list_open();
+  for (int k = 0; k < source->evaluation->cases; k++)
+    eo_list_add(&cases, encode_case(source, k));
+  return eo_object_close(&cases);
 }
 
 struct raw_case {
@@ -161,13 +175,10 @@ json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo
 
 static json_t *encode_raw(const struct eo_result_source *source, const struct eo_objective_case *raw)
 {
-  json_t *cases = json_array();
-  for (int k = 0; k < source->evaluation->cases && cases; k++)
-    if (json_array_append_new(cases, eo_result_raw_case(&source->design->load_case[k], &raw[k])) != 0) {
-      json_decref(cases);
-      cases = NULL;
-    }
-  return cases;
+  struct eo_object cases = eo_list_open();
+  for (int k = 0; k < source->evaluation->cases; k++)
+    eo_list_add(&cases, eo_result_raw_case(&source->design->load_case[k], &raw[k]));
+  return eo_object_close(&cases);
 }
 
 static bool sums_are_known(const void *source)
@@ -216,31 +227,45 @@ static const struct eo_outline_row value_rows[] = {
 };
 const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
 
+struct unmodified {
+  struct eo_objective_value value;
+  json_t *cases;
+};
+struct objectives {
+  struct eo_objective_value value;
+  json_t *cases;
+  struct unmodified unmodified;
+  int scenarios;
+};
+
 static const struct eo_outline_row unmodified_rows[] = {
-    {.outline = &eo_outline_value},
-    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case),
+    {.outline = &eo_outline_value, EO_AT(struct unmodified, value)},
+    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case,
+           EO_AT(struct unmodified, cases)),
 };
 static const struct eo_outline unmodified_outline = EO_OUTLINE("UnmodifiedObjectives", unmodified_rows);
 
 static const struct eo_outline_row objective_rows[] = {
-    {.outline = &eo_outline_value},
-    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case),
-    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &unmodified_outline),
-    EO_KEY("scenarios", "integer", "of a robust objective that were evaluated; 1: the nominal one"),
+    {.outline = &eo_outline_value, EO_AT(struct objectives, value)},
+    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case,
+           EO_AT(struct objectives, cases)),
+    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &unmodified_outline,
+           EO_AT(struct objectives, unmodified)),
+    EO_KEY("scenarios", "integer", "of a robust objective that were evaluated; 1: the nominal one",
+           EO_AT(struct objectives, scenarios)),
 };
 static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives", objective_rows);
 
 json_t *eo_result_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *analysis = source->analysis;
-  struct eo_object object = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
-  eo_outline_put(&object, &eo_outline_value, &analysis->value);
-  eo_outline_put(&unmodified, &eo_outline_value, &analysis->unmodified_value);
-  eo_object_put(&object, "load_cases", encode_raw(source, source->evaluation->objective));
-  eo_object_put(&unmodified, "load_cases", encode_raw(source, analysis->unmodified));
-  eo_object_put(&object, "unmodified", eo_object_close(&unmodified));
-  eo_object_put(&object, "scenarios", json_integer(analysis->scenarios));
-  return eo_object_close(&object);
+  const struct objectives view = {
+      .value = analysis->value,
+      .cases = encode_raw(source, source->evaluation->objective),
+      .unmodified = {analysis->unmodified_value, encode_raw(source, analysis->unmodified)},
+      .scenarios = analysis->scenarios,
+  };
+  return eo_outline_encode(&objectives_outline, &view);
 }
 
 struct timing {

@@ -307,14 +307,6 @@ static json_t *encode_crossings(const struct eo_sweep *sweep)
   return encoded;
 }
 
-static json_t *encode_warnings(const struct eo_warnings *warnings)
-{
-  struct eo_object list = eo_list_open();
-  for (int i = 0; warnings && i < warnings->count; i++)
-    eo_list_add(&list, json_string(warnings->text[i]));
-  return eo_object_close(&list);
-}
-
 json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design,
                         const struct eo_warnings *warnings)
 {
@@ -328,7 +320,7 @@ json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *de
   view.design = eo_design_encode(design);
   view.modes = encode_modes(sweep);
   view.crossings = encode_crossings(sweep);
-  view.warnings = encode_warnings(warnings);
+  view.warnings = eo_warnings_encode(warnings);
   return eo_outline_encode(&eo_sweep_outline, &view);
 }
 
