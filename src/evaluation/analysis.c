@@ -76,6 +76,8 @@ static void strip(struct eo_design *bare, const struct eo_design *design)
   memcpy(bare, design, sizeof *bare);
   memset(bare->name, 0, sizeof bare->name);
   memset(&bare->optimization, 0, sizeof bare->optimization);
+  bare->optimization.front = design->optimization.front; /* whether the nominal pair stands beside the others */
+  bare->optimization.search.algorithm = design->optimization.search.algorithm;
   memset(&bare->rating, 0, sizeof bare->rating);
   memset(&bare->pitch, 0, sizeof bare->pitch);
   memset(&bare->tolerance, 0, sizeof bare->tolerance);

@@ -198,6 +198,10 @@ static void test_jobs(void)
   test_job("ga", 25, single);
   test_job("ga", 25,
            "{\"objective\": {\"robust\": \"mean\", \"scenarios\": [{\"shaft_angle_error_in_plane_deg\": 0.05}]}}");
+  test_job("nsga2", 12,
+           "{\"tolerance\": {\"preset\": \"iso_class\"}, \"optimization\": {\"front\": \"nominal_and_robust\"}, "
+           "\"objective\": {\"robust\": \"percentile\", \"scatter_pairs\": 3, \"check_pairs\": 4, "
+           "\"terms\": [{\"output\": \"order_1_um\"}], \"limits\": [{\"output\": \"K_Hbeta\", \"at_most\": 9}]}}");
 }
 
 static void test_lists(void)
