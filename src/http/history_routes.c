@@ -178,6 +178,7 @@ const struct eo_route eo_routes_history[] = {
      .order = &prune_table,
      .gives = "200 Pruned",
      .aside = true,
+     .frees = true,
      .rate = EO_RATE_START,
      .summary = "Removes what is no longer wanted of the history: `easeoff history prune`. 409 while a job runs."},
     {0}};

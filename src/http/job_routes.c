@@ -266,6 +266,7 @@ const struct eo_route eo_routes_jobs[] = {
      .handle = cancel,
      .name = "cancelJob",
      .summary = "Stops a job; one that runs ends within an evaluation and keeps what it found.",
+     .frees = true,
      .gives = "202 Job",
      .rate = EO_RATE_START},
     {.method = EO_POST,

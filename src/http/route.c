@@ -169,7 +169,8 @@ double eo_route_number(const struct eo_request *request, const char *name)
 void eo_route_run(struct eo_request *request)
 {
   request->route->handle(request);
-  if (request->method == EO_DELETE && request->reply.status == FULL && eo_spare_give(request->store)) {
+  bool frees = request->method == EO_DELETE || request->route->frees;
+  if (frees && request->reply.status == FULL && eo_spare_give(request->store)) {
     request->reply.status = 0; /* what is deleted makes more room than this */
     request->route->handle(request);
   }

@@ -49,6 +49,7 @@ struct eo_route {
   bool open;   /* answers without the token */
   bool aside;  /* runs on the other thread: see background.h */
   bool form;   /* takes multipart/form-data: see upload.h; runs on the thread that reads recordings */
+  bool frees;  /* goes on on a full disk, like DELETE */
   bool csv;    /* as text/csv too, by Accept or ".csv" */
 };
 

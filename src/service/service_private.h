@@ -13,6 +13,13 @@
 
 enum { EO_SERVICE_BUCKETS = 12 };
 
+/* A job whose end could not be written down yet. */
+struct eo_unended_job {
+  int64_t id; /* 0: there is none */
+  enum eo_job_state state;
+  struct eo_text fault, progress; /* owned */
+};
+
 /* A thread that works off one kind of job. */
 struct eo_service_worker {
   struct eo_service *service;
@@ -21,6 +28,7 @@ struct eo_service_worker {
   pthread_t thread;
   bool running;            /* the thread was made */
   struct eo_job_live live; /* guarded by live_mutex */
+  struct eo_unended_job unended;
   bool recorded;           /* its end stands in the table already */
   bool launched;           /* guarded by live_mutex: its job is another process's, the table says how far it is */
   atomic_bool cancelled;   /* the job it works on shall end */

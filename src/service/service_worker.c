@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "service/launcher.h"
+#include "store/spare.h"
 #include "study/tolerance_job.h"
 #include "variants/variant_job.h"
 
@@ -314,6 +315,31 @@ static enum eo_job_state find_end(struct eo_service_worker *worker, enum eo_code
   return code ? EO_JOB_FAILED : EO_JOB_DONE;
 }
 
+static void forget_end(struct eo_service_worker *worker)
+{
+  eo_text_done(&worker->unended.fault);
+  eo_text_done(&worker->unended.progress);
+  worker->unended.id = 0;
+}
+
+/* Writes down the end of the last job; false: it cannot be yet. */
+static bool settle(struct eo_service_worker *worker)
+{
+  struct eo_unended_job *job = &worker->unended;
+  struct eo_error error;
+  if (!job->id)
+    return true;
+  const char *fault = job->fault.failed ? NULL : job->fault.data,
+             *progress = job->progress.failed ? NULL : job->progress.data;
+  enum eo_code code = eo_queue_end(worker->store, job->id, job->state, fault, progress, &error);
+  if (code == EO_ERROR_FULL && eo_spare_give(worker->store))
+    code = eo_queue_end(worker->store, job->id, job->state, fault, progress, &error);
+  if (code)
+    return false;
+  forget_end(worker);
+  return true;
+}
+
 static void end_job(struct eo_service_worker *worker, int64_t id, enum eo_job_state state, const struct eo_error *error)
 {
   struct eo_text progress = {0}, fault = {0};
@@ -327,13 +353,13 @@ static void end_job(struct eo_service_worker *worker, int64_t id, enum eo_job_st
     write_live(worker, &progress);
   if (state == EO_JOB_FAILED)
     eo_job_error_write(error, &fault);
-  /* a database that fails here leaves the job as begun: the next start of the service queues it again */
-  eo_queue_end(worker->store, id, state, fault.failed ? NULL : fault.data, progress.failed ? NULL : progress.data,
-               NULL);
+  /* a database that fails here, as on a full disk, is tried again before the next job, and what is not needed gives its
+     room for it; a stop leaves the job as begun, and the next start queues it again */
+  worker->unended = (struct eo_unended_job){id, state, fault, progress};
+  if (!settle(worker))
+    return;
   if (worker->kind == EO_JOB_PREPARE)
     eo_queue_tidy(worker->store, worker->service->settings.limits.kept_preparations, NULL);
-  eo_text_done(&progress);
-  eo_text_done(&fault);
 }
 
 /* Those who wait for a preparation have their turn. */
@@ -417,8 +443,11 @@ void *eo_service_work(void *argument)
   double retained = 0;
   eo_lane_stand_back(worker->kind == EO_JOB_PREPARE ? PREPARE_NICE : OPTIMIZE_NICE);
   while (!atomic_load(&service->stopping)) {
-    int64_t id;
-    enum eo_code code = eo_queue_claim(worker->store, worker->kind, &id, NULL);
+    int64_t id = 0, ended = worker->unended.id;
+    bool settled = settle(worker);
+    if (settled && ended)
+      eo_service_publish(service, ended);
+    enum eo_code code = settled ? eo_queue_claim(worker->store, worker->kind, &id, NULL) : EO_ERROR_FULL;
     if (!code && id)
       work_off(worker, id);
     else {
@@ -426,5 +455,6 @@ void *eo_service_work(void *argument)
       wait_for_work(service, &calls);
     }
   }
+  forget_end(worker);
   return NULL;
 }

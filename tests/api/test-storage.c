@@ -65,6 +65,32 @@ static bool start_with_disk(void)
   return started;
 }
 
+/* Pairs that do not end by themselves, as job 1. */
+static bool order_pairs(void)
+{
+  json_t *own = coarse_document("ga", 10), *order = json_pack("{s:s, s:o}", "kind", "tolerance", "design", own);
+  json_object_set_new(own, "tolerance", json_pack("{s:i}", "pairs", 100000));
+  char *text = json_dumps(order, JSON_COMPACT), type[100];
+  bool taken = status_of("POST", API "/jobs", text, type, sizeof type) == 202;
+  free(text);
+  json_decref(order);
+  return taken && wait_for_job(1, "running", 60);
+}
+
+/* A job that the full disk has ended says so as soon as that can be written. */
+static bool has_ended(void)
+{
+  for (double end = seconds_now() + 60; seconds_now() < end; wait_a_little()) {
+    json_t *job = call_json("GET", API "/jobs/1", NULL, NULL, NULL);
+    const char *state = json_string_value(json_object_get(job, "state"));
+    bool ended = state && (strcmp(state, "failed") == 0 || strcmp(state, "cancelled") == 0);
+    json_decref(job);
+    if (ended)
+      return true;
+  }
+  return false;
+}
+
 static void test_full_disk(void)
 {
   char type[100];
@@ -80,6 +106,7 @@ static void test_full_disk(void)
     if (access(spare, F_OK) == 0)
       break;
   }
+  ok(order_pairs(), "a job that writes all the time");
   set_left("00000000000000200000");
   for (int i = 0; i < 2000 && status == 201; i++)
     stored += (status = post_design()) == 201;
@@ -89,6 +116,8 @@ static void test_full_disk(void)
   ok(wait_for_health(503, "full"), "health says that the disk is full");
   ok(status_of("GET", API "/health/live", NULL, type, sizeof type) == 200, "the server lives");
   ok(status_of("GET", API "/designs/1", NULL, type, sizeof type) == 200, "what is there is read");
+  int cancelled = status_of("POST", API "/jobs/1/cancel", "{}", type, sizeof type);
+  ok(cancelled == 202 || cancelled == 409, "the job can be stopped, unless it has ended: %d", cancelled);
   int removed = 0;
   for (int i = 1; i <= stored && i <= 30; i++) {
     char path[80];
@@ -98,8 +127,11 @@ static void test_full_disk(void)
   ok(removed == (stored < 30 ? stored : 30), "deleting goes on: %d designs are gone", removed);
   ok(post_design() == 201, "which makes room for others");
   set_left("none");
+  ok(has_ended(), "the job has ended when there is room to say so");
   ok(wait_for_health(200, "ok") && post_design() == 201, "it heals when there is room again");
   ok(stop_server(SIGTERM) == 0, "it stops");
+  remove_data_folder();
+  ok(make_data_folder(), "a new folder");
 }
 
 /* Another program begins to write and does not end. */

@@ -280,6 +280,7 @@ def flip(folder, flips):
     question = design(333)
     server.kill(signal.SIGTERM)
     assert not (server.folder / "easeoff.db-wal").exists(), "a stop in order leaves no journal"
+    shutil.copytree(server.folder, folder / "pristine")  # asking about a pair orders its preparation
     server.start()
 
     def answers(of):
@@ -295,7 +296,7 @@ def flip(folder, flips):
     done = 0
     while done < flips:
         shutil.rmtree(folder / "data", ignore_errors=True)
-        shutil.copytree(server.folder, folder / "data")
+        shutil.copytree(folder / "pristine", folder / "data")
         flip_bits(folder / "data", 20)
         done += 20
         damaged = Server(folder / "data")
