@@ -56,10 +56,13 @@ static enum eo_code analyze(const struct request *request, const struct eo_pair 
   return code;
 }
 
-static enum eo_code save_files(const json_t *result, const char *directory, struct eo_error *error)
+static enum eo_code save_files(const json_t *result, const struct request *request, struct eo_error *error)
 {
   struct eo_file_set bundle = {0};
+  const char *directory = request->csv;
   eo_result_files(result, &bundle);
+  for (int i = 0; i < bundle.count && request->inches; i++)
+    eo_inch_table(&bundle.file[i].text);
   enum eo_code code = eo_file_set_save(&bundle, directory, error);
   eo_file_set_done(&bundle);
   return code;
@@ -90,7 +93,7 @@ static int run_request(struct request *request)
   if (watch.stopped)
     code = cancelled(&error);
   if (!code && request->csv)
-    code = save_files(result, request->csv, &error);
+    code = save_files(result, request, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, result);
   eo_watch_end(&watch);
   json_decref(result);

@@ -5,6 +5,7 @@
 #include "app/app.h"
 #include "app/number.h"
 #include "exchange/exports.h"
+#include "format/inch.h"
 
 enum { MOST_DESIGNS = 200 };
 
@@ -56,13 +57,25 @@ static int save_text(struct eo_text *text, const char *path)
   return status;
 }
 
+/* Whether every column of a format names its unit, so that it can be given in inches. */
+static bool has_columns(const struct eo_export *format)
+{
+  static const char *const names[] = {"flank-points", "topography", "modification-chart"};
+  bool has = false;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    has = has || strcmp(format->name, names[i]) == 0;
+  return has;
+}
+
 static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
-                const int grid[2], const char *path)
+                const int grid[2], bool inches, const char *path)
 {
   struct eo_text text = {0};
   struct eo_error error;
   if (eo_export_write(format, design, geometry, grid[0], grid[1], &text, &error))
     return eo_app_fail(NULL, &error);
+  if (inches)
+    eo_inch_table(&text);
   return save_text(&text, path);
 }
 
@@ -89,16 +102,16 @@ static int save_many(const struct eo_export *format, const char *const *file, in
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  const char *file[MOST_DESIGNS], *name = NULL, *path = NULL, *rows = NULL, *columns = NULL;
+  const char *file[MOST_DESIGNS], *name = NULL, *path = NULL, *rows = NULL, *columns = NULL, *units = NULL;
+  bool inches = false;
+  struct eo_error error;
   int operands, status, grid[2];
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
-  const struct eo_option options[] = {{.name = "--format", .value = &name},
-                                      {.name = "-o", .value = &path},
-                                      {.name = "--rows", .value = &rows},
-                                      {.name = "--columns", .value = &columns},
-                                      {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--format", .value = &name}, {.name = "-o", .value = &path},
+                                      {.name = "--rows", .value = &rows},   {.name = "--columns", .value = &columns},
+                                      {.name = "--units", .value = &units}, {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 0, MOST_DESIGNS, file, &operands, &status))
     return status;
   if (!operands)
@@ -106,18 +119,30 @@ static int run(const struct eo_command *command, int argc, char **argv)
   const struct eo_export *format = find_format(name, &status);
   if (!format || !read_grid(rows, columns, grid, &status))
     return status;
+  if (units && eo_app_units(units, &inches, &error))
+    return eo_app_fail(NULL, &error);
+  if (inches && (operands > 1 || !has_columns(format))) {
+    eo_error_set(
+        &error, EO_ERROR_INPUT, "",
+        "--units inch is for tables of columns: flank-points, topography, modification-chart; %s has the units "
+        "that its readers expect.",
+        format->name);
+    return eo_app_fail(NULL, &error);
+  }
   if (operands > 1)
     return save_many(format, file, operands, path);
   if (!eo_app_load_design(file[0], &design, &geometry, &warnings, &status))
     return status;
-  return save(format, &design, &geometry, grid, path);
+  return save(format, &design, &geometry, grid, inches, path);
 }
 
 const struct eo_command eo_command_export = {
-    "export", "DESIGN.json... --format NAME [-o FILE] [--rows N] [--columns N]",
+    "export", "DESIGN.json... --format NAME [-o FILE] [--rows N] [--columns N] [--units mm|inch]",
     "a file for another program: REXS, STEP, STL, tables, flank points, charts",
     "Without a design, the list of formats. Without -o the file goes to standard output.\n"
-    "--rows and --columns: points of flank-points and topography from root to tip (21) and over the face (31).\n\n"
+    "--rows and --columns: points of flank-points and topography from root to tip (21) and over the face (31).\n"
+    "--units inch: lengths of flank-points, topography and modification-chart in inches and thousandths, as their "
+    "heads say.\n\n"
     "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the "
     "working flank of a\n"
     "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point "

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/inch.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,4 +132,54 @@ json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults)
 json_t *eo_inch_from_mm(const json_t *document)
 {
   return respelt(document, TO_INCHES, NULL);
+}
+
+/* Bytes of the cell at the place, its quotes included. */
+static size_t cell_length(const char *at)
+{
+  size_t length = 0;
+  for (bool quoted = false; at[length] && (quoted || !strchr(",\r\n", at[length])); length++)
+    quoted = quoted != (at[length] == '"');
+  return length;
+}
+
+static void put_number(const char *cell, size_t length, struct eo_text *text)
+{
+  char *end;
+  double value = strtod(cell, &end);
+  if (length > 0 && end == cell + length)
+    eo_text_print(text, "%.10g", convert(value, TO_INCHES) + 0.0);
+  else
+    eo_text_add_bytes(text, cell, length);
+}
+
+void eo_inch_table(struct eo_text *table)
+{
+  enum { MOST_COLUMNS = 512 };
+  bool length_column[MOST_COLUMNS] = {false};
+  struct eo_text text = {.failed = table->failed};
+  int line = 0, column = 0;
+  for (const char *at = table->data ? table->data : ""; *at;) {
+    size_t length = cell_length(at);
+    char name[LONGEST_KEY], other[LONGEST_KEY + 8];
+    snprintf(name, sizeof name, "%.*s", (int)length, at);
+    if (line == 0 && column < MOST_COLUMNS && respell(name, TO_INCHES, other)) {
+      length_column[column] = true;
+      eo_text_add(&text, other);
+    } else if (line > 0 && column < MOST_COLUMNS && length_column[column])
+      put_number(at, length, &text);
+    else
+      eo_text_add_bytes(&text, at, length);
+    at += length;
+    column++;
+    if (*at == ',')
+      eo_text_add_bytes(&text, at++, 1);
+    while (*at == '\r' || *at == '\n') {
+      line += *at == '\n';
+      column = 0;
+      eo_text_add_bytes(&text, at++, 1);
+    }
+  }
+  eo_text_done(table);
+  *table = text;
 }

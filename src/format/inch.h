@@ -10,6 +10,7 @@
 #include <jansson.h>
 
 #include "format/faults.h"
+#include "format/text.h"
 
 /* Some key of the document, at any depth, is in inches. */
 bool eo_inch_is_used(const json_t *document);
@@ -20,5 +21,9 @@ json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults);
 /* New: the same in inches and thousandths, to 15 digits; so is the value of a row whose "key" points to a length.
    Sentences stay as they are. NULL without memory. */
 json_t *eo_inch_from_mm(const json_t *document);
+
+/* A table of comma-separated values whose first line names its columns, the same way: heads that end in "_mm" or "_um"
+   and the numbers below them. *table is replaced; failed without memory. */
+void eo_inch_table(struct eo_text *table);
 
 #endif

@@ -107,6 +107,10 @@ done
 run 0 "ISO 1328-1 as a table" "$EASEOFF" export "$folder/single.json" --format tolerances
 prints "pinion,ISO 1328-1:"
 prints ",f_Halpha,"
+run 0 "points in inches" "$EASEOFF" export "$folder/single.json" --format topography --units inch
+prints "member,end,radius_in,roll_angle_deg,face_in,modification_thou,flank"
+run 1 "a model in inches" "$EASEOFF" export "$folder/single.json" --format rexs --units inch
+says "--units inch is for tables of columns"
 run 1 "dimensions have no rows to choose" "$EASEOFF" export "$folder/single.json" --format dimensions --rows 5
 says "has no rows and columns"
 
