@@ -180,6 +180,12 @@ static enum eo_code even_clock(struct eo_guess *guess, int channel, struct eo_la
   struct eo_clock stated = eo_recording_clock(guess->recording, channel);
   clock->interval = guess->choice->sample_rate > 0 ? 1 / guess->choice->sample_rate : stated.interval;
   clock->start = stated.start;
+  if (stated.other > 0 && !(guess->choice->sample_rate > 0))
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/sample_rate_Hz",
+        "The file states sampling rates of %.6g and %.6g Hz, and no column holds the time: give the one "
+        "that the rows have.",
+        1 / stated.interval, 1 / stated.other);
   return clock->interval > 0 ? EO_OK : refuse_times(guess, error);
 }
 

@@ -53,6 +53,7 @@ struct eo_clock {
   double start;    /* s: time of row 0 where rows are even */
   int64_t epoch;   /* ns since 1970-01-01: when the time 0 was; EO_CLOCK_NO_EPOCH: not stated. Local or universal: two
                       clocks are only compared with each other */
+  double other;    /* s: another interval that the file states for the same rows; 0: it does not contradict itself */
 };
 #define EO_CLOCK_NO_EPOCH INT64_MIN
 

@@ -7,10 +7,12 @@
 #include "recording/text_cell.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define KEY 96
+#define SAME_RATE 0.01 /* relative: an interval may be rounded */
 #define MARKS " \t:=;,|\"([{<>)]}'"
 
 void eo_header_split(struct eo_header *header, const struct eo_text_format *format, const char *head)
@@ -89,8 +91,11 @@ static void use_fact(struct eo_text_format *format, const struct eo_stated *stat
     int member = eo_stated_member(format->name[c]);
     if (stated->member >= 0 && member >= 0 && member != stated->member)
       continue;
-    if (stated->kind == EO_STATED_INTERVAL && !(format->clock[c].interval > 0))
-      format->clock[c].interval = stated->value;
+    struct eo_clock *clock = &format->clock[c];
+    if (stated->kind == EO_STATED_INTERVAL && !(clock->interval > 0))
+      clock->interval = stated->value;
+    else if (stated->kind == EO_STATED_INTERVAL && fabs(stated->value / clock->interval - 1) > SAME_RATE)
+      clock->other = stated->value;
     else if (stated->kind == EO_STATED_START)
       format->clock[c].start = stated->value;
     else if (stated->kind == EO_STATED_TURN && !(format->turn[c] > 0))
@@ -230,7 +235,7 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   }
   for (int c = 1; c < format->cells && count > 1; c++) {
     if (stated[c].kind == EO_STATED_INTERVAL)
-      format->clock[c].interval = stated[c].value;
+      format->clock[c].interval = stated[c].value, format->clock[c].other = 0;
     if (stated[c].kind == EO_STATED_START)
       format->clock[c].start = stated[c].value;
     if (stated[c].kind == EO_STATED_TURN)
