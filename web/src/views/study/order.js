@@ -73,7 +73,7 @@ export class StudyOrder {
             this.#submit();
           },
         },
-        h('h3', null, 'What varies'),
+        h('h2', null, 'What varies'),
         this.axes,
         h('button', { type: 'button', onclick: () => this.#add('', '') }, 'One more'),
         h('p.figure-note', null, 'Values: 0, 10, 20 – or 0:30:4 for four from 0 to 30 – or 0:30 for samples between.'),
