@@ -38,7 +38,10 @@ function withKnots(grid, key, value) {
   return { ...grid, delta_um: delta };
 }
 
-/** A modification that lists terms alone, with the grids of the design. @param {any} design @param {any} modification */
+/**
+ * A modification that lists terms alone, with the grids of the design.
+ * @param {any} design @param {any} modification
+ */
 export function withGrids(design, modification) {
   let next = modification;
   for (const member of ['pinion', 'gear'])
