@@ -170,9 +170,12 @@ static void put_text(struct eo_object *object, const struct eo_field *field)
   put_type(object, "string", field->flags & EO_FIELD_NULLABLE);
   if (!field->choices && field->low > 0)
     eo_object_put(object, "minLength", json_integer((json_int_t)field->low));
-  if (field->choices)
-    eo_object_put(object, "enum", list_texts(field->choices));
-  else
+  if (field->choices) {
+    json_t *words = list_texts(field->choices);
+    if (field->flags & EO_FIELD_NULLABLE) /* an enumeration admits null only where it lists it */
+      object->failed = json_array_append_new(words, json_null()) != 0 || object->failed;
+    eo_object_put(object, "enum", words);
+  } else
     eo_object_put(object, "maxLength", json_integer(field->count - 1));
 }
 
