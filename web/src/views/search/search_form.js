@@ -112,7 +112,7 @@ export class SearchForm {
     this.weights.textContent = sum ? `That is ${parts.join(', ')}.` : '';
     this.#drawCost(algorithm, COUNTS[variables] ?? rows.length);
     const [terms, limits] = ['terms', 'limits'].map(key => this.store.get(`/objective/${key}`) ?? []);
-    const ofGrids = rows.map((/** @type {any} */ row) => row.parameter === 'grid_um');
+    const ofGrids = rows.map((/** @type {{ parameter?: string }} */ row) => row.parameter === 'grid_um');
     const shape = JSON.stringify([algorithm, variables, ofGrids, terms.length, limits.length]);
     if (shape === this.#shape) return;
     this.#shape = shape;
@@ -184,7 +184,7 @@ export class SearchForm {
     const title = name.charAt(0).toUpperCase() + name.slice(1);
     fill(
       place,
-      rows().map((/** @type {any} */ row, i) =>
+      rows().map((/** @type {{ parameter?: string }} */ row, i) =>
         h(
           'fieldset.listed-row',
           null,

@@ -4,6 +4,7 @@ import { labelOf, unitText } from '../../base/format.js';
 import { valueAt, withValue } from '../../base/pointer.js';
 
 /** @typedef {Record<string, number>} Values */
+/** @typedef {{ grid_nodes?: { row: number, column: number, delta_um: number }[] } | null | undefined} Nodes */
 /** @typedef {object | null | undefined} Flanks values by member, end and key, all of them or those that were varied */
 
 /** Short names of the variables. @param {string} name */
@@ -15,9 +16,9 @@ export function shortName(name) {
   return `${labelOf(key)}${end}${unit ? ` (${unit})` : ''}`;
 }
 
-/** Numbers in place of a grid's, each under the name that a variable has. @param {any} flank @returns {any} */
+/** Numbers in place of a grid's, each under the name that a variable has. @param {Nodes} flank @returns {Record<string, number>} */
 function withNodes(flank) {
-  const nodes = (flank?.grid_nodes ?? []).map((/** @type {any} */ { row, column, delta_um: delta }) => [
+  const nodes = (flank?.grid_nodes ?? []).map(({ row, column, delta_um: delta }) => [
     `grid_um[u${row || '*'} y${column || '*'}]`,
     delta,
   ]);
@@ -28,7 +29,7 @@ const KNOT = /^grid_um\[u(\*|\d+) y(\*|\d+)\]$/;
 
 /**
  * A grid with one number at all knots that the name of a variable covers.
- * @param {any} grid @param {string} key @param {number} value
+ * @param {{ delta_um: number[][] }} grid @param {string} key @param {number} value
  */
 function withKnots(grid, key, value) {
   const [row, column] = (KNOT.exec(key) ?? []).slice(1).map(text => (text === '*' ? 0 : Number(text)));
@@ -40,7 +41,9 @@ function withKnots(grid, key, value) {
 
 /**
  * A modification that lists terms alone, with the grids of the design.
- * @param {any} design @param {any} modification
+ * @template M
+ * @param {{ modification?: Flanks }} design
+ * @param {M} modification
  */
 export function withGrids(design, modification) {
   let next = modification;
@@ -52,7 +55,7 @@ export function withGrids(design, modification) {
   return next;
 }
 
-/** @param {any} design @param {string} flank pointer of it @param {string} key @param {number} value */
+/** @template D @param {D} design @param {string} flank pointer of it @param {string} key @param {number} value */
 function withNumber(design, flank, key, value) {
   const grid = KNOT.test(key) && valueAt(design, `${flank}/grid`);
   return grid
