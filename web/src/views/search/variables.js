@@ -16,7 +16,11 @@ export function shortName(name) {
   return `${labelOf(key)}${end}${unit ? ` (${unit})` : ''}`;
 }
 
-/** Numbers in place of a grid's, each under the name that a variable has. @param {Nodes} flank @returns {Record<string, number>} */
+/**
+ * Numbers in place of a grid's, each under the name that a variable has.
+ * @param {Nodes} flank
+ * @returns {Record<string, number>}
+ */
 function withNodes(flank) {
   const nodes = (flank?.grid_nodes ?? []).map(({ row, column, delta_um: delta }) => [
     `grid_um[u${row || '*'} y${column || '*'}]`,
