@@ -376,10 +376,10 @@ def search(program):
     for i in range(1, len(spent)):
         steps += [(spent[i], best[i - 1]), (spent[i], best[i])]
     sheet.line(steps, BLUE, 2)
-    for name, colour in (("paper-case-a", ORANGE), ("paper-case-b", GREEN)):
+    for name, colour, below in (("paper-case-a", ORANGE, -4), ("paper-case-b", GREEN, 13)):
         value = program.analysis(name)["objectives"]["J"]
         sheet.line([(0, value), (200, value)], colour, 1.2, "6 4")
-        sheet.text(198, value, f"published case {name[-1].upper()}", colour, "end", (0, -4), 12)
+        sheet.text(198, value, f"published case {name[-1].upper()}", colour, "end", (0, below), 12)
     return sheet
 
 
