@@ -195,6 +195,10 @@ static void say_supports(struct list *list, const struct eo_result_source *sourc
   if (source->ends == 1 && floating && source->design->gear_pair.helix_angle != 0)
     say(list, "A single helical pinion cannot float along its axis: it is held there like the gear. See "
               "alignment.pinion_axial.");
+  if (source->evaluation->torsion_left_out)
+    say(list,
+        "The flanks of both ends are alike, so torsional_coupling \"paper\" leaves the torsion of the groove out of "
+        "the vibration, though the ends carry unlike loads: \"on\" takes it in, as for flanks that differ.");
   if (source->ends == 2 && !floating && source->design->supports.torsional_coupling == EO_COUPLING_OFF)
     say(list, "The ends are not coupled in torsion: each carries half the torque, however the pinion is held along its "
               "axis.");

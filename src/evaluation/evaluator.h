@@ -65,6 +65,7 @@ struct eo_case_result {
 struct eo_evaluation {
   int ends, cases, positions, samples, harmonics;
   bool equal_ends;
+  bool torsion_left_out; /* flanks of both ends are alike and "paper" does not couple them, though their loads differ */
   struct eo_case_result *load_case;    /* [cases] */
   struct eo_objective_case *objective; /* [cases] */
   struct eo_dynamics_modes modes;      /* with the mean mesh stiffness of the heaviest share */

@@ -112,6 +112,10 @@ static bool differs_from_solved(const struct eo_end_key *key, const struct eo_en
 void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   evaluator->result.equal_ends = equal_ends(evaluator, run);
+  evaluator->result.torsion_left_out = evaluator->result.ends == 2 && !evaluator->result.equal_ends &&
+                                       !evaluator->pair->right && eo_reuse_same_flanks(run->design) &&
+                                       run->design->supports.torsional_coupling == EO_COUPLING_PAPER &&
+                                       eo_alignment_axial_stiffness(&run->design->alignment) == 0;
   bool alone = !evaluator->bodies_are_elastic && !eo_reuse_shares_unevenly(evaluator, run->design);
   for (int end = 0; end < evaluator->result.ends; end++) {
     bool copied = end == EO_RIGHT && evaluator->result.equal_ends;
