@@ -243,7 +243,7 @@ static enum eo_code run_batch(struct study *study, bool *more, struct eo_error *
     return code;
   if (*more)
     code = lay_out(study, error);
-  if (!code)
+  if (!code && *more)
     code = compute(study, error);
   if (!code && *more && study->race.first) {
     eo_race_choose(study);

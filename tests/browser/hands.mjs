@@ -106,6 +106,7 @@ await chapter('a field keeps what is typed', async () => {
   await first.click();
   await page.keyboard.press('Control+a');
   await page.keyboard.type('0');
+  await page.locator('[aria-invalid="true"]').waitFor();
   ok((await first.getAttribute('aria-invalid')) === 'true', 'zero torque is refused');
   await page.keyboard.press('Control+a');
   await page.keyboard.type('750', { delay: 60 });

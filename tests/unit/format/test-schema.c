@@ -144,8 +144,9 @@ static int count_strange(const json_t *fields, const struct eo_table *table, con
                json_is_true(json_object_get(field, "required")) != required || (required && value) ||
                !json_is_string(json_object_get(field, "help"));
     strange += (row->flags & EO_FIELD_ENTRY && !json_is_string(json_object_get(field, "entry")));
-    strange += value && defaults && !(row->flags & EO_FIELD_ENTRY) &&
-               !json_equal(value, json_object_get(defaults, row->key));
+    const json_t *written = json_object_get(defaults, row->key);
+    bool omitted = row->flags & EO_FIELD_OMIT && !written && json_array_size(value) == 0;
+    strange += value && defaults && !(row->flags & EO_FIELD_ENTRY) && !omitted && !json_equal(value, written);
     strange += (row->kind == EO_FIELD_NUMBER && json_number_value(json_object_get(field, "low")) != row->low);
     strange += (row->table != NULL) != (below != NULL);
     if (below)
