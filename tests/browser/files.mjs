@@ -143,7 +143,7 @@ await chapter('recordings on the rig', async () => {
   await part.getByText('Measured: 0.6 … 1.899 s').waitFor();
   ok(/900\.0/.test((await row.allInnerTexts()).join(' ')), 'the other one by its times, with a result of its own');
   await part.getByRole('button', { name: 'The whole recording' }).click();
-  await part.getByText('Measured: 2.02 … 3.461 s').waitFor();
+  await part.getByText(/Measured: 2\.02 … 3\.[45]\d* s/).waitFor();
   await part.getByRole('button', { name: /with its run-up/ }).click();
   await row.nth(2).waitFor();
   ok(true, 'and the whole stretch with what leads to the steady state');

@@ -105,9 +105,8 @@ await chapter('a field keeps what is typed', async () => {
   const first = torque(1);
   await first.click();
   await page.keyboard.press('Control+a');
-  await page.keyboard.type('0');
-  await page.locator('[aria-invalid="true"]').waitFor();
-  ok((await first.getAttribute('aria-invalid')) === 'true', 'zero torque is refused');
+  await page.keyboard.type('1e9');
+  ok((await first.getAttribute('aria-invalid')) === 'true', 'a torque out of range is refused');
   await page.keyboard.press('Control+a');
   await page.keyboard.type('750', { delay: 60 });
   ok((await first.inputValue()) === '750', `typed after a refused text: ${await first.inputValue()}`);
