@@ -70,6 +70,7 @@ is(parseNumber('12,345,678'), 12345678, 'twice');
 is(parseNumber('0,125'), 0.125, 'no thousands begin with a nought');
 ok(/1250 or 1\.25/.test(readQuantity('1,250').fault), 'what can be read in two ways is asked about');
 is(readQuantity('0.5 in', 'mm').value, 12.7, 'inch');
+is(readQuantity('2 thou', 'um').value, 50.8, 'thousandths of an inch');
 is(readQuantity('0,4 kN m', 'Nm').value, 400, 'kilo');
 is(readQuantity('828 N·m', 'Nm').value, 828, 'a dot between units');
 is(readQuantity("1'200 rpm", 'rpm').value, 1200, 'an apostrophe');

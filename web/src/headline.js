@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few large numbers, each with its change against what the design is compared with.
-import { NUMBERS, numbersBefore, numbersOf, scaled } from './numbers.js';
+import { NUMBERS, numbersBefore, numbersOf, shownNumber } from './numbers.js';
 import { groupedWarnings } from './verdict.js';
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
+import { shownUnit } from './base/units.js';
 import { verdictText } from './figures/rating.js';
 import { openPopover } from './base/popover.js';
 import { caseLong, caseNames } from './figures/context.js';
@@ -66,9 +67,11 @@ export class Headline {
     this.about = `${caseLong(result.load_cases[k])}${against ? `, against ${against}` : ''}`;
     const own = numbersOf(result, k);
     const before = numbersBefore(reference, result.load_cases[k], k);
-    NUMBERS.forEach(({ key, scale = 1 }, i) =>
-      show(this.cells[i], scaled(own[key], scale), change(own[key], before[key]), against),
-    );
+    NUMBERS.forEach((number, i) => {
+      const { key } = number;
+      this.cells[i].unit.textContent = ` ${shownUnit(number.unit)}`;
+      show(this.cells[i], shownNumber(own[key], number), change(own[key], before[key]), against);
+    });
     show(this.total, result.objectives?.J, change(result.objectives?.J, reference?.objectives?.J), against);
     this.#drawCases(result, k);
     const warnings = result.warnings ?? [];
@@ -117,6 +120,7 @@ export class Headline {
 function cell({ name, label, sub, unit, help, good }, about) {
   const value = h('span.value', null, '–');
   const delta = h('span.delta');
+  const unitText = h('span.unit', null, unit ? ` ${unit}` : '');
   const button = h(
     'button.explain',
     { type: 'button', 'aria-label': `What is this: ${name}`, 'aria-expanded': 'false' },
@@ -127,7 +131,7 @@ function cell({ name, label, sub, unit, help, good }, about) {
     openPopover(button, 'explanation', panel =>
       fill(
         panel,
-        h('h4', null, unit ? `${name}, ${unit}` : name),
+        h('h4', null, unit ? `${name}, ${shownUnit(unit)}` : name),
         h('p', null, help),
         h('p', null, good),
         about() ? h('p', null, `Here: ${about()}.`) : null,
@@ -139,10 +143,10 @@ function cell({ name, label, sub, unit, help, good }, about) {
     '.number-cell',
     null,
     button,
-    h('span.figure-value', null, value, unit ? h('span.unit', null, ` ${unit}`) : null),
+    h('span.figure-value', null, value, unitText),
     delta,
   );
-  return { element, value, delta };
+  return { element, value, unit: unitText, delta };
 }
 
 /**

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few numbers that a result is judged by, each with what it is and what is good.
+import { shownValue } from './base/units.js';
 import { sameCase } from './figures/context.js';
 
 /**
@@ -89,9 +90,9 @@ export function numbersBefore(reference, loadCase, k) {
 }
 
 /**
- * A number in the unit of the page; null where there is none.
- * @param {Page.Reading | undefined} value @param {number} scale
+ * A number in the unit that the page shows it in; null where there is none.
+ * @param {Page.Reading | undefined} value @param {{ unit: string, scale?: number }} number
  */
-export function scaled(value, scale) {
-  return typeof value === 'number' ? value * scale : null;
+export function shownNumber(value, { unit, scale = 1 }) {
+  return typeof value === 'number' ? shownValue(value * scale, unit) : null;
 }

@@ -4,7 +4,8 @@
 import { fill, h } from './base/dom.js';
 import { dateText, labelOf, plain } from './base/format.js';
 import { valueAt } from './base/pointer.js';
-import { unitOf } from './base/schema.js';
+import { fieldAt, unitOf } from './base/schema.js';
+import { inInches, shownValue } from './base/units.js';
 import { sheetAsSvg } from './figures/sheet.js';
 import { tableOf } from './verdict.js';
 
@@ -23,12 +24,12 @@ const NARROW = { width: 470, height: 220, foot: false };
 const WIDE = { width: 960, height: 300, foot: false };
 const LOOK = 500; // ms between two looks at what is missing
 
-/** @param {unknown} value @returns {string} */
-function valueText(value) {
+/** @param {unknown} value @param {string | null} [unit] of the field @returns {string} */
+function valueText(value, unit) {
   if (value === null || value === undefined) return '–';
-  if (typeof value === 'number') return plain(Number(value.toPrecision(6)));
+  if (typeof value === 'number') return plain(Number(shownValue(value, unit).toPrecision(6)));
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
-  if (Array.isArray(value)) return value.map(valueText).join(', ');
+  if (Array.isArray(value)) return value.map(each => valueText(each, unit)).join(', ');
   return typeof value === 'object' ? JSON.stringify(value) : String(value);
 }
 
@@ -42,7 +43,7 @@ function lines(fields, value) {
         'div.report-line',
         null,
         h('dt', null, labelOf(field.key)),
-        h('dd', null, `${valueText(valueAt(value, `/${field.key}`))} ${unitOf(field)}`.trim()),
+        h('dd', null, `${valueText(valueAt(value, `/${field.key}`), field.unit)} ${unitOf(field)}`.trim()),
       ),
     ];
   });
@@ -63,7 +64,7 @@ function modification(fields, design) {
     ['Modification', ...flanks.map(({ member, end }) => `${member}, ${end}`)],
     shown.map(field => [
       `${labelOf(field.key)} ${field.unit ? `(${unitOf(field)})` : ''}`,
-      ...flanks.map(({ value }) => valueText(value[field.key])),
+      ...flanks.map(({ value }) => valueText(value[field.key], field.unit)),
     ]),
   );
 }
@@ -81,8 +82,12 @@ function loadCases(design) {
   );
 }
 
-/** What was not stated, with the value taken and its rule. @param {Api.Assumption[] | null} assumed */
-function assumptions(assumed) {
+/**
+ * What was not stated, with the value taken and its rule.
+ * @param {Field[]} fields
+ * @param {Api.Assumption[] | null} assumed
+ */
+function assumptions(fields, assumed) {
   if (!assumed?.length) return null;
   return h(
     'section',
@@ -90,7 +95,11 @@ function assumptions(assumed) {
     h('h3', null, 'Assumed'),
     tableOf(
       ['', 'value', 'rule'],
-      assumed.map(({ key, value, rule }) => [key.split('/').slice(1).map(labelOf).join(', '), valueText(value), rule]),
+      assumed.map(({ key, value, rule }) => {
+        const field = fieldAt(fields, key);
+        const text = `${valueText(value, field?.unit)} ${unitOf(field)}`.trim();
+        return [key.split('/').slice(1).map(labelOf).join(', '), text, rule];
+      }),
     ),
   );
 }
@@ -104,7 +113,7 @@ function reportData(fields, result) {
     h('h2', null, 'Data and assumptions'),
     loadCases(design),
     modification(fields, design),
-    assumptions(result.assumed),
+    assumptions(fields, result.assumed),
     fields
       .filter(field => field.kind === 'object' && !LEFT_OUT.includes(field.key))
       .map(field =>
@@ -190,7 +199,8 @@ export function reportView(app) {
     const missing = parts ? parts.missing : ['the result'];
     state.textContent = missing.length ? `Still being computed: ${missing.join(', ')}` : 'The report is whole.';
     print.disabled = !parts;
-    const shape = JSON.stringify([parts?.title, parts?.result?.evaluation_hash, missing, app.store.pin?.label]);
+    const { title, result } = parts ?? {};
+    const shape = JSON.stringify([inInches(), title, result?.evaluation_hash, missing, app.store.pin?.label]);
     if (parts && shape !== drawn) fill(sheet, reportOf(parts, app.fields));
     drawn = shape;
     if (missing.length) setTimeout(draw, LOOK);

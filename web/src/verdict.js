@@ -2,8 +2,9 @@
 // The verdict of a result: before and after for every load case, and what to know about it.
 import { h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
+import { shownUnit } from './base/units.js';
 import { caseLong } from './figures/context.js';
-import { NUMBERS, numbersBefore, numbersOf, scaled } from './numbers.js';
+import { NUMBERS, numbersBefore, numbersOf, shownNumber } from './numbers.js';
 
 /** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
 export function tableOf(head, rows) {
@@ -43,12 +44,12 @@ export function verdict(result, reference) {
   const rows = result.load_cases.flatMap((row, k) => {
     const own = numbersOf(result, k);
     const before = numbersBefore(reference?.result, row, k);
-    return NUMBERS.map(({ key, name, unit, scale = 1 }, i) => [
+    return NUMBERS.map((number, i) => [
       i === 0 ? caseLong(row) : '',
-      `${name}, ${unit}`,
-      sig(scaled(before[key], scale), 3),
-      sig(scaled(own[key], scale), 3),
-      changeText(change(own[key], before[key])),
+      `${number.name}, ${shownUnit(number.unit)}`,
+      sig(shownNumber(before[number.key], number), 3),
+      sig(shownNumber(own[number.key], number), 3),
+      changeText(change(own[number.key], before[number.key])),
     ]);
   });
   const total = [

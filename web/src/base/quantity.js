@@ -9,7 +9,7 @@ const KSI = 6.894757293168; // MPa
 /** Units that a field takes besides its own, in its own. @type {Record<string, Record<string, number>>} */
 const TAKEN = {
   mm: { mm: 1, cm: 10, m: 1000, µm: 1e-3, um: 1e-3, in: INCH, inch: INCH, '"': INCH },
-  um: { µm: 1, um: 1, mm: 1000, mil: 1e3 * INCH * 1e-3, in: 1e3 * INCH, '"': 1e3 * INCH },
+  um: { µm: 1, um: 1, mm: 1000, mil: INCH, thou: INCH, in: 1e3 * INCH, '"': 1e3 * INCH },
   deg: { '°': 1, deg: 1, "'": 1 / 60, rad: 180 / Math.PI, mrad: 0.18 / Math.PI },
   Nm: { nm: 1, 'n·m': 1, knm: 1000, lbfft: POUND_FOOT, 'lb-ft': POUND_FOOT, ftlb: POUND_FOOT },
   rpm: { rpm: 1, '1/min': 1, 'min-1': 1, 'r/min': 1, 'u/min': 1, hz: 60 },

@@ -29,12 +29,15 @@ export function fieldAt(fields, pointer) {
   return field;
 }
 
-/** The unit as it is printed. @param {Field | undefined} field */
-export function unitOf(field) {
-  const instead = unitInstead(field?.unit);
-  if (instead) return instead;
+/** The unit of the documents as it is printed. @param {Field | undefined} field */
+export function ownUnitOf(field) {
   const text = unitText(field?.unit);
   return text === field?.unit ? field?.symbol || text : text;
+}
+
+/** The unit that a value of the field is shown and typed in. @param {Field | undefined} field */
+export function unitOf(field) {
+  return unitInstead(field?.unit) ?? ownUnitOf(field);
 }
 
 /** @param {Field} field */

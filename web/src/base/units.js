@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lengths as people want them shown and typed: in mm and µm, or in inches and mils. Documents keep mm.
+// Lengths as people want them shown, saved and typed: in mm and µm, or in inches and thousandths of an inch, as
+// `--units inch` of the terminal has them. Documents keep mm. A unit of which length is a part (N/µm, mm/s) stays.
 
 const KEY = 'easeoff-units';
-const PER_INCH = 25.4; // mm in an inch, µm in a mil
+const PER_INCH = 25.4; // mm in an inch, µm in a thousandth of it
 
-/** In place of a field's unit: what is printed, and what a bare number is typed in. @type {Record<string, string>} */
-const INCH = { mm: 'in', um: 'mil' };
+/** In place of a unit, of a field or printed: what is printed, and what a bare number is typed in.
+ * @type {Record<string, string>} */
+const INCH = { mm: 'in', um: 'thou', µm: 'thou' };
+/** "from mid face (mm)": the unit of a column at the end of its head. */
+const HEAD = /^(.*)\((mm|µm)\)$/s;
+
+/** Tells ("change") that lengths are wanted in other units: what is shown is drawn again. */
+export const units = new EventTarget();
 
 let inches = false;
 try {
@@ -26,14 +33,23 @@ export function useInches(wanted) {
   } catch {
     // for this visit, then
   }
+  units.dispatchEvent(new Event('change'));
 }
 
-/** The unit that stands in place of a field's own; undefined: its own. @param {string | null | undefined} unit */
+/** The unit that stands in place of a unit; undefined: it stays. @param {string | null | undefined} unit */
 export function unitInstead(unit) {
   return inches && unit ? INCH[unit] : undefined;
 }
 
-/** A value of a field as it is shown. @template T @param {T} value @param {string | null | undefined} unit */
+/** The unit that is printed for a printed one: "µm". @template {string | undefined} U @param {U} unit */
+export function shownUnit(unit) {
+  return unitInstead(unit) ?? unit;
+}
+
+/**
+ * A value of a unit, or of a field, as it is shown.
+ * @template T @param {T} value @param {string | null | undefined} unit
+ */
 export function shownValue(value, unit) {
   return typeof value === 'number' && unitInstead(unit) ? value / PER_INCH : value;
 }
@@ -42,4 +58,23 @@ export function shownValue(value, unit) {
 export function typedText(text, unit) {
   const instead = unitInstead(unit);
   return instead && /[\d.,]\s*$/.test(text) ? `${text} ${instead}` : text;
+}
+
+/**
+ * Numbers of one unit as they are shown.
+ * @template {ArrayLike<number | null>} T @param {T} values @param {string} [unit]
+ */
+export function shownValues(values, unit) {
+  if (!unitInstead(unit)) return values;
+  return /** @type {T} */ (/** @type {unknown} */ (Array.from(values, value => shownValue(value, unit))));
+}
+
+/** The head of a column as it is shown: "from mid face (mm)". @param {string} head */
+export function shownHead(head) {
+  return head.replace(HEAD, (_all, name, unit) => `${name}(${shownUnit(unit)})`);
+}
+
+/** A value below such a head. @template T @param {T} value @param {unknown} head */
+export function shownBelow(value, head) {
+  return typeof head === 'string' ? shownValue(value, HEAD.exec(head)?.[2]) : value;
 }

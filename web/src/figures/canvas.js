@@ -2,6 +2,7 @@
 // A figure painted on a canvas: sharp on any screen, repainted when its size, the theme or its data change.
 import { h } from '../base/dom.js';
 import { theme } from '../base/theme.js';
+import { units } from '../base/units.js';
 import { Frame, whenSeen } from './frame.js';
 
 export const FONT = '11px system-ui, sans-serif';
@@ -46,7 +47,7 @@ export class Painting {
       if (visible) this.repaint();
     });
     new ResizeObserver(() => this.repaint()).observe(this.frame.body);
-    theme.addEventListener('change', () => this.now());
+    for (const choice of [theme, units]) choice.addEventListener('change', () => this.now());
   }
 
   /** One sentence for those who do not see it. @param {string} text */

@@ -4,6 +4,7 @@
 import uPlot from 'uplot';
 import { phase } from '../base/phase.js';
 import { colour, theme } from '../base/theme.js';
+import { shownUnit, shownValue, shownValues, units } from '../base/units.js';
 import { Legend, keyOf } from './chart_legend.js';
 import { paintChart, yRange } from './chart_picture.js';
 import { Reading } from './chart_reading.js';
@@ -24,7 +25,7 @@ import { tickText } from './ticks.js';
 /** @typedef {{ x: ArrayLike<number>, curves: Curve[], marks?: Mark[] }} ChartData */
 /**
  * @typedef {object} ChartOptions
- * @property {string} title @property {string} [name] in full @property {string} [unit]
+ * @property {string} title @property {string} [name] in full @property {string} [unit] of all curves, as they are given
  * @property {string} [help] @property {string} [good] what is good
  * @property {string} xLabel @property {string} [xUnit]
  * @property {boolean} [bars] groups of bars at whole x; dashed curves become ticks across them
@@ -37,6 +38,7 @@ import { tickText } from './ticks.js';
 const DASHES = { solid: undefined, dashed: [5, 4], dotted: [1.5, 3] };
 const FONT = '11px system-ui, sans-serif';
 const COUNTS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
+const WORDS = /** @type {const} */ (['xLabel', 'xUnit', 'unit']);
 const CLICK = 280; // ms in which a second click makes a double one
 const STILL = 4; // px that a click may move
 
@@ -63,9 +65,24 @@ function onAbscissa(curve, x) {
   return y;
 }
 
+/** As it is shown: lengths in the units that are wanted. @param {ChartData} data @param {ChartOptions} options */
+function shownData({ x, curves, marks }, { unit, xUnit }) {
+  return {
+    x: shownValues(x, xUnit),
+    curves: curves.map(curve => ({
+      ...curve,
+      y: shownValues(curve.y, unit),
+      ...(curve.x && { x: curve.x === x ? shownValues(x, xUnit) : shownValues(curve.x, xUnit) }),
+    })),
+    marks: marks?.map(mark => ({ ...mark, x: shownValue(mark.x, xUnit) })),
+  };
+}
+
 export class Chart {
   /** @type {uPlot | null} */ #plot = null;
-  /** @type {ChartData | null} */ #data = null;
+  /** @type {ChartData | null} as it was given */ #given = null;
+  /** @type {ChartData | null} as it is shown */ #data = null;
+  /** @type {ChartOptions} as they were given */ #said;
   #seen = false;
   #stale = false;
   #shape = '';
@@ -73,7 +90,8 @@ export class Chart {
 
   /** @param {ChartOptions} options */
   constructor(options) {
-    this.options = options;
+    this.#said = options;
+    this.options = this.#spelt();
     const { title, name, unit, help, good, wide, controls } = options;
     const chart = this;
     this.frame = new Frame({
@@ -93,7 +111,7 @@ export class Chart {
       toggled: () => this.#switch(),
       pointed: key => this.#emphasise(key),
     });
-    this.reading = new Reading(this.frame, options);
+    this.reading = new Reading(this.frame, this.options);
     whenSeen(this.element, visible => {
       this.#seen = visible;
       if (visible && this.#stale) this.#draw();
@@ -103,21 +121,40 @@ export class Chart {
       this.#shape = '';
       this.#draw();
     });
+    units.addEventListener('change', () => this.#respell());
     if (options.cycle) phase.addEventListener('change', () => this.#followPhase());
   }
 
-  /** Other words for the abscissa and for what is shown. @param {string} xLabel @param {string} shown */
-  name(xLabel, shown) {
-    if (this.options.xLabel === xLabel && this.frame.about === shown) return;
-    this.options = { ...this.options, xLabel };
-    this.reading.options = this.options;
-    this.frame.setCase(shown);
+  /** The options with the units that are shown. @returns {ChartOptions} */
+  #spelt() {
+    return { ...this.#said, unit: shownUnit(this.#said.unit), xUnit: shownUnit(this.#said.xUnit) };
+  }
+
+  #respell() {
+    this.options = this.reading.options = this.#spelt();
+    this.#shape = '';
+    if (this.#given) this.set(this.#given);
+  }
+
+  /**
+   * Other words and units for the abscissa and for what is shown.
+   * @param {Partial<Pick<ChartOptions, 'xLabel' | 'xUnit' | 'unit'>>} words
+   * @param {string} [shown]
+   */
+  name(words, shown) {
+    if (shown !== undefined) this.frame.setCase(shown);
+    const said = { ...this.#said, ...words };
+    if (WORDS.every(key => said[key] === this.#said[key])) return;
+    this.#said = said;
+    this.frame.unit = said.unit;
+    this.options = this.reading.options = this.#spelt();
     this.#shape = '';
   }
 
   /** @param {ChartData} data */
   set(data) {
-    this.#data = data;
+    this.#given = data;
+    this.#data = shownData(data, this.#said);
     this.legend.set(data.curves);
     if (this.#seen) this.#draw();
     else this.#stale = true;
@@ -301,9 +338,9 @@ export class Chart {
   }
 
   #table() {
-    const data = this.#data;
+    const data = this.#given;
     if (!data) return [];
-    const { xLabel, xUnit, unit } = this.options;
+    const { xLabel, xUnit, unit } = this.#said;
     const columns = data.curves.map(curve => onAbscissa(curve, data.x));
     const rows = Array.from(data.x, (x, i) => [x, ...columns.map(column => column[i] ?? null)]);
     return [

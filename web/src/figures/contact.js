@@ -5,6 +5,7 @@ import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { phase } from '../base/phase.js';
 import { colour } from '../base/theme.js';
+import { inInches, shownUnit, shownValue } from '../base/units.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
 import { caseLong, endsOf, faceOf, rightPhase, sameCase } from './context.js';
@@ -263,8 +264,8 @@ export class Contact {
           h('span', null, 'pressure, MPa'),
           h('b', null, sig(gridValue(side.pressure_MPa, v * rows, across * columns), 4)),
         ),
-        h('.tip-row', null, h('span', null, 'pinion radius, mm'), h('b', null, radius.toFixed(2))),
-        h('.tip-row', null, h('span', null, 'from mid face, mm'), h('b', null, eta.toFixed(1))),
+        placeRow('pinion radius', radius, 2),
+        placeRow('from mid face', eta, 1),
       );
       this.tip.hidden = false;
       placeTip(this.tip, event.offsetX, this.painting.frame.body.clientWidth);
@@ -288,6 +289,12 @@ export class Contact {
     }
     return rows;
   }
+}
+
+/** @param {string} name @param {number} value mm @param {number} decimals of mm; of inches one more */
+function placeRow(name, value, decimals) {
+  const text = shownValue(value, 'mm').toFixed(inInches() ? decimals + 1 : decimals);
+  return h('.tip-row', null, h('span', null, `${name}, ${shownUnit('mm')}`), h('b', null, text));
 }
 
 /** @param {Page.LoadCase} loadCase */

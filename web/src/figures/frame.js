@@ -4,6 +4,7 @@
 import { copyText, download, fileName, fill, h, newId } from '../base/dom.js';
 import { notice } from '../base/notice.js';
 import { openPopover } from '../base/popover.js';
+import { shownBelow, shownHead, shownUnit, units } from '../base/units.js';
 import { sheetAsCanvas, sheetAsSvg } from './sheet.js';
 import { subject } from './subject.js';
 import { csvOf, joinRows } from './table.js';
@@ -12,7 +13,7 @@ import { csvOf, joinRows } from './table.js';
  * @typedef {object} Drawing
  * @property {(pen: CanvasRenderingContext2D, width: number, height: number) => void} [paint] as it goes to paper
  * @property {() => import('./sheet.js').Key[]} [keys] of the legend
- * @property {() => import('./table.js').Rows} [table] heading first
+ * @property {() => import('./table.js').Rows} [table] heading first; lengths in mm and µm, as "(mm)" in its head says
  * @property {() => void} [reset]
  * @property {boolean} [empty] nothing to show yet
  */
@@ -24,16 +25,20 @@ import { csvOf, joinRows } from './table.js';
  */
 
 export class Frame {
+  /** @type {string | undefined} */ #unit;
   /** @type {string} load case or cases, and what else is chosen */ about = '';
 
   /** @param {FrameOptions} options */
   constructor({ title, unit, name, help, good, wide, drawing, controls = [] }) {
     this.title = title;
-    this.unit = unit;
+    this.#unit = unit;
     this.drawing = drawing;
     this.texts = [name ?? title, help, good].filter(text => text !== undefined);
     const id = newId('figure');
-    this.heading = h('h3', { id }, title, unit ? h('span.unit', null, ` ${unit}`) : null);
+    this.unitMark = h('span.unit', { hidden: !unit });
+    this.heading = h('h3', { id }, title, this.unitMark);
+    this.#spellUnit();
+    units.addEventListener('change', () => this.#spellUnit());
     this.chip = h('span.case-chip', { hidden: true });
     this.body = h('.figure-body');
     this.legend = h('.legend');
@@ -54,6 +59,30 @@ export class Frame {
       this.legend,
       this.note,
     );
+  }
+
+  /** As it is shown. */
+  get unit() {
+    return shownUnit(this.#unit);
+  }
+
+  /** @param {string | undefined} unit as the numbers have it: "µm" */
+  set unit(unit) {
+    this.#unit = unit;
+    this.#spellUnit();
+  }
+
+  #spellUnit() {
+    this.unitMark.textContent = this.unit ? ` ${this.unit}` : '';
+    this.unitMark.hidden = !this.unit;
+  }
+
+  /** The numbers as they are saved and copied. @returns {import('./table.js').Rows} */
+  table() {
+    const [head, ...rows] = this.drawing.table?.() ?? [];
+    if (!head) return [];
+    const shown = rows.map(row => row.map((cell, i) => shownBelow(cell, head[i])));
+    return [head.map(cell => (typeof cell === 'string' ? shownHead(cell) : cell)), ...shown];
   }
 
   /** For which load case it is. @param {string} text of one case; "" for all of them */
@@ -170,14 +199,14 @@ export class Frame {
   }
 
   saveTable() {
-    const rows = this.drawing.table?.() ?? [];
+    const rows = this.table();
     const text = csvOf(this.texts[0] ?? this.title, this.about, rows);
     if (rows.length) download(this.#fileName('csv'), new Blob([text], { type: 'text/csv' }));
     else notice.say(`${this.title}: there are no numbers yet.`);
   }
 
   async copyTable() {
-    const rows = this.drawing.table?.() ?? [];
+    const rows = this.table();
     if (rows.length) await copyText(joinRows(rows, '\t'));
     notice.say(rows.length ? `Copied: ${rows.length - 1} rows.` : `${this.title}: there are no numbers yet.`);
   }

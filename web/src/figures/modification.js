@@ -3,10 +3,18 @@
 // the face.
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
+import { shownUnit, shownValue, unitInstead } from '../base/units.js';
 import { Painting, SMALL } from './canvas.js';
 import { END_COLOUR, endsOf, faceOf } from './context.js';
 import { switcher } from './frame.js';
+import { tickText } from './ticks.js';
 
+/** Grids over what is taken off, in the unit that is shown: ends at least, whole steps of them, and lines. */
+const GRIDS = {
+  µm: { least: 10, fine: 10, coarse: 50, steps: [5, 10, 20, 50, 100, 200, 500, 1000] },
+  thou: { least: 0.4, fine: 0.2, coarse: 2, steps: [0.2, 0.5, 1, 2, 5, 10, 20, 50] },
+};
+const gridNow = () => (unitInstead('µm') ? GRIDS.thou : GRIDS.µm);
 const LINES = { dashed: [5, 4], dotted: [1.5, 3] };
 
 /** @typedef {{ at: number[], value: number[] }} Trace */
@@ -97,20 +105,22 @@ export class ModificationCharts {
     return { at: what === 'profile_um' ? member.u_mm : faceOf(modification, end), value: flank[what] };
   }
 
-  /** Largest value of all that is drawn, at least 10 µm, in steps. @param {'profile_um' | 'lead_um'} what */
+  /** Largest value of all that is drawn, in steps, as it is shown. @param {'profile_um' | 'lead_um'} what */
   #range(what) {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
     let low = 0;
-    let high = 10;
+    const { least, fine, coarse } = gridNow();
+    let high = least;
     for (const result of [context.result, ...context.references.map(reference => reference.result)]) {
       for (const end of endsOf(context.result)) {
-        for (const value of this.#trace(result, end, what)?.value ?? []) {
+        for (const taken of this.#trace(result, end, what)?.value ?? []) {
+          const value = shownValue(taken, 'µm');
           low = Math.min(low, value);
           high = Math.max(high, value);
         }
       }
     }
-    const step = high - low > 100 ? 50 : 10;
+    const step = high - low > 2 * coarse ? coarse : fine;
     return { low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step };
   }
 
@@ -178,7 +188,7 @@ export class ModificationCharts {
       pen.stroke();
       pen.fillStyle = colour('muted');
       pen.textAlign = 'right';
-      pen.fillText(`${sig(Math.abs(u), 3)} mm`, left + width, u > 0 ? y - 3 : y + 10);
+      pen.fillText(`${sig(shownValue(Math.abs(u), 'mm'), 3)} ${shownUnit('mm')}`, left + width, u > 0 ? y - 3 : y + 10);
     }
     pen.setLineDash([]);
   }
@@ -225,9 +235,10 @@ export class ModificationCharts {
     const step = niceStep(range.high - range.low);
     pen.font = SMALL;
     pen.lineWidth = 1;
-    for (let value = range.low; value <= range.high + 1e-9; value += step) {
+    for (let k = 0; range.low + k * step <= range.high + 1e-9; k++) {
+      const value = Number((range.low + k * step).toPrecision(9));
       const [from, to] = line(value);
-      pen.strokeStyle = colour(value === 0 ? 'mark' : 'grid');
+      pen.strokeStyle = colour(Math.abs(value) < 1e-9 ? 'mark' : 'grid');
       pen.beginPath();
       pen.moveTo(from[0], from[1]);
       pen.lineTo(to[0], to[1]);
@@ -236,7 +247,7 @@ export class ModificationCharts {
       const [x, y, align] = label(value);
       pen.fillStyle = colour('muted');
       pen.textAlign = /** @type {CanvasTextAlign} */ (align);
-      pen.fillText(String(value), x, y);
+      pen.fillText(tickText(value), x, y);
     }
   }
 
@@ -257,7 +268,7 @@ export class ModificationCharts {
       pen.strokeStyle = colour(END_COLOUR[end]);
       pen.beginPath();
       trace.at.forEach((at, i) => {
-        const [x, y] = place(at, trace.value[i], trace);
+        const [x, y] = place(at, shownValue(trace.value[i], 'µm'), trace);
         if (i === 0) pen.moveTo(x, y);
         else pen.lineTo(x, y);
       });
@@ -285,6 +296,6 @@ export class ModificationCharts {
 
 /** @param {number} span */
 function niceStep(span) {
-  for (const step of [5, 10, 20, 50, 100, 200, 500]) if (span / step <= 5) return step;
-  return 1000;
+  const { steps } = gridNow();
+  return steps.find(step => span / step <= 5.001) ?? steps[steps.length - 1];
 }

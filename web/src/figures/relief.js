@@ -2,6 +2,7 @@
 // The ease-off of both ends as surfaces in space, painted from back to front with their axes: the same on the screen,
 // as SVG and on paper.
 import { colour } from '../base/theme.js';
+import { shownUnit, shownValue } from '../base/units.js';
 import { SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
 import { endsOf, faceOf, rightPhase } from './context.js';
@@ -248,10 +249,10 @@ function paintAxes(pen, projection, relief) {
     pen.textAlign = 'center';
     for (const part of [0, 0.5, 1]) {
       const [x, y] = projection.at([sign * (from + part * FACE), -TALL, front]);
-      pen.fillText(tickText(part * relief.face), x, y + 13);
+      pen.fillText(tickText(Number(shownValue(part * relief.face, 'mm').toPrecision(5))), x, y + 13);
     }
     const [x, y] = projection.at([sign * (from + FACE / 2), -TALL, front]);
-    pen.fillText(`${relief.two ? `${end} end, ` : ''}face width, mm`, x, y + 26);
+    pen.fillText(`${relief.two ? `${end} end, ` : ''}face width, ${shownUnit('mm')}`, x, y + 26);
   }
   line(pen, projection, [
     [right, -TALL, 0.5],
@@ -277,13 +278,14 @@ function paintHeights(pen, projection, relief, [x, z]) {
     [x, 0, z],
     [x, -TALL, z],
   ]);
-  for (const value of ticks(0, relief.depth)) {
-    const [left, top] = projection.at([x, (-TALL * value) / relief.depth, z]);
+  const depth = shownValue(relief.depth, 'µm');
+  for (const value of ticks(0, depth)) {
+    const [left, top] = projection.at([x, (-TALL * value) / depth, z]);
     pen.beginPath();
     pen.moveTo(left, top);
     pen.lineTo(left + 4, top);
     pen.stroke();
-    pen.fillText(`${tickText(value)}${value === 0 ? ' µm taken off' : ''}`, left + 7, top + 3);
+    pen.fillText(`${tickText(value)}${value === 0 ? ` ${shownUnit('µm')} taken off` : ''}`, left + 7, top + 3);
   }
 }
 

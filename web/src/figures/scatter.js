@@ -4,6 +4,7 @@
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
+import { shownBelow, shownHead, units } from '../base/units.js';
 import { ROW, nameRows } from './axis_names.js';
 import { Painting, SMALL } from './canvas.js';
 import { scaleColour } from './colours.js';
@@ -11,7 +12,7 @@ import { placeTip } from './frame.js';
 import { tickText, ticks } from './ticks.js';
 
 /** @typedef {{ values: (number | null)[], kind: 'new' | 'known' | 'front', mark?: string, pick?: () => void }} Dot */
-/** @typedef {{ columns: string[], dots: Dot[] }} Cloud */
+/** @typedef {{ columns: string[], dots: Dot[] }} Cloud lengths in mm and µm, as "(mm)" ending a column says */
 
 const NEAR = 12; // px
 const BOX = { left: 46, top: 10, right: 12, bottom: 32 };
@@ -66,6 +67,10 @@ export class Scatter {
     });
     this.painting.canvas.addEventListener('click', event => this.#nearest(event)?.dot.pick?.());
     this.element = this.painting.element;
+    units.addEventListener('change', () => {
+      for (const select of [this.across, this.up])
+        for (const option of select.options) option.textContent = shownHead(option.value);
+    });
   }
 
   /** What the next columns are shown over. @param {string} x @param {string} y */
@@ -87,7 +92,7 @@ export class Scatter {
       ])) {
         fill(
           select,
-          cloud.columns.map(name => h('option', { value: name }, name)),
+          cloud.columns.map(name => h('option', { value: name }, shownHead(name))),
         );
         select.value = value;
       }
@@ -101,8 +106,8 @@ export class Scatter {
     const [i, j] = [this.#cloud.columns.indexOf(this.#x), this.#cloud.columns.indexOf(this.#y)];
     this.#places = [];
     if (i < 0 || j < 0) return;
-    const [x0, x1] = extent(this.#cloud.dots.map(dot => dot.values[i]));
-    const [y0, y1] = extent(this.#cloud.dots.map(dot => dot.values[j]));
+    const [x0, x1] = extent(this.#cloud.dots.map(dot => shownBelow(dot.values[i], this.#x)));
+    const [y0, y1] = extent(this.#cloud.dots.map(dot => shownBelow(dot.values[j], this.#y)));
     const [w, t] = [width - BOX.left - BOX.right, height - BOX.top - BOX.bottom];
     /** @param {number} value */
     const across = value => BOX.left + ((value - x0) / (x1 - x0)) * w;
@@ -111,9 +116,9 @@ export class Scatter {
     axes(pen, width, height, [x0, x1], [y0, y1], across, down);
     pen.fillStyle = colour('muted');
     pen.textAlign = 'center';
-    pen.fillText(this.#x, BOX.left + w / 2, height - 4);
+    pen.fillText(shownHead(this.#x), BOX.left + w / 2, height - 4);
     for (const dot of this.#cloud.dots) {
-      const [vx, vy] = [dot.values[i], dot.values[j]];
+      const [vx, vy] = [shownBelow(dot.values[i], this.#x), shownBelow(dot.values[j], this.#y)];
       if (vx === null || vy === null) continue;
       const place = { dot, x: across(vx), y: down(vy) };
       this.#places.push(place);
@@ -162,7 +167,12 @@ export class Scatter {
         place.dot.pick ? ' – click to open' : '',
       ),
       this.#cloud.columns.map((name, k) =>
-        h('.tip-row', null, h('span', null, name), h('b', null, sig(place.dot.values[k], 4))),
+        h(
+          '.tip-row',
+          null,
+          h('span', null, shownHead(name)),
+          h('b', null, sig(shownBelow(place.dot.values[k], name), 4)),
+        ),
       ),
     );
     placeTip(this.tip, place.x, this.painting.frame.body.clientWidth);
@@ -219,13 +229,17 @@ export class Parallel {
 
   /** The last column is the one that is judged. @param {Cloud} cloud */
   set(cloud) {
-    this.#cloud = { columns: cloud.columns, dots: cloud.dots };
+    this.#cloud = cloud;
     this.painting.repaint();
   }
 
   /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
   #paint(pen, width, height) {
-    const { columns, dots } = this.#cloud;
+    const dots = this.#cloud.dots.map(dot => ({
+      ...dot,
+      values: dot.values.map((value, k) => shownBelow(value, this.#cloud.columns[k])),
+    }));
+    const columns = this.#cloud.columns.map(shownHead);
     if (columns.length < 2 || dots.length === 0) return;
     const ranges = columns.map((_, k) =>
       extent(

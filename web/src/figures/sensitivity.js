@@ -5,6 +5,7 @@ import { fill, h } from '../base/dom.js';
 import { labelOf, plain, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { valueAt, withValue } from '../base/pointer.js';
+import { shownUnit, shownValue, units } from '../base/units.js';
 import { unmodified } from '../base/store.js';
 import { numbersOf } from '../numbers.js';
 import { Chart } from './chart.js';
@@ -170,6 +171,7 @@ export class Sensitivity {
   #timer = 0;
   #asked = '';
   #drawn = '';
+  /** @type {Point[][]} */ #strip = [];
 
   /** @param {import('../base/store.js').DesignStore} store */
   constructor(store) {
@@ -221,6 +223,7 @@ export class Sensitivity {
       controls: [measures, h('span.unit', null, ' over '), keys],
     });
     this.#drawStrip(STRIP.map(() => []));
+    units.addEventListener('change', () => this.#drawStrip(this.#strip));
     store.addEventListener('change', event => {
       if (/** @type {CustomEvent} */ (event).detail !== 'view') return;
       keys.value = keyIn(this.#key);
@@ -292,9 +295,11 @@ export class Sensitivity {
 
   /** @param {Point[][]} rows */
   #drawStrip(rows) {
+    this.#strip = rows;
     rows.forEach((points, i) => {
       const { name, unit } = STRIP[i];
-      const values = points.map(point => point.value);
+      const values = points.map(point => shownValue(point.value, 'µm'));
+      const range = `${sig(Math.min(...values), 2)} … ${sig(Math.max(...values), 2)}`;
       const [first, last] = [points[0], points[points.length - 1]];
       fill(
         this.cells[i],
@@ -306,7 +311,7 @@ export class Sensitivity {
             : name,
         ),
         points.length ? pictureOf(points) : h('span.sensitivity-blank'),
-        h('b', null, points.length ? `${sig(Math.min(...values), 2)} … ${sig(Math.max(...values), 2)} µm` : '–'),
+        h('b', null, points.length ? `${range} ${shownUnit('µm')}` : '–'),
       );
     });
   }
@@ -360,7 +365,7 @@ export class Sensitivity {
         line: 'dashed',
       });
     curves.push({ label: 'this design', y: own.map(each => read(each.result)), colour: OWN_COLOUR });
-    this.chart.name(`${labelOf(key)}${unit ? `, ${unit}` : ''}`, `${measure[1]}, ${measure[2]}`);
+    this.chart.name({ xLabel: labelOf(key), xUnit: unit, unit: measure[2] }, measure[1]);
     this.#drawn = this.#asked;
     if (!this.#design) return;
     this.chart.set({ x, curves, marks: [{ x: numberAt(this.#design, this.#key), label: 'now', strong: true }] });

@@ -163,7 +163,8 @@ export class SingleTeeth {
       );
       curves.push({ label: names[k], y, colour: caseColour(k) });
     });
-    this.spectrum.frame.about = `all load cases, ${this.#reading === 'lte_um' ? 'µm' : 'm/s²'}`;
+    this.spectrum.name({ unit: this.#reading === 'lte_um' ? 'µm' : 'm/s²' });
+    this.spectrum.frame.about = 'all load cases';
     this.spectrum.set({ x: counting(longest).map(i => i * step), curves });
   }
 

@@ -3,6 +3,7 @@
 import { h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { phase } from '../base/phase.js';
+import { shownUnit, shownValue } from '../base/units.js';
 import { Painting } from './canvas.js';
 import { caseLong } from './context.js';
 import { COLUMNS, ROWS, paintRelief, reliefOf } from './relief.js';
@@ -67,9 +68,8 @@ export class Topography {
     const row = context.result.load_cases[context.loadCase];
     this.#relief = reliefOf(context);
     this.painting.frame.setCase(caseLong(row));
-    this.painting.describe(
-      `Ease-off of both flanks, at most ${sig(this.#relief.depth, 3)} µm taken off; arrow keys turn it.`,
-    );
+    const most = `${sig(shownValue(this.#relief.depth, 'µm'), 3)} ${shownUnit('µm')}`;
+    this.painting.describe(`Ease-off of both flanks, at most ${most} taken off; arrow keys turn it.`);
     this.painting.repaint();
   }
 

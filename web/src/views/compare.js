@@ -5,6 +5,7 @@ import { fill, h } from '../base/dom.js';
 import { choiceText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { documentOf, unmodified } from '../base/store.js';
+import { units } from '../base/units.js';
 import { Chart } from '../figures/chart.js';
 import { caseLong, counting, faceOf, lessMean, mainCase, sameCase } from '../figures/context.js';
 import { switcher } from '../figures/frame.js';
@@ -220,6 +221,7 @@ class CompareView {
     this.app = app;
     this.results = new Results(() => this.#draw());
     this.curves = new CompareCurves();
+    units.addEventListener('change', () => this.app.current === 'compare' && this.#draw());
     this.choice = h('.choices');
     this.table = h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Comparison' });
     this.sameLoad = h('input', { type: 'checkbox', id: 'same-load', checked: true, onchange: () => this.#draw() });

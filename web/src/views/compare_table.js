@@ -3,8 +3,9 @@
 import { fill, h } from '../base/dom.js';
 import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
+import { shownUnit, shownValue } from '../base/units.js';
 import { caseLong } from '../figures/context.js';
-import { NUMBERS, numbersOf, scaled } from '../numbers.js';
+import { NUMBERS, numbersOf, shownNumber } from '../numbers.js';
 
 /**
  * One design of the comparison: without a result while it is computed, with a reason where it has none.
@@ -77,14 +78,20 @@ function flankRows(items) {
     for (const key of keys) {
       const values = items.map(item => endsOfKey(item, member, key));
       if (values.every(ends => ends.every(value => typeof value !== 'number' || value === 0))) continue;
-      const unit = unitText(/_(um|mm|per_mm)$/.exec(key)?.[1]);
+      const unit = /_(um|mm|per_mm)$/.exec(key)?.[1];
+      const text = (/** @type {unknown} */ value) => sig(Number(shownValue(value, unit)), 4);
       rows.push(
         h(
           'tr',
           null,
-          h('th', { scope: 'row' }, `${labelOf(key)}, ${member}`, h('span.unit', null, ` ${unit}`)),
+          h(
+            'th',
+            { scope: 'row' },
+            `${labelOf(key)}, ${member}`,
+            h('span.unit', null, ` ${shownUnit(unitText(unit))}`),
+          ),
           values.map(([left, right]) =>
-            h('td.number', null, left === right ? sig(left, 4) : `${sig(left, 4)} / ${sig(right, 4)}`),
+            h('td.number', null, left === right ? text(left) : `${text(left)} / ${text(right)}`),
           ),
         ),
       );
@@ -101,8 +108,10 @@ function dataRows(items) {
     return h(
       'tr',
       null,
-      h('th', { scope: 'row' }, labelOf(key), unit ? h('span.unit', null, ` ${unitText(unit)}`) : null),
-      items.map(item => h('td.number', null, plain(valueAt(item.result?.design ?? item.design, pointer)))),
+      h('th', { scope: 'row' }, labelOf(key), unit ? h('span.unit', null, ` ${shownUnit(unitText(unit))}`) : null),
+      items.map(item =>
+        h('td.number', null, plain(shownValue(valueAt(item.result?.design ?? item.design, pointer), unit))),
+      ),
     );
   });
 }
@@ -133,9 +142,11 @@ export function drawComparison(place, items, cases) {
   const body = [numberRow(items, head('Objective J, all load cases'), result => result.objectives?.J)];
   cases.forEach((row, k) => {
     body.push(sectionRow(items, caseLong(row)));
-    for (const { key, name, unit, scale = 1 } of NUMBERS)
+    for (const number of NUMBERS)
       body.push(
-numberRow(items, head(name, unit), result => scaled(numbersOf(result, k)[key], scale)),
+        numberRow(items, head(number.name, shownUnit(number.unit)), result =>
+          shownNumber(numbersOf(result, k)[number.key], number),
+        ),
       );
   });
   body.push(...flankRows(items), sectionRow(items, 'Pair'), ...dataRows(items));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Design view: parameters left, numbers above, figures right; on a narrow screen one below the other.
 import { fill, h } from '../base/dom.js';
+import { units } from '../base/units.js';
 import { caseLong, mainCase } from '../figures/context.js';
 import { Sensitivity } from '../figures/sensitivity.js';
 import { subject } from '../figures/subject.js';
@@ -66,6 +67,7 @@ class DesignView {
     app.analyst.addEventListener('rating', () => this.#drawRating());
     app.analyst.addEventListener('teeth', () => this.#drawTeeth());
     app.analyst.addEventListener('state', () => this.#drawState());
+    units.addEventListener('change', () => this.#drawResult());
     app.form.finders.push(pointer => this.#find(pointer));
   }
 

@@ -52,7 +52,7 @@ export class Parameters {
     this.refresh();
   }
 
-  /** Lengths of all fields, in and out; documents and figures keep mm. */
+  /** Lengths of all fields, in and out; and of all figures and tables; documents keep mm. */
   #units() {
     const choice = h(
       'select',
@@ -63,7 +63,7 @@ export class Parameters {
         },
       },
       h('option', { value: 'mm' }, 'mm, µm'),
-      h('option', { value: 'inch' }, 'inch, mil'),
+      h('option', { value: 'inch' }, 'inch, thou'),
     );
     choice.value = inInches() ? 'inch' : 'mm';
     return h('label.units', null, 'Lengths in ', choice);

@@ -6,6 +6,7 @@ import { change, changeText, plain } from '../base/format.js';
 import { halfTooth } from '../base/involute.js';
 import { Lane } from '../base/lane.js';
 import { colour } from '../base/theme.js';
+import { shownUnit, shownValue } from '../base/units.js';
 import { numbersOf } from '../numbers.js';
 
 const [WIDTH, HEIGHT] = [200, 96];
@@ -45,6 +46,9 @@ function hasModification(design) {
   const { left = {}, right = {} } = design.modification?.pinion ?? {};
   return [left, right].some(flank => Object.entries(flank).some(([key, value]) => /_um$/.test(key) && Number(value) > 0));
 }
+
+/** @param {number | null} value mm */
+const lengthText = value => `${plain(shownValue(value, 'mm'))} ${shownUnit('mm')}`;
 
 /** What the modification changes at the load case with the largest torque of a result. @param {Page.Result} result */
 function gainText(result) {
@@ -132,9 +136,9 @@ class Examples {
     drawTeeth(canvas, /** @type {Page.Result['geometry']} */ (g), whole.gear_pair);
     facts.textContent = [
       `${g.pinion_teeth}/${g.gear_teeth} teeth`,
-      `module ${plain(g.normal_module_mm)} mm`,
+      `module ${lengthText(g.normal_module_mm)}`,
       `${plain(g.helix_angle_deg)}°`,
-      `face ${plain(g.face_width_mm)} mm`,
+      `face ${lengthText(g.face_width_mm)}`,
     ].join(', ');
     if (!hasModification(design)) gain.textContent = 'Unmodified: a search finds its flank.';
     else if (!prepared) gain.textContent = 'Modified: its gain is computed when it is opened.';

@@ -7,6 +7,7 @@ import { labelOf, plain, sig } from '../base/format.js';
 import { withValue } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
 import { fieldAt, numberFault, unitOf } from '../base/schema.js';
+import { shownUnit, shownValue, typedText, units } from '../base/units.js';
 
 const PAUSE = 350; // ms after the last key before the service is asked
 
@@ -48,7 +49,7 @@ function assumptionsOf(answer, fields) {
 /** @param {unknown} value @param {Field | undefined} field */
 function valueText(value, field) {
   if (value === null || value === undefined) return '–';
-  const text = typeof value === 'number' ? plain(Number(value.toPrecision(5))) : String(value);
+  const text = typeof value === 'number' ? plain(Number(shownValue(value, field?.unit).toPrecision(5))) : String(value);
   return `${text} ${unitOf(field)}`.trim();
 }
 
@@ -129,22 +130,24 @@ class OwnGear {
       id,
       type: 'text',
       inputmode: 'decimal',
-      placeholder: `e.g. ${example}`,
       'aria-describedby': fault.id,
       oninput: () => this.#changed(),
     });
-    const row = h(
-      '.field',
-      null,
-      h('label', { for: id }, label),
-      h('span.entry', null, input, h('span.unit', null, unitOf(field))),
-      fault,
-    );
-    return { pointer, field, input, fault, row, example };
+    const unit = h('span.unit');
+    const row = h('.field', null, h('label', { for: id }, label), h('span.entry', null, input, unit), fault);
+    /** As a number of the unit that is wanted. */
+    const sample = () => plain(shownValue(Number(example), field.unit));
+    const spell = () => {
+      unit.textContent = unitOf(field);
+      input.placeholder = `e.g. ${sample()}`;
+    };
+    spell();
+    units.addEventListener('change', spell);
+    return { pointer, field, input, fault, row, sample };
   }
 
   #fillExample() {
-    for (const { input, example } of this.inputs) input.value = example;
+    for (const { input, sample } of this.inputs) input.value = sample();
     this.#changed();
   }
 
@@ -157,7 +160,7 @@ class OwnGear {
     const values = {};
     for (const { pointer, field, input, fault } of this.inputs) {
       const text = input.value.trim();
-      const read = text === '' ? { fault: '' } : readQuantity(text, field.unit);
+      const read = text === '' ? { fault: '' } : readQuantity(typedText(text, field.unit), field.unit);
       const wrong = read.fault ?? numberFault(field, Number(read.value));
       fault.textContent = wrong;
       input.setAttribute('aria-invalid', String(wrong !== ''));
@@ -223,7 +226,7 @@ class OwnGear {
     const turns = Number(answer.design.load_cases[0].speed_rpm) / 60;
     const facts = [
       ['Ratio', sig(g.gear_teeth / g.pinion_teeth, 4)],
-      ['Centre distance', `${sig(g.centre_distance_mm, 6)} mm`],
+      ['Centre distance', `${sig(shownValue(g.centre_distance_mm, 'mm'), 6)} ${shownUnit('mm')}`],
       ['Transverse contact ratio', sig(g.transverse_contact_ratio, 3)],
       ['Overlap ratio', sig(g.overlap_ratio, 3)],
       [

@@ -5,6 +5,7 @@ import { Away, ask, get } from '../../base/api.js';
 import { choose } from '../../base/dialog.js';
 import { h } from '../../base/dom.js';
 import { plain } from '../../base/format.js';
+import { units } from '../../base/units.js';
 
 import { Bench } from './bench.js';
 import { FitPanel } from './fit.js';
@@ -93,7 +94,7 @@ class RigView {
   #listen() {
     const { store } = this.app;
     const isOpen = () => this.app.current === 'rig';
-    this.bench.addEventListener('change', () => this.#draw());
+    for (const source of [this.bench, units]) source.addEventListener('change', () => this.#draw());
     this.app.analyst.addEventListener('teeth', () => isOpen() && this.#drawChosen());
     store.addEventListener('change', () => {
       if (isOpen()) this.bench.later();

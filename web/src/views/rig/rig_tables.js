@@ -3,6 +3,7 @@
 import { address } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
 import { dateText, plain, sig } from '../../base/format.js';
+import { shownUnit, shownValue } from '../../base/units.js';
 import { findingList } from './recordings.js';
 
 const HEAD = /** @type {[string, string][]} */ ([
@@ -98,7 +99,7 @@ function measurementRow(bench, item, chosen, acts) {
     h('td.number', null, h('b', null, sig(rms.value, 4)), ` ± ${sig(rms.sigma, 2)}`),
     h('td.number', null, beside ? sig(beside.predicted, 4) : '…'),
     h('td.number', null, beside ? sig(beside.ratio, 3) : '…'),
-    h('td.number', null, sig(error.peak_to_peak_um, 3)),
+    h('td.number', null, sig(shownValue(error.peak_to_peak_um, 'um'), 3)),
     h('td', null, findingMarks(item, beside)),
     h('td.actions', null, actionLinks(item, acts)),
   );
@@ -135,7 +136,9 @@ export function drawMeasurements(place, bench, chosen, what, acts) {
           h(
             'tr',
             null,
-            HEAD.map(([text, unit]) => h('th', { scope: 'col' }, text, unit ? h('span.unit', null, ` ${unit}`) : null)),
+            HEAD.map(([text, unit]) =>
+              h('th', { scope: 'col' }, text, unit ? h('span.unit', null, ` ${shownUnit(unit)}`) : null),
+            ),
           ),
         ),
         h(
@@ -178,6 +181,11 @@ function trackText(ellipse) {
   return `amplitude ${amplitudes}, ratio ${sig(ellipse.ratio, 4)}, phase ${sig(ellipse.phase_deg, 4)}°`;
 }
 
+/** "1.23 µm", or in thousandths of an inch. @param {number | null} value @param {number} digits */
+function micrometres(value, digits) {
+  return `${sig(shownValue(value, 'um'), digits)} ${shownUnit('µm')}`;
+}
+
 /** What is known of one recording. @param {Api.Measurement} whole @returns {[string, string][]} */
 function factsOf(whole) {
   const { result, signal } = whole;
@@ -193,9 +201,9 @@ function factsOf(whole) {
     ['Speed', `${sig(speed.mean, 6)} rpm (${sig(speed.lowest, 6)} … ${sig(speed.highest, 6)})${stated}`],
     [
       'Eccentricity',
-      `pinion ${sig(shafts.pinion.amplitude_um[0], 3)} µm, gear ${sig(shafts.gear.amplitude_um[0], 3)} µm`,
+      `pinion ${micrometres(shafts.pinion.amplitude_um[0], 3)}, gear ${micrometres(shafts.gear.amplitude_um[0], 3)}`,
     ],
-    ['Unexplained', `${sig(result.residual_um, 2)} µm RMS`],
+    ['Unexplained', `${micrometres(result.residual_um, 2)} RMS`],
     ['RMS by FFT', `${sig(rms.spectrum, 4)} m/s², with sidebands ${sig(rms.band, 4)}`],
   ];
   for (const [name, tracks] of /** @type {const} */ ([

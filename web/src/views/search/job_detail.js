@@ -5,6 +5,7 @@ import { fill, h } from '../../base/dom.js';
 import { change, changeText, choiceText, duration, sig } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
 import { documentOf } from '../../base/store.js';
+import { shownUnit, shownValue, units } from '../../base/units.js';
 import { progressText } from '../../jobbar.js';
 import { JobFigures } from './job_figures.js';
 import { MEASURES, footnote, meanOf } from './measures.js';
@@ -27,6 +28,7 @@ export class JobDetail {
     this.head = h('.job-head');
     this.best = h('section.figure.with-table', { 'aria-label': 'Best so far' });
     this.figures = new JobFigures(values => this.#openValues(values));
+    units.addEventListener('change', () => this.#job && this.#drawBest());
     this.element = h('.job-detail', { hidden: true }, this.head, this.figures.elements(this.best));
   }
 
@@ -191,9 +193,9 @@ export class JobDetail {
             h(
               'tr',
               null,
-              h('th', { scope: 'row' }, name, unit ? h('span.unit', null, ` ${unit}`) : null),
-              h('td.number', null, sig(own, 3)),
-              h('td.number', null, sig(plain, 3)),
+              h('th', { scope: 'row' }, name, unit ? h('span.unit', null, ` ${shownUnit(unit)}`) : null),
+              h('td.number', null, sig(shownValue(own, unit), 3)),
+              h('td.number', null, sig(shownValue(plain, unit), 3)),
               h('td.number', null, changeText(change(own, plain))),
             ),
           ),
@@ -218,8 +220,8 @@ export class JobDetail {
           h(
             'tr',
             null,
-            h('th', { scope: 'row' }, label, h('span.unit', null, ` ${unit}`)),
-            values.map(value => h('td.number', null, sig(value, 4))),
+            h('th', { scope: 'row' }, label, h('span.unit', null, ` ${shownUnit(unit)}`)),
+            values.map(value => h('td.number', null, sig(shownValue(value, unit), 4))),
           ),
         ),
       ),

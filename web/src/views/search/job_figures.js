@@ -97,7 +97,7 @@ export class JobFigures {
     this.flank = new Chart({
       title: 'Flank of the best',
       name: 'Profile modification of the best so far',
-      unit: 'µm taken off',
+      unit: 'µm',
       help: 'Material taken off the pinion of the left end, from root to tip.',
       xLabel: 'from the pitch point to the tip',
       xUnit: 'mm',

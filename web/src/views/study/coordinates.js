@@ -4,6 +4,7 @@
 import { h } from '../../base/dom.js';
 import { unitText } from '../../base/format.js';
 import { ROW, nameRows } from '../../figures/axis_names.js';
+import { shownUnit, shownValue, units } from '../../base/units.js';
 import { shortName } from './rows.js';
 
 const MOST_AXES = 10;
@@ -32,6 +33,7 @@ export class Coordinates {
       this.canvas,
     );
     new ResizeObserver(() => this.#draw()).observe(this.element);
+    units.addEventListener('change', () => this.#draw());
     rows.addEventListener('change', () => {
       this.#choose();
       this.#draw();
@@ -97,7 +99,7 @@ export class Coordinates {
     pen.font = '11px system-ui, sans-serif';
     const names = this.#axes.map(column => {
       const { name, unit } = this.rows.columns[column];
-      return unit ? `${shortName(name)}, ${unitText(unit)}` : shortName(name);
+      return unit ? `${shortName(name)}, ${shownUnit(unitText(unit))}` : shortName(name);
     });
     const { places, rows } = nameRows(pen, names, axis => this.#x(axis), width);
     this.#top = Math.max(LEAST_TOP, 6 + rows * ROW);
@@ -139,7 +141,7 @@ export class Coordinates {
     this.#axes.forEach((column, axis) => {
       const x = this.#x(axis);
       const [low, high] = this.#ranges.get(column) ?? [0, 1];
-      const { words } = this.rows.columns[column];
+      const { words, unit } = this.rows.columns[column];
       pen.fillStyle = pen.strokeStyle = colour.ink;
       pen.lineWidth = 1;
       pen.beginPath();
@@ -147,7 +149,7 @@ export class Coordinates {
       pen.lineTo(x, HEIGHT - BOTTOM);
       pen.stroke();
       /** @param {number} number */
-      const text = number => (words ? (words[number] ?? '') : String(Number(number.toPrecision(3))));
+      const text = number => (words ? (words[number] ?? '') : String(Number(shownValue(number, unit).toPrecision(3))));
       pen.fillText(text(high), x + 22, this.#top + 8);
       pen.fillText(text(low), x, HEIGHT - 8);
       const brush = this.#drag?.axis === axis ? [this.#drag.from, this.#drag.to] : this.rows.brushes.get(column);

@@ -2,7 +2,7 @@
 // The numbers of a design in words, for those who choose one: "Tip relief, pinion, both ends" for
 // modification.pinion.*.tip_relief_um.
 import { labelOf } from '../../base/format.js';
-import { isNumeric, unitOf } from '../../base/schema.js';
+import { isNumeric, ownUnitOf } from '../../base/schema.js';
 
 /** @typedef {{ path: string, words: string, group: string, unit: string, help: string }} Key */
 
@@ -54,7 +54,7 @@ function keyAt(field, parts) {
     path: parts.join('.'),
     words: [labelOf(field.key), where].filter(Boolean).join(', '),
     group: parts.length > 1 ? labelOf(group) : 'Design',
-    unit: unitOf(field),
+    unit: ownUnitOf(field), // values are given as a document has them
     help: field.help ?? '',
   };
 }

@@ -2,6 +2,7 @@
 // The rows of a study in columns of numbers: which are shown, in which order.
 import { labelOf } from '../../base/format.js';
 import { get } from '../../base/api.js';
+import { shownValue } from '../../base/units.js';
 
 const PAGE = 2500; // rows of one answer
 const PIECE = 1000; // rows of one piece of work: a few milliseconds
@@ -85,7 +86,7 @@ export class Rows extends EventTarget {
     const number = value[row];
     if (Number.isNaN(number)) return '';
     if (words) return words[number] ?? '';
-    return String(Number(number.toPrecision(6)));
+    return String(Number(shownValue(number, this.columns[column].unit).toPrecision(6)));
   }
 
   /** @param {number} column */

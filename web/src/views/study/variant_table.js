@@ -2,6 +2,7 @@
 // The rows as a table of which only what is in sight is there: ten thousand rows cost no more than forty.
 import { fill, h } from '../../base/dom.js';
 import { unitText } from '../../base/format.js';
+import { shownUnit, units } from '../../base/units.js';
 import { shortName } from './rows.js';
 
 const HEIGHT = 24; // px of a row, as the style sheet has it
@@ -33,11 +34,12 @@ export class VariantTable {
     );
     this.element.addEventListener('scroll', () => this.#later(), { passive: true });
     new ResizeObserver(() => this.#later()).observe(this.element);
-    rows.addEventListener('change', () => {
-      this.#drawn = '';
-      this.#drawHead();
-      this.#later();
-    });
+    for (const source of [rows, units])
+      source.addEventListener('change', () => {
+        this.#drawn = '';
+        this.#drawHead();
+        this.#later();
+      });
   }
 
   #drawHead() {
@@ -54,7 +56,7 @@ export class VariantTable {
             'button.link',
             { type: 'button', onclick: () => this.rows.sortBy(at) },
             shortName(column.name),
-            column.unit ? h('span.unit', null, ` ${unitText(column.unit)}`) : null,
+            column.unit ? h('span.unit', null, ` ${shownUnit(unitText(column.unit))}`) : null,
             sort.column === at ? (sort.descending ? ' ▼' : ' ▲') : '',
           ),
         ),

@@ -2,14 +2,15 @@
 // The Tolerance view: what scatters in gears as they are made, and what many pairs of this design come to.
 import { get, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
-import { dateText, duration, labelOf, unitText } from '../../base/format.js';
+import { dateText, duration, labelOf, plain, unitText } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
 import { Lane } from '../../base/lane.js';
 import { readQuantity } from '../../base/quantity.js';
 import { documentOf } from '../../base/store.js';
+import { shownUnit, shownValue, typedText, units } from '../../base/units.js';
 import { Chart } from '../../figures/chart.js';
 import { progressBar } from '../../jobbar.js';
-import { influences, inputTable, percentiles, yields } from './tolerance_tables.js';
+import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
 const KEYS = ['preset', 'class', 'edition', 'pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
 const FIRST = 64; // pairs of the first answer; a job has all of them
@@ -18,10 +19,6 @@ const LIMITS = /** @type {[string, string, string][]} */ ([
   ['rms_m_per_s2', 'Vibration RMS at most', 'm_per_s2'],
   ['max_pressure_MPa', 'Pressure at most', 'MPa'],
 ]);
-const UNIT = /_(um|MPa|N_per_mm|N|m_per_s2)$/;
-
-/** @param {string} key */
-const unitOfKey = key => UNIT.exec(key)?.[1] ?? '';
 
 class ToleranceView {
   /** @type {Api.Tolerance | null} */ #result = null;
@@ -47,7 +44,7 @@ class ToleranceView {
     this.start = h('button.primary', { type: 'button', onclick: () => this.#begin() }, 'Draw the pairs');
     this.stop = h('button', { type: 'button', hidden: true, onclick: () => this.#halt() }, 'Stop');
     this.state = h('p.aside', { role: 'status' });
-    this.limits = h('fieldset', null, h('legend', null, 'A good pair has'));
+    this.limits = h('fieldset');
     this.output = h('select', { id: 'tolerance-output', onchange: () => this.#draw() });
     this.histogram = new Chart({
       title: 'Pairs',
@@ -73,6 +70,10 @@ class ToleranceView {
     this.head = h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst);
     this.element = this.#layOut();
     app.store.addEventListener('change', () => this.#note());
+    units.addEventListener('change', () => {
+      this.#drawLimits();
+      this.#draw();
+    });
     app.jobs.addEventListener('change', () => {
       if (this.element.isConnected) this.#recall();
       this.#follow();
@@ -115,23 +116,24 @@ class ToleranceView {
     /** @param {string} key @param {string} text @param {string} unit */
     const change = (key, text, unit) => {
       const others = stated().filter(limit => limit !== mine(key));
-      const { value, fault } = readQuantity(text, unit);
+      const { value, fault } = readQuantity(typedText(text, unit), unit);
       if (text.trim() !== '' && fault !== undefined) return fault;
       store.set('/tolerance/limits', text.trim() === '' ? others : [...others, { output: key, at_most: value }]);
       return '';
     };
+    fill(this.limits, h('legend', null, 'A good pair has'));
     for (const [key, label, unit] of LIMITS) {
       const fault = h('span.fault', { role: 'alert' });
       const input = h('input', {
         id: `limit-${key}`,
         inputmode: 'decimal',
-        value: mine(key)?.at_most ?? '',
+        value: plain(shownValue(mine(key)?.at_most, unit)),
         onchange: () => {
           fault.textContent = change(key, input.value, unit);
         },
       });
       this.limits.append(
-        h('label.field', { for: input.id }, h('span', null, `${label} (${unitText(unit)})`), input, fault),
+        h('label.field', { for: input.id }, h('span', null, `${label} (${shownUnit(unitText(unit))})`), input, fault),
       );
     }
   }
@@ -274,7 +276,7 @@ class ToleranceView {
     this.histogram.element.hidden = result === null;
     if (!result) return;
     const output = result.outputs[Number(this.output.value) || 0];
-    const unit = unitText(unitOfKey(output.key));
+    const unit = unitOfKey(output.key);
     this.#drawHistogram(output, unit);
     fill(this.percentiles, percentiles(result, output, unit));
     fill(this.influences, influences(output));
@@ -299,7 +301,7 @@ class ToleranceView {
     const marks = high ? [{ x: high.value, label: '95 %', strong: true }] : [];
     if (output.nominal !== null && output.nominal >= from && output.nominal <= to)
       marks.push({ x: output.nominal, label: 'as drawn', strong: false });
-    this.histogram.frame.setCase(`${labelOf(output.key)} ${unit ? `(${unit})` : ''}, ${output.rows} pairs`);
+    this.histogram.name({ xLabel: labelOf(output.key), xUnit: unit }, `${output.rows} pairs`);
     if (to > from)
       this.histogram.set({ x, curves: [{ label: 'pairs', y, colour: 'own', line: 'solid', width: 2 }], marks });
     else this.histogram.frame.say('Every pair has the same value.');

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the Tolerance view shows beside the distribution: tables and bars.
 import { h } from '../../base/dom.js';
-import { labelOf, sig } from '../../base/format.js';
+import { labelOf, sig, unitText } from '../../base/format.js';
+import { shownUnit, shownValue } from '../../base/units.js';
+
+const UNIT = /_(um|mm|deg|MPa|N_per_mm|N|m_per_s2)$/;
+
+/** The unit that a key says, printed. @param {string} key */
+export const unitOfKey = key => unitText(UNIT.exec(key)?.[1]);
+
+/** A number of a key, with its unit. @param {string} key @param {number | null} value */
+const shownOf = (key, value) => `${sig(shownValue(value, unitOfKey(key)), 4)} ${shownUnit(unitOfKey(key))}`.trim();
 
 const SHOWN = 10; // inputs with a bar
 
@@ -15,19 +24,21 @@ function nameOf(key) {
 
 /** @param {Api.Tolerance} result @param {Api.ScatterOutput} output @param {string} unit */
 export function percentiles(result, output, unit) {
+  /** @param {number | null} value @param {number} [digits] */
+  const text = (value, digits = 4) => sig(shownValue(value, unit), digits);
   /** @param {Api.ScatterOutput['percentiles'][number]} row */
   const line = row =>
     h(
       'tr',
       null,
       h('th', { scope: 'row' }, `${row.percent} %`),
-      h('td', null, sig(row.value, 4)),
-      h('td', null, `${sig(row.low, 4)} to ${sig(row.high, 4)}`),
+      h('td', null, text(row.value)),
+      h('td', null, `${text(row.low)} to ${text(row.high)}`),
     );
   return h(
     'table.numbers',
     null,
-    h('caption', null, `${labelOf(output.key)}${unit ? `, ${unit}` : ''}: ${result.pairs} pairs`),
+    h('caption', null, `${labelOf(output.key)}${unit ? `, ${shownUnit(unit)}` : ''}: ${result.pairs} pairs`),
     h(
       'thead',
       null,
@@ -47,17 +58,17 @@ export function percentiles(result, output, unit) {
         'tr',
         null,
         h('th', { scope: 'row' }, 'mean'),
-        h('td', null, sig(output.mean, 4)),
-        h('td', null, output.mean_interval.map(end => sig(end, 4)).join(' to ')),
+        h('td', null, text(output.mean)),
+        h('td', null, output.mean_interval.map(end => text(end)).join(' to ')),
       ),
       h(
         'tr',
         null,
         h('th', { scope: 'row' }, 'standard deviation'),
-        h('td', null, sig(output.std, 3)),
-        h('td', null, output.std_interval.map(end => sig(end, 3)).join(' to ')),
+        h('td', null, text(output.std, 3)),
+        h('td', null, output.std_interval.map(end => text(end, 3)).join(' to ')),
       ),
-      h('tr', null, h('th', { scope: 'row' }, 'as drawn'), h('td', null, sig(output.nominal, 4)), h('td')),
+      h('tr', null, h('th', { scope: 'row' }, 'as drawn'), h('td', null, text(output.nominal)), h('td')),
     ),
   );
 }
@@ -98,7 +109,11 @@ export function yields(rows) {
     h(
       'tr',
       null,
-      h('th', { scope: 'row' }, row.output ? `${labelOf(row.output)} at most ${sig(row.at_most, 4)}` : 'all limits'),
+      h(
+        'th',
+        { scope: 'row' },
+        row.output ? `${labelOf(row.output)} at most ${shownOf(row.output, row.at_most)}` : 'all limits',
+      ),
       h('td', null, `${sig(100 * row.fraction, 4)} %`),
       h('td', null, row.clopper_pearson.map(end => `${sig(100 * end, 3)} %`).join(' to ')),
     );
@@ -115,7 +130,7 @@ export function inputTable(result) {
       'tr',
       null,
       h('th', { scope: 'row', title: row.key }, nameOf(row.key)),
-      h('td', null, sig(row.nominal, 4)),
+      h('td', null, shownOf(row.key, row.nominal)),
       h('td', null, row.distribution),
     );
   const table = h('table.numbers', null, h('tbody', null, result.inputs.map(line)));

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lengths in inches: what a figure, a readout, a number and a saved table say is what they say in mm, by 25.4.
+import { readFile } from 'node:fs/promises';
+import { LOOSE, Server, chapter, finish, ok, openBrowser, settled } from './harness.mjs';
+
+const PAIR =
+  'gear_pair.pinion_teeth=23&gear_pair.gear_teeth=61&gear_pair.normal_module_mm=4&gear_pair.helix_angle_deg=24&' +
+  'gear_pair.face_width_mm=44&modification.pinion.left.tip_relief_um=18&modification.pinion.left.tip_relief_start_mm=3&' +
+  'modification.pinion.left.lead_crowning_um=6&modification.pinion.right.tip_relief_um=18&' +
+  'modification.pinion.right.tip_relief_start_mm=3';
+const PER_INCH = 25.4;
+
+const server = await Server.start();
+const browser = await openBrowser();
+const context = await browser.newContext({ viewport: { width: 1400, height: 1000 }, reducedMotion: 'reduce' });
+await context.addInitScript(() => {
+  if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
+});
+const page = await context.newPage();
+page.setDefaultTimeout(30000);
+const troubles = [];
+page.on('pageerror', error => troubles.push(error.message));
+
+const figure = title =>
+  page.locator('section.figure', { has: page.getByRole('heading', { name: title }) }).first();
+const number = text => Number(text.replace('−', '-'));
+/** Within what the digits of either leave open. */
+const agree = (metric, inch, part = 0.01) => Math.abs(inch * PER_INCH - metric) <= part * Math.abs(metric) + 1e-9;
+
+/** What a menu of a figure saves, as lines without the remarks. */
+async function saved(title, kind) {
+  await figure(title).getByRole('button', { name: /: menu$/ }).click();
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('menuitem', { name: `Save as ${kind}` }).click(),
+  ]);
+  return readFile(await download.path(), 'utf8');
+}
+const rowsOf = text =>
+  text
+    .split('\n')
+    .filter(line => line && !line.startsWith('#'))
+    .map(line => line.split(','));
+
+/** Everything that is looked at, in the units of now. */
+async function look() {
+  const orders = figure('Loaded TE');
+  await orders.scrollIntoViewIfNeeded();
+  const readOut = async () => {
+    await orders.locator('.figure-body').focus();
+    await page.keyboard.press('Home');
+    return orders.locator('.tip').innerText();
+  };
+  const contact = figure('Contact pressure');
+  await contact.scrollIntoViewIfNeeded();
+  const box = await contact.locator('canvas').boundingBox();
+  await page.mouse.move(box.x + 0.25 * box.width, box.y + 0.4 * box.height);
+  await contact.locator('.tip').waitFor();
+  const tip = await contact.locator('.tip').innerText();
+  await page.mouse.move(1, 1);
+  const headline = page.locator('.number-cell').first();
+  return {
+    module: number(await page.getByLabel(/^Module/).inputValue()),
+    headline: number(await headline.locator('.value').innerText()),
+    headlineUnit: (await headline.locator('.unit').innerText()).trim(),
+    heading: await orders.locator('h3').innerText(),
+    reading: await readOut(),
+    said: await orders.locator('.figure-body').getAttribute('aria-label'),
+    tip,
+    te: rowsOf(await saved('Loaded TE', 'CSV')),
+    profile: rowsOf(await saved('Profile modification', 'CSV')),
+    picture: await saved('Profile modification', 'SVG'),
+    stiffness: rowsOf(await saved('Mesh stiffness', 'CSV')),
+    strip: await page.locator('.sensitivity').innerText(),
+  };
+}
+
+/** @type {Awaited<ReturnType<typeof look>>} */ let metric;
+/** @type {Awaited<ReturnType<typeof look>>} */ let inch;
+
+await chapter('in mm', async () => {
+  await page.goto(`${server.address}#design?from=narrow&${PAIR}&${LOOSE}`);
+  await settled(page);
+  await page.waitForFunction(() => /µm/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
+  metric = await look();
+  ok(metric.headlineUnit === 'µm' && /µm/.test(metric.heading), 'micrometres');
+});
+
+await chapter('in inches', async () => {
+  await page.getByLabel('Lengths in').selectOption('inch');
+  await page.waitForFunction(() => /thou/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
+  inch = await look();
+  ok(agree(metric.module, inch.module, 1e-5), 'the form');
+  ok(inch.headlineUnit === 'thou' && agree(metric.headline, inch.headline), `a number at the top: ${inch.headline}`);
+  ok(/thou$/.test(inch.heading), `the unit of an axis: ${inch.heading}`);
+  const last = text => number(/([−\d.]+)\s*$/.exec(text)?.[1] ?? 'NaN');
+  ok(agree(last(metric.reading), last(inch.reading), 0.002), `a readout: ${last(metric.reading)}, ${last(inch.reading)}`);
+  ok(/ in thou: /.test(inch.said), 'the sentence about a figure');
+  const radius = text => number(/pinion radius, (?:mm|in)\s+([\d.]+)/.exec(text)?.[1] ?? 'NaN');
+  ok(/radius, in\b/.test(inch.tip) && agree(radius(metric.tip), radius(inch.tip), 1e-3), 'a place on a flank');
+  ok(!/µm|\bmm\b/.test(inch.strip), 'the strip of sensitivities');
+});
+
+await chapter('what is saved', async () => {
+  const head = ({ te }) => te[0].at(-1);
+  ok(/\(µm\)"?$/.test(head(metric)) && /\(thou\)"?$/.test(head(inch)), `the head of a column: ${head(inch)}`);
+  const middle = Math.floor(metric.te.length / 3);
+  ok(agree(Number(metric.te[middle][1]), Number(inch.te[middle][1]), 1e-4), 'a number below it');
+  ok(inch.te[middle][0] === metric.te[middle][0], 'the mesh cycle beside it stays');
+  ok(/\(in\)$/.test(inch.profile[0][0]) && /\(thou\)$/.test(inch.profile[0][1]), 'two units in one table');
+  const tip = metric.profile.length - 1;
+  ok([0, 1].every(k => agree(Number(metric.profile[tip][k]), Number(inch.profile[tip][k]), 1e-4)), 'both converted');
+  ok(/thou/.test(inch.picture) && !/µm|\bmm\b/.test(inch.picture), 'a picture');
+  ok(JSON.stringify(inch.stiffness) === JSON.stringify(metric.stiffness), 'N/µm is no length');
+});
+
+await chapter('and back', async () => {
+  await page.getByLabel('Lengths in').selectOption('mm');
+  await page.waitForFunction(() => /µm/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
+  const again = await look();
+  ok(JSON.stringify([again.te, again.profile]) === JSON.stringify([metric.te, metric.profile]), 'the same tables');
+});
+
+await chapter('a gear of one’s own', async () => {
+  await page.getByLabel('Lengths in').selectOption('inch');
+  await page.getByRole('button', { name: 'Your own gear…' }).first().click();
+  const dialog = page.locator('.own-gear-dialog');
+  const asked = page.waitForRequest(request => /\/check/.test(request.url()));
+  for (const [name, value] of [
+    ['Teeth of the pinion', '19'],
+    ['Teeth of the gear', '57'],
+    ['Normal module', '0.25'],
+    ['Helix angle', '25'],
+    ['Face width of one end', '1.75'],
+    ['Torque on the pinion', '900'],
+    ['Speed of the pinion', '1200'],
+  ])
+    await dialog.getByLabel(name).fill(value);
+  const body = (await asked).postData() ?? '';
+  ok(/"normal_module_mm":6\.35\b/.test(body), 'is read in the unit that stands beside it');
+  ok(/"face_width_mm":44\.45/.test(body), 'its face too');
+});
+
+ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+await browser.close();
+await server.remove();
+finish();
