@@ -57,16 +57,6 @@ static int save_text(struct eo_text *text, const char *path)
   return status;
 }
 
-/* Whether every column of a format names its unit, so that it can be given in inches. */
-static bool has_columns(const struct eo_export *format)
-{
-  static const char *const names[] = {"flank-points", "topography", "modification-chart"};
-  bool has = false;
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    has = has || strcmp(format->name, names[i]) == 0;
-  return has;
-}
-
 static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
                 const int grid[2], bool inches, const char *path)
 {
@@ -121,7 +111,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
     return status;
   if (units && eo_app_units(units, &inches, &error))
     return eo_app_fail(NULL, &error);
-  if (inches && (operands > 1 || !has_columns(format))) {
+  if (inches && (operands > 1 || !eo_export_has_columns(format))) {
     eo_error_set(
         &error, EO_ERROR_INPUT, "",
         "--units inch is for tables of columns: flank-points, topography, modification-chart; %s has the units "

@@ -369,6 +369,15 @@ enum eo_code eo_export_write(const struct eo_export *format, const struct eo_des
   return EO_OK;
 }
 
+bool eo_export_has_columns(const struct eo_export *format)
+{
+  static const char *const names[] = {"flank-points", "topography", "modification-chart"};
+  bool has = false;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    has = has || strcmp(format->name, names[i]) == 0;
+  return has;
+}
+
 void eo_export_file_name(const struct eo_export *format, const struct eo_design *design, char *name, size_t size)
 {
   size_t most = size - strlen(format->name) - strlen(format->ending) - 3, length = 0;

@@ -31,6 +31,9 @@ enum eo_code eo_export_write(const struct eo_export *format, const struct eo_des
                              const struct eo_geometry *geometry, int rows, int columns, struct eo_text *text,
                              struct eo_error *error);
 
+/* Whether every column of a format names its unit, so that it can be given in inches (format/inch.h). */
+bool eo_export_has_columns(const struct eo_export *format);
+
 /* A name for the file, made of the design's name: "paper-pair-flank-points.csv"; size >= 40. */
 void eo_export_file_name(const struct eo_export *format, const struct eo_design *design, char *name, size_t size);
 

@@ -17,20 +17,6 @@
 #include "http/http_private.h"
 #include "service/preparation.h"
 
-/* The border of units: what is asked for in inches is spelt so when all is computed. */
-#define UNITS                                                                                             \
-  {                                                                                                       \
-    "units", 0, 0, 0, "mm|inch",                                                                          \
-        "inch: lengths in inches by keys that end in _in, those of um in thousandths by _thou; of JSON. " \
-        "Either spelling is read in any design"                                                           \
-  }
-
-static bool asks_inches(const struct eo_request *request)
-{
-  const char *units = eo_request_query(request, "units");
-  return units && strcmp(units, "inch") == 0;
-}
-
 static void check(struct eo_request *request)
 {
   struct eo_design design;
@@ -51,7 +37,7 @@ static void check(struct eo_request *request)
                           0.1 * ceil(10 * cost.seconds));
   json_object_update(reply, own);
   json_decref(own);
-  if (asks_inches(request)) {
+  if (request->inches) {
     json_t *inches = eo_inch_from_mm(reply);
     json_decref(reply);
     reply = inches;
@@ -99,7 +85,6 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
                                           .left_out = left_out_of(request)};
   if (!has_load_case(request, design) || !eo_request_lane(request, &question.common))
     return;
-  request->inches = asks_inches(request) && !request->csv;
   eo_request_defer(request);
   enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
   eo_reply_unless_accepted(request, code, admission, job, &error);
@@ -195,7 +180,7 @@ const struct eo_route eo_routes_analysis[] = {
      .takes = "Design",
      .gives = "200 Check",
      .rate = EO_RATE_QUESTION,
-     .query = {UNITS},
+     .query = {EO_UNITS_QUERY},
      .summary =
          "Reads a design, fills in every default and works out the geometry; 422 names everything that is wrong."},
     {.method = EO_POST,
@@ -225,7 +210,7 @@ const struct eo_route eo_routes_analysis[] = {
                 "number of the only load case, from 0, that has curves; -1: all"},
                {"digits", EO_RESULT_LEAST_DIGITS, EO_DIGITS_CURVE, EO_DIGITS_CURVE, NULL,
                 "significant digits of curves, at most; maps and histories have two fewer, at most 6"},
-               UNITS}},
+               EO_UNITS_QUERY}},
     {.method = EO_POST,
      .pattern = "/sweep",
      .handle = sweep,
@@ -237,6 +222,7 @@ const struct eo_route eo_routes_analysis[] = {
      .headers = LANE,
      .rate = EO_RATE_START,
      .csv = true,
+     .query = {EO_UNITS_QUERY},
      .summary =
          "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
     {0}};

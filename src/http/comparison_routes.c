@@ -249,6 +249,7 @@ const struct eo_route eo_routes_comparison[] = {
      .headers = LANE,
      .rate = EO_RATE_QUESTION,
      .csv = true,
+     .query = {EO_UNITS_QUERY},
      .summary = "A measurement beside the prediction at its torque and measured speed: rotational acceleration at the "
                 "encoders' end, orders, TE in phase."},
     {.method = EO_GET,
@@ -259,6 +260,7 @@ const struct eo_route eo_routes_comparison[] = {
      .headers = LANE,
      .rate = EO_RATE_START,
      .csv = true,
+     .query = {EO_UNITS_QUERY},
      .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with "
                 "their reasons."},
     {.method = EO_POST,
@@ -270,6 +272,7 @@ const struct eo_route eo_routes_comparison[] = {
      .headers = LANE,
      .rate = EO_RATE_QUESTION,
      .csv = true,
+     .query = {EO_UNITS_QUERY},
      .summary =
          "The same with another design in the place of the stored one: what its measurements would say about it."},
     {.method = EO_POST,

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "exchange/exports.h"
+#include "format/inch.h"
 #include "http/route.h"
 #include "http/http_private.h"
 
@@ -15,6 +16,13 @@ static void export(struct eo_request *request)
     eo_reply_problem(&request->reply, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
     return;
   }
+  if (request->inches && !eo_export_has_columns(format)) {
+    eo_reply_problem(&request->reply, 400, "query",
+                     "The query parameter units=inch is for tables of columns: flank-points, topography, "
+                     "modification-chart; %s has the units that its readers expect.",
+                     format->name);
+    return;
+  }
   const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, NULL)) {
     struct eo_text text = {0};
@@ -24,6 +32,8 @@ static void export(struct eo_request *request)
       eo_reply_error(&request->reply, "", &error);
       return;
     }
+    if (request->inches)
+      eo_inch_table(&text);
     eo_reply_text(&request->reply, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
   }
@@ -57,6 +67,7 @@ const struct eo_route eo_routes_export[] = {
          "200 text/csv, 200 ResolvedDesign, 200 application/xml, 200 application/zip, 200 model/step, 200 model/stl, "
          "200 application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
      .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 21, NULL, "points of a flank from root to tip"},
-               {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"}},
+               {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"},
+               EO_UNITS_QUERY},
      .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
     {0}};

@@ -34,7 +34,7 @@ static void reply_csv(struct eo_request *request, int64_t id)
   else if (outcome != EO_JOB_OUTCOME_DONE)
     eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+    eo_reply_table(request, &text);
   eo_text_done(&text);
 }
 
@@ -82,7 +82,7 @@ static void get_problem(struct eo_request *request)
   if (code)
     reply_no_record(request, &error);
   else if (request->csv)
-    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+    eo_reply_table(request, &text);
   else
     eo_reply_json(&request->reply, 200, json_incref(rows));
   json_decref(rows);
@@ -99,7 +99,7 @@ static void get_path(struct eo_request *request)
   if (eo_records_path_csv(request->store, id, &text, &error))
     reply_no_record(request, &error);
   else
-    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+    eo_reply_table(request, &text);
   eo_text_done(&text);
 }
 
@@ -145,7 +145,9 @@ const struct eo_route eo_routes_history[] = {
      .csv = true,
      .aside = true,
      .summary = "The true evaluations of an optimization in its order; as CSV all of them.",
-     .query = {{"limit", 1, 200, 50, NULL, "most rows"}, {"cursor", 0, 2e9, -1, NULL, "`next` of the page before"}}},
+     .query = {{"limit", 1, 200, 50, NULL, "most rows"},
+               {"cursor", 0, 2e9, -1, NULL, "`next` of the page before"},
+               EO_UNITS_OF_CSV}},
     {.method = EO_GET,
      .pattern = "/jobs/{id}/path",
      .handle = get_path,
@@ -160,6 +162,7 @@ const struct eo_route eo_routes_history[] = {
      .name = "getProblem",
      .gives = "200 ProblemRows",
      .csv = true,
+     .query = {EO_UNITS_OF_CSV},
      .aside = true,
      .summary = "Every true evaluation of a problem, modification and values per load case: `easeoff history export`."},
     {.method = EO_GET,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "format/inch.h"
 #include "format/json.h"
 #include "http/connection.h"
 #include "http/http_private.h"
@@ -135,6 +136,13 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
     eo_design_note_findings(design, geometry, warnings);
   free(faults);
   return good;
+}
+
+void eo_reply_table(struct eo_request *request, struct eo_text *text)
+{
+  if (request->inches)
+    eo_inch_table(text);
+  eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", text);
 }
 
 bool eo_request_id_at(struct eo_request *request, int n, int64_t *key)

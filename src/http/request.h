@@ -40,7 +40,7 @@ struct eo_request {
   const struct eo_route *route;    /* NULL: a page, or nothing */
   char argument[EO_ARGUMENTS][64]; /* what stood in the places of the pattern */
   bool csv;                        /* asked for by Accept or by the suffix */
-  bool inches;                     /* what the service answers is spelt in inches: JSON alone */
+  bool inches;                     /* asked for by ?units=inch, of a route that has it */
   const char *answer_type;         /* literal: of what the service answers; NULL: JSON, or CSV */
   struct eo_text body;
   json_t *document;         /* the body as JSON, once it was asked for; owned until the handler has returned */
@@ -71,6 +71,9 @@ const json_t *eo_request_json(struct eo_request *request);
    False: the reply says everything that is wrong. warnings may be NULL. */
 bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,
                        struct eo_geometry *geometry, struct eo_warnings *warnings);
+
+/* Replies with a table of comma-separated values, taken over; lengths in inches where ?units asks for them. */
+void eo_reply_table(struct eo_request *request, struct eo_text *text);
 
 /* The number in the path's n-th place; false: the reply is 404. */
 bool eo_request_id_at(struct eo_request *request, int n, int64_t *key);

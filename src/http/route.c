@@ -135,9 +135,24 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
   return MHD_NO;
 }
 
+/* An option that would do nothing is refused: some documents have no other spelling than that of mm. */
+static void take_units(struct eo_request *request)
+{
+  const char *units = eo_request_query(request, "units");
+  request->inches = units && strcmp(units, "inch") == 0;
+  for (const struct eo_query *query = request->route->query;
+       request->inches && query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+    if (strcmp(query->name, "units") == 0 && query->low == EO_CSV_ALONE && request->route->csv && !request->csv)
+      eo_reply_problem(&request->reply, 400, "query",
+                       "The query parameter units=inch is for CSV here: ask for text/csv, or at %s.csv.",
+                       request->path);
+}
+
 bool eo_route_check_query(struct eo_request *request)
 {
   MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, check_one, request);
+  if (!request->reply.status)
+    take_units(request);
   return !request->reply.status;
 }
 

@@ -15,11 +15,12 @@ enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_
 /* A query parameter: a whole number, one word of a list, or several, or a text. */
 struct eo_query {
   const char *name;           /* NULL ends the list */
-  double low, high, fallback; /* of a number; high of words: EO_SEVERAL_WORDS, with commas between them, or none */
+  double low, high, fallback; /* of a number; of words: high EO_SEVERAL_WORDS, with commas between them, low
+                                 EO_CSV_ALONE, where the answer is a table, or none */
   const char *words;          /* "queued|running"; NULL: a number; "": a text */
   const char *help;
 };
-enum { EO_SEVERAL_WORDS = 1, EO_QUERY_TEXT = 1000 /* most bytes */ };
+enum { EO_SEVERAL_WORDS = 1, EO_CSV_ALONE = 1, EO_QUERY_TEXT = 1000 /* most bytes */ };
 
 static inline bool eo_query_is_list(const struct eo_query *query)
 {
@@ -54,6 +55,20 @@ struct eo_route {
 };
 
 #define EO_API "/api/v1"
+
+/* The border of units (format/inch.h), a row of `query`: request->inches says whether it is asked for. What is computed
+   and stored keeps mm. */
+#define EO_UNITS_QUERY                                                                          \
+  {                                                                                             \
+    "units", 0, 0, 0, "mm|inch",                                                                \
+        "inch: lengths in inches by keys and heads of columns that end in _in, those of um in " \
+        "thousandths by _thou. Either spelling is read in any design"                           \
+  }
+#define EO_UNITS_OF_CSV                                                                                        \
+  {                                                                                                            \
+    "units", EO_CSV_ALONE, 0, 0, "mm|inch",                                                                    \
+        "of CSV: inch, for lengths in inches below heads that end in _in, those of um in thousandths by _thou" \
+  }
 
 /* Finds what a request means; false: the reply is there (404, 405, OPTIONS). */
 bool eo_route_find(struct eo_request *request);

@@ -110,7 +110,7 @@ static void get_table(struct eo_request *request)
   if (code)
     eo_reply_error(&request->reply, "", &error);
   else if (request->csv)
-    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+    eo_reply_table(request, &text);
   else
     eo_reply_json(&request->reply, 200, document);
   eo_text_done(&text);
@@ -196,7 +196,8 @@ const struct eo_route eo_routes_studies[] = {
                {"cursor", 0, 1e7, 0, NULL, "`next` of the page before"},
                {"filter", 0, 0, 0, "", "rows that fit: objectives.J<0.4,outcome=converged"},
                {"sort", 0, 0, 0, "", "name of a key or a column, variant or outcome"},
-               {"order", 0, 0, 0, "ascending|descending", "of the sort"}}},
+               {"order", 0, 0, 0, "ascending|descending", "of the sort"},
+               EO_UNITS_OF_CSV}},
     {.method = EO_GET,
      .pattern = "/studies/{id}/variants/{variant}/design",
      .handle = get_design,

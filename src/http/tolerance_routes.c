@@ -169,7 +169,7 @@ static void get_pairs(struct eo_request *request)
     if (eo_tolerance_job_csv(request->store, id, design, &text, &error))
       eo_reply_error(&request->reply, "", &error);
     else
-      eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+      eo_reply_table(request, &text);
   }
   eo_text_done(&text);
   free(design);
@@ -187,6 +187,7 @@ const struct eo_route eo_routes_tolerance[] = {
      .headers = "Easeoff-Lane, Prefer, Idempotency-Key",
      .rate = EO_RATE_START,
      .csv = true,
+     .query = {EO_UNITS_OF_CSV},
      .summary = "Many pairs of a design as they are made: percentiles, what decides, yield, the worst pair. A newer "
                 "request of the same lane ends it. 202 while the gear pair is being prepared, or, with Prefer: "
                 "respond-async, for a job of its own that goes on whatever happens: its result is the same document."},
@@ -196,6 +197,7 @@ const struct eo_route eo_routes_tolerance[] = {
      .name = "getJobPairs",
      .gives = "200 text/csv",
      .aside = true,
+     .query = {EO_UNITS_QUERY},
      .summary =
          "The pairs of a tolerance analysis that is done as CSV, a line for each: `easeoff tolerance --csv`. 409 "
          "while it is not."},

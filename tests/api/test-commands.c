@@ -17,6 +17,7 @@ struct command {
   const char *header,
       *holds; /* a header field of the reply and what it holds; holds "": it is there; NULL: it is not */
   const char *pointer, *value; /* into the JSON of the reply, "a/0/b", and what stands there; value NULL: anything */
+  const char *says;            /* what stands in the reply's body; NULL: anything */
 };
 
 static const json_t *find(const json_t *value, const char *pointer)
@@ -68,6 +69,8 @@ static void run_command(const struct command *c)
     ok(header_is_right(&reply, c), "%s: %s", c->what, c->header);
   if (c->pointer)
     ok(stands_there(&reply, c->pointer, c->value), "%s: %s", c->what, c->pointer);
+  if (c->says)
+    ok(reply.body && strstr(reply.body, c->says), "%s: %s", c->what, c->says);
   free_reply(&reply);
 }
 
@@ -197,6 +200,8 @@ static const struct command analyses[] = {
      .header = "Content-Type", .holds = "text/csv"},
     {"analyze as CSV by suffix", "POST", API "/analyze.csv", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
+    {"analyze as CSV in inches", "POST", API "/analyze.csv?units=inch", .body = &coarse, .status = 200,
+     .says = ",peak_to_peak_thou,"},
     {"JSON is liked better", "POST", API "/analyze?maps=0", "Accept: text/csv;q=0.5, application/json\r\n",
      .body = &coarse, .status = 200, .header = "Content-Type", .holds = "application/json"},
     {"no other suffix", "POST", API "/analyze.xml", .body = &coarse, .status = 404},
@@ -209,6 +214,11 @@ static const struct command analyses[] = {
     {"tolerance", "POST", API "/tolerance", .body = &pairs, .status = 200, .pointer = "pairs", .value = "6"},
     {"tolerance as CSV", "POST", API "/tolerance.csv", .body = &pairs, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
+    {"sweep in inches", "POST", API "/sweep.csv?units=inch", .body = &sweep, .status = 200,
+     .says = "peak_to_peak_thou"},
+    {"tolerance in inches", "POST", API "/tolerance.csv?units=inch", .body = &pairs, .status = 200,
+     .says = ".peak_to_peak_thou"},
+    {"no tolerance in inches but as CSV", "POST", API "/tolerance?units=inch", .body = &pairs, .status = 400},
     {"tolerance of too many pairs", "POST", API "/tolerance", .text = "{\"design\":{},\"pairs\":100001}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/pairs"},
     {"sweep without a design", "POST", API "/sweep", .text = "{\"speed\":{\"from\":1,\"to\":2}}", .status = 422},
@@ -227,6 +237,10 @@ static const struct command analyses[] = {
      .holds = "filename=\"paper-pair-dimensions.csv\""},
     {"topography", "POST", API "/export/topography", .body = &coarse, .status = 200},
     {"topography on a grid", "POST", API "/export/topography?rows=3&columns=4", .body = &coarse, .status = 200},
+    {"flank points in inches", "POST", API "/export/flank-points?units=inch", .body = &coarse, .status = 200,
+     .says = "x_in,"},
+    {"no dimensions in inches", "POST", API "/export/dimensions?units=inch", .body = &coarse, .status = 400},
+    {"a unit that is none", "POST", API "/export/topography?units=ell", .body = &coarse, .status = 400},
     {"a grid of one row", "POST", API "/export/topography?rows=1", .body = &coarse, .status = 400},
     {"a chart on a grid", "POST", API "/export/k-chart?rows=3", .body = &coarse, .status = 422},
     {"K-charts", "POST", API "/export/k-chart-drawing", .body = &coarse, .status = 200, .header = "Content-Type",
@@ -287,12 +301,15 @@ static const struct command after[] = {
     {"the last rows", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next",
      .value = "null"},
     {"its rows as CSV", "GET", API "/jobs/2/history.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"its rows in inches", "GET", API "/jobs/2/history.csv?units=inch", .status = 200, .says = "_thou"},
+    {"no rows in inches but as CSV", "GET", API "/jobs/2/history?units=inch", .status = 400},
     {"convergence", "GET", API "/jobs/2/generations", .status = 200, .pointer = "generation/0", .value = "0"},
     {"the path of a search", "GET", API "/jobs/2/path", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"no path of no job", "GET", API "/jobs/99/path", .status = 404},
     {"the rows of a problem", "GET", API "/history/1/rows", .status = 200, .pointer = "rows/0/outcome",
      .value = "converged"},
     {"as CSV", "GET", API "/history/1/rows.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"in inches", "GET", API "/history/1/rows.csv?units=inch", .status = 200, .says = "_thou"},
     {"no such problem", "GET", API "/history/99/rows", .status = 404},
     {"what a problem means", "GET", "/problems/full", .status = 200, .header = "Content-Type", .holds = "text/html"},
     {"no such problem page", "GET", "/problems/nothing", .status = 404},
@@ -337,6 +354,7 @@ static const struct command studied[] = {
      .pointer = "items/0/outcome"},
     {"a filter that is none", "GET", API "/studies/5/table?filter=J", .status = 422, .pointer = "errors/0/pointer",
      .value = "/filter"},
+    {"a table in inches", "GET", API "/studies/5/table.csv?units=inch", .status = 200, .says = "_thou"},
     {"a table as CSV", "GET", API "/studies/5/table.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"a variant's design", "GET", API "/studies/5/variants/5/design", .status = 200,
      .pointer = "modification/pinion/right/tip_relief_um", .value = "20"},
@@ -364,6 +382,7 @@ static const struct command tolerances[] = {
 static const struct command toleranced[] = {
     {"what they come to", "GET", API "/jobs/6/result", .status = 200, .pointer = "pairs", .value = "6"},
     {"the pairs", "GET", API "/jobs/6/pairs", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"the pairs in inches", "GET", API "/jobs/6/pairs?units=inch", .status = 200, .says = "peak_to_peak_thou"},
     {"pairs that were known", "GET", API "/jobs/7", .status = 200, .pointer = "progress/reused", .value = "6"},
     {"nothing to prune", "POST", API "/history/prune", .text = "{}", .status = 200, .pointer = "rows", .value = "0"},
     {"no such thing to prune", "POST", API "/history/prune", .text = "{\"all\":true}", .status = 422,

@@ -188,12 +188,14 @@ class Client:
         return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
 
     @operation("sweep")
-    def sweep(self, request: Mapping[str, Any], *, easeoff_lane: str | None = None) -> doc.Sweep:
-        """A design over torque, speed or both, beside the unmodified pair.
+    def sweep(
+        self, request: Mapping[str, Any], *, units: str | None = None, easeoff_lane: str | None = None
+    ) -> doc.Sweep:
+        """A design over torque, speed or both, beside the unmodified pair. units: as in analyze().
 
         request: {"design": .., "speed_rpm": {"from": .., "to": .., "points": ..}, "torque_Nm": the same}.
         """
-        return self._computed("POST", "/sweep", document=request, lane=easeoff_lane).json
+        return self._computed("POST", "/sweep", document=request, query={"units": units}, lane=easeoff_lane).json
 
     @operation("tolerance")
     def tolerance(self, design: Design, pairs: int | None = None, *, easeoff_lane: str | None = None) -> doc.Tolerance:
@@ -216,10 +218,19 @@ class Client:
         return self._json("GET", "/export")
 
     @operation("exportDesign")
-    def export(self, format: str, design: Design, rows: int | None = None, columns: int | None = None) -> bytes:
-        """A file for another program, as `easeoff export` writes it; rows and columns of a grid of points."""
+    def export(
+        self,
+        format: str,
+        design: Design,
+        rows: int | None = None,
+        columns: int | None = None,
+        *,
+        units: str | None = None,
+    ) -> bytes:
+        """A file for another program, as `easeoff export` writes it; rows and columns of a grid of points; units:
+        "inch" for tables of columns with lengths in inches and thousandths."""
         path = f"/export/{quote(format, safe='')}"
-        query = {"rows": rows, "columns": columns}
+        query = {"rows": rows, "columns": columns, "units": units}
         return self.transport.request("POST", path, document=design, query=query, accept="*/*").body
 
     @operation("reportDesign")
@@ -309,9 +320,9 @@ class Client:
         return self._json("GET", f"/jobs/{id}/result")
 
     @operation("getJobPairs")
-    def job_pairs(self, id: int) -> str:
-        """The pairs of a tolerance analysis that is done, as CSV."""
-        return self.transport.request("GET", f"/jobs/{id}/pairs", accept="text/csv").text
+    def job_pairs(self, id: int, *, units: str | None = None) -> str:
+        """The pairs of a tolerance analysis that is done, as CSV; units: "inch" for lengths in inches."""
+        return self.transport.request("GET", f"/jobs/{id}/pairs", query={"units": units}, accept="text/csv").text
 
     @operation("getJobGenerations")
     def job_generations(self, id: int) -> doc.Generations:
@@ -436,19 +447,26 @@ class Client:
         return self.transport.request("GET", f"/measurements/{id}/file", query={"part": part}, accept="*/*").body
 
     @operation("compareMeasurement")
-    def compare_measurement(self, id: int, *, easeoff_lane: str | None = None) -> doc.Comparison:
+    def compare_measurement(
+        self, id: int, *, units: str | None = None, easeoff_lane: str | None = None
+    ) -> doc.Comparison:
         """A measurement beside the prediction at its torque and measured speed."""
-        return self._computed("GET", f"/measurements/{id}/comparison", lane=easeoff_lane).json
+        return self._computed("GET", f"/measurements/{id}/comparison", query={"units": units}, lane=easeoff_lane).json
 
     @operation("compareDesign")
-    def compare_design(self, id: int, *, easeoff_lane: str | None = None) -> doc.Comparison:
+    def compare_design(
+        self, id: int, *, units: str | None = None, easeoff_lane: str | None = None
+    ) -> doc.Comparison:
         """All measurements of a design beside the prediction."""
-        return self._computed("GET", f"/designs/{id}/comparison", lane=easeoff_lane).json
+        return self._computed("GET", f"/designs/{id}/comparison", query={"units": units}, lane=easeoff_lane).json
 
     @operation("compareWhatIf")
-    def compare_what_if(self, id: int, design: Design, *, easeoff_lane: str | None = None) -> doc.Comparison:
+    def compare_what_if(
+        self, id: int, design: Design, *, units: str | None = None, easeoff_lane: str | None = None
+    ) -> doc.Comparison:
         """What the measurements of a stored design say about another one."""
-        return self._computed("POST", f"/designs/{id}/comparison", document=design, lane=easeoff_lane).json
+        path = f"/designs/{id}/comparison"
+        return self._computed("POST", path, document=design, query={"units": units}, lane=easeoff_lane).json
 
     @operation("fitDesign")
     def fit(self, id: int, order: Mapping[str, Any], *, easeoff_lane: str | None = None) -> doc.Fit:

@@ -83,6 +83,8 @@ class ClientTest(unittest.TestCase):
             asked = {
                 parameter["name"].replace("-", "_").lower() for parameter in described[identity].get("parameters", [])
             }
+            if "of CSV" in json.dumps(described[identity].get("parameters", [])):
+                asked -= {"units"}  # the method reads JSON
             known = set().union(*(inspect.signature(method).parameters for method in methods))
             self.assertLessEqual(asked - of_the_client, known, identity)
 

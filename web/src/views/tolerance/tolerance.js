@@ -301,7 +301,7 @@ class ToleranceView {
     const marks = high ? [{ x: high.value, label: '95 %', strong: true }] : [];
     if (output.nominal !== null && output.nominal >= from && output.nominal <= to)
       marks.push({ x: output.nominal, label: 'as drawn', strong: false });
-    this.histogram.name({ xLabel: labelOf(output.key), xUnit: unit }, `${output.rows} pairs`);
+    this.histogram.name({ xLabel: labelOf(output.key), xUnit: unit }, `${labelOf(output.key)}, ${output.rows} pairs`);
     if (to > from)
       this.histogram.set({ x, curves: [{ label: 'pairs', y, colour: 'own', line: 'solid', width: 2 }], marks });
     else this.histogram.frame.say('Every pair has the same value.');
