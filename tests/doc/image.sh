@@ -20,7 +20,7 @@ if command -v dpkg >/dev/null && command -v objdump >/dev/null && command -v ldd
   missing=
   for library in $(objdump -p "$EASEOFF" | awk '$1 == "NEEDED" { print $2 }'); do
     # A sanitizer's and the compiler's own libraries are none of the image's program.
-    case $library in libasan* | libubsan* | libtsan* | libgcc_s* | libstdc++*) continue ;; esac
+    case $library in libasan* | libubsan* | libtsan* | libgcc_s* | libstdc++* | ld-linux*) continue ;; esac
     file=$(realpath "$(ldd "$EASEOFF" | awk -v library="$library" '$1 == library { print $3 }')")
     package=$( (dpkg -S "$file" || dpkg -S "${file#/usr}" || dpkg -S "/usr$file") 2>/dev/null | cut -d: -f1)
     case $package in
