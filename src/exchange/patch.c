@@ -65,8 +65,8 @@ bool eo_patch_fit(struct eo_patch *patch, const int count[2], eo_patch_surface *
   memcpy(patch->count, count, sizeof patch->count);
   for (int d = 0; d < 2; d++)
     make_knots(count[d], patch->knot[d]);
-  for (int i = 0; i < count[0]; i++)
-    for (int j = 0; j < count[1]; j++)
+  for (int j = 0; j < count[1]; j++)
+    for (int i = 0; i < count[0]; i++)
       surface(context, parameter(i, count[0]), parameter(j, count[1]), patch->control[i * count[1] + j], NULL);
   for (int i = 0; i < count[0]; i++) /* along q: a system's right-hand sides are rows and coordinates */
     for (int c = 0; c < coordinates; c++)
@@ -102,20 +102,20 @@ void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[
         point[c] += along[a] * across[b] * patch->control[(i + a) * patch->count[1] + j + b][c];
 }
 
-double eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context)
+void eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context,
+                    double error[EO_PATCH_ERRORS])
 {
-  enum { BETWEEN = 4 }; /* places per step between points, those on the edges among them */
-  double largest = 0;
-  int steps[2] = {BETWEEN * (patch->count[0] - 1), BETWEEN * (patch->count[1] - 1)};
-  for (int i = 0; i <= steps[0]; i++)
-    for (int j = 0; j <= steps[1]; j += i % BETWEEN ? BETWEEN / 2 : 1) {
+  int steps[2] = {2 * (patch->count[0] - 1), 2 * (patch->count[1] - 1)};
+  memset(error, 0, EO_PATCH_ERRORS * sizeof *error);
+  for (int j = 0; j <= steps[1]; j++)
+    for (int i = 1 - j % 2; i <= steps[0]; i += 2 - j % 2) {
       double p = (double)i / steps[0], q = (double)j / steps[1], off = 0;
       double exact[3], normal[3], point[3];
       surface(context, p, q, exact, normal);
       eo_patch_at(patch, p, q, point);
       for (int c = 0; c < 3; c++)
         off += (point[c] - exact[c]) * normal[c];
-      largest = fmax(largest, fabs(off));
+      double *kind = &error[i % 2 && j % 2 ? EO_PATCH_BOTH : j % 2];
+      *kind = fmax(*kind, fabs(off));
     }
-  return largest;
 }

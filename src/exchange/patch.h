@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-enum { EO_PATCH_LEAST = 6, EO_PATCH_MOST = 40 };
+enum { EO_PATCH_LEAST = 6, EO_PATCH_MOST = 64 };
 
 /* Point (m) and unit normal (may be NULL) of the exact surface at p, q in 0..1. */
 typedef void eo_patch_surface(const void *context, double p, double q, double point[3], double normal[3]);
@@ -23,7 +23,10 @@ bool eo_patch_fit(struct eo_patch *patch, const int count[2], eo_patch_surface *
 /* The spline's point. */
 void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[3]);
 
-/* Largest distance along the exact normal at places between the points and on the edges, m. */
-double eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context);
+/* Largest distances from the exact surface along its normal, m, half way between the points: along p, along q, along
+   both. */
+enum { EO_PATCH_BOTH = 2, EO_PATCH_ERRORS };
+void eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context,
+                    double error[EO_PATCH_ERRORS]);
 
 #endif

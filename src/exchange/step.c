@@ -8,51 +8,72 @@
 #include <string.h>
 #include <time.h>
 
+#include "exchange/flank_pieces.h"
 #include "exchange/patch.h"
 #include "exchange/tooth.h"
 
 #include <config.h>
 
 static const double tolerance = 5e-9; /* m: half of what a file may be off */
-enum { FIRST_COUNT = 8, MORE = 4 };
+enum { FIRST_COUNT = 8, SWEPT_COUNT = 5 };
 
 struct writer {
   struct eo_text *text;
   int last; /* number of the instance written last */
 };
 
+enum { SIDES = 4 };
+
+/* A smooth piece. Its sides: along p at q = 0, along q at p = 1, along p at q = 1, along q at p = 0; its corners (0, 0),
+   (1, 0), (1, 1), (0, 1). */
+struct face {
+  int i, j;            /* what is no flank: the piece along p and along q */
+  int group[2];        /* pieces that share a number of points along p, along q */
+  int edge[SIDES];     /* numbers in the part; -1: the side is one point */
+  int vertex[SIDES];   /* numbers in the part */
+  double error;        /* m */
+  struct eo_patch patch;
+};
+
+enum { GROUPS = EO_FLANK_LINES * EO_FLANK_LINES };
+
 /* One part of a tooth in smooth pieces. */
 struct part {
   const struct eo_tooth *tooth;
   enum eo_tooth_part part;
   bool flipped; /* p runs backwards, so that dS/dp x dS/dq points out of the tooth */
-  int pieces[2];
+  bool flank;
+  struct eo_flank_pieces pieces; /* of a flank */
   double at[2][EO_TOOTH_PIECES + 1];
-  int count[2][EO_TOOTH_PIECES]; /* points of each piece */
-  double error;                  /* m off the exact surface at most, between the points */
-  struct eo_patch *patch;        /* [pieces[0]][pieces[1]] */
-  int vertex[EO_TOOTH_PIECES + 1][EO_TOOTH_PIECES + 1];
-  int along[EO_TOOTH_PIECES][EO_TOOTH_PIECES + 1];  /* edges with p, [piece][boundary of q] */
-  int across[EO_TOOTH_PIECES + 1][EO_TOOTH_PIECES]; /* edges with q */
+  int count[2][GROUPS]; /* points of each group */
+  double error;         /* m off the exact surface at most, between the points */
+  int faces;
+  struct face *face; /* owned */
+  int edges, vertices;
+  int *id; /* owned: of every edge, then of every vertex, in the file */
 };
 
 struct piece {
   const struct part *part;
-  int i, j;
+  int number;
+  struct eo_flank_row *row;
 };
 
 /* Surfaces: */
 
-static void part_point(const struct part *part, double p, double q, double point[3], double normal[3])
-{
-  eo_tooth_point(part->tooth, part->part, 0, part->flipped ? 1 - p : p, q, point, normal);
-}
-
 static void piece_point(const void *context, double p, double q, double point[3], double normal[3])
 {
   const struct piece *piece = context;
-  const double *from = &piece->part->at[0][piece->i], *to = &piece->part->at[1][piece->j];
-  part_point(piece->part, from[0] + p * (from[1] - from[0]), to[0] + q * (to[1] - to[0]), point, normal);
+  const struct part *part = piece->part;
+  const struct face *face = &part->face[piece->number];
+  double own = part->flipped ? 1 - p : p;
+  if (part->flank) {
+    eo_flank_piece_point(&part->pieces, piece->number, piece->row, own, q, point, normal);
+    return;
+  }
+  const double *from = &part->at[0][face->i], *to = &part->at[1][face->j];
+  eo_tooth_point(part->tooth, part->part, 0, from[0] + own * (from[1] - from[0]), to[0] + q * (to[1] - to[0]), point,
+                 normal);
 }
 
 /* Whether dS/dp x dS/dq points into the tooth. */
@@ -60,9 +81,11 @@ static bool points_in(const struct part *part)
 {
   const double step = 1e-3;
   double a[3], b[3], c[3], normal[3], cross;
-  part_point(part, 0.5, 0.5, a, normal);
-  part_point(part, 0.5 + step, 0.5, b, NULL);
-  part_point(part, 0.5, 0.5 + step, c, NULL);
+  struct eo_flank_row row = {.b = -1};
+  const struct piece piece = {part, 0, &row};
+  piece_point(&piece, 0.5, 0.5, a, normal);
+  piece_point(&piece, 0.5 + step, 0.5, b, NULL);
+  piece_point(&piece, 0.5, 0.5 + step, c, NULL);
   for (int i = 0; i < 3; i++) {
     b[i] -= a[i];
     c[i] -= a[i];
@@ -72,42 +95,170 @@ static bool points_in(const struct part *part)
   return cross < 0;
 }
 
-static void cut_pieces(struct part *part)
+static void set_flank_faces(struct part *part)
 {
-  for (int d = 0; d < 2; d++) {
-    double at[EO_TOOTH_PIECES + 1];
-    int count = eo_tooth_breaks(part->tooth, part->part, d, at);
-    part->pieces[d] = count - 1;
-    for (int i = 0; i < count; i++)
-      part->at[d][i] = d == 0 && part->flipped ? 1 - at[count - 1 - i] : at[i];
-    for (int i = 0; i < part->pieces[d]; i++)
-      part->count[d][i] = FIRST_COUNT;
+  for (int k = 0; k < part->faces; k++) {
+    const struct eo_flank_piece *piece = &part->pieces.piece[k];
+    struct face *face = &part->face[k];
+    face->group[0] = piece->line[0] * EO_FLANK_LINES + piece->line[1];
+    face->group[1] = piece->band;
+    if (piece->line[0] == piece->line[1])
+      part->count[0][face->group[0]] = SWEPT_COUNT;
   }
 }
 
-/* Fits every piece; true when all are near enough. Pieces that are not get more points, with their neighbours. */
-static bool fit_pieces(struct part *part, bool *failed)
+static bool cut_faces(struct part *part)
 {
-  bool good = true;
-  int count[2][EO_TOOTH_PIECES];
-  memcpy(count, part->count, sizeof count);
-  part->error = 0;
-  for (int i = 0; i < part->pieces[0]; i++)
-    for (int j = 0; j < part->pieces[1]; j++) {
-      const struct piece piece = {part, i, j};
-      const int points[2] = {part->count[0][i], part->count[1][j]};
-      struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
-      *failed = *failed || !eo_patch_fit(patch, points, piece_point, &piece);
-      double error = *failed ? 0 : eo_patch_error(patch, piece_point, &piece);
-      part->error = fmax(part->error, error);
-      if (error > tolerance) {
-        count[0][i] = part->count[0][i] + MORE;
-        count[1][j] = part->count[1][j] + MORE;
-        good = false;
-      }
+  int pieces[2] = {1, 1};
+  for (int k = 0; k < GROUPS; k++)
+    part->count[0][k] = part->count[1][k] = FIRST_COUNT;
+  if (part->flank) {
+    eo_flank_pieces_init(&part->pieces, part->tooth, part->part);
+    part->faces = part->pieces.count;
+  } else {
+    for (int d = 0; d < 2; d++)
+      pieces[d] = eo_tooth_breaks(part->tooth, part->part, d, part->at[d]) - 1;
+    part->faces = pieces[0] * pieces[1];
+  }
+  part->face = calloc((size_t)part->faces, sizeof *part->face);
+  part->id = calloc((size_t)part->faces * 2 * SIDES, sizeof *part->id);
+  if (!part->face || !part->id)
+    return false;
+  if (part->flank)
+    set_flank_faces(part);
+  for (int k = 0; k < part->faces && !part->flank; k++) {
+    struct face *face = &part->face[k];
+    face->i = face->group[0] = k / pieces[1];
+    face->j = face->group[1] = k % pieces[1];
+  }
+  part->flipped = points_in(part);
+  return true;
+}
+
+/* Fits a piece to the points that it has now; asks for more along the direction in which it is off. */
+static bool fit_face(struct part *part, int number, bool more[2][GROUPS])
+{
+  struct face *face = &part->face[number];
+  struct eo_flank_row row = {.b = -1};
+  const struct piece piece = {part, number, &row};
+  const int points[2] = {part->count[0][face->group[0]], part->count[1][face->group[1]]};
+  double error[EO_PATCH_ERRORS];
+  if (!eo_patch_fit(&face->patch, points, piece_point, &piece))
+    return false;
+  eo_patch_error(&face->patch, piece_point, &piece, error);
+  bool off[2] = {error[0] > tolerance, error[1] > tolerance};
+  face->error = fmax(fmax(error[0], error[1]), error[EO_PATCH_BOTH]);
+  for (int d = 0; d < 2; d++)
+    if (off[d] || (error[EO_PATCH_BOTH] > tolerance && !off[1 - d]))
+      more[d][face->group[d]] = true;
+  return true;
+}
+
+/* Where points on the flank are no good parameters, those of the rack may be. */
+static bool fit_evenly(struct part *part, int number)
+{
+  bool more[2][GROUPS], *direct = &part->pieces.piece[number].direct, before = *direct;
+  double error = part->face[number].error;
+  *direct = true;
+  bool fitted = fit_face(part, number, more);
+  if (fitted && part->face[number].error > error) {
+    *direct = before;
+    fitted = fit_face(part, number, more);
+  }
+  return fitted;
+}
+
+/* Every piece with as many points as it needs; false: memory, or a system that has no solution. */
+static bool fit_faces(struct part *part)
+{
+  bool again = true;
+  while (again) {
+    bool more[2][GROUPS] = {{false}};
+    for (int k = 0; k < part->faces; k++) {
+      const struct face *face = &part->face[k];
+      bool same = face->patch.count[0] == part->count[0][face->group[0]] &&
+                  face->patch.count[1] == part->count[1][face->group[1]];
+      if (!same && !fit_face(part, k, more))
+        return false;
     }
-  memcpy(part->count, count, sizeof count);
-  return good;
+    again = false;
+    for (int d = 0; d < 2; d++)
+      for (int g = 0; g < GROUPS; g++)
+        if (more[d][g] && part->count[d][g] < EO_PATCH_MOST) {
+          part->count[d][g] = part->count[d][g] * 3 / 2 < EO_PATCH_MOST ? part->count[d][g] * 3 / 2 : EO_PATCH_MOST;
+          again = true;
+        }
+  }
+  for (int k = 0; k < part->faces; k++) {
+    if (part->face[k].error > tolerance && part->flank && !fit_evenly(part, k))
+      return false;
+    part->error = fmax(part->error, part->face[k].error);
+  }
+  return true;
+}
+
+/* Edges: */
+
+/* Which control points a side has: the first, how far to the next, how many. */
+struct strip {
+  int first, stride, count;
+};
+
+static struct strip strip_of(const struct eo_patch *patch, int side)
+{
+  int rows = patch->count[0], columns = patch->count[1];
+  if (side % 2 == 0)
+    return (struct strip){side ? columns - 1 : 0, columns, rows};
+  return (struct strip){side == 1 ? (rows - 1) * columns : 0, 1, columns};
+}
+
+static bool same_point(const double a[3], const double b[3])
+{
+  return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]) < tolerance;
+}
+
+static bool same_side(const struct face *a, int of_a, const struct face *b, int of_b)
+{
+  struct strip x = strip_of(&a->patch, of_a), y = strip_of(&b->patch, of_b);
+  bool same = x.count == y.count;
+  for (int i = 0; i < x.count && same; i++)
+    same = same_point(a->patch.control[x.first + i * x.stride], b->patch.control[y.first + i * y.stride]);
+  return same;
+}
+
+static bool is_point(const struct face *face, int side)
+{
+  struct strip strip = strip_of(&face->patch, side);
+  bool same = true;
+  for (int i = 1; i < strip.count && same; i++)
+    same = same_point(face->patch.control[strip.first], face->patch.control[strip.first + i * strip.stride]);
+  return same;
+}
+
+static const double *corner_of(const struct face *face, int corner)
+{
+  int rows = face->patch.count[0], columns = face->patch.count[1];
+  return face->patch.control[(corner == 1 || corner == 2 ? (rows - 1) * columns : 0) + (corner >= 2 ? columns - 1 : 0)];
+}
+
+/* Neighbours have an edge in common where their sides are one curve, and corners that are one point. */
+static void join_faces(struct part *part)
+{
+  for (int k = 0; k < SIDES * part->faces; k++) {
+    struct face *face = &part->face[k / SIDES];
+    int own = k % SIDES;
+    face->vertex[own] = part->vertices;
+    face->edge[own] = is_point(face, own) ? -1 : part->edges;
+    for (int i = k - 1; i >= 0; i--) {
+      const struct face *other = &part->face[i / SIDES];
+      if (same_point(corner_of(face, own), corner_of(other, i % SIDES)))
+        face->vertex[own] = other->vertex[i % SIDES];
+      if (face->edge[own] >= 0 && own % 2 == i % 2 && same_side(face, own, other, i % SIDES))
+        face->edge[own] = other->edge[i % SIDES];
+    }
+    part->vertices += face->vertex[own] == part->vertices;
+    part->edges += face->edge[own] == part->edges;
+  }
 }
 
 static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_tooth_part kind)
@@ -115,13 +266,11 @@ static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_too
   memset(part, 0, sizeof *part);
   part->tooth = tooth;
   part->part = kind;
-  part->flipped = points_in(part);
-  cut_pieces(part);
-  part->patch = calloc((size_t)part->pieces[0] * (size_t)part->pieces[1], sizeof *part->patch);
-  bool failed = !part->patch, near = false;
-  for (int points = FIRST_COUNT; !failed && !near && points <= EO_PATCH_MOST - MORE; points += MORE)
-    near = fit_pieces(part, &failed);
-  return !failed;
+  part->flank = kind == EO_TOOTH_DRIVE || kind == EO_TOOTH_COAST;
+  if (!cut_faces(part) || !fit_faces(part))
+    return false;
+  join_faces(part);
+  return true;
 }
 
 /* Instances: */
@@ -212,48 +361,42 @@ static int put_curve(struct writer *writer, int count, const double *knot, const
   return writer->last;
 }
 
-/* Edges of a piece that no neighbour has written yet: boundary control points are the edge's, so both have one curve.
- */
-static void put_edges(struct writer *writer, struct part *part, int i, int j, const int *point)
+/* Edges and corners of a piece that no neighbour has written yet. */
+static void put_edges(struct writer *writer, struct part *part, const struct face *face, const int *point)
 {
-  const struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
-  int rows = patch->count[0], columns = patch->count[1];
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b < 2; b++)
-      if (!part->vertex[i + a][j + b])
-        part->vertex[i + a][j + b] = put(writer, "VERTEX_POINT('',#%d)",
-                                         point[a * (rows - 1) * columns + b * (columns - 1)]);
-  for (int side = 0; side < 2; side++) {
-    if (!part->along[i][j + side]) {
-      int curve = put_curve(writer, rows, patch->knot[0], point + side * (columns - 1), columns);
-      part->along[i][j + side] = put(writer, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i][j + side],
-                                     part->vertex[i + 1][j + side], curve);
-    }
-    if (!part->across[i + side][j]) {
-      int curve = put_curve(writer, columns, patch->knot[1], point + side * (rows - 1) * columns, 1);
-      part->across[i + side][j] = put(writer, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", part->vertex[i + side][j],
-                                      part->vertex[i + side][j + 1], curve);
-    }
+  static const int ends[SIDES][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
+  const struct eo_patch *patch = &face->patch;
+  int *edge = part->id, *vertex = part->id + part->edges, rows = patch->count[0], columns = patch->count[1];
+  const int corner[SIDES] = {0, (rows - 1) * columns, rows * columns - 1, columns - 1};
+  for (int k = 0; k < SIDES; k++)
+    if (!vertex[face->vertex[k]])
+      vertex[face->vertex[k]] = put(writer, "VERTEX_POINT('',#%d)", point[corner[k]]);
+  for (int side = 0; side < SIDES; side++) {
+    struct strip strip = strip_of(patch, side);
+    if (face->edge[side] < 0 || edge[face->edge[side]])
+      continue;
+    int curve = put_curve(writer, strip.count, patch->knot[side % 2], point + strip.first, strip.stride);
+    edge[face->edge[side]] = put(writer, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", vertex[face->vertex[ends[side][0]]],
+                                 vertex[face->vertex[ends[side][1]]], curve);
   }
 }
 
 /* The loop runs counter-clockwise seen against the surface's normal: with p at q = 0, with q at p = 1, back. */
-static int put_face(struct writer *writer, struct part *part, int i, int j, double turn)
+static int put_face(struct writer *writer, struct part *part, const struct face *face, double turn)
 {
-  const struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
-  int count = patch->count[0] * patch->count[1], point[EO_PATCH_MOST * EO_PATCH_MOST];
+  const struct eo_patch *patch = &face->patch;
+  int count = patch->count[0] * patch->count[1], point[EO_PATCH_MOST * EO_PATCH_MOST], edge[SIDES], edges = 0;
   for (int k = 0; k < count; k++)
     point[k] = put_point(writer, patch->control[k], turn);
   int surface = put_surface(writer, patch, point);
-  put_edges(writer, part, i, j, point);
-  int edge[4] = {
-      put(writer, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->along[i][j]),
-      put(writer, "ORIENTED_EDGE('',*,*,#%d,.T.)", part->across[i + 1][j]),
-      put(writer, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->along[i][j + 1]),
-      put(writer, "ORIENTED_EDGE('',*,*,#%d,.F.)", part->across[i][j]),
-  };
-  int loop = put(writer, "EDGE_LOOP('',(#%d,#%d,#%d,#%d))", edge[0], edge[1], edge[2], edge[3]);
-  int bound = put(writer, "FACE_OUTER_BOUND('',#%d,.T.)", loop);
+  put_edges(writer, part, face, point);
+  for (int side = 0; side < SIDES; side++)
+    if (face->edge[side] >= 0)
+      edge[edges++] = put(writer, "ORIENTED_EDGE('',*,*,#%d,.%c.)", part->id[face->edge[side]], side < 2 ? 'T' : 'F');
+  eo_text_print(writer->text, "#%d=EDGE_LOOP('',", ++writer->last);
+  add_list(writer->text, edges, edge, 1);
+  eo_text_add(writer->text, ");\n");
+  int loop = writer->last, bound = put(writer, "FACE_OUTER_BOUND('',#%d,.T.)", loop);
   return put(writer, "ADVANCED_FACE('',(#%d),#%d,.T.)", bound, surface);
 }
 
@@ -262,16 +405,13 @@ static int put_shell(struct writer *writer, struct part *part, int number)
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct eo_tooth *tooth = part->tooth;
   double turn = number * 2 * M_PI / tooth->geometry->teeth[tooth->member];
-  int face[EO_TOOTH_PIECES * EO_TOOTH_PIECES], count = 0;
-  memset(part->vertex, 0, sizeof part->vertex);
-  memset(part->along, 0, sizeof part->along);
-  memset(part->across, 0, sizeof part->across);
-  for (int i = 0; i < part->pieces[0]; i++)
-    for (int j = 0; j < part->pieces[1]; j++)
-      face[count++] = put_face(writer, part, i, j, turn);
+  int face[EO_FLANK_PIECES];
+  memset(part->id, 0, sizeof *part->id * (size_t)(part->edges + part->vertices));
+  for (int k = 0; k < part->faces; k++)
+    face[k] = put_face(writer, part, &part->face[k], turn);
   eo_text_print(writer->text, "#%d=OPEN_SHELL('%s %s end, tooth %d, %s',", ++writer->last, member_name[tooth->member],
                 tooth->two_ends ? end_name[tooth->end] : "single", number + 1, eo_tooth_part_names[part->part]);
-  add_list(writer->text, count, face, 1);
+  add_list(writer->text, part->faces, face, 1);
   eo_text_add(writer->text, ");\n");
   return writer->last;
 }
@@ -338,11 +478,12 @@ static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bo
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
     if (good && part.error > tolerance)
-      eo_text_print(writer->text, "/* %s: a kink across its pieces; up to %.3g nm off the exact surface */\n",
+      eo_text_print(writer->text, "/* %s: up to %.3g nm off the exact surface */\n",
                     eo_tooth_part_names[kind], 1e9 * part.error);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(writer, &part, number);
-    free(part.patch);
+    free(part.face);
+    free(part.id);
     if (!good)
       return false;
   }

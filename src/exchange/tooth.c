@@ -97,55 +97,12 @@ static int add_break(double at[EO_TOOTH_PIECES + 1], int count, double value)
   return count + 1;
 }
 
-/* Of a flank: the vertices of its reliefs. */
-static int profile_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
-                          double at[EO_TOOTH_PIECES + 1])
-{
-  double from = tooth->start_path, length = tooth->tip_path - from, vertex[EO_MOST_VERTICES];
-  struct eo_modification_shape slice;
-  int count = 1;
-  eo_modification_slice(shape, 0, &slice);
-  int vertices = eo_modification_vertices(&slice, vertex);
-  for (int i = 0; i < vertices; i++)
-    count = add_break(at, count, (vertex[i] / tooth->geometry->rack_factor - from) / length);
-  return count;
-}
-
-static int compare_numbers(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* Of a flank: where its end reliefs start and its grid ends, and the same places on the other side of the face. */
-static int face_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
-                       double at[EO_TOOTH_PIECES + 1])
-{
-  const struct eo_flank_spline *grid = shape->grid;
-  double part[8] = {0}, width = tooth->geometry->member_width[tooth->member];
-  int parts = 0, count = 1;
-  for (int i = 0; i < 2; i++)
-    for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)
-      part[parts++] = 0.5 + side * shape->end[i].start * cos(tooth->geometry->helix_angle) / width;
-  for (int i = 0; grid && i < 2; i++)
-    for (int side = -1; side <= 1; side += 2)
-      part[parts++] = 0.5 + side * grid->y[i * (grid->y_knots - 1)] / width;
-  qsort(part, (size_t)parts, sizeof *part, compare_numbers);
-  for (int i = 0; i < parts; i++)
-    count = add_break(at, count, part[i]);
-  return count;
-}
-
 int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int direction,
                     double at[EO_TOOTH_PIECES + 1])
 {
   int count = 1;
   at[0] = 0;
-  if (is_flank(part) && direction == 0)
-    count = profile_breaks(tooth, &tooth->shape[part == EO_TOOTH_COAST], at);
-  else if (is_flank(part))
-    count = face_breaks(tooth, &tooth->shape[part == EO_TOOTH_COAST], at);
-  else if (part != EO_TOOTH_TIP && direction == 0)
+  if (!is_flank(part) && part != EO_TOOTH_TIP && direction == 0)
     count = add_break(at, add_break(at, count, tooth->circle_share * tooth->fillet_share), tooth->fillet_share);
   at[count] = 1;
   return count + 1;
@@ -158,17 +115,12 @@ static void turn_vector(double vector[3], double angle) /* from +y towards +x */
   vector[1] = c * y - s * x;
 }
 
-/* A flank in the frame of its own end with its tooth's centre on +y in mid face. eta: + to the face that meets first.
- */
-static void flank_point(const struct eo_tooth *tooth, bool coast, double path, double eta, double point[3],
-                        double normal[3])
+/* From a generated flank's own frame to that of its own end with its tooth's centre on +y in mid face. */
+static void turn_flank(const struct eo_tooth *tooth, bool coast, const struct eo_surface_point *exact, double point[3],
+                       double normal[3])
 {
-  struct eo_surface_point exact;
-  double u, v, s = eo_geometry_own_path(tooth->member, path), own = coast ? -eta : eta;
-  eo_surface_coordinates(tooth->geometry, tooth->member, s, own, &u, &v);
-  eo_surface_evaluate(tooth->geometry, tooth->member, &tooth->shape[coast], u, v, &exact);
-  memcpy(point, exact.position, sizeof exact.position);
-  memcpy(normal, exact.normal, sizeof exact.normal);
+  memcpy(point, exact->position, sizeof exact->position);
+  memcpy(normal, exact->normal, sizeof exact->normal);
   double *const both[2] = {point, normal};
   for (int i = 0; i < 2; i++) {
     turn_vector(both[i], tooth->half - tooth->pitch);
@@ -177,6 +129,17 @@ static void flank_point(const struct eo_tooth *tooth, bool coast, double path, d
       both[i][2] = -both[i][2];
     }
   }
+}
+
+/* eta: + to the face that meets first. */
+static void flank_point(const struct eo_tooth *tooth, bool coast, double path, double eta, double point[3],
+                        double normal[3])
+{
+  struct eo_surface_point exact;
+  double u, v, s = eo_geometry_own_path(tooth->member, path), own = coast ? -eta : eta;
+  eo_surface_coordinates(tooth->geometry, tooth->member, s, own, &u, &v);
+  eo_surface_evaluate(tooth->geometry, tooth->member, &tooth->shape[coast], u, v, &exact);
+  turn_flank(tooth, coast, &exact, point, normal);
 }
 
 /* What is no flank: a transverse profile that turns with z. */
@@ -216,6 +179,19 @@ static void swept_point(const struct eo_tooth *tooth, enum eo_tooth_part part, d
   turn_vector(normal, tooth->twist * z);
 }
 
+/* From the frame of the tooth's own end to that of the member. */
+static void set_in_member(const struct eo_tooth *tooth, int number, double point[3], double normal[3])
+{
+  double angle = -tooth->half - tooth->behind + number * 2 * M_PI / tooth->geometry->teeth[tooth->member];
+  double *const both[2] = {point, normal};
+  for (int i = 0; i < 2; i++) {
+    turn_vector(both[i], angle);
+    both[i][0] *= tooth->across;
+    both[i][2] *= tooth->member == EO_PINION ? tooth->along : -tooth->along;
+  }
+  point[2] += tooth->offset;
+}
+
 void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
                     double point[3], double normal[3])
 {
@@ -227,12 +203,13 @@ void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int n
                 across);
   else
     swept_point(tooth, part, p, tooth->member == EO_PINION ? y : -y, point, across);
-  double angle = -tooth->half - tooth->behind + number * 2 * M_PI / geometry->teeth[tooth->member];
-  double *const both[2] = {point, across};
-  for (int i = 0; i < 2; i++) {
-    turn_vector(both[i], angle);
-    both[i][0] *= tooth->across;
-    both[i][2] *= tooth->member == EO_PINION ? tooth->along : -tooth->along;
-  }
-  point[2] += tooth->offset;
+  set_in_member(tooth, number, point, across);
+}
+
+void eo_tooth_place(const struct eo_tooth *tooth, bool coast, const struct eo_surface_point *generated, double point[3],
+                    double normal[3])
+{
+  double unused[3], *across = normal ? normal : unused;
+  turn_flank(tooth, coast, generated, point, across);
+  set_in_member(tooth, 0, point, across);
 }

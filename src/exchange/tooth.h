@@ -15,6 +15,7 @@
 #include "design/design.h"
 #include "gear/geometry.h"
 #include "gear/modification.h"
+#include "gear/surface.h"
 
 enum eo_tooth_part {
   EO_TOOTH_DRIVE,
@@ -53,7 +54,7 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
                            int member, int end, struct eo_error *error);
 void eo_tooth_done(struct eo_tooth *tooth);
 
-/* Where a part is cut into smooth pieces: parameters 0..1 along (0: profile, 1: face); 0 and 1 among them. Returns how
+/* Where what is no flank is cut into smooth pieces (flanks: flank_pieces.h): parameters 0..1 along (0: profile, 1: face); 0 and 1 among them. Returns how
    many, at least 2. */
 int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int direction,
                     double at[EO_TOOTH_PIECES + 1]);
@@ -63,5 +64,9 @@ int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int d
    number: of the tooth, 0 the one described above, the others from the drive flank's side on. */
 void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
                     double point[3], double normal[3]);
+
+/* A point of a generated flank, tooth 0, in the frame of the member; normal may be NULL. */
+void eo_tooth_place(const struct eo_tooth *tooth, bool coast, const struct eo_surface_point *generated, double point[3],
+                    double normal[3]);
 
 #endif

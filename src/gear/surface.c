@@ -14,26 +14,40 @@ static double profile_at(const struct eo_modification_shape *shape, double u, do
   return eo_modification_profile(&slice, u, slope);
 }
 
+double eo_surface_relief(const struct eo_modification_shape *shape, double u, double x, double slope[2])
+{
+  double sides[2], unused[2];
+  double delta = profile_at(shape, u, x, sides) + eo_modification_lead(shape, x, &slope[1]);
+  slope[0] = (sides[0] + sides[1]) / 2;
+  if (shape->varies) {
+    const double step = EO_SURFACE_STEP;
+    slope[1] += (profile_at(shape, u, x + step, unused) - profile_at(shape, u, x - step, unused)) / (2 * step);
+  }
+  return delta;
+}
+
+/* Where the rack's point is over the face: x of the modification; against v on the gear. */
+static double across_face(const struct eo_geometry *geometry, int member, double u, double v)
+{
+  double skew = sin(geometry->normal_pressure_angle) * sin(geometry->helix_angle) / cos(geometry->helix_angle);
+  return (member == EO_PINION ? 1 : -1) * (v + (u + geometry->rack_offset[member]) * skew);
+}
+
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                          double u, double v, struct eo_surface_point *point)
+{
+  double slope[2], delta = eo_surface_relief(shape, u, across_face(geometry, member, u, v), slope);
+  eo_surface_generate(geometry, member, u, v, delta, slope, point);
+}
+
+void eo_surface_generate(const struct eo_geometry *geometry, int member, double u, double v, double delta,
+                         const double slope[2], struct eo_surface_point *point)
 {
   double sa = sin(geometry->normal_pressure_angle), ca = cos(geometry->normal_pressure_angle),
          sb = sin(geometry->helix_angle), cb = cos(geometry->helix_angle);
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
   double rack = u + geometry->rack_offset[member], r = geometry->reference_radius[member];
-  double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
-  double across_face = side * (v + rack * skew);
-  double delta = profile_at(shape, u, across_face, profile_slope) +
-                 eo_modification_lead(shape, across_face, &lead_slope);
-  if (shape->varies) {
-    const double step = 1e-6;
-    double unused[2];
-    lead_slope +=
-        (profile_at(shape, u, across_face + step, unused) - profile_at(shape, u, across_face - step, unused)) /
-        (2 * step);
-  }
-  lead_slope *= side;
-  double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
+  double skew = sa * sb / cb, dv = (member == EO_PINION ? 1 : -1) * slope[1], du = slope[0] + dv * skew, x[3], n[3];
   for (int i = 0; i < 3; i++) {
     double f = -sa * e[i] + ca * across[i], m = ca * e[i] + sa * across[i];
     x[i] = rack * f + v * t[i] - delta * m; /* theory (S1) */

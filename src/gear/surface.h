@@ -20,6 +20,15 @@ struct eo_surface_point {
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                          double u, double v, struct eo_surface_point *point);
 
+/* delta (m) at u and x = eta / cos(beta), and its slopes by u and by x; at a kink the mean of both sides. By x from
+   EO_SURFACE_STEP to both sides (m) where the profile varies over the face. */
+#define EO_SURFACE_STEP 1e-6
+double eo_surface_relief(const struct eo_modification_shape *shape, double u, double x, double slope[2]);
+
+/* The point that the rack generates with any delta and slopes: along a kink every slope between those of both sides. */
+void eo_surface_generate(const struct eo_geometry *geometry, int member, double u, double v, double delta,
+                         const double slope[2], struct eo_surface_point *point);
+
 /* u and v of the place (s, eta) on the unmodified flank; a relief moves the point off that place by some of its own
    size. */
 void eo_surface_coordinates(const struct eo_geometry *geometry, int member, double s, double eta, double *u, double *v);

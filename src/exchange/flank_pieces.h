@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A flank as the rack generates it, cut into smooth pieces. Where the slope of the modification jumps (a linear
+   relief's start, the border of a grid or of a corner relief) the rack has a corner, and either both sides generate
+   beyond each other: their pieces end where they cross; or neither reaches the other: between them lies what the corner
+   itself sweeps, a narrow piece of its own, tangent to both. Bands of y, lines of u across them. */
+#ifndef EASEOFF_EXCHANGE_FLANK_PIECES_H
+#define EASEOFF_EXCHANGE_FLANK_PIECES_H
+
+#include "exchange/tooth.h"
+
+enum { EO_FLANK_LINES = 12, EO_FLANK_BANDS = 48, EO_FLANK_PIECES = EO_FLANK_BANDS * 2 * EO_FLANK_LINES };
+
+/* u = at + rate y, m, where y lies in low .. high. */
+struct eo_flank_line {
+  double at, rate, low, high;
+};
+
+/* Apart: near the base circle the sides can overlap further than the shorter one reaches; each ends on its own. */
+enum eo_flank_seam { EO_SEAM_SMOOTH, EO_SEAM_CROSSING, EO_SEAM_SWEPT, EO_SEAM_APART };
+
+/* Between two lines of a band; a swept corner: both are the same. */
+struct eo_flank_piece {
+  int band, line[2];
+  int beyond[2];              /* the line beyond each, -1: none */
+  enum eo_flank_seam seam[2]; /* at each line */
+  bool direct; /* u goes evenly from end to end: near the base circle the flank stands still; else the place on it does */
+};
+
+struct eo_flank_pieces {
+  const struct eo_tooth *tooth;
+  bool coast;
+  double u[2];                               /* root and tip end of the active profile, m */
+  int lines;                                 /* the first: root end, the second: tip end */
+  struct eo_flank_line line[EO_FLANK_LINES]; /* in no order: they cross at ends of bands only */
+  int bands;
+  double y[EO_FLANK_BANDS + 1]; /* m */
+  int count;
+  struct eo_flank_piece piece[EO_FLANK_PIECES];
+  double sense; /* of the profile's tangent, +1 or -1 */
+};
+
+/* part: a flank. The tooth stays where it is. */
+void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth *tooth, enum eo_tooth_part part);
+
+/* The piece's ends at one y, kept from point to point. */
+struct eo_flank_row {
+  double b; /* less than 0: none yet */
+  double place[2];
+};
+
+/* Point (m) and unit normal (may be NULL), out of the tooth, of piece k of tooth 0 in the frame of eo_tooth_point(); a:
+   from root to tip, b: from low y to high. */
+void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo_flank_row *row, double a, double b,
+                          double point[3], double normal[3]);
+
+
+#endif
