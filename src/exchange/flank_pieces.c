@@ -384,9 +384,10 @@ static void cut_band(struct eo_flank_pieces *pieces, int band)
     piece.direct = stands_still(pieces, &piece);
     add_piece(pieces, &piece);
     if (before == EO_SEAM_SWEPT)
-      add_piece(pieces,
-                &(struct eo_flank_piece){
-                    band, {order[i + 1], order[i + 1]}, {order[i], order[i + 2]}, {EO_SEAM_SWEPT, EO_SEAM_SWEPT}, true});
+      add_piece(
+          pieces,
+          &(struct eo_flank_piece){
+              band, {order[i + 1], order[i + 1]}, {order[i], order[i + 2]}, {EO_SEAM_SWEPT, EO_SEAM_SWEPT}, true});
   }
 }
 
@@ -416,7 +417,8 @@ static void swept_at(const struct eo_flank_pieces *pieces, const struct eo_flank
   side[1].line[1] = piece->beyond[1];
   for (int k = 0; k < 2; k++)
     delta = piece_relief(pieces, &side[k], u, y, slope[k]);
-  const double mixed[2] = {slope[0][0] + a * (slope[1][0] - slope[0][0]), slope[0][1] + a * (slope[1][1] - slope[0][1])};
+  const double mixed[2] = {slope[0][0] + a * (slope[1][0] - slope[0][0]),
+                           slope[0][1] + a * (slope[1][1] - slope[0][1])};
   generate(pieces, u, y, delta, mixed, point);
 }
 

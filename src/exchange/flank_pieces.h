@@ -23,7 +23,8 @@ struct eo_flank_piece {
   int band, line[2];
   int beyond[2];              /* the line beyond each, -1: none */
   enum eo_flank_seam seam[2]; /* at each line */
-  bool direct; /* u goes evenly from end to end: near the base circle the flank stands still; else the place on it does */
+  bool direct; /* u goes evenly from end to end: near the base circle the flank stands still; else the place on it does
+                */
 };
 
 struct eo_flank_pieces {
@@ -52,6 +53,5 @@ struct eo_flank_row {
    from root to tip, b: from low y to high. */
 void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo_flank_row *row, double a, double b,
                           double point[3], double normal[3]);
-
 
 #endif

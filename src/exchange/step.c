@@ -24,14 +24,14 @@ struct writer {
 
 enum { SIDES = 4 };
 
-/* A smooth piece. Its sides: along p at q = 0, along q at p = 1, along p at q = 1, along q at p = 0; its corners (0, 0),
-   (1, 0), (1, 1), (0, 1). */
+/* A smooth piece. Its sides: along p at q = 0, along q at p = 1, along p at q = 1, along q at p = 0; its corners (0,
+   0), (1, 0), (1, 1), (0, 1). */
 struct face {
-  int i, j;            /* what is no flank: the piece along p and along q */
-  int group[2];        /* pieces that share a number of points along p, along q */
-  int edge[SIDES];     /* numbers in the part; -1: the side is one point */
-  int vertex[SIDES];   /* numbers in the part */
-  double error;        /* m */
+  int i, j;          /* what is no flank: the piece along p and along q */
+  int group[2];      /* pieces that share a number of points along p, along q */
+  int edge[SIDES];   /* numbers in the part; -1: the side is one point */
+  int vertex[SIDES]; /* numbers in the part */
+  double error;      /* m */
   struct eo_patch patch;
 };
 
@@ -478,8 +478,8 @@ static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bo
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
     if (good && part.error > tolerance)
-      eo_text_print(writer->text, "/* %s: up to %.3g nm off the exact surface */\n",
-                    eo_tooth_part_names[kind], 1e9 * part.error);
+      eo_text_print(writer->text, "/* %s: up to %.3g nm off the exact surface */\n", eo_tooth_part_names[kind],
+                    1e9 * part.error);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(writer, &part, number);
     free(part.face);

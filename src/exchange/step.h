@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One member as STEP (ISO 10303-21 with the schema of AP242): open shells of B-spline faces, one face per smooth piece,
-   neighbours with common edges, within 5 nm of the exact surface; a triangular relief has a kink across
-   its faces, and a comment in the file says how far off these are. Lengths in mm, frame as in tooth.h. */
+   within 5 nm of the exact surface; a comment in the file names what is further off and by how much. Neighbours have
+   common edges where their sides are one curve. Lengths in mm, frame as in tooth.h. */
 #ifndef EASEOFF_EXCHANGE_STEP_H
 #define EASEOFF_EXCHANGE_STEP_H
 

@@ -4,9 +4,7 @@
    radius in mid face. It faces +x, or -x where the pinion turns clockwise seen from its left end: that is the mirror
    image. Teeth have no thickness allowance. Flanks are modified over their active profile, tip included; what
    lies below it belongs to the root, unmodified: a relief is not defined there, and going on it can fold near the base
-   circle. Where the slope of a modification jumps (a linear relief's start, the border of a grid) the rack that makes
-   it has a corner, and what both sides generate meets with a step, 0.01 to 0.09 um normal to the flank on pairs of
-   module 3 to 5. Faces share an edge there, on one side of the step. */
+   circle. */
 #ifndef EASEOFF_EXCHANGE_TOOTH_H
 #define EASEOFF_EXCHANGE_TOOTH_H
 
@@ -54,8 +52,8 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
                            int member, int end, struct eo_error *error);
 void eo_tooth_done(struct eo_tooth *tooth);
 
-/* Where what is no flank is cut into smooth pieces (flanks: flank_pieces.h): parameters 0..1 along (0: profile, 1: face); 0 and 1 among them. Returns how
-   many, at least 2. */
+/* Where what is no flank is cut into smooth pieces (flanks: flank_pieces.h): parameters 0..1 along (0: profile, 1:
+   face); 0 and 1 among them. Returns how many, at least 2. */
 int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int direction,
                     double at[EO_TOOTH_PIECES + 1]);
 

@@ -9,6 +9,7 @@
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "exchange/exports.h"
+#include "exchange/flank_pieces.h"
 #include "exchange/patch.h"
 #include "exchange/step.h"
 #include "exchange/tooth.h"
@@ -398,6 +399,89 @@ static void check_loaded(const char *name, int member)
      nodes, 1e9 * largest);
 }
 
+/* Pieces of a flank with kinks lie on the surface that eo_tooth_point() has, what corners of the rack sweep between
+   its sides; the file says of no part that it is further off than allowed. */
+static void check_pieces(const char *what)
+{
+  double largest = 0, gap = 0, point[3], next[3], normal[3];
+  int swept = 0, pieces = 0;
+  for (int member = 0; member < 2; member++)
+    for (int coast = 0; coast < 2; coast++) {
+      static struct eo_flank_pieces flank;
+      struct eo_tooth tooth;
+      init(&tooth, member, EO_LEFT);
+      eo_flank_pieces_init(&flank, &tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE);
+      for (int k = 0; k < flank.count; k++) {
+        const struct eo_flank_piece *piece = &flank.piece[k];
+        struct eo_flank_row row = {.b = -1}, other = {.b = -1};
+        bool corner = piece->line[0] == piece->line[1];
+        swept += corner;
+        pieces++;
+        for (int i = 0; i < 9 && !corner; i++) {
+          eo_flank_piece_point(&flank, k, &row, 0.1 + 0.4 * (i % 3), 0.1 + 0.4 * (i / 3), point, NULL);
+          largest = fmax(largest, distance_from(&tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, point));
+        }
+        for (int i = 0; i <= 4 && k + 1 < flank.count && piece[1].band == piece->band; i++) {
+          eo_flank_piece_point(&flank, k, &row, 1, 0.1 + 0.2 * i, point, normal);
+          eo_flank_piece_point(&flank, k + 1, &other, 0, 0.1 + 0.2 * i, next, NULL);
+          gap = fmax(gap, fabs((next[0] - point[0]) * normal[0] + (next[1] - point[1]) * normal[1] +
+                               (next[2] - point[2]) * normal[2]));
+        }
+      }
+      eo_tooth_done(&tooth);
+    }
+  ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, within %.2g nm of the exact flank", what, pieces, swept,
+     1e9 * largest);
+  ok(gap < allowed / 2, "%s: pieces meet within %.2g nm, normal", what, 1e9 * gap);
+  for (int member = 0; member < 2; member++) {
+    struct eo_text text = {0};
+    eo_step_write(&design, &geometry, member, false, &text);
+    const char *word = strstr(text.data, "/* ");
+    ok(!text.failed && text.size < 1500000 && !word, "%s: %zu bytes, every spline within 5 nm %.60s", what, text.size,
+       word ? word : "");
+    eo_text_done(&text);
+  }
+}
+
+/* Kinks of every kind. */
+static void check_kinks(const char *name)
+{
+  for (int kind = 0; kind < 4; kind++) {
+    char what[100];
+    struct eo_error error;
+    static const char *const kinds[4] = {"linear reliefs", "linear reliefs and end reliefs", "corner relief", "grid"};
+    static const double u[3] = {-0.6e-3, 0, 0.9e-3}, y[3] = {-4e-3, 0, 5e-3},
+                        delta[9] = {1e-6, 2e-6, 3e-6, 0, 1e-6, 2e-6, 3e-6, 4e-6, 5e-6};
+    build(name);
+    for (int i = 0; i < 8; i++) {
+      struct eo_flank_modification *flank = i < 4 ? &design.modification.flank[i / 2][i % 2]
+                                                  : &design.modification.coast[i / 2 % 2][i % 2];
+      *flank = (struct eo_flank_modification){.lead_crowning = 5e-6, .helix_slope = 4e-6};
+      if (kind < 2) {
+        flank->shape = EO_RELIEF_LINEAR;
+        flank->tip_relief = 25e-6;
+        flank->tip_relief_start = 0.8e-3;
+        flank->root_relief = 12e-6;
+        flank->root_relief_start = 1.1e-3;
+      }
+      if (kind == 1) {
+        flank->end_relief[0] = flank->end_relief[1] = 15e-6;
+        flank->end_relief_length[0] = flank->end_relief_length[1] = 3e-3;
+        flank->end_shape[0] = EO_RELIEF_LINEAR;
+        flank->end_shape[1] = EO_RELIEF_CIRCULAR;
+      }
+      if (kind == 2)
+        flank->triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){8e-6, 1.5e-3, 5e-3, 1};
+      const struct eo_flank_grid grid = {3, 3, u, y, delta};
+      if (kind == 3 && eo_flank_grids_put(&design.grids, (enum eo_flank_side)(i / 4), i / 2 % 2, i % 2, &grid, &error))
+        printf("Bail out! %s\n", error.text);
+      flank->twist = kind == 2 ? 3e-6 : 0;
+    }
+    snprintf(what, sizeof what, "%s, %s", name, kinds[kind]);
+    check_pieces(what);
+  }
+}
+
 /* STL: */
 
 static float float_at(const char *bytes)
@@ -452,6 +536,10 @@ int main(void)
   } else
     ok(1, "loading in OpenCASCADE # SKIP gmsh is not installed");
   check_hands();
+  check_kinks("paper");
+  hand = "left";
+  check_kinks("single");
+  hand = "";
   /* pinion of the paper: between root and tip cylinders, 2 x 55 mm, and 50 mm of groove body 94.65 mm */
   double groove = 1e9 * M_PI * 0.047325 * 0.047325 * 0.05, low = 1e9 * M_PI * 0.04905 * 0.04905 * 0.11 + groove,
          high = 1e9 * M_PI * 0.0618 * 0.0618 * 0.11 + groove;
