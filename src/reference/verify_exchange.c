@@ -48,6 +48,12 @@ static void check_pairs(struct eo_verification *verification, struct eo_case *pa
 
 /* Design: */
 
+/* What a file says of any pair, but a case written before designs had these keys says nothing of. */
+static bool is_left_open(const char *path)
+{
+  return strcmp(path, "gear_pair.hand") == 0 || strcmp(path, "alignment.apex") == 0;
+}
+
 /* Every key the case states, and every other one that differs from what it has without being stated. */
 static void compare(struct eo_verification *verification, struct eo_case *where, const json_t *stated,
                     const json_t *expected, const json_t *found, const char *path)
@@ -81,6 +87,10 @@ static void compare(struct eo_verification *verification, struct eo_case *where,
     double tolerance = fmax(relative * fabs(wanted), absolute);
     if (stated || !(fabs(value_ - wanted) <= tolerance))
       eo_verify_derived(verification, where, path, value_, wanted, tolerance);
+  } else if (!stated && is_left_open(path)) {
+    if (!json_equal(expected, found))
+      eo_verify_note(verification, "%s is \"%s\" and not compared: the case does not state it", path,
+                     json_string_value(found));
   } else if (stated || !json_equal(expected, found))
     eo_verify_fact(verification, where, path, json_equal(expected, found));
 }
