@@ -26,7 +26,7 @@ struct workbook {
   bool date[FORMATS], custom[FORMATS];
   int formats;
   bool in_formats;
-  bool since_1904, failed;
+  bool since_1904, failed, typed; /* typed: a part has a document type */
   /* sheets */
   char best[NAME], current[NAME];
   int64_t cells, most; /* of the current sheet, of the best one */
@@ -219,6 +219,16 @@ static void XMLCALL end_cell(void *context, const char *name)
     eo_sheet_text_row(&workbook->out);
 }
 
+static void take_doctype(void *context, const char *name, const char *system, const char *public, int subset)
+{
+  struct workbook *workbook = context;
+  (void)name;
+  (void)system;
+  (void)public;
+  (void)subset;
+  workbook->typed = true;
+}
+
 static bool parse(struct workbook *workbook, XML_StartElementHandler begin, XML_EndElementHandler end)
 {
   XML_Parser parser = XML_ParserCreate(NULL);
@@ -229,12 +239,18 @@ static bool parse(struct workbook *workbook, XML_StartElementHandler begin, XML_
     XML_SetUserData(parser, workbook);
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_characters);
+    XML_SetStartDoctypeDeclHandler(parser, take_doctype);
   }
   while (!workbook->failed && got > 0 && (got = eo_archive_read(workbook->archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
-    if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK) {
-      eo_error_set(workbook->archive->error, EO_ERROR_INPUT, "",
-                   "The workbook is damaged: %s in line %lu of one of its parts.",
-                   XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
+    if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK || workbook->typed) {
+      if (workbook->typed)
+        eo_error_set(workbook->archive->error, EO_ERROR_INPUT, "",
+                     "A part of the workbook has a document type (<!DOCTYPE ...>), which can hold entities; a workbook "
+                     "has none, so it is refused: save it again in a spreadsheet program.");
+      else
+        eo_error_set(workbook->archive->error, EO_ERROR_INPUT, "",
+                     "The workbook is damaged: %s in line %lu of one of its parts.",
+                     XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
       got = -1;
     }
   if (workbook->failed)

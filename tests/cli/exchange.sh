@@ -69,6 +69,8 @@ run 1 "cut off" "$EASEOFF" import "$files/not-xml.rexs"
 says "line 4, column 1: The XML is not well-formed"
 run 1 "a document type" "$EASEOFF" import "$files/entity.rexs"
 says "document type"
+run 1 "a document type in a workbook" "$EASEOFF" import "$files/entity.xlsx"
+says "A part of the workbook has a document type"
 run 1 "as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
 prints '"kind": "not_a_boolean"'
 prints '"design": null'
