@@ -54,8 +54,9 @@ json_t *eo_result_right_face(const struct eo_result_source *source, int count, c
 
 /* The parts; each stands beside its writer. */
 extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
-    eo_outline_axial, eo_outline_face_load, eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress,
-    eo_outline_vibration, eo_outline_modification, eo_outline_rating, eo_outline_tribology, eo_outline_pitch;
+    eo_outline_axial, eo_outline_face_load, eo_outline_bodies, eo_outline_flexibility, eo_outline_impact,
+    eo_outline_root_stress, eo_outline_vibration, eo_outline_modification, eo_outline_rating, eo_outline_tribology,
+    eo_outline_pitch;
 extern const struct eo_outline eo_outline_value;    /* of a struct eo_objective_value */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 

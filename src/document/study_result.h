@@ -51,12 +51,12 @@ struct eo_study_result {
   int computed; /* by this process */
   int generations;
   struct eo_study_generation *generation; /* [generations]; owned, as all below */
-  int whole; /* rows told with all pairs as made; the others with the first of them alone */
-  int front_count, knee, weighted;        /* nsga2; indices into front, -1: none */
-  struct eo_study_point *front;           /* [front_count], without raw values */
-  struct eo_made_check check;             /* of what was found; pairs 0: none */
-  double seconds;                         /* wall */
-  double model_seconds;                   /* of it, while the model computed */
+  int whole;                       /* rows told with all pairs as made; the others with the first of them alone */
+  int front_count, knee, weighted; /* nsga2; indices into front, -1: none */
+  struct eo_study_point *front;    /* [front_count], without raw values */
+  struct eo_made_check check;      /* of what was found; pairs 0: none */
+  double seconds;                  /* wall */
+  double model_seconds;            /* of it, while the model computed */
   double store_seconds, optimizer_seconds;
   int threads;
 };

@@ -62,8 +62,8 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
 /* A line for each pair: number, inputs, outputs. */
 void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text);
 
-/* What can be told before any pair is computed. Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not
-   there). */
+/* What can be told before any pair is computed. Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is
+   not there). */
 enum eo_code eo_tolerance_check_limits(const struct eo_design *design, struct eo_error *error);
 
 /* Bytes that rows and statistics of the pairs take at their most crowded moment. */

@@ -79,7 +79,7 @@ static double over_states(const struct eo_objective *objective, int states, doub
 static void settle(const struct eo_objective *objective, int states, const struct eo_objective_value *one,
                    struct eo_objective_value *value)
 {
-  double part[PARTS], column[EO_MAX_PAIR_STATES];
+  double part[PARTS] = {0}, column[EO_MAX_PAIR_STATES];
   *value = (struct eo_objective_value){.nominal = NAN, .terms = objective->terms};
   for (int i = 0; i < states; i++) {
     value->violation += one[i].violation / states;
@@ -103,7 +103,7 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
                           struct eo_objective_value *value)
 {
   const struct eo_objective *objective = &design->objective;
-  struct eo_objective_value one[EO_MAX_PAIR_STATES];
+  struct eo_objective_value one[EO_MAX_PAIR_STATES] = {0};
   int scenarios = eo_evaluator_scenarios(design), states = eo_design_states(design), cases = design->load_cases,
       worst = 0;
   bool outside = eo_objective_relief_outside(&design->modification, geometry->rack_bottom, geometry->rack_top);

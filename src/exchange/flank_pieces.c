@@ -323,7 +323,8 @@ static bool stands_still(const struct eo_flank_pieces *pieces, const struct eo_f
   const double least = 0.05;
   bool still = false;
   for (int i = 0; i < ROWS * PLACES; i++) {
-    double from = pieces->y[piece->band], y = from + (i / PLACES + 0.5) / ROWS * (pieces->y[piece->band + 1] - from);
+    int row = i / PLACES;
+    double from = pieces->y[piece->band], y = from + (row + 0.5) / ROWS * (pieces->y[piece->band + 1] - from);
     double low = line_at(pieces, piece->line[0], y), high = line_at(pieces, piece->line[1], y),
            u = low + (high - low) * (i % PLACES) / (PLACES - 1);
     struct frame frame = frame_at(pieces, u, y), next = frame_at(pieces, u + difference, y);

@@ -32,10 +32,11 @@ enum eo_field_kind {
 };
 
 enum {
-  EO_FIELD_REQUIRED = 1,    /* no default */
-  EO_FIELD_NULLABLE = 2,    /* null is allowed: NaN inside (OBJECT: see count_offset); `derived` says what it means */
-  EO_FIELD_ASCENDING = 4,   /* NUMBERS: strictly increasing */
-  EO_FIELD_OMIT = 8,        /* OBJECT: left out of the encoded document while everything in it has its default; LIST: while empty */
+  EO_FIELD_REQUIRED = 1,  /* no default */
+  EO_FIELD_NULLABLE = 2,  /* null is allowed: NaN inside (OBJECT: see count_offset); `derived` says what it means */
+  EO_FIELD_ASCENDING = 4, /* NUMBERS: strictly increasing */
+  EO_FIELD_OMIT =
+      8, /* OBJECT: left out of the encoded document while everything in it has its default; LIST: while empty */
   EO_FIELD_SOMETIMES = 16,  /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
   EO_FIELD_WHOLE = 32,      /* NUMBER, SERIES: whole numbers alone */
   EO_FIELD_ENTRY = 64,      /* read and never written: another way to say what a key beside it holds */

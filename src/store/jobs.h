@@ -49,8 +49,8 @@ struct eo_stored_job {
   const char *started, *finished; /* "" without */
 };
 
-/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study", "tolerance". find: -1
-   when it is none. */
+/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study", "tolerance". find:
+   -1 when it is none. */
 const char *eo_store_job_state_name(enum eo_job_state state);
 const char *eo_store_job_kind_name(enum eo_job_kind kind);
 extern const char *const eo_store_job_states[], *const eo_store_job_kinds[]; /* by number; end with NULL */

@@ -234,10 +234,11 @@ static enum eo_code keep(void *context, int pair, const double *output, double c
   if (!room) {
     int count = 2 * run->waiting_room + MOST_WAITING;
     struct waiting *more = realloc(run->waiting, sizeof *more * (size_t)count);
-    if ((room = more != NULL)) {
+    if (more) {
       run->waiting = more;
       run->waiting_room = count;
     }
+    room = more != NULL;
   }
   if (room)
     run->waiting[run->waiting_count++] = (struct waiting){pair, output, cost};

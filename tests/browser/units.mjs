@@ -5,7 +5,8 @@ import { LOOSE, Server, chapter, finish, ok, openBrowser, settled } from './harn
 
 const PAIR =
   'gear_pair.pinion_teeth=23&gear_pair.gear_teeth=61&gear_pair.normal_module_mm=4&gear_pair.helix_angle_deg=24&' +
-  'gear_pair.face_width_mm=44&modification.pinion.left.tip_relief_um=18&modification.pinion.left.tip_relief_start_mm=3&' +
+  'gear_pair.face_width_mm=44&modification.pinion.left.tip_relief_um=18&' +
+  'modification.pinion.left.tip_relief_start_mm=3&' +
   'modification.pinion.left.lead_crowning_um=6&modification.pinion.right.tip_relief_um=18&' +
   'modification.pinion.right.tip_relief_start_mm=3';
 const PER_INCH = 25.4;
@@ -94,7 +95,8 @@ await chapter('in inches', async () => {
   ok(inch.headlineUnit === 'thou' && agree(metric.headline, inch.headline), `a number at the top: ${inch.headline}`);
   ok(/thou$/.test(inch.heading), `the unit of an axis: ${inch.heading}`);
   const last = text => number(/([−\d.]+)\s*$/.exec(text)?.[1] ?? 'NaN');
-  ok(agree(last(metric.reading), last(inch.reading), 0.002), `a readout: ${last(metric.reading)}, ${last(inch.reading)}`);
+  const [before, after] = [last(metric.reading), last(inch.reading)];
+  ok(agree(before, after, 0.002), `a readout: ${before}, ${after}`);
   ok(/ in thou: /.test(inch.said), 'the sentence about a figure');
   const radius = text => number(/pinion radius, (?:mm|in)\s+([\d.]+)/.exec(text)?.[1] ?? 'NaN');
   ok(/radius, in\b/.test(inch.tip) && agree(radius(metric.tip), radius(inch.tip), 1e-3), 'a place on a flank');

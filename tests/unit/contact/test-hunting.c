@@ -342,7 +342,8 @@ static void test_one_full_tooth(void)
   int most = 0;
   for (int i = 0; i < PINION; i++)
     most = h.tooth_load[0][0][i].value > h.tooth_load[0][0][most].value ? i : most;
-  ok(most == FULL, "a tooth whose face ends are fuller than the others' carries the largest load (%.0f N, tooth %d, %.0f N)",
+  ok(most == FULL,
+     "a tooth whose face ends are fuller than the others' carries the largest load (%.0f N, tooth %d, %.0f N)",
      h.tooth_load[0][0][FULL].value, most, h.tooth_load[0][0][most].value);
   complex double *line = malloc(sizeof *line * (size_t)(h.instants / 2 + 1));
   struct eo_error error;

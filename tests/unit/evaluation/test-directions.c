@@ -365,7 +365,8 @@ static struct eo_design turning(const struct eo_design *design, const char *hand
 static void test_hand_and_rotation(void)
 {
   static const char *const hands[2] = {"left", "right"}, *const rotations[2] = {"counterclockwise", "clockwise"};
-  struct eo_design design = plain_design(), turned;
+  static struct eo_design design, turned, derived;
+  design = plain_design();
   *design.gear_pair.hand = '\0';
   for (int hand = 0; hand < 2; hand++)
     for (int clockwise = 0; clockwise < 2; clockwise++) {
@@ -374,7 +375,7 @@ static void test_hand_and_rotation(void)
              eo_design_rotation(&turned) == (clockwise ? 1 : -1) && !*turned.alignment.pinion_rotation,
          "%s hand, %s: apex %d", hands[hand], rotations[clockwise], turned.alignment.apex);
       design.alignment.apex = turned.alignment.apex;
-      struct eo_design derived = turning(&design, "", rotations[clockwise]);
+      derived = turning(&design, "", rotations[clockwise]);
       ok(strcmp(derived.gear_pair.hand, hands[hand]) == 0, "apex and rotation ask for a %s hand", hands[hand]);
       design.alignment.apex = EO_APEX_TRAILING;
     }
@@ -387,11 +388,12 @@ static void test_hand_and_rotation(void)
    plane of the axes, the one that turns the same way that in a plane across them. */
 static void test_mirror(void)
 {
-  struct eo_design design = plain_design(), mirrored;
+  static struct eo_design design, mirrored;
   struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &form}, .own_pivots = true};
   struct eo_pair *two = pair, *single = NULL;
   struct eo_evaluator *of_two = evaluator;
   struct eo_error error;
+  design = plain_design();
   design.gear_pair.ends = 1;
   *design.gear_pair.hand = '\0';
   design.modification.flank[EO_PINION][EO_LEFT] = odd_flank(1);

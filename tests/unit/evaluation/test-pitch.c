@@ -130,7 +130,7 @@ static void test_stop(void)
   analysis->progress = &progress;
   run(&design);
   int asked = patience.asked;
-  for (int most = 1; most < asked; most += asked > 2 ? asked - 2 : 1) {
+  for (int most = 1; most<asked; most += asked> 2 ? asked - 2 : 1) {
     patience = (struct patience){.most = most};
     ok(asked > 2 && eo_analysis_run(analysis, &design, EO_WANT_PITCH, &error) == EO_ERROR_CANCELLED,
        "stopped when asked for the %dth of %d times", most + 1, asked);
