@@ -151,7 +151,9 @@ static const double ROUNDING = 1e-13; /* m, of approaches near 1e-5 m solved to 
 /* coast(delta(u, y), kappa, gamma, e) = drive(delta(u, -y), -kappa, gamma, -e), hand by hand. */
 static void test_coast(void)
 {
-  struct eo_design drive = odd_design(), coast = plain_design();
+  static struct eo_design drive, coast;
+  drive = odd_design();
+  coast = plain_design();
   for (int k = 0; k < 4; k++)
     coast.modification.coast[k / 2][k % 2] = turned_over(odd_flank(k));
   put_grid(&coast, EO_COAST_FLANK, EO_PINION, EO_LEFT, true);
@@ -179,7 +181,10 @@ static void test_coast(void)
 
 static void test_leading_apex(void)
 {
-  struct eo_design drive = plain_design(), coast = drive, leading = drive;
+  static struct eo_design drive, coast, leading;
+  drive = plain_design();
+  coast = drive;
+  leading = drive;
   for (int end = 0; end < 2; end++) {
     struct eo_flank_modification f = {.tip_relief = 12e-6, .tip_relief_start = 1.6e-3, .lead_crowning = 8e-6};
     drive.modification.flank[EO_PINION][end] = coast.modification.coast[EO_PINION][end] = f;
@@ -201,7 +206,10 @@ static void test_leading_apex(void)
 
 static void test_driver(void)
 {
-  struct eo_design design = odd_design(), gear = design, both = design;
+  static struct eo_design design, gear, both;
+  design = odd_design();
+  gear = design;
+  both = design;
   gear.load_case[0].driver = EO_GEAR;
   struct answer a = solve(&design), b = solve(&gear);
   ok(b.running.flank == EO_DRIVE_FLANK && b.running.backwards, "a speed increaser runs backwards on its drive flanks");
@@ -220,7 +228,8 @@ static void test_driver(void)
 /* The periodic state of a backwards run is that of the reversed curves: mesh orders have the same size. */
 static void test_backwards_vibration(void)
 {
-  struct eo_design design = odd_design();
+  static struct eo_design design;
+  design = odd_design();
   struct eo_geometry geometry;
   struct eo_error error;
   const struct eo_evaluation *r;
@@ -238,7 +247,9 @@ static void test_backwards_vibration(void)
 /* Left and right exchanged: flanks change places, both shaft angle errors their sign. */
 static void test_exchange(void)
 {
-  struct eo_design one = odd_design(), other = plain_design();
+  static struct eo_design one, other;
+  one = odd_design();
+  other = plain_design();
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < 2; end++)
       other.modification.flank[member][end] = one.modification.flank[member][1 - end];
@@ -258,7 +269,9 @@ static double swing_of(const struct answer *a)
 
 static void test_apex(void)
 {
-  struct eo_design design = odd_design(), offset = design;
+  static struct eo_design design, offset;
+  design = odd_design();
+  offset = design;
   double bb = pair->geometry.base_helix_angle, lean = sin(bb), e = 20e-6;
   offset.alignment.apex_offset[EO_PINION] = e;
   struct answer a = solve(&design), b = solve(&offset);
@@ -273,9 +286,14 @@ static void test_apex(void)
 
 static void test_stops(void)
 {
-  struct eo_design floating = odd_design();
+  static struct eo_design floating;
+  floating = odd_design();
   floating.alignment.apex_offset[EO_PINION] = 60e-6;
-  struct eo_design wide = floating, tight = floating, spring = floating, narrow = floating;
+  static struct eo_design wide, tight, spring, narrow;
+  wide = floating;
+  tight = floating;
+  spring = floating;
+  narrow = floating;
   wide.alignment.pinion_axial = tight.alignment.pinion_axial = narrow.alignment.pinion_axial = EO_AXIAL_STOPS;
   spring.alignment.pinion_axial = EO_AXIAL_SPRING;
   wide.alignment.pinion_axial_clearance = 1e-3;
@@ -291,7 +309,8 @@ static void test_stops(void)
 
 static void test_thrust(void)
 {
-  struct eo_design design = odd_design();
+  static struct eo_design design;
+  design = odd_design();
   double lean = sin(pair->geometry.base_helix_angle);
   design.alignment.coupling_thrust = 1000;
   struct answer a = solve(&design);
@@ -311,7 +330,9 @@ static void test_thrust(void)
 static void test_sampled_grid(void)
 {
   enum { U = 25, Y = 31 };
-  struct eo_design named = plain_design(), sampled = named;
+  static struct eo_design named, sampled;
+  named = plain_design();
+  sampled = named;
   struct eo_flank_modification f = {
       .twist = 12e-6, .profile_slope = 5e-6, .helix_slope = -7e-6, .profile_barrel = 6e-6, .lead_crowning = 8e-6};
   struct eo_modification_shape shape;
@@ -336,7 +357,9 @@ static void test_sampled_grid(void)
 
 static void test_own_alignment(void)
 {
-  struct eo_design design = odd_design(), other = design;
+  static struct eo_design design, other;
+  design = odd_design();
+  other = design;
   design.load_cases = 2;
   design.load_case[1] = design.load_case[0];
   design.load_case[0].share = design.load_case[1].share = 0.5;
@@ -351,7 +374,8 @@ static void test_own_alignment(void)
 
 static struct eo_design turning(const struct eo_design *design, const char *hand, const char *rotation)
 {
-  struct eo_design turned = *design;
+  static struct eo_design turned;
+  turned = *design;
   struct eo_geometry geometry;
   struct eo_error error;
   snprintf(turned.gear_pair.hand, sizeof turned.gear_pair.hand, "%s", hand);
@@ -434,7 +458,8 @@ static void test_mirror(void)
 
 int main(void)
 {
-  struct eo_design design = plain_design();
+  static struct eo_design design;
+  design = plain_design();
   struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &form}, .own_pivots = true};
   struct eo_error error;
   if (eo_pair_new(&pair, &design, &options, NULL, &error) || eo_evaluator_new(&evaluator, pair, 2, &error))
