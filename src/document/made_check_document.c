@@ -38,20 +38,12 @@ struct number {
   struct percentile percentile[PERCENTS];
 };
 
-static json_t *append(json_t *array, json_t *value)
-{
-  if (array && json_array_append_new(array, value) == 0)
-    return array;
-  json_decref(array);
-  return NULL;
-}
-
 static json_t *write_percentiles(const void *source)
 {
   const struct number *number = source;
   json_t *array = json_array();
   for (int i = 0; i < PERCENTS && array; i++)
-    array = append(array, eo_outline_encode(&percentile_outline, &number->percentile[i]));
+    array = eo_json_append(array, eo_outline_encode(&percentile_outline, &number->percentile[i]));
   return array;
 }
 
@@ -134,7 +126,7 @@ static json_t *write_numbers(const void *source)
   json_t *array = json_array();
   for (int k = 0; k < row->check->numbers && array; k++) {
     describe_number(row, k, &number);
-    array = append(array, eo_outline_encode(&number_outline, &number));
+    array = eo_json_append(array, eo_outline_encode(&number_outline, &number));
   }
   return array;
 }
@@ -184,7 +176,7 @@ static json_t *write_designs(const void *source)
     row.failed = 0;
     snprintf(row.name, sizeof row.name, "%s", whole->check->name[i]);
     count_worse(&row);
-    array = append(array, eo_outline_encode(&row_outline, &row));
+    array = eo_json_append(array, eo_outline_encode(&row_outline, &row));
   }
   free(row.column);
   return array;

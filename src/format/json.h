@@ -43,5 +43,8 @@ double eo_json_find_number(const json_t *value, const char *path);
 
 /* Sets object[key] and takes the value over; a NULL value or a failed insertion sets *failed (may be set before). */
 void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed);
+/* Appends a new value to the array, which it returns; NULL, and both let go, when either is NULL or there is no memory.
+ */
+json_t *eo_json_append(json_t *array, json_t *value);
 
 #endif

@@ -331,6 +331,14 @@ json_t *eo_json_reals(int count, const double *value, int stride, const struct e
   return array;
 }
 
+json_t *eo_json_append(json_t *array, json_t *value)
+{
+  if (json_array_append_new(array, value) == 0)
+    return array;
+  json_decref(array);
+  return NULL;
+}
+
 void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed)
 {
   if (*failed || !value) {
