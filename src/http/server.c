@@ -72,6 +72,8 @@ static void look_at_body(struct eo_request *request)
   if (!request->reply.status && has_body && route && route->takes && !any && type &&
       strncasecmp(type, expected, strlen(expected)) != 0)
     eo_reply_problem(&request->reply, 415, NULL, "The body must be %s.", expected);
+  if (!request->reply.status && has_body && any && type && strncasecmp(type, "multipart/", 10) == 0)
+    eo_reply_problem(&request->reply, 415, NULL, "The body must be the file itself, not the parts of a form.");
   if (!request->reply.status && (uint64_t)size > request->body_limit)
     eo_reply_problem(&request->reply, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
   if (!request->reply.status && route && route->form)

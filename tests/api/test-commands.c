@@ -264,6 +264,8 @@ static const struct command analyses[] = {
     {"no such pair", "POST", API "/import?pair=9", .body = &stages, .status = 422, .pointer = "imported/faults/0/kind",
      .value = "no_such_pair"},
     {"a flank that is none", "POST", API "/import?flank=upper", .body = &spur, .status = 400},
+    {"a file in the parts of a form", "POST", API "/import", "Content-Type: multipart/form-data; boundary=x\r\n",
+     .text = "--x\r\n\r\n<a>\r\n--x--\r\n", .status = 415},
     {"no model", "POST", API "/import", .text = "<a>", .status = 422, .pointer = "imported/faults/0/kind",
      .value = "not_rexs"},
     {"no such format", "POST", API "/export/picture", .body = &coarse, .status = 404},
