@@ -135,12 +135,12 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *request,
   read_columns(json_object_get(document, "columns"), request, faults);
 }
 
-static const char *unit_of(const struct eo_track_channel *channel)
+static enum eo_layout_unit unit_of(const struct eo_track_channel *channel)
 {
-  return fabs(channel->scale - 1) < 1e-12                ? "rad"
-         : fabs(channel->scale * 180 / M_PI - 1) < 1e-12 ? "deg"
-         : fabs(channel->scale / (2 * M_PI) - 1) < 1e-12 ? "turn"
-                                                         : "count";
+  return fabs(channel->scale - 1) < 1e-12                ? EO_LAYOUT_RADIAN
+         : fabs(channel->scale * 180 / M_PI - 1) < 1e-12 ? EO_LAYOUT_DEGREE
+         : fabs(channel->scale / (2 * M_PI) - 1) < 1e-12 ? EO_LAYOUT_TURN
+                                                         : EO_LAYOUT_COUNT;
 }
 
 static json_t *encode_column(const struct eo_track_source *source, enum eo_track track)
@@ -152,51 +152,77 @@ static json_t *encode_column(const struct eo_track_source *source, enum eo_track
 
 static const char *const no_time[] = {"none", NULL};
 
+/* A layout as it is written. */
+struct layout {
+  int kind, unit, time_unit;
+  bool angles, timed, with_unit, even, with_lines;
+  json_t *time, *sample_rate; /* sample_rate: whole, as it is read again */
+  json_t *column[2];
+  struct eo_series lines;
+};
+
+#define OF_LAYOUT(member) EO_AT(struct layout, member)
+#define WHERE(flag) EO_IF(struct layout, flag)
 static const struct eo_outline_row column_rows[] = {
-    EO_KEY("pinion", "integer|[integer]", "of the pinion's encoder: a number from 1, or sine and cosine"),
-    EO_KEY("gear", "integer|[integer]", "of the gear's encoder, likewise"),
+    EO_KEY("pinion", "integer|[integer]", "of the pinion's encoder: a number from 1, or sine and cosine",
+           OF_LAYOUT(column[0])),
+    EO_KEY("gear", "integer|[integer]", "of the gear's encoder, likewise", OF_LAYOUT(column[1])),
 };
 static const struct eo_outline column_outline = EO_OUTLINE("LayoutColumns", column_rows);
 
+static json_t *write_columns(const void *source)
+{
+  return eo_outline_encode(&column_outline, source);
+}
+
 static const struct eo_outline_row layout_rows[] = {
-    EO_KEY("kind", "word", "what the columns hold", .words = kinds + 1),
-    EO_KEY("unit", "word", "of the angles", .when = "of angles and counts", .words = units + 1),
+    EO_KEY("kind", "word", "what the columns hold", .words = kinds + 1, OF_LAYOUT(kind)),
+    EO_KEY("unit", "word", "of the angles", .when = "of angles and counts", .words = units + 1, OF_LAYOUT(unit),
+           WHERE(angles)),
     EO_KEY("time", "integer|word|[integer]", "column of the time, from 1, or none; the pinion's and the gear's",
-           .when = "but of pulses", .words = no_time),
-    EO_KEY("time_unit", "word", "of the time", .when = "where it is one of these", .words = times),
-    EO_KEY("sample_rate_Hz", "number", "rows per second", .unit = &eo_unit_Hz, .when = "without a column of the time"),
-    EO_KEY("columns", "object", "where each encoder is", .outline = &column_outline),
-    EO_KEY("lines", "[number]", "per turn of the pinion's and the gear's encoder", .when = "but of angles"),
+           .when = "but of pulses", .words = no_time, OF_LAYOUT(time), WHERE(timed)),
+    EO_KEY("time_unit", "word", "of the time", .when = "where it is one of these", .words = times, OF_LAYOUT(time_unit),
+           WHERE(with_unit)),
+    EO_KEY("sample_rate_Hz", "number", "rows per second", .unit = &eo_unit_Hz, .when = "without a column of the time",
+           OF_LAYOUT(sample_rate), WHERE(even)),
+    EO_KEY("columns", "object", "where each encoder is", .outline = &column_outline, .write = write_columns),
+    EO_KEY("lines", "[number]", "per turn of the pinion's and the gear's encoder", .when = "but of angles",
+           OF_LAYOUT(lines), WHERE(with_lines)),
 };
 const struct eo_outline eo_layout_outline = EO_OUTLINE("Layout", layout_rows);
 
+static json_t *encode_time(const struct eo_track_source source[2])
+{
+  bool one = source[0].time == source[1].time || source[0].time < 0 || source[1].time < 0;
+  return source[0].time < 0 ? json_string(no_time[0])
+         : one              ? json_integer(source[0].time + 1)
+                            : json_pack("[i, i]", source[0].time + 1, source[1].time + 1);
+}
+
 json_t *eo_layout_encode(const struct eo_tracks *tracks)
 {
+  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
   const struct eo_track_channel *channel = tracks->channel;
-  struct eo_object object = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
-  bool angles = channel[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&channel[0]), "count") == 0;
+  const struct eo_track_source *source = tracks->source;
+  bool angles = channel[0].track == EO_TRACK_ANGLE;
+  enum eo_layout_unit unit = unit_of(&channel[0]);
   double lines[2] = {angles ? 2 * M_PI / channel[0].scale : channel[0].lines,
                      angles ? 2 * M_PI / channel[1].scale : channel[1].lines};
-  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
-  const struct eo_track_source *source = tracks->source;
-  bool one = source[0].time == source[1].time || source[0].time < 0 || source[1].time < 0;
-  eo_object_put(&object, "kind", json_string(kinds[1 + (int)channel[0].track]));
-  if (angles)
-    eo_object_put(&object, "unit", json_string(unit_of(&channel[0])));
-  if (channel[0].track != EO_TRACK_PULSES)
-    eo_object_put(&object, "time",
-                  source[0].time < 0 ? json_string(no_time[0])
-                  : one              ? json_integer(source[0].time + 1)
-                                     : json_pack("[i, i]", source[0].time + 1, source[1].time + 1));
+  struct layout layout = {.kind = (int)channel[0].track,
+                          .unit = (int)unit - EO_LAYOUT_DEGREE,
+                          .angles = angles,
+                          .timed = channel[0].track != EO_TRACK_PULSES,
+                          .even = source[0].time < 0 && tracks->interval > 0,
+                          .with_lines = !angles || unit == EO_LAYOUT_COUNT,
+                          .time = encode_time(source),
+                          .sample_rate = eo_json_real(1 / tracks->interval, NULL),
+                          .lines = eo_series_of(2, lines, EO_DIGITS_NUMBER)};
   for (int i = 0; times[i]; i++)
-    if (fabs(source[0].time_scale / time_scale[i] - 1) < 1e-9)
-      eo_object_put(&object, "time_unit", json_string(times[i]));
-  if (source[0].time < 0 && tracks->interval > 0)
-    eo_object_put(&object, "sample_rate_Hz", eo_json_real(1 / tracks->interval, NULL));
+    if (fabs(source[0].time_scale / time_scale[i] - 1) < 1e-9) {
+      layout.time_unit = i;
+      layout.with_unit = true;
+    }
   for (int i = 0; i < 2; i++)
-    eo_object_put(&columns, member_key[i], encode_column(&source[i], channel[i].track));
-  eo_object_put(&object, "columns", eo_object_close(&columns));
-  if (!angles || counts)
-    eo_object_put(&object, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
-  return eo_object_close(&object);
+    layout.column[i] = encode_column(&source[i], channel[i].track);
+  return eo_outline_encode(&eo_layout_outline, &layout);
 }

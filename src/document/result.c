@@ -309,96 +309,123 @@ static json_t *encode_timing(const struct eo_result_source *source)
   return eo_outline_encode(&timing, &seconds);
 }
 
-static const struct eo_outline_row result_rows[] = {
-    EO_KEY("program", "text", "name and version"),
+/* What stands before the load cases. */
+struct result_head {
+  const char *program;
+  json_t *design, *assumed, *dimensions, *flexibility, *modification, *unloaded;
+  char design_hash[EO_HASH_LENGTH + 1], evaluation_hash[EO_HASH_LENGTH + 1];
+  struct eo_resolution resolution;
+  struct eo_geometry geometry;
+};
+
+#define OF_HEAD(member) EO_AT(struct result_head, member)
+static const struct eo_outline_row head_rows[] = {
+    EO_KEY("program", "text", "name and version", OF_HEAD(program)),
     EO_KEY("design", "object?", "with every default resolved; null when left out", .table = &eo_design_table,
-           .name = "ResolvedDesign"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("evaluation_hash", "text", "the same without name, rating, pitch, objective and optimization"),
+           .name = "ResolvedDesign", OF_HEAD(design)),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design", OF_HEAD(design_hash)),
+    EO_KEY("evaluation_hash", "text", "the same without name, rating, pitch, objective and optimization",
+           OF_HEAD(evaluation_hash)),
     EO_KEY("assumed", "[object]?",
            "what the design does not state, the value taken, and by which rule; null when left out",
-           .outline = &eo_outline_assumption),
-    EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
-    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+           .outline = &eo_outline_assumption, OF_HEAD(assumed)),
+    EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution",
+           OF_HEAD(resolution)),
+    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry", OF_HEAD(geometry)),
     EO_KEY("dimensions", "object?", "what is measured on the members and between them; null when left out",
-           .outline = &eo_outline_dimensions),
-    EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
-    EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification),
-    EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
-    EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline),
-    EO_KEY("objectives", "object", "of the duty cycle", .outline = &objectives_outline),
+           .outline = &eo_outline_dimensions, OF_HEAD(dimensions)),
+    EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility,
+           OF_HEAD(flexibility)),
+    EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification,
+           OF_HEAD(modification)),
+    EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded,
+           OF_HEAD(unloaded)),
+};
+static const struct eo_outline head_outline = EO_OUTLINE(NULL, head_rows);
+
+struct result_cases {
+  json_t *cases;
+};
+static const struct eo_outline_row cases_rows[] = {
+    EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline,
+           EO_AT(struct result_cases, cases)),
+};
+static const struct eo_outline cases_outline = EO_OUTLINE(NULL, cases_rows);
+
+/* What stands behind them. */
+struct result_tail {
+  struct eo_series frequency, damping_ratio;
+  json_t *objectives, *rating, *tribology, *pitch, *warnings, *findings, *timing;
+};
+
+#define OF_TAIL(member) EO_AT(struct result_tail, member)
+static const struct eo_outline_row tail_rows[] = {
+    EO_KEY("objectives", "object", "of the duty cycle", .outline = &objectives_outline, OF_TAIL(objectives)),
     EO_KEY("eigenfrequencies_Hz", "[number?]?", "with the mean mesh stiffness of the load case with the heaviest share",
-           .unit = &eo_unit_Hz),
-    EO_KEY("damping_ratios", "[number?]?", "of these modes"),
+           .unit = &eo_unit_Hz, OF_TAIL(frequency)),
+    EO_KEY("damping_ratios", "[number?]?", "of these modes", OF_TAIL(damping_ratio)),
     EO_KEY("rating", "object?", "load capacity by ISO 6336; null when it was not asked for",
-           .outline = &eo_outline_rating),
+           .outline = &eo_outline_rating, OF_TAIL(rating)),
     EO_KEY("tribology", "object?", "sliding, flash temperature, film; null when it was not asked for",
-           .outline = &eo_outline_tribology),
+           .outline = &eo_outline_tribology, OF_TAIL(tribology)),
     EO_KEY("pitch", "object?",
            "single teeth over the hunting period; null when the design states none or they were not asked for",
-           .outline = &eo_outline_pitch),
-    EO_KEY("warnings", "[text]", "in plain words"),
-    EO_KEY("findings", "[object]", "those of them that belong to a field of the design",
-           .outline = &eo_outline_finding),
-    EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
+           .outline = &eo_outline_pitch, OF_TAIL(pitch)),
+    EO_KEY("warnings", "[text]", "in plain words", OF_TAIL(warnings)),
+    EO_KEY("findings", "[object]", "those of them that belong to a field of the design", .outline = &eo_outline_finding,
+           OF_TAIL(findings)),
+    EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing, OF_TAIL(timing)),
+};
+static const struct eo_outline tail_outline = EO_OUTLINE(NULL, tail_rows);
+
+static const struct eo_outline_row result_rows[] = {
+    {.outline = &head_outline},
+    {.outline = &cases_outline},
+    {.outline = &tail_outline},
 };
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
-enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
-
-static void put_identity(struct eo_object *object, const struct eo_design *design, bool rating, bool whole,
-                         bool assumed)
-{
-  char hash[EO_HASH_LENGTH + 1];
-  eo_object_put(object, "program", json_string(PACKAGE_STRING));
-  eo_object_put(object, "design", whole ? eo_design_encode(design) : json_null());
-  eo_object_put(object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(object, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(object, "assumed", assumed ? eo_assumptions_encode(design, rating) : json_null());
-  eo_object_put(object, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
-}
 
 json_t *eo_result_head(struct eo_result_source *source)
 {
-  struct eo_object object = eo_object_open_as(&eo_result_outline);
-  bool whole = eo_result_has(source, EO_RESULT_NO_DESIGN, NULL);
-  bool assumed = eo_result_has(source, EO_RESULT_NO_ASSUMED, NULL);
-  put_identity(&object, source->design, source->analysis->want & EO_WANT_RATING, whole, assumed);
-  eo_object_put(&object, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
-  eo_object_put(&object, "dimensions",
-                assumed ? eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry) : json_null());
-  eo_object_put(&object, "flexibility", eo_result_flexibility(source));
-  eo_object_put(&object, "modification",
-                eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL) ? eo_result_modification(source) : json_null());
-  eo_object_put(&object, "unloaded_contact", eo_result_unloaded(source));
-  return eo_object_close_part(&object);
+  const struct eo_design *design = source->design;
+  const struct eo_geometry *geometry = &source->pair->geometry;
+  bool rating = source->analysis->want & EO_WANT_RATING, whole = eo_result_has(source, EO_RESULT_NO_DESIGN, NULL),
+       assumed = eo_result_has(source, EO_RESULT_NO_ASSUMED, NULL),
+       modification = eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL);
+  struct result_head head = {.program = PACKAGE_STRING, .resolution = design->resolution, .geometry = *geometry};
+  if (eo_design_hash(design, head.design_hash, NULL) || eo_design_evaluation_hash(design, head.evaluation_hash, NULL))
+    return NULL;
+  head.design = whole ? eo_design_encode(design) : json_null();
+  head.assumed = assumed ? eo_assumptions_encode(design, rating) : json_null();
+  head.dimensions = assumed ? eo_dimensions_encode(&design->gear_pair, geometry) : json_null();
+  head.flexibility = eo_result_flexibility(source);
+  head.modification = modification ? eo_result_modification(source) : json_null();
+  head.unloaded = eo_result_unloaded(source);
+  return eo_outline_encode(&head_outline, &head);
 }
 
 json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
 {
   const struct eo_dynamics_modes *modes = &source->evaluation->modes;
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
-  struct eo_object object = eo_object_open_as(&eo_result_outline);
-  object.next = CASES_ROW + 1;
-  eo_object_put(&object, "objectives", eo_result_objectives(source));
-  eo_object_put(&object, "eigenfrequencies_Hz",
-                have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&object, "damping_ratios",
-                have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
-  eo_object_put(&object, "rating", eo_result_rating(source));
-  eo_object_put(&object, "tribology", eo_result_tribology(source));
-  eo_object_put(&object, "pitch", eo_result_pitch(source));
-  eo_object_put(&object, "warnings", eo_result_warnings(source, warnings));
-  eo_object_put(&object, "findings", eo_design_findings(warnings));
-  eo_object_put(&object, "timing_ms", encode_timing(source));
-  return eo_object_close(&object);
+  const struct result_tail tail = {
+      .frequency = eo_series_of(modes->n, have_modes ? modes->frequency : NULL, EO_DIGITS_CURVE),
+      .damping_ratio = eo_series_of(modes->n, have_modes ? modes->damping_ratio : NULL, EO_DIGITS_CURVE),
+      .objectives = eo_result_objectives(source),
+      .rating = eo_result_rating(source),
+      .tribology = eo_result_tribology(source),
+      .pitch = eo_result_pitch(source),
+      .warnings = eo_result_warnings(source, warnings),
+      .findings = eo_design_findings(warnings),
+      .timing = encode_timing(source)};
+  return eo_outline_encode(&tail_outline, &tail);
 }
 
 static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
 {
-  struct eo_object object = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
-  object.failed = !object.json;
-  eo_object_put(&object, "load_cases", encode_cases(source));
-  return unite(eo_object_close_part(&object), eo_result_tail(source, warnings));
+  json_t *head = eo_result_head(source);
+  const struct result_cases cases = {encode_cases(source)};
+  return unite(unite(head, eo_outline_encode(&cases_outline, &cases)), eo_result_tail(source, warnings));
 }
 
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design,

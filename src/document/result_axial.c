@@ -7,38 +7,45 @@
 static const char *const rotations[] = {"counterclockwise", "clockwise", NULL};
 static const char *const first_faces[] = {"outer", "inner", "left", "right", NULL};
 
+struct axial_forces {
+  int rotation, first; /* first: -1 without a helix */
+  bool two;
+  double pinion[2], sum;
+};
+
+#define OF_AXIAL(member) EO_AT(struct axial_forces, member)
 static const struct eo_outline_row rows[] = {
-    EO_KEY("pinion_rotation", "word", "seen from the pinion's left end", .words = rotations),
+    EO_KEY("pinion_rotation", "word", "seen from the pinion's left end", .words = rotations, OF_AXIAL(rotation)),
     EO_KEY("meets_first", "word?",
            "face ends at which contact enters: outer or inner (at the groove) of two ends, left or right of one; null "
            "without a helix",
-           .words = first_faces),
+           .words = first_faces, OF_AXIAL(first)),
     EO_KEY(
         "pinion_left_N", "number?",
         "axial force of the teeth on the pinion's left end, + to the right, mean over the mesh cycle; the gear takes "
         "the opposite one",
-        .unit = &eo_unit_N),
-    EO_KEY("pinion_right_N", "number?", "the same, right end", .unit = &eo_unit_N, .when = EO_TWO_ENDS),
-    EO_KEY("pinion_N", "number?", "what its bearings and the coupling hold: their sum", .unit = &eo_unit_N),
+        .unit = &eo_unit_N, OF_AXIAL(pinion[EO_LEFT])),
+    EO_KEY("pinion_right_N", "number?", "the same, right end", .unit = &eo_unit_N, .when = EO_TWO_ENDS,
+           OF_AXIAL(pinion[EO_RIGHT]), EO_IF(struct axial_forces, two)),
+    EO_KEY("pinion_N", "number?", "what its bearings and the coupling hold: their sum", .unit = &eo_unit_N,
+           OF_AXIAL(sum)),
 };
 const struct eo_outline eo_outline_axial = EO_OUTLINE("AxialForces", rows);
 
 json_t *eo_result_axial(const struct eo_result_source *source, const struct eo_case_result *case_result)
 {
   const struct eo_running *running = &case_result->running;
-  struct eo_object object = eo_object_open_as(&eo_outline_axial);
   bool astern = case_result->load_case.direction == EO_ASTERN, two = source->ends == 2,
        helical = source->pair->geometry.helix_angle > 0;
-  double sum = 0, out = running->inwards ? -1 : 1;
-  eo_object_put(&object, "pinion_rotation", json_string(rotations[(eo_design_rotation(source->design) > 0) != astern]));
-  eo_object_put(&object, "meets_first",
-                helical ? json_string(first_faces[(two ? 0 : 2) + running->inwards]) : json_null());
+  struct axial_forces axial = {.rotation = (eo_design_rotation(source->design) > 0) != astern,
+                               .first = helical ? (two ? 0 : 2) + running->inwards : -1,
+                               .two = two};
+  double out = running->inwards ? -1 : 1;
   for (int end = 0; end < source->ends; end++) {
     double lean = sin(eo_pair_half(source->pair, end)->geometry.base_helix_angle);
-    double force = (end == EO_LEFT ? -out : out) * lean * eo_result_mean_load(source, case_result, end);
-    eo_object_put_number(&object, end == EO_LEFT ? "pinion_left_N" : "pinion_right_N", force); /* theory (F10) */
-    sum += force;
+    axial.pinion[end] = (end == EO_LEFT ? -out : out) * lean *
+                        eo_result_mean_load(source, case_result, end); /* theory (F10) */
+    axial.sum += axial.pinion[end];
   }
-  eo_object_put_number(&object, "pinion_N", sum);
-  return eo_object_close(&object);
+  return eo_outline_encode(&eo_outline_axial, &axial);
 }

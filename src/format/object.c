@@ -2,10 +2,8 @@
 #include "format/object.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "format/json.h"
-#include "format/outline_row.h"
 
 json_t *eo_json_quantity(double value, const struct eo_unit *unit)
 {
@@ -32,31 +30,8 @@ struct eo_object eo_object_open(void)
   return object;
 }
 
-struct eo_object eo_object_open_as(const struct eo_outline *outline)
-{
-  struct eo_object object = eo_object_open();
-  object.outline = outline;
-  return object;
-}
-
-/* Steps to the row of a key, NULL: to the end; NULL when a row that is always there would be passed over. */
-static const struct eo_outline_row *step(struct eo_object *object, const char *key)
-{
-  const struct eo_outline_row *row;
-  while ((row = eo_outline_at(object->outline, object->next))) {
-    object->next++;
-    if (key && strcmp(row->key, key) == 0)
-      return row;
-    object->failed = object->failed || !row->when;
-  }
-  object->failed = object->failed || key;
-  return NULL;
-}
-
 void eo_object_put(struct eo_object *object, const char *key, json_t *value)
 {
-  if (object->outline)
-    step(object, key);
   eo_json_put(object->json, key, value, &object->failed);
 }
 
@@ -72,23 +47,10 @@ void eo_list_add(struct eo_object *list, json_t *value)
   list->failed = json_array_append_new(list->json, value) != 0 || list->failed;
 }
 
-void eo_object_put_number(struct eo_object *object, const char *key, double value)
-{
-  const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;
-  eo_json_put(object->json, key, row ? eo_json_quantity(value, row->unit) : NULL, &object->failed);
-}
-
-json_t *eo_object_close_part(struct eo_object *object)
+json_t *eo_object_close(struct eo_object *object)
 {
   if (!object->failed)
     return object->json;
   json_decref(object->json);
   return NULL;
-}
-
-json_t *eo_object_close(struct eo_object *object)
-{
-  if (object->outline)
-    step(object, NULL);
-  return eo_object_close_part(object);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JSON objects as they are written: numbers with their unit and digits, keys in the order of an outline. */
+/* JSON objects as they are written, numbers with their unit and digits. What the program answers with has an outline
+   (outline.h) that writes it; this is for what has none: objects of another's form, and keys that are data. */
 #ifndef EASEOFF_FORMAT_OBJECT_H
 #define EASEOFF_FORMAT_OBJECT_H
 
@@ -8,8 +9,6 @@
 #include <jansson.h>
 
 #include "format/unit.h"
-
-struct eo_outline;
 
 /* Significant digits of what is written. */
 enum { EO_DIGITS_CURVE = 9, EO_DIGITS_MAP = 6, EO_DIGITS_NUMBER = 12 };
@@ -20,24 +19,16 @@ json_t *eo_json_quantity(double value, const struct eo_unit *unit);
 /* value[count] times scale. */
 json_t *eo_json_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits);
 
-/* A JSON object while it is written: object[key] = value; what is missing marks the object itself as failed. With an
-   outline, so does a key that it does not have next (rows that are not always there may be passed over): a defect of
-   the writer, which the first test that comes by finds. */
+/* A JSON object while it is written: object[key] = value; what is missing marks the object itself as failed. */
 struct eo_object {
   json_t *json;
   bool failed;
-  const struct eo_outline *outline; /* NULL: free */
-  int next;                         /* row */
 };
 struct eo_object eo_object_open(void);
-struct eo_object eo_object_open_as(const struct eo_outline *outline);
 void eo_object_put(struct eo_object *object, const char *key, json_t *value);
-void eo_object_put_number(struct eo_object *object, const char *key,
-                          double value); /* SI; the outline's row has the unit */
 /* An array while it is written: the same struct, opened so. */
 struct eo_object eo_list_open(void);
 void eo_list_add(struct eo_object *list, json_t *value);
-json_t *eo_object_close(struct eo_object *object);      /* NULL when anything failed, or is missing of the outline */
-json_t *eo_object_close_part(struct eo_object *object); /* the same where others write the rows behind */
+json_t *eo_object_close(struct eo_object *object); /* NULL when anything failed */
 
 #endif

@@ -140,8 +140,11 @@ void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, 
       eo_outline_put(object, row->outline, (const char *)source + row->offset);
     else if (is_there(row, source))
       eo_object_put(object, row->key, encode(row, source));
-    else if (row->member == EO_MEMBER_JSON)
-      json_decref(encode(row, source));
+    else {
+      object->failed = object->failed || !row->when;
+      if (row->member == EO_MEMBER_JSON)
+        json_decref(encode(row, source));
+    }
   }
 }
 
@@ -163,7 +166,7 @@ static json_t *take_each(const struct eo_outline *outline, const json_t *array)
 
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document)
 {
-  struct eo_object object = eo_object_open_as(outline);
+  struct eo_object object = eo_object_open();
   const struct eo_outline_row *row;
   for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
     json_t *value = json_object_get(document, row->key);
@@ -172,6 +175,8 @@ json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document
     else if (value)
       eo_object_put(&object, row->key,
                     row->outline && json_is_object(value) ? eo_outline_take(row->outline, value) : json_incref(value));
+    else
+      object.failed = object.failed || !row->when;
   }
   return eo_object_close(&object);
 }

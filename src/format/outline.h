@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outlines: what stands in a document that the program writes, one outline per object, its rows in the order of
    writing. A row says of which member of a struct its value is, or names the function that writes it; so the same row
-   writes a key (eo_outline_encode()) and describes it in the API. Where code must put the values itself (a part of a
-   document that several threads write), it opens the object with its outline (object.h) and can then put nothing that
-   is not in it, nor leave out what is.
+   writes a key (eo_outline_encode()) and describes it in the API; there is no other way to write an answer that has an
+   outline. A document that several threads write has an outline for each part, and one of all that includes them.
 
    shape: number, integer, flag, text, word (one of words), any, object (of outline, of table, or `name`), [array],
    one|or another; `?` behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit,
@@ -19,17 +18,18 @@
 
 struct eo_object;
 
-/* A new object with every row of the outline that is there, from the struct it is about; NULL without memory, and when
-   a row says neither member nor function. */
+/* A new object with every row of the outline that is there, from the struct it is about; NULL without memory, when a
+   row says neither member nor function, and when one is not there that does not say `when` it is. */
 json_t *eo_outline_encode(const struct eo_outline *outline, const void *source);
 
-/* The same into an object that is open with this outline or one that has its rows here. */
+/* The same into an object that is open. */
 void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source);
 
 /* One array of numbers; value NULL: left out. */
 struct eo_series eo_series_of(int count, const double *value, int digits);
 
-/* What an outline names of a document that has more; the result shares its values. New; NULL without memory. */
+/* What an outline names of a document that has more; the result shares its values. New; NULL without memory, and when a
+   row is missing that does not say `when` it is there. */
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document);
 
 /* Adds the JSON Schema 2020-12 of the outline and of all below it to `schemas`, each under its name; objects below are

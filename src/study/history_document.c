@@ -72,9 +72,14 @@ static const struct eo_outline_row job_rows[] = {
 };
 static const struct eo_outline job_outline = EO_OUTLINE("HistoryJob", job_rows);
 
+struct written_lists {
+  json_t *problems, *jobs;
+};
 static const struct eo_outline_row list_rows[] = {
-    EO_KEY("problems", "[object]", "what was worked on", .outline = &problem_outline),
-    EO_KEY("jobs", "[object]", "of the service and of the terminal", .outline = &job_outline),
+    EO_KEY("problems", "[object]", "what was worked on", .outline = &problem_outline,
+           EO_AT(struct written_lists, problems)),
+    EO_KEY("jobs", "[object]", "of the service and of the terminal", .outline = &job_outline,
+           EO_AT(struct written_lists, jobs)),
 };
 const struct eo_outline eo_records_outline = EO_OUTLINE("History", list_rows);
 
@@ -97,16 +102,13 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *job, stru
 
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)
 {
-  json_t *problems = json_array(), *jobs = json_array();
-  struct job_list list = {store, jobs};
-  enum eo_code code = problems && jobs ? eo_store_each_problem(store, add_problem, problems, error)
-                                       : eo_error_memory(error);
+  const struct written_lists lists = {json_array(), json_array()};
+  struct job_list list = {store, lists.jobs};
+  enum eo_code code = lists.problems && lists.jobs ? eo_store_each_problem(store, add_problem, lists.problems, error)
+                                                   : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
-  struct eo_object object = eo_object_open_as(&eo_records_outline);
-  eo_object_put(&object, "problems", problems);
-  eo_object_put(&object, "jobs", jobs);
-  json_t *all = eo_object_close(&object);
+  json_t *all = eo_outline_encode(&eo_records_outline, &lists);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)

@@ -8,6 +8,7 @@
 
 #include "format/json.h"
 #include "format/object.h"
+#include "format/outline.h"
 #include "format/text_table.h"
 #include "store/queue.h"
 #include "variants/variant_query.h"
@@ -169,12 +170,14 @@ static enum eo_code each_row(const struct eo_variant_table *table, struct eo_sto
 
 /* JSON: */
 
-static const char *const outcomes[] = {"converged", "not_converged", "refused", NULL};
-
+struct written_key {
+  const char *name, *unit;
+  json_t *paths;
+};
 static const struct eo_outline_row key_rows[] = {
-    EO_KEY("name", "text", "as it was asked for"),
-    EO_KEY("unit", "text", "of its values; empty without"),
-    EO_KEY("paths", "[text]", "of the design that take the value"),
+    EO_KEY("name", "text", "as it was asked for", EO_AT(struct written_key, name)),
+    EO_KEY("unit", "text", "of its values; empty without", EO_AT(struct written_key, unit)),
+    EO_KEY("paths", "[text]", "of the design that take the value", EO_AT(struct written_key, paths)),
 };
 static const struct eo_outline key_outline = EO_OUTLINE("StudyKey", key_rows);
 
@@ -185,81 +188,77 @@ static const struct eo_outline_row column_rows[] = {
 };
 static const struct eo_outline column_outline = EO_OUTLINE("StudyColumn", column_rows);
 
+struct written_row {
+  struct eo_stored_variant row;
+  json_t *values;
+  struct eo_series numbers;
+};
+#define OF_ROW(member) EO_AT(struct written_row, member)
 static const struct eo_outline_row item_rows[] = {
-    EO_KEY("variant", "integer", "its number, from 0"),
-    EO_KEY("outcome", "word", "refused: such a design cannot be, `reason` says why", .words = outcomes),
-    EO_KEY("reason", "text", "empty when it converged"),
-    EO_KEY("values", "[any]", "of the keys; null: as the design has it"),
-    EO_KEY("numbers", "[number?]", "of the columns"),
+    EO_KEY("variant", "integer", "its number, from 0", OF_ROW(row.ordinal)),
+    EO_KEY("outcome", "word", "refused: such a design cannot be, `reason` says why", .words = eo_store_outcomes,
+           OF_ROW(row.outcome)),
+    EO_KEY("reason", "text", "empty when it converged", OF_ROW(row.reason)),
+    EO_KEY("values", "[any]", "of the keys; null: as the design has it", OF_ROW(values)),
+    EO_KEY("numbers", "[number?]", "of the columns", OF_ROW(numbers)),
 };
 static const struct eo_outline item_outline = EO_OUTLINE("StudyRow", item_rows);
 
+struct written_table {
+  struct eo_variant_table table;
+  json_t *keys, *items, *next;
+};
+#define OF_TABLE(member) EO_AT(struct written_table, member)
 static const struct eo_outline_row table_rows[] = {
-    EO_KEY("job", "integer", "number of the study's job"),
-    EO_KEY("name", "text", "for people"),
-    EO_KEY("keys", "[object]", "what varies", .outline = &key_outline),
-    EO_KEY("columns", "[object]", "what is kept of each result", .outline = &column_outline),
-    EO_KEY("variants", "integer", "of the study"),
-    EO_KEY("done", "integer", "of them that have a row"),
-    EO_KEY("fits", "integer", "of them that the filter lets pass"),
-    EO_KEY("items", "[object]", "a page of these", .outline = &item_outline),
-    EO_KEY("next", "text?", "cursor of the next page; null: there is none"),
+    EO_KEY("job", "integer", "number of the study's job", OF_TABLE(table.job)),
+    EO_KEY("name", "text", "for people", OF_TABLE(table.plan.name)),
+    EO_KEY("keys", "[object]", "what varies", .outline = &key_outline, OF_TABLE(keys)),
+    EO_KEY("columns", "[object]", "what is kept of each result", .outline = &column_outline,
+           EO_ROWS_AT(struct written_table, table.scalars.scalar, table.scalars.count)),
+    EO_KEY("variants", "integer", "of the study", OF_TABLE(table.plan.rows)),
+    EO_KEY("done", "integer", "of them that have a row", OF_TABLE(table.done)),
+    EO_KEY("fits", "integer", "of them that the filter lets pass", OF_TABLE(table.fits)),
+    EO_KEY("items", "[object]", "a page of these", .outline = &item_outline, OF_TABLE(items)),
+    EO_KEY("next", "text?", "cursor of the next page; null: there is none", OF_TABLE(next)),
 };
 const struct eo_outline eo_variant_table_outline = EO_OUTLINE("StudyTable", table_rows);
 
 static const char *unit_of(const struct eo_variant_axis *axis)
 {
-  return axis->field->unit ? axis->field->unit->symbol : "";
+  return axis->field->unit && !strchr(axis->name, '[') ? axis->field->unit->symbol : "";
 }
 
 static json_t *encode_keys(const struct eo_variant_plan *plan)
 {
-  json_t *keys = json_array();
+  struct eo_object keys = eo_list_open();
   for (int i = 0; i < plan->axes; i++) {
     const struct eo_variant_axis *axis = &plan->axis[i];
-    struct eo_object object = eo_object_open_as(&key_outline);
-    json_t *paths = json_array();
+    struct eo_object paths = eo_list_open();
     for (int k = 0; k < axis->paths; k++)
-      json_array_append_new(paths, json_string(axis->path[k]));
-    eo_object_put(&object, "name", json_string(axis->name));
-    eo_object_put(&object, "unit", json_string(strchr(axis->name, '[') ? "" : unit_of(axis)));
-    eo_object_put(&object, "paths", paths);
-    json_array_append_new(keys, eo_object_close(&object));
+      eo_list_add(&paths, json_string(axis->path[k]));
+    const struct written_key key = {axis->name, unit_of(axis), eo_object_close(&paths)};
+    eo_list_add(&keys, eo_outline_encode(&key_outline, &key));
   }
-  return keys;
-}
-
-static json_t *encode_columns(const struct eo_scalars *scalars)
-{
-  json_t *columns = json_array();
-  for (int i = 0; i < scalars->count; i++)
-    json_array_append_new(columns, eo_outline_encode(&column_outline, &scalars->scalar[i]));
-  return columns;
+  return eo_object_close(&keys);
 }
 
 static const struct eo_outline_row columns_rows[] = {
-    EO_KEY("items", "[object]", "in the order of the result document", .outline = &column_outline),
+    EO_KEY("items", "[object]", "in the order of the result document", .outline = &column_outline,
+           EO_ROWS_AT(struct eo_scalars, scalar, count)),
 };
 const struct eo_outline eo_variant_columns_outline = EO_OUTLINE("StudyColumns", columns_rows);
 
 json_t *eo_variant_columns_encode(const struct eo_scalars *scalars)
 {
-  struct eo_object object = eo_object_open_as(&eo_variant_columns_outline);
-  eo_object_put(&object, "items", encode_columns(scalars));
-  return eo_object_close(&object);
+  return eo_outline_encode(&eo_variant_columns_outline, scalars);
 }
 
 static enum eo_code add_item(void *context, const struct eo_stored_variant *row, const json_t *values,
                              struct eo_error *error)
 {
   json_t *items = context;
-  struct eo_object object = eo_object_open_as(&item_outline);
-  eo_object_put(&object, "variant", json_integer(row->ordinal));
-  eo_object_put(&object, "outcome", json_string(eo_store_outcome_name(row->outcome)));
-  eo_object_put(&object, "reason", json_string(row->reason));
-  eo_object_put(&object, "values", json_incref((json_t *)values));
-  eo_object_put(&object, "numbers", eo_json_reals(row->numbers, row->number, 1, NULL, 0));
-  json_t *item = eo_object_close(&object);
+  const struct written_row view = {*row, json_incref((json_t *)values), eo_series_of(row->numbers, row->number, 0)};
+  json_t *item = eo_outline_encode(&item_outline, &view);
   return item && json_array_append_new(items, item) == 0 ? EO_OK : eo_error_memory(error);
 }
 
@@ -273,17 +272,9 @@ enum eo_code eo_variant_table_encode(const struct eo_variant_table *table, struc
     json_decref(items);
     return code;
   }
-  struct eo_object object = eo_object_open_as(&eo_variant_table_outline);
-  eo_object_put(&object, "job", json_integer(table->job));
-  eo_object_put(&object, "name", json_string(table->plan.name));
-  eo_object_put(&object, "keys", encode_keys(&table->plan));
-  eo_object_put(&object, "columns", encode_columns(&table->scalars));
-  eo_object_put(&object, "variants", json_integer(table->plan.rows));
-  eo_object_put(&object, "done", json_integer(table->done));
-  eo_object_put(&object, "fits", json_integer(table->fits));
-  eo_object_put(&object, "items", items);
-  eo_object_put(&object, "next", next < table->fits ? json_sprintf("%d", next) : json_null());
-  *document = eo_object_close(&object);
+  const struct written_table view = {*table, encode_keys(&table->plan), items,
+                                     next < table->fits ? json_sprintf("%d", next) : json_null()};
+  *document = eo_outline_encode(&eo_variant_table_outline, &view);
   return *document ? EO_OK : eo_error_memory(error);
 }
 
