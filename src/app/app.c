@@ -90,6 +90,17 @@ int eo_app_fail(const char *file, const struct eo_error *error)
   return error->code == EO_ERROR_INPUT ? EO_EXIT_INPUT : EO_EXIT_FAILED;
 }
 
+void *eo_app_request(size_t size, int *status)
+{
+  struct eo_error error;
+  void *request = calloc(1, size);
+  if (!request) {
+    eo_error_memory(&error);
+    *status = eo_app_fail(NULL, &error);
+  }
+  return request;
+}
+
 int eo_app_fail_all(const char *file, const struct eo_faults *faults)
 {
   int shown = faults->count < EO_MAX_FAULTS ? faults->count : EO_MAX_FAULTS;

@@ -68,6 +68,9 @@ struct eo_option_list {
 bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options,
                       int least, int most, const char **operand, int *operands, int *status);
 
+/* Zeroed memory for what a command was asked; the caller's to free. NULL: told on standard error, *status set. */
+void *eo_app_request(size_t size, int *status);
+
 /* One line on standard error; returns the exit status that belongs to the error. file: NULL when no file is concerned.
  */
 int eo_app_fail(const char *file, const struct eo_error *error);

@@ -128,13 +128,11 @@ static bool read_teeth(struct request *request, int *status)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *request = calloc(1, sizeof *request);
   struct eo_error error;
   int operands, status;
-  if (!request) {
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
-  }
+  struct request *request = eo_app_request(sizeof *request, &status);
+  if (!request)
+    return status;
   const struct eo_option options[] = {{.name = "--json", .flag = &request->json},
                                       {.name = "--csv", .value = &request->csv},
                                       {.name = "--units", .value = &request->units},

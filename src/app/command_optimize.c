@@ -206,9 +206,9 @@ static bool load(const struct eo_command *command, struct request *request, int 
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *request = calloc(1, sizeof *request);
-  struct eo_app_crew crew;
   int operands, status = EO_EXIT_FAILED;
+  struct request *request = eo_app_request(sizeof *request, &status);
+  struct eo_app_crew crew;
   if (!request || !eo_app_crew_begin(&crew, argc, argv, &status)) {
     free(request);
     return status;

@@ -161,13 +161,10 @@ static int run_request(struct request *request)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *request = calloc(1, sizeof *request);
-  struct eo_error error;
   int operands, status;
-  if (!request) {
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
-  }
+  struct request *request = eo_app_request(sizeof *request, &status);
+  if (!request)
+    return status;
   const struct eo_option options[] = {{.name = "-o", .value = &request->path},
                                       {.name = "--data", .value = &request->data},
                                       {.name = "--no-cache", .flag = &request->no_cache},

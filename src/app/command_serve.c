@@ -167,11 +167,10 @@ static int run_request(struct request *request)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *request = calloc(1, sizeof *request);
-  struct eo_error error;
   int status;
+  struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
-    return eo_app_fail(NULL, (eo_error_memory(&error), &error));
+    return status;
   if (eo_serve_settings_read(command, argc, argv, &request->settings, &status))
     status = run_request(request);
   free(request);

@@ -100,11 +100,8 @@ const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scena
 #define PERCENT(type, fallback_)                                        \
   EO_NUMBER_DERIVED(type, percent, "percent", NULL, 50, 100, fallback_, \
                     "percentile of its values over the states of a robust objective: pairs as made, or scenarios")
-#define LOAD_CASE(type, fallback_)                                                                                 \
-  {                                                                                                                \
-    .key = "load_case", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, load_case), \
-    .low = 1, .high = EO_MAX_LOAD_CASES, .fallback = NAN, .derived = fallback_, .help = "which load case, from 1"  \
-  }
+#define LOAD_CASE(type, fallback_) \
+  EO_INTEGER_DERIVED(type, load_case, "load_case", 1, EO_MAX_LOAD_CASES, fallback_, "which load case, from 1")
 #define OUTPUT(type, help_)                                                                                 \
   {                                                                                                         \
     .key = "output", .kind = EO_FIELD_CHOICE, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, output), \
@@ -144,26 +141,15 @@ static const struct eo_field objective[] = {
               "with robust percentile: which one of J over the scenarios, as of f1, f2, f3 each"),
     EO_NUMBER(struct eo_objective, robust_sigmas, "robust_sigmas", NULL, 0, 10, 2,
               "with robust mean_plus_sigmas: how many standard deviations"),
-    {.key = "scatter_pairs",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_objective, scatter_pairs),
-     .low = 2,
-     .high = EO_MAX_DRAWN_PAIRS,
-     .fallback = NAN,
-     .derived = "none: the scenarios count",
-     .help = "pairs as made, drawn from the block tolerance, that stand in place of the scenarios when robust is not "
-             "off: the same deviations for every flank that is tried; each costs an evaluation"},
-    {.key = "first_pairs",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_objective, first_pairs),
-     .low = 2,
-     .high = EO_MAX_DRAWN_PAIRS,
-     .fallback = NAN,
-     .derived = "2 of more than 4 scatter_pairs, all of them where a front is sought",
-     .help = "of scatter_pairs: every flank is looked at with these; of each batch the best go on to all, so many that "
-             "this costs less than the first look; as many as scatter_pairs: every flank with all"},
+    EO_INTEGER_DERIVED(
+        struct eo_objective, scatter_pairs, "scatter_pairs", 2, EO_MAX_DRAWN_PAIRS, "none: the scenarios count",
+        "pairs as made, drawn from the block tolerance, that stand in place of the scenarios when robust is not "
+        "off: the same deviations for every flank that is tried; each costs an evaluation"),
+    EO_INTEGER_DERIVED(
+        struct eo_objective, first_pairs, "first_pairs", 2, EO_MAX_DRAWN_PAIRS,
+        "2 of more than 4 scatter_pairs, all of them where a front is sought",
+        "of scatter_pairs: every flank is looked at with these; of each batch the best go on to all, so many that "
+        "this costs less than the first look; as many as scatter_pairs: every flank with all"),
     EO_INTEGER(struct eo_objective, check_pairs, "check_pairs", 0, 10000, 200,
                "other pairs as made, on which a search with scatter_pairs ends: what it found beside the unmodified "
                "pair, with intervals; 0: none"),
@@ -195,9 +181,7 @@ static const char *const variable_flanks[] = {"drive", "coast", "both", NULL};
   {.key = #member, .kind = EO_FIELD_SEED, .offset = offsetof(struct eo_optimization, search.member), .low = 0, \
    .high = 9007199254740991., .fallback = fallback_, .help = help_},
 #define BUDGET(member, low_, high_, derived_, help_)                                                           \
-  {.key = #member, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                       \
-   .offset = offsetof(struct eo_optimization, search.member), .low = low_, .high = high_, .fallback = NAN,     \
-   .derived = derived_, .help = help_},
+  EO_INTEGER_DERIVED(struct eo_optimization, search.member, #member, low_, high_, derived_, help_),
 #define PARAMETER(member, low, high, fallback, help) \
   EO_NUMBER(struct eo_optimization, search.member, #member, NULL, low, high, fallback, help),
 #define DERIVED(member, low, high, derived, help) \
@@ -272,15 +256,9 @@ static const char *const body_supports[] = {"floating", "held", "held_at_bore", 
 
 static const struct eo_field resolution[] = {
     EO_INTEGER(struct eo_resolution, positions, "positions", 8, 1024, 64, "mesh positions over one base pitch"),
-    {.key = "cells_per_line",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_resolution, cells_per_line),
-     .low = 4,
-     .high = 400,
-     .fallback = NAN,
-     .derived = "30, fewer where so many contact lines lie on a wide face that they would be too many together",
-     .help = "equal cells of a contact line"},
+    EO_INTEGER_DERIVED(struct eo_resolution, cells_per_line, "cells_per_line", 4, 400,
+                       "30, fewer where so many contact lines lie on a wide face that they would be too many together",
+                       "equal cells of a contact line"),
     EO_FLAG(struct eo_resolution, tip_edge_contact, "tip_edge_contact", 1,
             "contact of the tip edges outside the path of contact"),
     {.key = "body",
@@ -317,15 +295,8 @@ static const struct eo_field resolution[] = {
     EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE,
               "impact pulses in the equations of motion"),
     EO_INTEGER(struct eo_resolution, harmonics, "harmonics", 1, 256, 24, "mesh harmonics of the response"),
-    {.key = "te_harmonics",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_resolution, te_harmonics),
-     .low = 1,
-     .high = 128,
-     .fallback = NAN,
-     .derived = "16, at most half the positions",
-     .help = "mesh harmonics kept of transmission error and stiffness"},
+    EO_INTEGER_DERIVED(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, "16, at most half the positions",
+                       "mesh harmonics kept of transmission error and stiffness"),
 };
 
 const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);

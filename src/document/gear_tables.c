@@ -27,12 +27,9 @@ static const char *const own_widths[] = {"pinion_face_width_mm", "gear_face_widt
 #define ENTRY(name, key_, states_, unit_, low_, high_, help_) \
   EO_NUMBER_ENTRY(struct eo_gear_pair, entry.name, key_, states_, unit_, low_, high_, help_)
 
-#define SPANNED(member, key_, help_)                                                                         \
-  {                                                                                                          \
-    .key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                       \
-    .offset = offsetof(struct eo_gear_pair, teeth_spanned[member]), .low = 1, .high = 1000, .fallback = NAN, \
-    .derived = "those whose contact lies nearest to mid flank", .help = help_                                \
-  }
+#define SPANNED(member, key_, help_)                                            \
+  EO_INTEGER_DERIVED(struct eo_gear_pair, teeth_spanned[member], key_, 1, 1000, \
+                     "those whose contact lies nearest to mid flank", help_)
 
 static const struct eo_field gear_pair[] = {
     EO_INTEGER(struct eo_gear_pair, ends, "ends", 1, 2, 2,
@@ -282,17 +279,10 @@ static const struct eo_field alignment[] = {
     DEVIATION(deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", "shaft_angle_error_out_of_plane_deg",
               "as shaft_angle_error_out_of_plane_deg says",
               "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),
-    {.key = "shaft_error_grade",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_alignment, error_grade),
-     .low = 1,
-     .high = 11,
-     .fallback = NAN,
-     .derived = "the errors are stated",
-     .help =
-         "grade or class of ISO 1328-1, in the edition that belongs to the rating's, whose F_beta limits both shaft "
-         "angle errors: f_Sigma_beta = L/(2 b) F_beta, f_Sigma_delta twice that over the bearing span L"},
+    EO_INTEGER_DERIVED(
+        struct eo_alignment, error_grade, "shaft_error_grade", 1, 11, "the errors are stated",
+        "grade or class of ISO 1328-1, in the edition that belongs to the rating's, whose F_beta limits both shaft "
+        "angle errors: f_Sigma_beta = L/(2 b) F_beta, f_Sigma_delta twice that over the bearing span L"),
     EO_NUMBER(struct eo_alignment, pinion_axial_clearance, "pinion_axial_clearance_um", &eo_unit_um, 0, 1e5, 200,
               "whole play of the pinion between its stops, half to each side of where its apex meets the gear's, used "
               "with \"stops\"; at a stop pinion_axial_stiffness_N_per_um holds it"),

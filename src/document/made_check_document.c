@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "document/tolerance_document.h"
 #include "evaluation/scalar.h"
 #include "format/json.h"
 #include "format/text_table.h"
@@ -16,26 +17,13 @@ static const double percents[] = {50, 90, 95, 99};
 enum { PERCENTS = sizeof percents / sizeof *percents };
 static const double level = 0.95;
 
-struct percentile {
-  double percent, value, low, high;
-};
-
-static const struct eo_outline_row percentile_rows[] = {
-    EO_KEY("percent", "number", "of the pairs that stay below", EO_AT(struct percentile, percent)),
-    EO_KEY("value", "number?", "in the unit of the number", EO_AT(struct percentile, value)),
-    EO_KEY("low", "number?", "of its 95 % interval, by the ranks of the values; null: that side is open",
-           EO_AT(struct percentile, low)),
-    EO_KEY("high", "number?", "likewise", EO_AT(struct percentile, high)),
-};
-static const struct eo_outline percentile_outline = EO_OUTLINE("MadePercentile", percentile_rows);
-
 struct number {
   const struct eo_design *design;
   char key[96];
   int load_case; /* of a term; 0: over the duty cycle */
   int rows;
   struct eo_summary summary;
-  struct percentile percentile[PERCENTS];
+  struct eo_report_percentile percentile[PERCENTS];
 };
 
 static json_t *write_percentiles(const void *source)
@@ -43,7 +31,7 @@ static json_t *write_percentiles(const void *source)
   const struct number *number = source;
   json_t *array = json_array();
   for (int i = 0; i < PERCENTS && array; i++)
-    array = eo_json_append(array, eo_outline_encode(&percentile_outline, &number->percentile[i]));
+    array = eo_json_append(array, eo_outline_encode(&eo_outline_percentile, &number->percentile[i]));
   return array;
 }
 
@@ -58,7 +46,7 @@ static const struct eo_outline_row number_rows[] = {
     EO_KEY("mean", "number?", "of the pairs", EO_AT(struct number, summary.mean), .known = has_rows),
     EO_KEY("deviation", "number?", "standard deviation", EO_AT(struct number, summary.deviation), .known = has_rows),
     EO_KEY("largest", "number?", "of any pair", EO_AT(struct number, summary.largest), .known = has_rows),
-    EO_KEY("percentiles", "[object]", "50, 90, 95 and 99 %", .outline = &percentile_outline,
+    EO_KEY("percentiles", "[object]", "50, 90, 95 and 99 %", .outline = &eo_outline_percentile,
            .write = write_percentiles),
 };
 static const struct eo_outline number_outline = EO_OUTLINE("MadeNumber", number_rows);
@@ -108,15 +96,8 @@ static void describe_number(const struct row *row, int k, struct number *number)
   if (number->rows > 0)
     number->summary = eo_summary_of(number->rows, row->column);
   eo_sort_numbers(number->rows, row->column);
-  for (int p = 0; p < PERCENTS; p++) {
-    struct eo_rank_interval ranks = eo_order_statistic_ranks(number->rows, percents[p] / 100, level);
-    bool there = number->rows > 0;
-    number->percentile[p] =
-        (struct percentile){.percent = percents[p],
-                            .value = there ? eo_percentile(number->rows, row->column, percents[p]) : NAN,
-                            .low = there && ranks.low >= 1 ? row->column[ranks.low - 1] : NAN,
-                            .high = there && ranks.high <= number->rows ? row->column[ranks.high - 1] : NAN};
-  }
+  for (int p = 0; p < PERCENTS; p++)
+    number->percentile[p] = eo_report_percentile_of(number->rows, row->column, percents[p]);
 }
 
 static json_t *write_numbers(const void *source)

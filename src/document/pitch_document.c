@@ -106,15 +106,9 @@ static const struct eo_field member_fields[] = {
 static const struct eo_table member_table = EO_TABLE("a member's teeth", struct member_document, member_fields);
 
 static const struct eo_field pitch_fields[] = {
-    {.key = "positions_per_cycle",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct pitch_document, positions),
-     .low = 4,
-     .high = 1024,
-     .fallback = NAN,
-     .derived = "the largest divisor of the resolution's positions up to 32",
-     .help = "mesh positions of each cycle of the hunting period: a divisor of the resolution's positions"},
+    EO_INTEGER_DERIVED(struct pitch_document, positions, "positions_per_cycle", 4, 1024,
+                       "the largest divisor of the resolution's positions up to 32",
+                       "mesh positions of each cycle of the hunting period: a divisor of the resolution's positions"),
     EO_INTEGER(struct pitch_document, gear_tooth, "gear_tooth", 0, MOST_TEETH, 0,
                "tooth of the gear that meets the pinion's tooth 0; where the numbers of teeth have a common divisor "
                "it decides which teeth ever meet"),

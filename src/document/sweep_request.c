@@ -5,12 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define POINTS                                                                                                 \
-  {                                                                                                            \
-    .key = "points", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                     \
-    .offset = offsetof(struct eo_sweep_range, points), .low = 1, .high = EO_SWEEP_MOST_STEPS, .fallback = NAN, \
-    .derived = "both ends of the range", .help = "how many, equally spaced, ends included"                     \
-  }
+#define POINTS                                                                                                  \
+  EO_INTEGER_DERIVED(struct eo_sweep_range, points, "points", 1, EO_SWEEP_MOST_STEPS, "both ends of the range", \
+                     "how many, equally spaced, ends included")
 
 static const struct eo_field torque[] = {
     EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 1e-3, 1e8, "of the load case with the largest share",

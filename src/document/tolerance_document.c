@@ -28,14 +28,15 @@ static const struct eo_outline_row input_rows[] = {
 static const struct eo_outline input_outline = EO_OUTLINE("ScatterInput", input_rows);
 
 static const struct eo_outline_row percentile_rows[] = {
-    EO_KEY("percent", "number", "0 .. 100", EO_AT(struct eo_report_percentile, percent)),
-    EO_KEY("value", "number", "by linear interpolation of the sorted values (type 7)",
+    EO_KEY("percent", "number", "of the pairs that stay below, 0 .. 100", EO_AT(struct eo_report_percentile, percent)),
+    EO_KEY("value", "number?",
+           "in the unit of the number, by linear interpolation of the sorted values (type 7); null: no pair has one",
            EO_AT(struct eo_report_percentile, value)),
     EO_KEY("low", "number?", "95 % interval by the ranks, whatever the distribution; null: open",
            EO_AT(struct eo_report_percentile, low)),
     EO_KEY("high", "number?", "the other end", EO_AT(struct eo_report_percentile, high)),
 };
-static const struct eo_outline percentile_outline = EO_OUTLINE("ScatterPercentile", percentile_rows);
+const struct eo_outline eo_outline_percentile = EO_OUTLINE("MadePercentile", percentile_rows);
 
 struct histogram {
   double least, largest;
@@ -84,7 +85,7 @@ static const struct eo_outline_row output_rows[] = {
     EO_KEY("mean_interval", "[number]", "95 %, bootstrap", EO_AT(struct output, mean_interval)),
     EO_KEY("std", "number", "standard deviation", EO_AT(struct output, deviation)),
     EO_KEY("std_interval", "[number]", "95 %, bootstrap", EO_AT(struct output, deviation_interval)),
-    EO_KEY("percentiles", "[object]", "of the pairs", .outline = &percentile_outline,
+    EO_KEY("percentiles", "[object]", "of the pairs", .outline = &eo_outline_percentile,
            EO_AT(struct output, percentiles)),
     EO_KEY("histogram", "object", "25 parts", .outline = &histogram_outline, EO_AT(struct output, histogram)),
     EO_KEY("R2", "number?", "share of the variance that the linear regression explains", EO_AT(struct output, r2)),
@@ -206,7 +207,7 @@ static json_t *encode_percentiles(const struct eo_output_report *report)
 {
   struct eo_object list = eo_list_open();
   for (int i = 0; i < EO_REPORT_PERCENTS; i++)
-    eo_list_add(&list, eo_outline_encode(&percentile_outline, &report->percentile[i]));
+    eo_list_add(&list, eo_outline_encode(&eo_outline_percentile, &report->percentile[i]));
   return eo_object_close(&list);
 }
 

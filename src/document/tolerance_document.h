@@ -49,6 +49,7 @@ enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **report, const 
 void eo_tolerance_report_free(struct eo_tolerance_report *report);
 
 extern const struct eo_outline eo_tolerance_outline;
+extern const struct eo_outline eo_outline_percentile; /* of a struct eo_report_percentile */
 
 /* New document; NULL without memory. warnings may be NULL. */
 json_t *eo_tolerance_encode(const struct eo_tolerance_report *report, const struct eo_warnings *warnings);

@@ -44,15 +44,8 @@ static const struct eo_field limit[] = {
      .low = 1,
      .count = EO_SCATTER_KEY,
      .help = "a number of the load cases: peak_to_peak_um, rms_m_per_s2, max_pressure_MPa ..."},
-    {.key = "load_case",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_tolerance_limit, load_case),
-     .low = 1,
-     .high = EO_MAX_LOAD_CASES,
-     .fallback = NAN,
-     .derived = "every one",
-     .help = "which load case, from 1"},
+    EO_INTEGER_DERIVED(struct eo_tolerance_limit, load_case, "load_case", 1, EO_MAX_LOAD_CASES, "every one",
+                       "which load case, from 1"),
     EO_NUMBER_REQUIRED(struct eo_tolerance_limit, most, "at_most", NULL, -1e9, 1e9, "in the unit of the output"),
 };
 static const struct eo_table limit_table = EO_TABLE("a limit", struct eo_tolerance_limit, limit);

@@ -162,6 +162,11 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
     .key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .low = low_, \
     .high = high_, .fallback = NAN, .help = help_                                                                     \
   }
+#define EO_INTEGER_DERIVED(type, member, key_, low_, high_, derived_, help_)                                          \
+  {                                                                                                                   \
+    .key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .low = low_, \
+    .high = high_, .fallback = NAN, .derived = derived_, .help = help_                                                \
+  }
 #define EO_FLAG(type, member, key_, fallback_, help_)                                                          \
   {                                                                                                            \
     .key = key_, .kind = EO_FIELD_FLAG, .offset = offsetof(type, member), .fallback = fallback_, .help = help_ \

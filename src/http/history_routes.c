@@ -108,15 +108,7 @@ static const struct eo_field prune_fields[] = {
     EO_FLAG(struct eo_prune, outdated, "outdated", 0, "rows of older versions of the model"),
     EO_FLAG(struct eo_prune, damaged, "damaged", 0, "rows that are not what was written"),
     EO_FLAG(struct eo_prune, unused, "unused", 0, "rows of studies and tolerance analyses that no job has any more"),
-    {.key = "problem",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_prune, problem),
-     .low = 1,
-     .high = 2000000000,
-     .fallback = NAN,
-     .derived = "none",
-     .help = "every row of this problem"},
+    EO_INTEGER_DERIVED(struct eo_prune, problem, "problem", 1, 2000000000, "none", "every row of this problem"),
 };
 static const struct eo_table prune_table = EO_TABLE("what goes out of the history", struct eo_prune, prune_fields);
 

@@ -72,16 +72,9 @@ struct tolerance_order {
 static const struct eo_field fields[] = {
     EO_DOCUMENT(struct tolerance_order, design, "design", "Design", EO_FIELD_REQUIRED,
                 "with its block tolerance; without one class 5 of ISO 1328-1:2013 is taken"),
-    {.key = "pairs",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct tolerance_order, pairs),
-     .low = 1,
-     .high = EO_SCATTER_MOST_PAIRS,
-     .fallback = NAN,
-     .derived = "as the block says",
-     .help =
-         "how many, at most 5000 unless it is a job; the first ones are the same for any number, but of Latin points"},
+    EO_INTEGER_DERIVED(
+        struct tolerance_order, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, "as the block says",
+        "how many, at most 5000 unless it is a job; the first ones are the same for any number, but of Latin points"),
 };
 static const struct eo_table order_table = EO_TABLE("a tolerance analysis", struct tolerance_order, fields);
 

@@ -47,6 +47,17 @@ static enum eo_code collect(struct rows *rows, struct eo_output_report *report, 
   return EO_OK;
 }
 
+struct eo_report_percentile eo_report_percentile_of(int rows, const double *sorted, double percent)
+{
+  if (rows == 0)
+    return (struct eo_report_percentile){percent, NAN, NAN, NAN};
+  struct eo_rank_interval ranks = eo_order_statistic_ranks(rows, percent / 100, 0.95);
+  return (struct eo_report_percentile){.percent = percent,
+                                       .value = eo_percentile(rows, sorted, percent),
+                                       .low = ranks.low >= 1 ? sorted[ranks.low - 1] : NAN,
+                                       .high = ranks.high <= rows ? sorted[ranks.high - 1] : NAN};
+}
+
 static enum eo_code describe(const struct rows *rows, struct eo_output_report *report, uint64_t seed,
                              struct eo_error *error)
 {
@@ -55,14 +66,8 @@ static enum eo_code describe(const struct rows *rows, struct eo_output_report *r
   report->varies = report->summary.largest > report->summary.least;
   eo_histogram(rows->count, rows->output, report->summary.least, report->summary.largest, EO_REPORT_BINS,
                report->count);
-  for (int i = 0; i < EO_REPORT_PERCENTS; i++) {
-    struct eo_rank_interval ranks = eo_order_statistic_ranks(rows->count, percents[i] / 100, 0.95);
-    report->percentile[i] =
-        (struct eo_report_percentile){.percent = percents[i],
-                                      .value = eo_percentile(rows->count, rows->sorted, percents[i]),
-                                      .low = ranks.low >= 1 ? rows->sorted[ranks.low - 1] : NAN,
-                                      .high = ranks.high <= rows->count ? rows->sorted[ranks.high - 1] : NAN};
-  }
+  for (int i = 0; i < EO_REPORT_PERCENTS; i++)
+    report->percentile[i] = eo_report_percentile_of(rows->count, rows->sorted, percents[i]);
   EO_TRY(eo_bootstrap_run(&bootstrap, rows->count, rows->output, 0, NULL, 0.95, RESAMPLES, seed, error));
   memcpy(report->mean_interval, bootstrap.mean, sizeof bootstrap.mean);
   memcpy(report->deviation_interval, bootstrap.deviation, sizeof bootstrap.deviation);

@@ -16,6 +16,8 @@ enum { EO_REPORT_PERCENTS = 9, EO_REPORT_BINS = 25 };
 struct eo_report_percentile {
   double percent, value, low, high;
 };
+/* Of sorted values; without any all are NaN. */
+struct eo_report_percentile eo_report_percentile_of(int rows, const double *sorted, double percent);
 
 /* One input: standardised coefficient, Sobol indices of the surface. NaN where there is none. */
 struct eo_report_influence {

@@ -16,15 +16,8 @@ static const struct eo_field axis_fields[] = {
                     "in place of values for keys that are words, true or false: separated by commas"),
     EO_NUMBER_DERIVED(struct eo_study_axis, from, "from", NULL, -1e12, 1e12, "no range", "in place of values: a range"),
     EO_NUMBER_DERIVED(struct eo_study_axis, to, "to", NULL, -1e12, 1e12, "from", "its end"),
-    {.key = "points",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_study_axis, points),
-     .low = 1,
-     .high = EO_STUDY_MOST_LEVELS,
-     .fallback = NAN,
-     .derived = "both ends of the range",
-     .help = "of a full factorial study: how many, equally spaced, ends included"},
+    EO_INTEGER_DERIVED(struct eo_study_axis, points, "points", 1, EO_STUDY_MOST_LEVELS, "both ends of the range",
+                       "of a full factorial study: how many, equally spaced, ends included"),
 };
 const struct eo_table eo_study_axis_table = EO_TABLE("what varies", struct eo_study_axis, axis_fields);
 
