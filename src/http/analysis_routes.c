@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "http/answers.h"
 #include "document/completion.h"
 #include "document/result.h"
 #include "evaluation/evaluator.h"
@@ -16,6 +17,29 @@
 #include "http/route.h"
 #include "http/http_private.h"
 #include "service/preparation.h"
+
+static const struct eo_outline_row cost_rows[] = {
+    EO_KEY("memory_MB", "number", "estimated, at the most crowded moment", EO_AT(struct eo_preparation_cost, memory)),
+    EO_KEY("seconds", "number", "estimated, of one processor", EO_AT(struct eo_preparation_cost, seconds)),
+};
+static const struct eo_outline cost_outline = EO_OUTLINE("PreparationCost", cost_rows);
+
+struct readiness {
+  bool prepared;
+  struct eo_preparation_cost cost; /* memory: MB */
+};
+static const struct eo_outline_row readiness_rows[] = {
+    EO_KEY("prepared", "flag", "an analysis would be answered at once", EO_AT(struct readiness, prepared)),
+    EO_KEY("preparation", "object", "what preparing the pair takes, where it is not kept already",
+           .outline = &cost_outline, EO_AT(struct readiness, cost)),
+};
+static const struct eo_outline readiness_outline = EO_OUTLINE(NULL, readiness_rows);
+
+static const struct eo_outline_row check_rows[] = {
+    {.outline = &eo_outline_completion},
+    {.outline = &readiness_outline},
+};
+const struct eo_outline eo_outline_check = EO_OUTLINE("Check", check_rows);
 
 static void check(struct eo_request *request)
 {
@@ -31,10 +55,10 @@ static void check(struct eo_request *request)
     eo_reply_error(&request->reply, "", &error);
     return;
   }
+  const struct readiness readiness = {eo_service_is_prepared(request->http->service, &design),
+                                      {.memory = round(cost.memory / 1e6), .seconds = 0.1 * ceil(10 * cost.seconds)}};
   json_t *reply = eo_completion_encode(&design, &geometry, &warnings),
-         *own = json_pack("{s:b, s:{s:f, s:f}}", "prepared", eo_service_is_prepared(request->http->service, &design),
-                          "preparation", "memory_MB", round(cost.memory / 1e6), "seconds",
-                          0.1 * ceil(10 * cost.seconds));
+         *own = eo_outline_encode(&readiness_outline, &readiness);
   json_object_update(reply, own);
   json_decref(own);
   if (request->inches) {

@@ -5,6 +5,9 @@
 #include <string.h>
 
 #include "http/request_body.h"
+#include "format/object.h"
+#include "format/list_page.h"
+#include "http/answers.h"
 #include "http/stored_design.h"
 #include "http/route.h"
 #include "http/http_private.h"
@@ -17,15 +20,20 @@ static void reply_missing(struct eo_request *request)
   eo_reply_problem(&request->reply, 404, NULL, "There is no design with this number.");
 }
 
-static void reply_found(struct eo_request *request, unsigned status, struct eo_found_design *found,
+static void reply_found(struct eo_request *request, unsigned status, const struct eo_found_design *found,
                         const struct eo_warnings *warnings)
 {
-  json_t *list = json_array();
+  struct eo_object list = eo_list_open();
   for (int i = 0; warnings && i < warnings->count; i++)
-    json_array_append_new(list, json_string(warnings->text[i]));
-  json_object_set_new(found->document, "warnings", list);
-  eo_reply_json(&request->reply, status, found->document);
-  found->document = NULL;
+    eo_list_add(&list, json_string(warnings->text[i]));
+  const struct eo_stored_content content = {json_incref(found->design), eo_object_close(&list)};
+  json_t *document = json_incref(found->head), *behind = eo_outline_encode(&eo_outline_stored_content, &content);
+  if (!behind || json_object_update(document, behind)) {
+    json_decref(document);
+    document = NULL;
+  }
+  json_decref(behind);
+  eo_reply_json(&request->reply, status, document);
   snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
   request->reply.revalidate = true;
 }
@@ -44,7 +52,7 @@ static void get_one(struct eo_request *request)
     reply_missing(request);
   else if (!eo_request_unchanged(request, found.tag))
     reply_found(request, 200, &found, NULL);
-  json_decref(found.document);
+  eo_found_design_done(&found);
 }
 
 struct page {
@@ -54,6 +62,11 @@ struct page {
   bool more;
 };
 
+static const struct eo_outline_row designs_rows[] = {
+    EO_PAGE_ROWS("newest first", .outline = &eo_outline_listed_design),
+};
+const struct eo_outline eo_outline_designs = EO_OUTLINE("Designs", designs_rows);
+
 static enum eo_code visit_listed(void *context, const struct eo_stored_design *row, struct eo_error *error)
 {
   struct page *page = context;
@@ -62,7 +75,8 @@ static enum eo_code visit_listed(void *context, const struct eo_stored_design *r
     return EO_OK;
   }
   page->last = row->id;
-  return json_array_append_new(page->items, eo_stored_design_encode(row)) ? eo_error_memory(error) : EO_OK;
+  return json_array_append_new(page->items, eo_outline_encode(&eo_outline_listed_design, row)) ? eo_error_memory(error)
+                                                                                               : EO_OK;
 }
 
 static void list(struct eo_request *request)
@@ -75,10 +89,7 @@ static void list(struct eo_request *request)
     eo_reply_error(&request->reply, "", &error);
     return;
   }
-  char cursor[24];
-  snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
-  eo_reply_json(&request->reply, 200,
-                json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
+  eo_reply_json(&request->reply, 200, eo_page_encode(&eo_outline_designs, page.items, page.more, page.last));
 }
 
 /* A body is a design, or a design with a name. */
@@ -139,7 +150,7 @@ static void add(struct eo_request *request)
     reply_found(request, 201, &found, &given.warnings);
     snprintf(request->reply.location, sizeof request->reply.location, EO_API "/designs/%lld", (long long)found.id);
   }
-  json_decref(found.document);
+  eo_found_design_done(&found);
   free(given.text);
 }
 
@@ -162,10 +173,8 @@ static bool read_expected(struct eo_request *request, int64_t id, bool required,
     return false;
   }
   if (strcmp(header, "*") != 0 && outcome == EO_DESIGN_DONE)
-    *expected = eo_field_lists_tag(header, found.tag, false)
-                    ? json_integer_value(json_object_get(found.document, "revision"))
-                    : -1;
-  json_decref(found.document);
+    *expected = eo_field_lists_tag(header, found.tag, false) ? found.revision : -1;
+  eo_found_design_done(&found);
   return true;
 }
 
@@ -193,7 +202,7 @@ static void replace(struct eo_request *request)
     reply_stale(request);
   else
     reply_found(request, 200, &found, &given.warnings);
-  json_decref(found.document);
+  eo_found_design_done(&found);
   free(given.text);
 }
 

@@ -2,6 +2,8 @@
 /* Files for other programs. */
 #include <stdio.h>
 
+#include "http/answers.h"
+#include "format/object.h"
 #include "exchange/exports.h"
 #include "format/inch.h"
 #include "http/route.h"
@@ -39,14 +41,28 @@ static void export(struct eo_request *request)
   }
 }
 
+struct listed_exports {
+  json_t *items;
+};
+static const struct eo_outline_row export_rows[] = {
+    EO_KEY("name", "text", "in its address", EO_AT(struct eo_export, name)),
+    EO_KEY("title", "text", "for people", EO_AT(struct eo_export, summary)),
+    EO_KEY("type", "text", "media type", EO_AT(struct eo_export, type)),
+};
+static const struct eo_outline export_outline = EO_OUTLINE("Export", export_rows);
+static const struct eo_outline_row exports_rows[] = {
+    EO_KEY("items", "[object]", "formats", .outline = &export_outline, EO_AT(struct listed_exports, items)),
+};
+const struct eo_outline eo_outline_exports = EO_OUTLINE("Exports", exports_rows);
+
 static void list(struct eo_request *request)
 {
-  json_t *items = json_array();
+  struct eo_object items = eo_list_open();
   const struct eo_export *format;
   for (int i = 0; (format = eo_exports_at(i)); i++)
-    json_array_append_new(
-        items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
-  eo_reply_json(&request->reply, 200, json_pack("{s:o}", "items", items));
+    eo_list_add(&items, eo_outline_encode(&export_outline, format));
+  const struct listed_exports exports = {eo_object_close(&items)};
+  eo_reply_json(&request->reply, 200, eo_outline_encode(&eo_outline_exports, &exports));
 }
 
 const struct eo_route eo_routes_export[] = {

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "http/answers.h"
 #include "http/http_private.h"
 #include "http/route.h"
 
@@ -46,6 +47,11 @@ static bool read_key(struct eo_request *request, const char **key)
   return false;
 }
 
+static const struct eo_outline_row preparing_rows[] = {
+    EO_KEY("job", "object?", "that prepares the gear pair", .name = "Job", EO_AT(struct eo_preparing, job)),
+};
+const struct eo_outline eo_outline_preparing = EO_OUTLINE("Preparing", preparing_rows);
+
 void eo_request_order_job(struct eo_request *request, struct eo_job_order *order, bool ticket)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
@@ -58,8 +64,8 @@ void eo_request_order_job(struct eo_request *request, struct eo_job_order *order
   else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
     eo_reply_job_outcome(&request->reply, outcome);
   else {
-    json_t *document = eo_job_view_encode(&job);
-    eo_reply_json(&request->reply, 202, ticket ? json_pack("{s:o}", "job", document) : document);
+    const struct eo_preparing preparing = {eo_job_view_encode(&job)};
+    eo_reply_json(&request->reply, 202, ticket ? eo_outline_encode(&eo_outline_preparing, &preparing) : preparing.job);
     eo_reply_job_location(&request->reply, job.row.id);
   }
   eo_job_view_done(&job);

@@ -4,6 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "http/answers.h"
+#include "format/list_page.h"
+#include "format/object.h"
 #include "document/search_space.h"
 #include "http/request_body.h"
 #include "http/job_reply.h"
@@ -99,15 +102,16 @@ static int find(const char *name, int (*find_named)(const char *name))
   return name ? find_named(name) : -1;
 }
 
+static const struct eo_outline_row jobs_rows[] = {EO_PAGE_ROWS("newest first", .name = "Job")};
+const struct eo_outline eo_outline_jobs = EO_OUTLINE("Jobs", jobs_rows);
+
 static json_t *encode_page(const struct eo_job_page *page)
 {
-  json_t *items = json_array();
-  char cursor[24] = "";
+  struct eo_object items = eo_list_open();
   for (int i = 0; i < page->count; i++)
-    json_array_append_new(items, eo_job_view_encode(&page->job[i]));
-  if (page->more)
-    snprintf(cursor, sizeof cursor, "%lld", (long long)page->job[page->count - 1].row.id);
-  return json_pack("{s:o, s:o}", "items", items, "next", page->more ? json_string(cursor) : json_null());
+    eo_list_add(&items, eo_job_view_encode(&page->job[i]));
+  return eo_page_encode(&eo_outline_jobs, eo_object_close(&items), page->more,
+                        page->more ? page->job[page->count - 1].row.id : 0);
 }
 
 static void list(struct eo_request *request)

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "document/completion.h"
 #include "document/design_document.h"
 #include "document/geometry_table.h"
 #include "document/measurement_document.h"
@@ -14,8 +13,8 @@
 #include "document/update_document.h"
 #include "format/schema.h"
 #include "document/study_result.h"
+#include "http/answers.h"
 #include "http/route.h"
-#include "http/storage_watch.h"
 #include "variants/variant_cost.h"
 #include "variants/variant_table.h"
 #include "study/job_document.h"
@@ -24,7 +23,6 @@
 #include "study/history_prune.h"
 #include "document/rig_answer.h"
 
-static const char *const states[] = {"ok", "failing", NULL};
 static const char *const kinds[] = {"number", "integer", "seed", "flag",   "text",   "choice", "numbers",
                                     "limit",  "object",  "list", "series", "matrix", NULL};
 
@@ -55,59 +53,6 @@ static const struct eo_outline_row problem_rows[] = {
     EO_KEY("imported", "object", "what was found in the file", .when = "of an import", .name = "Import"),
 };
 static const struct eo_outline problem = EO_OUTLINE("Problem", problem_rows);
-
-static const struct eo_outline_row health_jobs_rows[] = {
-    EO_KEY("queued", "integer", "jobs that wait"),
-    EO_KEY("running", "integer", "jobs that are being worked on"),
-};
-static const struct eo_outline health_jobs = EO_OUTLINE("HealthJobs", health_jobs_rows);
-
-static const struct eo_outline_row health_rows[] = {
-    EO_KEY("status", "word", "of all", .words = states),
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("uptime_s", "number", "since the start, s"),
-    EO_KEY("jobs", "object", "by state", .outline = &health_jobs),
-    EO_KEY("database", "word", "whether it can be read and written", .words = eo_storage_states),
-    EO_KEY("free_MB", "number", "that its disk has left"),
-    EO_KEY("warnings", "[text]", "what the start found"),
-};
-static const struct eo_outline health = EO_OUTLINE("Health", health_rows);
-
-static const struct eo_outline_row live_rows[] = {
-    EO_KEY("status", "word", "that it answers", .words = states),
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("uptime_s", "number", "since the start, s"),
-};
-static const struct eo_outline live = EO_OUTLINE("Live", live_rows);
-
-static const struct eo_outline_row session_rows[] = {
-    EO_KEY("required", "flag", "the server asks for a token"),
-    EO_KEY("authorized", "flag", "this client has given it"),
-};
-static const struct eo_outline session = EO_OUTLINE("Session", session_rows);
-
-static const struct eo_outline_row example_rows[] = {
-    EO_KEY("name", "text", "in its address"),
-    EO_KEY("title", "text", "for people"),
-};
-static const struct eo_outline example = EO_OUTLINE("Example", example_rows);
-
-static const struct eo_outline_row examples_rows[] = {
-    EO_KEY("items", "[object]", "designs to start from", .outline = &example),
-};
-static const struct eo_outline examples = EO_OUTLINE("Examples", examples_rows);
-
-static const struct eo_outline_row export_rows[] = {
-    EO_KEY("name", "text", "in its address"),
-    EO_KEY("title", "text", "for people"),
-    EO_KEY("type", "text", "media type"),
-};
-static const struct eo_outline export = EO_OUTLINE("Export", export_rows);
-
-static const struct eo_outline_row exports_rows[] = {
-    EO_KEY("items", "[object]", "formats", .outline = &export),
-};
-static const struct eo_outline exports = EO_OUTLINE("Exports", exports_rows);
 
 static const struct eo_outline_row field_rows[] = {
     EO_KEY("key", "text", "of the document"),
@@ -145,62 +90,6 @@ static const struct eo_outline_row form_rows[] = {
     EO_KEY("sweep", "object", "of a sweep", .outline = &fields),
 };
 static const struct eo_outline form = EO_OUTLINE("Form", form_rows);
-
-static const struct eo_outline_row cost_rows[] = {
-    EO_KEY("memory_MB", "number", "estimated, at the most crowded moment"),
-    EO_KEY("seconds", "number", "estimated, of one processor"),
-};
-static const struct eo_outline cost = EO_OUTLINE("PreparationCost", cost_rows);
-
-static const struct eo_outline_row check_rows[] = {
-    {.outline = &eo_outline_completion},
-    EO_KEY("prepared", "flag", "an analysis would be answered at once"),
-    EO_KEY("preparation", "object", "what preparing the pair takes, where it is not kept already", .outline = &cost),
-};
-static const struct eo_outline check = EO_OUTLINE("Check", check_rows);
-
-static const struct eo_outline_row listed_design_rows[] = {
-    EO_KEY("id", "integer", "number of the design"),  EO_KEY("revision", "integer", "grows with each replacement"),
-    EO_KEY("name", "text", "under which it is kept"), EO_KEY("created", "text", "date and time, UTC"),
-    EO_KEY("updated", "text", "date and time, UTC"),
-};
-static const struct eo_outline listed_design = EO_OUTLINE("ListedDesign", listed_design_rows);
-
-static const struct eo_outline_row stored_design_rows[] = {
-    {.outline = &listed_design},
-    EO_KEY("design", "object", "as it came", .name = "Design"),
-    EO_KEY("warnings", "[text]", "in plain words"),
-};
-static const struct eo_outline stored_design = EO_OUTLINE("StoredDesign", stored_design_rows);
-
-static const struct eo_outline_row designs_rows[] = {
-    EO_KEY("items", "[object]", "newest first", .outline = &listed_design),
-    EO_KEY("next", "text?", "cursor of the next page"),
-};
-static const struct eo_outline designs = EO_OUTLINE("Designs", designs_rows);
-
-static const struct eo_outline_row preparing_rows[] = {
-    EO_KEY("job", "object?", "that prepares the gear pair", .name = "Job"),
-};
-static const struct eo_outline preparing = EO_OUTLINE("Preparing", preparing_rows);
-
-static const struct eo_outline_row jobs_rows[] = {
-    EO_KEY("items", "[object]", "newest first", .name = "Job"),
-    EO_KEY("next", "text?", "cursor of the next page"),
-};
-static const struct eo_outline jobs = EO_OUTLINE("Jobs", jobs_rows);
-
-static const struct eo_outline_row job_history_rows[] = {
-    EO_KEY("items", "[object]", "true evaluations in their order", .name = "JobHistoryRow"),
-    EO_KEY("next", "text?", "cursor of the next page"),
-};
-static const struct eo_outline job_history = EO_OUTLINE("JobHistory", job_history_rows);
-
-static const struct eo_outline_row problem_history_rows[] = {
-    EO_KEY("problem", "any", "what its evaluations have in common, as it is hashed"),
-    EO_KEY("rows", "any", "every true evaluation: id, outcome, reason, cost_s, modification, scenarios"),
-};
-static const struct eo_outline problem_history = EO_OUTLINE("ProblemRows", problem_history_rows);
 
 static const struct eo_outline_row asked_columns_rows[] = {
     EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
@@ -257,19 +146,19 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_measurement_brief,
                                                     &description,
                                                     &problem,
-                                                    &health,
-                                                    &live,
-                                                    &session,
-                                                    &examples,
-                                                    &exports,
+                                                    &eo_outline_health,
+                                                    &eo_outline_live,
+                                                    &eo_outline_session,
+                                                    &eo_outline_examples,
+                                                    &eo_outline_exports,
                                                     &form,
-                                                    &check,
-                                                    &stored_design,
-                                                    &designs,
-                                                    &preparing,
-                                                    &jobs,
-                                                    &job_history,
-                                                    &problem_history,
+                                                    &eo_outline_check,
+                                                    &eo_outline_stored_design,
+                                                    &eo_outline_designs,
+                                                    &eo_outline_preparing,
+                                                    &eo_outline_jobs,
+                                                    &eo_outline_job_history_page,
+                                                    &eo_outline_problem_rows,
                                                     &storage,
                                                     &measurements,
                                                     &eo_variant_table_outline,

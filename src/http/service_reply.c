@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/deferred.h"
+#include "http/answers.h"
 #include "http/service_reply.h"
 
 #include "http/job_reply.h"
@@ -25,7 +26,8 @@ static void reply_preparing(struct eo_request *request, int64_t id)
     eo_reply_error(&request->reply, "", &error);
     return;
   }
-  eo_reply_json(&request->reply, 202, json_pack("{s:o}", "job", job.texts ? eo_job_view_encode(&job) : json_null()));
+  const struct eo_preparing preparing = {job.texts ? eo_job_view_encode(&job) : json_null()};
+  eo_reply_json(&request->reply, 202, eo_outline_encode(&eo_outline_preparing, &preparing));
   eo_job_view_done(&job);
   eo_reply_job_location(&request->reply, id);
   request->reply.retry_after = 1;

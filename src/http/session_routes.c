@@ -4,15 +4,25 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "http/answers.h"
 #include "http/request_body.h"
 #include "http/guard.h"
 #include "http/route.h"
 #include "http/http_private.h"
 
+struct session {
+  bool required, authorized;
+};
+static const struct eo_outline_row session_rows[] = {
+    EO_KEY("required", "flag", "the server asks for a token", EO_AT(struct session, required)),
+    EO_KEY("authorized", "flag", "this client has given it", EO_AT(struct session, authorized)),
+};
+const struct eo_outline eo_outline_session = EO_OUTLINE("Session", session_rows);
+
 static void tell(struct eo_request *request)
 {
-  eo_reply_json(&request->reply, 200,
-                json_pack("{s:b, s:b}", "required", request->http->guard->asks, "authorized", eo_guard_knows(request)));
+  const struct session session = {request->http->guard->asks, eo_guard_knows(request)};
+  eo_reply_json(&request->reply, 200, eo_outline_encode(&eo_outline_session, &session));
 }
 
 struct order {

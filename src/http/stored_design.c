@@ -3,13 +3,29 @@
 
 #include <stdio.h>
 
+#include "http/answers.h"
 #include "http/http_private.h"
 
-json_t *eo_stored_design_encode(const struct eo_stored_design *row)
-{
-  return json_pack("{s:I, s:I, s:s, s:s, s:s}", "id", (json_int_t)row->id, "revision", (json_int_t)row->revision,
-                   "name", row->name, "created", row->created, "updated", row->updated);
-}
+#define OF_ROW(member) EO_AT(struct eo_stored_design, member)
+static const struct eo_outline_row listed_rows[] = {
+    EO_KEY("id", "integer", "number of the design", OF_ROW(id)),
+    EO_KEY("revision", "integer", "grows with each replacement", OF_ROW(revision)),
+    EO_KEY("name", "text", "under which it is kept", OF_ROW(name)),
+    EO_KEY("created", "text", "date and time, UTC", OF_ROW(created)),
+    EO_KEY("updated", "text", "date and time, UTC", OF_ROW(updated)),
+};
+const struct eo_outline eo_outline_listed_design = EO_OUTLINE("ListedDesign", listed_rows);
+
+static const struct eo_outline_row content_rows[] = {
+    EO_KEY("design", "object", "as it came", .name = "Design", EO_AT(struct eo_stored_content, design)),
+    EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct eo_stored_content, warnings)),
+};
+const struct eo_outline eo_outline_stored_content = EO_OUTLINE(NULL, content_rows);
+static const struct eo_outline_row stored_rows[] = {
+    {.outline = &eo_outline_listed_design},
+    {.outline = &eo_outline_stored_content},
+};
+const struct eo_outline eo_outline_stored_design = EO_OUTLINE("StoredDesign", stored_rows);
 
 static void write_tag(const struct eo_stored_design *row, char tag[EO_TAG])
 {
@@ -21,9 +37,18 @@ enum eo_code eo_design_take(void *context, const struct eo_stored_design *row, s
   struct eo_found_design *found = context;
   found->id = row->id;
   write_tag(row, found->tag);
-  found->document = eo_stored_design_encode(row);
-  json_t *design = json_loads(row->document, 0, NULL);
-  return json_object_set_new(found->document, "design", design ? design : json_null()) ? eo_error_memory(error) : EO_OK;
+  found->revision = row->revision;
+  found->head = eo_outline_encode(&eo_outline_listed_design, row);
+  found->design = json_loads(row->document, 0, NULL);
+  if (!found->design)
+    found->design = json_null();
+  return found->head ? EO_OK : eo_error_memory(error);
+}
+
+void eo_found_design_done(struct eo_found_design *found)
+{
+  json_decref(found->head);
+  json_decref(found->design);
 }
 
 bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design,
@@ -39,9 +64,9 @@ bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_
   else if (outcome == EO_DESIGN_MISSING)
     *missing = true;
   else
-    good = eo_request_design(request, json_object_get(found.document, "design"), "", design, geometry, NULL);
+    good = eo_request_design(request, found.design, "", design, geometry, NULL);
   if (good && document)
-    *document = json_incref(json_object_get(found.document, "design"));
-  json_decref(found.document);
+    *document = json_incref(found.design);
+  eo_found_design_done(&found);
   return good;
 }

@@ -3,18 +3,24 @@
 #ifndef EASEOFF_HTTP_STORED_DESIGN_H
 #define EASEOFF_HTTP_STORED_DESIGN_H
 
+#include "format/outline.h"
 #include "http/request.h"
 #include "store/designs.h"
 
-/* Without the design: a row of a list. */
-json_t *eo_stored_design_encode(const struct eo_stored_design *row);
-
 /* A row on its way into a reply. */
 struct eo_found_design {
-  json_t *document; /* owned; with the design */
-  int64_t id;
+  json_t *head;   /* as in a list; owned */
+  json_t *design; /* owned */
+  int64_t id, revision;
   char tag[EO_TAG];
 };
+void eo_found_design_done(struct eo_found_design *found);
+
+/* What stands behind the head in the reply. */
+struct eo_stored_content {
+  json_t *design, *warnings;
+};
+extern const struct eo_outline eo_outline_stored_content;
 
 /* Visits a row; context: a struct eo_found_design. */
 enum eo_code eo_design_take(void *context, const struct eo_stored_design *row, struct eo_error *error);

@@ -193,21 +193,42 @@ static json_t *encode_scenarios(const struct row_list *list, const struct eo_obj
   return array;
 }
 
+struct written_evaluation {
+  struct eo_stored_evaluation stored;
+  json_t *modification, *scenarios;
+};
+#define OF_EVALUATION(member) EO_AT(struct written_evaluation, member)
+static const struct eo_outline_row evaluation_rows[] = {
+    EO_KEY("id", "integer", "number of the evaluation", OF_EVALUATION(stored.id)),
+    EO_KEY("outcome", "word", "how it ended", .words = eo_store_outcomes, OF_EVALUATION(stored.outcome)),
+    EO_KEY("reason", "text", "empty when it converged", OF_EVALUATION(stored.reason)),
+    EO_KEY("cost_s", "number?", "computing time, s", OF_EVALUATION(stored.cost)),
+    EO_KEY("modification", "any", "as in a design", OF_EVALUATION(modification)),
+    EO_KEY("scenarios", "any", "raw numbers of every load case, scenario by scenario", OF_EVALUATION(scenarios)),
+};
+static const struct eo_outline evaluation_outline = EO_OUTLINE("ProblemRow", evaluation_rows);
+
+struct written_rows {
+  json_t *problem, *rows;
+};
+static const struct eo_outline_row problem_row_rows[] = {
+    EO_KEY("problem", "any", "what its evaluations have in common, as it is hashed",
+           EO_AT(struct written_rows, problem)),
+    EO_KEY("rows", "[object]", "every true evaluation", .outline = &evaluation_outline,
+           EO_AT(struct written_rows, rows)),
+};
+const struct eo_outline eo_outline_problem_rows = EO_OUTLINE("ProblemRows", problem_row_rows);
+
 static enum eo_code add_row(void *context, const struct eo_stored_evaluation *evaluation, const double *x, int size,
                             struct eo_error *error)
 {
   struct row_list *list = context;
-  struct eo_object object = eo_object_open();
   (void)x;
   (void)size;
-  eo_object_put(&object, "id", json_integer(evaluation->id));
-  eo_object_put(&object, "outcome", json_string(eo_store_outcome_name(evaluation->outcome)));
-  eo_object_put(&object, "reason", json_string(evaluation->reason));
-  eo_object_put(&object, "cost_s", eo_json_quantity(evaluation->cost, NULL));
-  eo_object_put(&object, "modification",
-                eo_json_parse(evaluation->modification, strlen(evaluation->modification), error));
-  eo_object_put(&object, "scenarios", encode_scenarios(list, evaluation->raw));
-  return append(list->rows, eo_object_close(&object), error);
+  const struct written_evaluation row = {
+      *evaluation, eo_json_parse(evaluation->modification, strlen(evaluation->modification), error),
+      encode_scenarios(list, evaluation->raw)};
+  return append(list->rows, eo_outline_encode(&evaluation_outline, &row), error);
 }
 
 enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **document, struct eo_error *error)
@@ -218,10 +239,8 @@ enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **d
     code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)problem);
   if (!code)
     code = eo_store_each_evaluation(store, problem, 0, NULL, list.scenarios, list.cases, add_row, &list, error);
-  struct eo_object object = eo_object_open();
-  eo_object_put(&object, "problem", list.spec ? list.spec : json_null());
-  eo_object_put(&object, "rows", list.rows);
-  json_t *all = eo_object_close(&object);
+  const struct written_rows rows = {list.spec ? list.spec : json_null(), list.rows};
+  json_t *all = eo_outline_encode(&eo_outline_problem_rows, &rows);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)

@@ -13,7 +13,7 @@
      "jobs": [ { "id", "kind", "problem", "name", "algorithm", "state", "stopped", "true_evaluations", "individuals",
    "pfc_percent", "best_value", "has_result", "created", "updated" } ] } A job that was running when its process ended
    is "interrupted". */
-extern const struct eo_outline eo_records_outline;
+extern const struct eo_outline eo_records_outline, eo_outline_problem_rows;
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error);
 
 /* The result document of a job; EO_ERROR_INPUT when there is no such job or it has none yet. */

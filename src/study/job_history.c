@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/list_page.h"
 #include "document/design_document.h"
 #include "format/json.h"
 #include "document/result_private.h"
@@ -152,6 +153,11 @@ static enum eo_code begin(struct history **history, struct eo_store *store, stru
   return EO_OK;
 }
 
+static const struct eo_outline_row page_rows[] = {
+    EO_PAGE_ROWS("true evaluations in their order", .outline = &eo_job_history_outline),
+};
+const struct eo_outline eo_outline_job_history_page = EO_OUTLINE("JobHistory", page_rows);
+
 enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
                             json_t **page, struct eo_error *error)
 {
@@ -162,8 +168,7 @@ enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int 
   *page = NULL;
   code = collect(history, job, after, limit, outcome, error);
   if (!code && *outcome == EO_JOB_OUTCOME_DONE) {
-    json_t *next = history->more ? json_sprintf("%d", history->last) : json_null();
-    *page = json_pack("{s:O, s:o}", "items", history->items, "next", next);
+    *page = eo_page_encode(&eo_outline_job_history_page, json_incref(history->items), history->more, history->last);
     code = *page ? EO_OK : eo_error_memory(error);
   }
   done(history);

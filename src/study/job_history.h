@@ -9,7 +9,7 @@
 #include "format/text.h"
 #include "store/queue.h"
 
-extern const struct eo_outline eo_job_history_outline; /* of an item */
+extern const struct eo_outline eo_job_history_outline, eo_outline_job_history_page; /* of an item */
 
 /* A page of true rows: { "items": [ { "ordinal", "generation", "individual", "outcome", "reason", "modification",
    "f1_um", "f2_N", "f3_m_per_s2", "J", "fitness", "reused" } ], "next": "cursor" | null }. after: ordinal of the last
