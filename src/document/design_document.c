@@ -290,7 +290,7 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   return code;
 }
 
-static enum eo_code hash_document(json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+enum eo_code eo_design_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   struct eo_text text = {0};
   if (document)
@@ -299,13 +299,15 @@ static enum eo_code hash_document(json_t *document, char hex[EO_HASH_LENGTH + 1]
   if (!code)
     eo_hash_hex(text.data, text.size, hex);
   eo_text_done(&text);
-  json_decref(document);
   return code;
 }
 
 enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
-  return hash_document(eo_design_encode(design), hex, error);
+  json_t *document = eo_design_encode(design);
+  enum eo_code code = eo_design_hash_document(document, hex, error);
+  json_decref(document);
+  return code;
 }
 
 /* The hand turns pictures and files round, and no number of an evaluation. */
@@ -314,22 +316,28 @@ static void drop_hand(json_t *document)
   json_object_del(json_object_get(document, "gear_pair"), "hand");
 }
 
-static enum eo_code hash_without(const struct eo_design *design, const char *const *without,
-                                 char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+enum eo_code eo_design_evaluation_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1],
+                                                struct eo_error *error)
 {
-  json_t *document = eo_design_encode(design);
-  for (int i = 0; without[i] && document; i++)
-    json_object_del(document, without[i]);
-  drop_hand(document);
-  return hash_document(document, hex, error);
+  static const char *const without[] = {"version",   "name",      "rating",       "pitch",
+                                        "tolerance", "objective", "optimization", NULL};
+  json_t *part = json_copy((json_t *)document), *pair = json_copy(json_object_get(part, "gear_pair"));
+  bool failed = json_object_set_new(part, "gear_pair", pair) != 0;
+  for (int i = 0; without[i] && !failed; i++)
+    json_object_del(part, without[i]);
+  drop_hand(part);
+  enum eo_code code = eo_design_hash_document(failed ? NULL : part, hex, error);
+  json_decref(part);
+  return code;
 }
 
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error)
 {
-  static const char *const without[] = {"version",   "name",      "rating",       "pitch",
-                                        "tolerance", "objective", "optimization", NULL};
-  return hash_without(design, without, hex, error);
+  json_t *document = eo_design_encode(design);
+  enum eo_code code = eo_design_evaluation_hash_document(document, hex, error);
+  json_decref(document);
+  return code;
 }
 
 /* Scenarios, root stress: what of the objective decides which values a row has. */

@@ -85,6 +85,11 @@ enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LEN
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error);
 
+/* Both of a design that is encoded already; NULL: that had no memory. */
+enum eo_code eo_design_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
+enum eo_code eo_design_evaluation_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1],
+                                                struct eo_error *error);
+
 /* Everything the raw values of one evaluation depend on but the modification, as canonical JSON, and its hash: the
    design without name, modification, objective, optimization, shares of the load cases and what only shows; the
    scenarios of a robust objective, whether root stress is wanted, and the evaluator's version. Appends to spec. */

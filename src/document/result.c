@@ -384,7 +384,6 @@ static const struct eo_outline_row result_rows[] = {
     {.outline = &tail_outline},
 };
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
-
 json_t *eo_result_head(struct eo_result_source *source)
 {
   const struct eo_design *design = source->design;
@@ -393,9 +392,14 @@ json_t *eo_result_head(struct eo_result_source *source)
        assumed = eo_result_has(source, EO_RESULT_NO_ASSUMED, NULL),
        modification = eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL);
   struct result_head head = {.program = PACKAGE_STRING, .resolution = design->resolution, .geometry = *geometry};
-  if (eo_design_hash(design, head.design_hash, NULL) || eo_design_evaluation_hash(design, head.evaluation_hash, NULL))
+  json_t *document = eo_design_encode(design);
+  if (eo_design_hash_document(document, head.design_hash, NULL) ||
+      eo_design_evaluation_hash_document(document, head.evaluation_hash, NULL)) {
+    json_decref(document);
     return NULL;
-  head.design = whole ? eo_design_encode(design) : json_null();
+  }
+  head.design = whole ? json_incref(document) : json_null();
+  json_decref(document);
   head.assumed = assumed ? eo_assumptions_encode(design, rating) : json_null();
   head.dimensions = assumed ? eo_dimensions_encode(&design->gear_pair, geometry) : json_null();
   head.flexibility = eo_result_flexibility(source);

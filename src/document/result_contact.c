@@ -70,8 +70,8 @@ static struct places find_places(const struct eo_result_source *source, bool wan
   const double *eta = wanted ? pattern->eta : NULL;
   return (struct places){
       .uneven = source->pair->right,
-      .path = eo_series_of(EO_PATTERN_ROWS, wanted ? pattern->path : NULL, EO_DIGITS_CURVE),
-      .eta = eo_series_of(EO_PATTERN_COLUMNS, eta, EO_DIGITS_CURVE),
+      .path = eo_series_of(EO_PATTERN_ROWS, wanted ? pattern->path : NULL, EO_DIGITS_CURVE | source->ready),
+      .eta = eo_series_of(EO_PATTERN_COLUMNS, eta, EO_DIGITS_CURVE | source->ready),
       .right_eta = eo_result_right_face(source, EO_PATTERN_COLUMNS, eta),
   };
 }
@@ -191,7 +191,8 @@ static json_t *encode_pattern_end(const struct eo_result_source *source, int end
   const struct eo_contact_pattern *pattern = eo_result_pattern(source, end);
   struct pattern_end view = {.pressure = eo_result_map(source, wanted ? pattern->pressure : NULL)};
   for (int edge = 0; edge < 2; edge++)
-    view.edge[edge] = eo_series_of(EO_PATTERN_COLUMNS, wanted ? pattern->edge[edge] : NULL, EO_DIGITS_MAP);
+    view.edge[edge] = eo_series_of(EO_PATTERN_COLUMNS, wanted ? pattern->edge[edge] : NULL,
+                                   EO_DIGITS_MAP | source->ready);
   return eo_outline_encode(&pattern_end, &view);
 }
 

@@ -53,7 +53,7 @@ json_t *eo_result_face_load(const struct eo_result_source *source, const struct 
   const double *eta = curves ? case_result->end[0].face.eta : NULL;
   struct face view = {.two = two,
                       .uneven = source->pair->right,
-                      .eta = eo_series_of(EO_FACE_SLICES, eta, EO_DIGITS_CURVE),
+                      .eta = eo_series_of(EO_FACE_SLICES, eta, EO_DIGITS_CURVE | source->ready),
                       .right_eta = eo_result_right_face(source, EO_FACE_SLICES, eta),
                       .face.two = two,
                       .share.two = two,
@@ -63,7 +63,7 @@ json_t *eo_result_face_load(const struct eo_result_source *source, const struct 
     view.face.end[end] = found->face_factor;
     view.share.end[end] = found->share_factor;
     view.line.end[end] = found->line_factor;
-    view.load[end] = eo_series_of(EO_FACE_SLICES, curves ? found->load : NULL, EO_DIGITS_CURVE);
+    view.load[end] = eo_series_of(EO_FACE_SLICES, curves ? found->load : NULL, EO_DIGITS_CURVE | source->ready);
   }
   return eo_outline_encode(&eo_outline_face_load, &view);
 }

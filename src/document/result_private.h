@@ -17,7 +17,8 @@ struct eo_result_source {
   int ends, positions, lag;           /* lag: positions by which the right end's columns are shifted */
   double normal;                      /* cos(beta_b): normal = transverse times it */
   unsigned left_out;                  /* EO_RESULT_NO_..., EO_RESULT_CURVES_OF(), EO_RESULT_OVERVIEW */
-  int digits, map_digits;             /* of curves; of maps and histories */
+  int digits, map_digits;             /* of curves; of maps and histories; `ready` in them */
+  int ready;                          /* EO_DIGITS_READY where the result is only written, else 0 */
   struct eo_contact_pattern *pattern; /* [half] scratch: eo_result_pattern() */
   double *scratch;                    /* [positions] */
   double (*edge_pressure)[2];         /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
@@ -93,6 +94,8 @@ json_t *eo_result_warnings(const struct eo_result_source *source, const struct e
 /* What one thread needs to write; false without memory. done() after either. */
 bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
                            const struct eo_design *design, unsigned left_out);
+/* For who only writes what is made of it: curves and maps are text from the start (EO_DIGITS_READY). */
+void eo_result_source_write_only(struct eo_result_source *source);
 void eo_result_source_done(struct eo_result_source *source);
 
 /* The result in the order of writing: what stands before the load cases, the two halves of each, about as long to

@@ -5,9 +5,10 @@
 #include "document/result_private.h"
 
 /* Largest stress of one tooth over its way through the mesh, NULL: left out. */
-static struct eo_series history_of(const struct eo_root_history *history, const double *value)
+static struct eo_series history_of(const struct eo_result_source *source, const struct eo_root_history *history,
+                                   const double *value)
 {
-  return eo_series_of(history->phases, value, EO_DIGITS_CURVE);
+  return eo_series_of(history->phases, value, EO_DIGITS_CURVE | source->ready);
 }
 
 struct root_end {
@@ -66,12 +67,12 @@ static struct root_member find_member(const struct eo_result_source *source, con
   bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, case_result);
   struct root_member view = {.two = source->ends == 2,
                              .maximum = worse->maximum,
-                             .position = history_of(history[0], wanted ? history[0]->phase : NULL),
-                             .history = history_of(worse, wanted ? worse->stress : NULL)};
+                             .position = history_of(source, history[0], wanted ? history[0]->phase : NULL),
+                             .history = history_of(source, worse, wanted ? worse->stress : NULL)};
   for (int end = 0; end < source->ends; end++) {
     double factor = force_factor(case_result, end), dynamic = history[end]->maximum * factor;
     view.end[end] = (struct root_end){history[end]->maximum, dynamic, history[end]->arc, history[end]->eta,
-                                      history_of(history[end], wanted ? history[end]->stress : NULL)};
+                                      history_of(source, history[end], wanted ? history[end]->stress : NULL)};
     view.dynamic = isnan(factor) ? NAN : fmax(view.dynamic, dynamic);
   }
   return view;

@@ -91,6 +91,13 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
   return source->pattern && source->scratch;
 }
 
+void eo_result_source_write_only(struct eo_result_source *source)
+{
+  source->ready = EO_DIGITS_READY;
+  source->digits |= EO_DIGITS_READY;
+  source->map_digits |= EO_DIGITS_READY;
+}
+
 void eo_result_source_done(struct eo_result_source *source)
 {
   free(source->pattern);

@@ -88,6 +88,7 @@ enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo
   bool good = writing != NULL;
   for (int i = 0; i < WRITERS && good; i++) {
     good = eo_result_source_init(&writing->source[i], analysis, design, left_out);
+    eo_result_source_write_only(&writing->source[i]);
     writing->source[i].edge_pressure = edge_pressure;
   }
   enum eo_code code = good ? write_all(writing, warnings, text, error) : eo_error_memory(error);

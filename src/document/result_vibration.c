@@ -114,7 +114,7 @@ static json_t *encode_orders(const struct eo_result_source *source, const struct
   for (int i = 0; i < EO_CHANNELS; i++) {
     double *own = amplitude + (size_t)i * ((size_t)harmonics + 1);
     find_amplitudes(harmonics, &end_result->order[i], 1, own);
-    view.curve[i] = eo_series_of(harmonics + 1, own, EO_DIGITS_MAP);
+    view.curve[i] = eo_series_of(harmonics + 1, own, EO_DIGITS_MAP | source->ready);
   }
   json_t *encoded = eo_outline_encode(&channel_curves, &view);
   free(amplitude);
@@ -192,7 +192,7 @@ static json_t *encode_pair_orders(const struct eo_result_source *source, const s
   if (!amplitude)
     return NULL;
   find_amplitudes(harmonics, order, source->ends, amplitude);
-  json_t *column = eo_json_reals(harmonics + 1, amplitude, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP);
+  json_t *column = eo_json_reals(harmonics + 1, amplitude, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP | source->ready);
   free(amplitude);
   return column;
 }
@@ -203,7 +203,7 @@ static json_t *encode_samples(const struct eo_result_source *source)
   double *position = malloc(sizeof *position * (size_t)n);
   for (int i = 0; i < n && position; i++)
     position[i] = (double)i / n;
-  json_t *column = position ? eo_json_reals(n, position, 1, NULL, EO_DIGITS_CURVE) : NULL;
+  json_t *column = position ? eo_json_reals(n, position, 1, NULL, EO_DIGITS_CURVE | source->ready) : NULL;
   free(position);
   return column;
 }

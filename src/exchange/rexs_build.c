@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "exchange/rexs_schema.h"
+#include "format/digits.h"
 #include "format/json.h"
 
 int eo_rexs_build(struct eo_rexs_builder *builder, int id, const char *type, const char *name)
@@ -47,7 +48,7 @@ static struct eo_rexs_attribute *put(struct eo_rexs_builder *builder, const char
 static const char *number_text(struct eo_rexs_model *model, double value)
 {
   char text[40];
-  int length = eo_json_number(text, sizeof text, value + 0.0);
+  int length = eo_digits_write(text, sizeof text, value + 0.0);
   return eo_rexs_text(model, text, (size_t)length);
 }
 

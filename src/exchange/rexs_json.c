@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 
 struct reader {
@@ -90,7 +91,7 @@ static bool read_value(struct reader *reader, struct eo_rexs_attribute *attribut
   else if (json_is_boolean(value))
     attribute->text = json_is_true(value) ? "true" : "false";
   else if (json_is_number(value)) {
-    int length = eo_json_number(number, sizeof number, json_number_value(value));
+    int length = eo_digits_write(number, sizeof number, json_number_value(value));
     attribute->text = eo_rexs_text(reader->model, number, (size_t)length);
   }
   return true;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "exchange/rexs_schema.h"
+#include "format/digits.h"
 #include "format/json.h"
 
 /* XML: */
@@ -75,7 +76,7 @@ static void write_attribute(const struct eo_rexs_attribute *attribute, const cha
   else {
     eo_text_add(text, "<array>");
     for (int i = 0; i < attribute->count; i++) {
-      eo_json_number(number, sizeof number, attribute->value[i] + 0.0);
+      eo_digits_write(number, sizeof number, attribute->value[i] + 0.0);
       eo_text_print(text, "<c>%s</c>", number);
     }
     eo_text_add(text, "</array>");

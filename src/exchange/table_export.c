@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "exchange/design_keys.h"
+#include "format/digits.h"
 #include "format/json.h"
 
 /* A value of the document: where it stands and what it is. */
@@ -89,7 +90,7 @@ static char *cell_text(const json_t *value, bool comma)
   if (json_is_integer(value))
     snprintf(number, sizeof number, "%lld", (long long)json_integer_value(value));
   else if (json_is_number(value)) {
-    eo_json_number(number, sizeof number, json_number_value(value));
+    eo_digits_write(number, sizeof number, json_number_value(value));
     for (char *c = number; *c && comma; c++)
       *c = *c == '.' ? ',' : *c;
   } else

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "format/json.h"
 #include "format/table.h"
@@ -83,22 +84,41 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
   return NULL;
 }
 
-/* Whether an encoded object is what the table's defaults give, and may be left out. Without memory nobody knows:
- *failed, since with it or without it the document has another hash. */
-static bool is_default(const struct eo_table *table, const json_t *encoded, bool *failed)
+/* An object that is not what its table's defaults give, as far as bytes or else the documents of both can tell; NULL:
+   it may be left out. Without memory nobody knows: *failed, since with it or without it the document has another hash.
+ */
+static json_t *encode_unless_default(const struct eo_field *field, const void *source, bool *failed)
 {
+  const struct eo_table *table = field->table;
   void *defaults = calloc(1, table->size);
-  if (!defaults) {
-    *failed = true;
-    return false;
+  json_t *value = NULL, *other = NULL;
+  *failed = *failed || !defaults;
+  if (defaults)
+    eo_table_defaults(table, defaults);
+  if (defaults && memcmp(member(source, field), defaults, table->size) != 0) {
+    value = encode_field(field, source);
+    other = eo_table_encode(table, defaults);
+    *failed = *failed || !value || !other;
   }
-  eo_table_defaults(table, defaults);
-  json_t *other = eo_table_encode(table, defaults);
-  *failed = *failed || !other;
-  bool same = other && json_equal(encoded, other);
+  bool same = value && other && json_equal(value, other);
   json_decref(other);
   free(defaults);
-  return same;
+  if (!same)
+    return value;
+  json_decref(value);
+  return NULL;
+}
+
+/* The same for a list with nothing in it. */
+static json_t *encode_optional(const struct eo_field *field, const void *source, bool *failed)
+{
+  if (field->kind != EO_FIELD_LIST)
+    return encode_unless_default(field, source, failed);
+  if (!*(const int *)((const char *)source + field->count_offset))
+    return NULL;
+  json_t *list = encode_field(field, source);
+  *failed = *failed || !list;
+  return list;
 }
 
 json_t *eo_table_encode(const struct eo_table *table, const void *source)
@@ -109,11 +129,9 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
     const struct eo_field *field = &table->field[i];
     if (field->flags & (EO_FIELD_ENTRY | EO_FIELD_ELSEWHERE))
       continue;
-    json_t *value = encode_field(field, source);
-    if (value && field->flags & EO_FIELD_OMIT &&
-        (field->kind == EO_FIELD_LIST ? json_array_size(value) == 0 : is_default(field->table, value, &failed)))
-      json_decref(value);
-    else
+    bool optional = field->flags & EO_FIELD_OMIT;
+    json_t *value = optional ? encode_optional(field, source, &failed) : encode_field(field, source);
+    if (value || !optional)
       eo_json_put(object, field->key, value, &failed);
   }
   if (failed) {

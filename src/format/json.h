@@ -28,12 +28,12 @@ enum eo_json_style {
 };
 void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style style);
 
-/* A number as text: the shortest of 15, 16 or 17 digits that reads back equal. size >= 32. Returns its length. */
-int eo_json_number(char *text, int size, double value);
-
 /* New values in the document's unit (NULL: dimensionless); what is not finite becomes null. */
 json_t *eo_json_real(double value, const struct eo_unit *unit);
-/* digits: significant digits kept, for curves that people and pages read; 0 keeps all. stride: between values. */
+/* digits: significant digits kept, for curves that people and pages read; 0 keeps all. stride: between values. With
+   EO_DIGITS_READY the array as text already, which eo_json_write() alone understands: for who only writes it, at a
+   fifth of the time. */
+enum { EO_DIGITS_READY = 1 << 8 };
 json_t *eo_json_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits);
 
 /* What stands at a path of keys, "lte/pair_um": borrowed; NULL when it is not there. */

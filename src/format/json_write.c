@@ -1,114 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 
 enum { LINE = 110 }; /* columns up to which a value stays on one line */
-
-enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
-static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                              1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-static uint64_t bits_of(double value)
-{
-  uint64_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-/* floor(log10(value)) for 1 <= value < 1e22: from the binary exponent, log10(2) = 1233/4096. */
-static int find_exponent(double value)
-{
-  int exponent = ((int)(bits_of(value) >> 52) - 1023) * 1233 >> 12;
-  return exponent + (value >= power[exponent + 1]);
-}
-
-/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what
-   follows can be done exactly. */
-static int find_decimals(double value, int digits)
-{
-  if (!(value >= 1e-13 && value < 1e15))
-    return -1;
-  int decimals = digits - 1 - (value >= 1 ? find_exponent(value) : find_exponent(value * 1e13) - 13);
-  return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
-}
-
-/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns its
-   length. */
-static int write_decimal(char *text, bool negative, uint64_t number, int decimals)
-{
-  char reversed[24], *to = text;
-  int length = 0;
-  for (; decimals > 0 && number % 10 == 0; decimals--)
-    number /= 10;
-  for (; number > 0; number /= 10)
-    reversed[length++] = (char)('0' + number % 10);
-  int exponent = length - 1 - decimals, point = exponent < -4 ? length - 1 : decimals;
-  while (length <= point)
-    reversed[length++] = '0';
-  if (negative)
-    *to++ = '-';
-  while (length > 0) {
-    if (length == point)
-      *to++ = '.';
-    *to++ = reversed[--length];
-  }
-  if (exponent < -4) {
-    *to++ = 'e';
-    *to++ = '-';
-    if (exponent <= -10)
-      *to++ = '1';
-    *to++ = (char)('0' + -exponent % 10);
-  }
-  *to = '\0';
-  return (int)(to - text);
-}
-
-/* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of
-   its digits over a power of ten, as long as both are exact. Returns its length; 0: not so short, or too large or
-   small. */
-static int write_short(char *text, double value)
-{
-  double size = fabs(value);
-  for (int digits = 9; digits <= 15; digits += 3) {
-    int decimals = find_decimals(size, digits);
-    double number = decimals < 0 ? 0 : nearbyint(size * power[decimals]);
-    if (decimals < 0 || number >= 1e15 || number / power[decimals] != size)
-      continue;
-    return write_decimal(text, value < 0, (uint64_t)number, decimals);
-  }
-  return 0;
-}
-
-static int write_long(char *text, int size, double value)
-{
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, (size_t)size, "%.*g", digits, value);
-    if (strtod(text, NULL) == value)
-      break;
-  }
-  char *exponent = strchr(text, 'e'); /* 1e-07 -> 1e-7, 1e+20 -> 1e20 */
-  if (exponent) {
-    char *to = exponent + 1, *from = to;
-    if (*from == '-')
-      to = ++from;
-    while (*from == '+' || (*from == '0' && from[1]))
-      from++;
-    memmove(to, from, strlen(from) + 1);
-  }
-  return (int)strlen(text);
-}
-
-int eo_json_number(char *text, int size, double value)
-{
-  uint64_t bits =
-      bits_of(value); /* for the sign of a zero: where it compares values, the compiler may take all zeros for one */
-  int length = bits << 1 ? write_short(text, value) : write_decimal(text, bits >> 63, 0, 0);
-  return length ? length : write_long(text, size, value);
-}
 
 static void write_string(struct eo_text *text, const char *string)
 {
@@ -128,17 +26,25 @@ static void write_string(struct eo_text *text, const char *string)
 
 static void write_real(struct eo_text *text, double value)
 {
-  enum { ROOM = 40 };
-  char *to = eo_text_room(text, ROOM);
+  char *to = eo_text_room(text, EO_DIGITS_ROOM);
   if (to)
-    text->size += (size_t)eo_json_number(to, ROOM, value);
+    text->size += (size_t)eo_digits_write(to, EO_DIGITS_ROOM, value);
+}
+
+/* A string that begins with a NUL, which none that is read can, holds what is to be written: EO_DIGITS_READY. */
+static bool is_ready(const json_t *value)
+{
+  return json_is_string(value) && json_string_length(value) > 0 && !*json_string_value(value);
 }
 
 static void write_scalar(struct eo_text *text, const json_t *value)
 {
   switch (json_typeof(value)) {
   case JSON_STRING:
-    write_string(text, json_string_value(value));
+    if (is_ready(value))
+      eo_text_add_bytes(text, json_string_value(value) + 1, json_string_length(value) - 1);
+    else
+      write_string(text, json_string_value(value));
     break;
   case JSON_REAL:
     write_real(text, json_real_value(value));
@@ -160,8 +66,8 @@ static int compare_keys(const void *a, const void *b)
   return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* The keys in the order of the style; the caller frees the list, not the keys. NULL: no memory. */
-static const char **list_keys(const json_t *object, enum eo_json_style style)
+/* The keys by their bytes; the caller frees the list, not the keys. NULL: no memory. */
+static const char **list_keys(const json_t *object)
 {
   const char **keys = malloc((json_object_size(object) + 1) * sizeof *keys), *key;
   if (!keys)
@@ -169,8 +75,7 @@ static const char **list_keys(const json_t *object, enum eo_json_style style)
   size_t n = 0;
   json_t *value;
   json_object_foreach((json_t *)object, key, value) keys[n++] = key;
-  if (style == EO_JSON_CANONICAL)
-    qsort(keys, n, sizeof *keys, compare_keys);
+  qsort(keys, n, sizeof *keys, compare_keys);
   return keys;
 }
 
@@ -195,22 +100,41 @@ static void end_members(struct eo_text *text, size_t n, enum eo_json_style style
     eo_text_add(text, " ");
 }
 
+static void write_member(struct eo_text *text, const char *key, const json_t *value, enum eo_json_style style,
+                         int indent)
+{
+  write_string(text, key);
+  eo_text_add(text, style == EO_JSON_PRETTY ? ": " : ":");
+  write_value(text, value, style, indent < 0 ? -1 : indent + 2);
+}
+
 static void write_object(struct eo_text *text, const json_t *object, enum eo_json_style style, int indent)
 {
-  const char **keys = list_keys(object, style);
+  size_t n = json_object_size(object), i = 0;
+  const char *key;
+  json_t *value;
+  eo_text_add(text, "{");
+  json_object_foreach((json_t *)object, key, value)
+  {
+    begin_member(text, i++, style, indent);
+    write_member(text, key, value, style, indent);
+  }
+  end_members(text, n, style, indent);
+  eo_text_add(text, "}");
+}
+
+static void write_sorted(struct eo_text *text, const json_t *object)
+{
+  const char **keys = list_keys(object);
   if (!keys) {
     text->failed = true;
     return;
   }
-  size_t n = json_object_size(object);
   eo_text_add(text, "{");
-  for (size_t i = 0; i < n; i++) {
-    begin_member(text, i, style, indent);
-    write_string(text, keys[i]);
-    eo_text_add(text, style == EO_JSON_PRETTY ? ": " : ":");
-    write_value(text, json_object_get(object, keys[i]), style, indent < 0 ? -1 : indent + 2);
+  for (size_t i = 0; i < json_object_size(object); i++) {
+    begin_member(text, i, EO_JSON_CANONICAL, -1);
+    write_member(text, keys[i], json_object_get(object, keys[i]), EO_JSON_CANONICAL, -1);
   }
-  end_members(text, n, style, indent);
   eo_text_add(text, "}");
   free(keys);
 }
@@ -277,7 +201,9 @@ static void write_value(struct eo_text *text, const json_t *value, enum eo_json_
     if (short_enough || text->failed)
       return;
   }
-  if (json_is_object(value))
+  if (json_is_object(value) && style == EO_JSON_CANONICAL)
+    write_sorted(text, value);
+  else if (json_is_object(value))
     write_object(text, value, style, indent);
   else if (json_is_array(value))
     write_array(text, value, style, indent);
@@ -298,30 +224,38 @@ json_t *eo_json_real(double value, const struct eo_unit *unit)
   return isfinite(outside) ? json_real(outside) : json_null();
 }
 
-/* Through integers where that is exact and no tie is near, else through text: the same number. */
-static double round_digits(double value, int digits)
+static void write_ready(struct eo_text *text, double value, int digits)
 {
-  char text[40];
-  double size = fabs(value);
-  if (size == 0)
-    return value;
-  int decimals = find_decimals(size, digits);
-  double scaled = decimals < 0 ? 0 : size * power[decimals], number = nearbyint(scaled),
-         past = fabs(scaled - floor(scaled) - 0.5);
-  if (decimals >= 0 && scaled >= power[digits - 1] * (1 + 1e-12) && number < power[digits] && past > 1e-15 * scaled)
-    return copysign(number / power[decimals], value);
-  snprintf(text, sizeof text, "%.*g", digits, value);
-  return strtod(text, NULL);
+  char *to = eo_text_room(text, EO_DIGITS_ROOM);
+  if (!isfinite(value))
+    eo_text_add_bytes(text, "null", 4);
+  else if (to)
+    text->size += (size_t)eo_digits_write_rounded(to, EO_DIGITS_ROOM, value, digits);
+}
+
+static json_t *ready_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits)
+{
+  struct eo_text text = {0};
+  eo_text_add_bytes(&text, "\0[", 2);
+  for (int i = 0; i < count; i++) {
+    if (i)
+      eo_text_add_bytes(&text, ",", 1);
+    write_ready(&text, eo_unit_near(unit, value[(long)i * stride]), digits);
+  }
+  eo_text_add_bytes(&text, "]", 1);
+  json_t *ready = text.failed ? NULL : json_stringn_nocheck(text.data, text.size);
+  eo_text_done(&text);
+  return ready;
 }
 
 json_t *eo_json_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits)
 {
+  if (digits & EO_DIGITS_READY)
+    return ready_reals(count, value, stride, unit, digits & ~EO_DIGITS_READY);
   json_t *array = json_array();
   bool failed = !array;
   for (int i = 0; i < count && !failed; i++) {
-    double si = value[(long)i * stride];
-    double outside = digits ? round_digits(unit ? (unit->divide ? si * unit->factor : si / unit->factor) : si, digits)
-                            : eo_unit_out(unit, si);
+    double si = value[(long)i * stride], outside = digits ? eo_unit_round(unit, si, digits) : eo_unit_out(unit, si);
     failed = json_array_append_new(array, isfinite(outside) ? json_real(outside) : json_null()) != 0;
   }
   if (failed) {

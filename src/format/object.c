@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/object.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "format/json.h"
 
 json_t *eo_json_quantity(double value, const struct eo_unit *unit)
 {
-  json_t *column = eo_json_column(1, &value, 1, unit, EO_DIGITS_NUMBER),
-         *number = json_incref(json_array_get(column, 0));
-  json_decref(column);
-  return number;
+  double outside = eo_unit_round(unit, value, EO_DIGITS_NUMBER);
+  return isfinite(outside) ? json_real(outside) : json_null();
 }
 
 json_t *eo_json_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits)

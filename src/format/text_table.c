@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 
 static void add_cell(struct eo_text_table *sheet, const char *text, bool number)
@@ -58,7 +59,7 @@ void eo_text_table_number(struct eo_text_table *sheet, double value, const struc
   if (isfinite(outside) && digits)
     snprintf(text, sizeof text, "%.*g", digits, outside);
   else if (isfinite(outside))
-    eo_json_number(text, sizeof text, outside);
+    eo_digits_write(text, sizeof text, outside);
   add_cell(sheet, text, true);
 }
 

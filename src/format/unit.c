@@ -2,8 +2,9 @@
 #include "format/unit.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include <stddef.h>
+
+#include "format/digits.h"
 
 const struct eo_unit eo_unit_mm = {"mm", "mm", 1e3, true};
 const struct eo_unit eo_unit_um = {"um", "um", 1e6, true};
@@ -52,13 +53,24 @@ double eo_unit_in(const struct eo_unit *unit, double value)
   return unit->divide ? value / unit->factor : value * unit->factor;
 }
 
+double eo_unit_near(const struct eo_unit *unit, double value)
+{
+  if (!unit)
+    return value;
+  return unit->divide ? value * unit->factor : value / unit->factor;
+}
+
+double eo_unit_round(const struct eo_unit *unit, double value, int digits)
+{
+  double outside = eo_unit_near(unit, value);
+  return isfinite(outside) ? eo_digits_round(outside, digits) : outside;
+}
+
 /* The decimal of fewest digits near guess that is read back as value; false when there is none. */
 static bool find_decimal(const struct eo_unit *unit, double value, double guess, double *found)
 {
   for (int digits = 13; digits <= 17; digits++) {
-    char text[40];
-    snprintf(text, sizeof text, "%.*g", digits, guess);
-    *found = strtod(text, NULL);
+    *found = eo_digits_round(guess, digits);
     if (eo_unit_in(unit, *found) == value)
       return true;
   }
@@ -77,7 +89,7 @@ double eo_unit_out(const struct eo_unit *unit, double value)
 {
   if (!unit || unit->factor == 1 || !isfinite(value) || value == 0)
     return value;
-  double guess = unit->divide ? value * unit->factor : value / unit->factor, found;
+  double guess = eo_unit_near(unit, value), found;
   if (!find_decimal(unit, value, guess, &found) && !find_decimal(unit, eo_unit_in(unit, guess), guess, &found))
     return guess;
   return found;

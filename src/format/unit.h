@@ -22,6 +22,10 @@ extern const struct eo_unit eo_unit_mm, eo_unit_um, eo_unit_nm, eo_unit_deg, eo_
 /* Document -> SI. unit NULL: dimensionless, the value itself. */
 double eo_unit_in(const struct eo_unit *unit, double value);
 
+/* SI -> document by the factor alone, and of that so many digits: what people and pages read. */
+double eo_unit_near(const struct eo_unit *unit, double value);
+double eo_unit_round(const struct eo_unit *unit, double value, int digits);
+
 /* SI -> document: the shortest decimal whose eo_unit_in() is the same double. Not every double is the image of one;
    those that are not give the value whose image is nearest, so that in(out(x)) differs from x by one rounding at most
    and in(out(in(out(x)))) == in(out(x)) always. */

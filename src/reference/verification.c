@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 #include "format/text.h"
 #include "reference/verify.h"
@@ -225,7 +226,7 @@ void eo_verify_uncompared(struct eo_verification *verification, struct eo_case *
 double eo_verify_rounding(double printed)
 {
   char text[40];
-  eo_json_number(text, sizeof text, printed);
+  eo_digits_write(text, sizeof text, printed);
   const char *exponent = strpbrk(text, "e"), *point = strchr(text, '.');
   int decimals = point ? (int)((exponent ? (size_t)(exponent - point) : strlen(point)) - 1) : 0;
   return 0.5 * pow(10, (exponent ? atoi(exponent + 1) : 0) - decimals);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 #include "document/search_space.h"
 #include "document/result_private.h"
@@ -377,7 +378,7 @@ static void write_point(struct eo_text *text, const double *x, int size)
 {
   for (int i = 0; i < size; i++) {
     char number[40];
-    eo_json_number(number, sizeof number, x[i]);
+    eo_digits_write(number, sizeof number, x[i]);
     eo_text_print(text, ",%s", number);
   }
   eo_text_add(text, "\r\n");
@@ -399,8 +400,8 @@ static enum eo_code write_prediction(void *context, const struct eo_stored_predi
   struct path_list *list = context;
   char fitness[40], credibility[40];
   write_head(list, prediction->size);
-  eo_json_number(fitness, sizeof fitness, prediction->fitness);
-  eo_json_number(credibility, sizeof credibility, prediction->credibility);
+  eo_digits_write(fitness, sizeof fitness, prediction->fitness);
+  eo_digits_write(credibility, sizeof credibility, prediction->credibility);
   eo_text_print(list->text, "%d,%d,predicted,,%s,%s", prediction->generation, prediction->individual, fitness,
                 credibility);
   write_point(list->text, prediction->x, prediction->size);

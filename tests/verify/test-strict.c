@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "format/digits.h"
 #include "format/json.h"
 #include "reference/verify.h"
 #include "support/tap.h"
@@ -142,7 +143,7 @@ static void try_leaf(struct trial *t, json_t *container, const char *key, size_t
 {
   char text[40];
   if (json_is_number(leaf)) {
-    eo_json_number(text, sizeof text, json_number_value(leaf));
+    eo_digits_write(text, sizeof text, json_number_value(leaf));
     if (!may_be_text(key) && chosen(t))
       try_value(t, container, key, index, json_string(text), "as text");
     if (chosen(t))

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "document/design_document.h"
+#include "format/digits.h"
 #include "format/json.h"
 #include "format/text_table.h"
 #include "support/tap.h"
@@ -161,11 +162,24 @@ static void write_by_printf(char *text, size_t size, double value)
   shorten_exponent(text);
 }
 
+/* As compact text; releases the second one. */
+static bool written_alike(const json_t *a, json_t *b)
+{
+  struct eo_text one = {0}, other = {0};
+  eo_json_write(&one, a, EO_JSON_COMPACT);
+  eo_json_write(&other, b, EO_JSON_COMPACT);
+  bool alike = one.data && other.data && strcmp(one.data, other.data) == 0;
+  eo_text_done(&one);
+  eo_text_done(&other);
+  json_decref(b);
+  return alike;
+}
+
 /* Numbers of few digits of every size, and ties: there is a short way for them, to the same text. */
 static void check_short_numbers(void)
 {
   static const int kept[] = {6, 9, 12};
-  int written = 0, rounded = 0;
+  int written = 0, rounded = 0, ready = 0;
   uint64_t bits = 7;
   for (int i = 0; i < 60000; i++) {
     bits = bits * 6364136223846793005u + 1442695040888963407u;
@@ -173,17 +187,20 @@ static void check_short_numbers(void)
     double value = (double)(bits >> 11) / 9007199254740992. * pow(10, exponent) * (i & 8 ? -1 : 1),
            half = floor(1e6 * value) / 1e6 + 0.5e-6, back;
     char text[40], expected[40];
-    json_t *array = eo_json_reals(1, i & 16 ? &value : &half, 1, NULL, digits);
+    json_t *array = eo_json_reals(1, i & 16 ? &value : &half, 1, NULL, digits),
+           *text_of_it = eo_json_reals(1, i & 16 ? &value : &half, 1, NULL, digits | EO_DIGITS_READY);
+    ready += !written_alike(array, text_of_it);
     back = json_real_value(json_array_get(array, 0));
     json_decref(array);
     snprintf(expected, sizeof expected, "%.*g", digits, i & 16 ? value : half);
     rounded += back != strtod(expected, NULL);
-    int length = eo_json_number(text, sizeof text, back);
+    int length = eo_digits_write(text, sizeof text, back);
     write_by_printf(expected, sizeof expected, back);
     written += strcmp(text, expected) != 0 || length != (int)strlen(expected);
   }
   ok(rounded == 0, "60000 numbers of every size, ties among them, are rounded as printf rounds them");
   ok(written == 0, "and written as it writes them");
+  ok(ready == 0, "arrays that are text from the start are the same text");
 }
 
 static void test_writer(void)
@@ -213,7 +230,7 @@ static void test_writer(void)
                  {1e-13, "1e-13"}};
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
     char text[40];
-    eo_json_number(text, sizeof text, numbers[i].value);
+    eo_digits_write(text, sizeof text, numbers[i].value);
     ok(strcmp(text, numbers[i].text) == 0 && strtod(text, NULL) == numbers[i].value, "%s is written %s",
        numbers[i].text, text);
   }
@@ -226,7 +243,7 @@ static void test_writer(void)
     memcpy(&value, &bits, sizeof value);
     if (!isfinite(value))
       continue;
-    eo_json_number(text, sizeof text, value);
+    eo_digits_write(text, sizeof text, value);
     back = strtod(text, NULL);
     lost += memcmp(&back, &value, sizeof back) != 0;
   }
@@ -234,6 +251,8 @@ static void test_writer(void)
   check_short_numbers();
   const double column[] = {1, NAN, 2.0000000000001, INFINITY};
   json_t *array = eo_json_reals(4, column, 1, &eo_unit_mm, 9);
+  ok(written_alike(array, eo_json_reals(4, column, 1, &eo_unit_mm, 9 | EO_DIGITS_READY)),
+     "as text from the start too, with its unit and nulls");
   char *dumped = json_dumps(array, JSON_COMPACT | JSON_REAL_PRECISION(9));
   ok(strcmp(dumped, "[1000.0,null,2000.0,null]") == 0, "not finite numbers are null, curves are rounded: %s", dumped);
   free(dumped);
