@@ -315,7 +315,7 @@ static json_t *encode(const struct request *request)
               &failed);
   eo_json_put(document, "measurements", json_incref(request->documents), &failed);
   eo_json_put(document, "comparison",
-              compared ? eo_comparison_encode(&request->comparison, request->measured) : json_null(), &failed);
+              compared ? eo_comparison_encode(&request->comparison, request->measured, NULL) : json_null(), &failed);
   eo_json_put(document, "update", request->update && compared ? eo_update_encode(&request->fit) : json_null(), &failed);
   return failed ? (json_decref(document), NULL) : document;
 }

@@ -10,7 +10,6 @@
 #include "format/text_table.h"
 
 enum { CURVE = 128 };
-static const double CHANGING = 0.02; /* range of the speed, relative, from which the stretches are told */
 
 static const struct eo_unit percent = {"percent", "%", 100, true};
 
@@ -71,6 +70,7 @@ static const char *const labels[] = {"modified", "unmodified", NULL}, *const end
 struct source {
   const struct eo_comparison *comparison;
   const struct eo_measured *measured; /* [count] */
+  const int64_t *id;                  /* [count] of stored ones; NULL: they are files */
 };
 
 static json_t *write_column(const void *source, int column)
@@ -128,11 +128,9 @@ typedef json_t *word_function(const struct eo_measured *m, const struct eo_compa
 static json_t *write_words(const void *source, word_function *word)
 {
   const struct source *this_source = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < this_source->comparison->count; i++)
-    list.failed = json_array_append_new(list.json,
-                                        word(&this_source->measured[i], &this_source->comparison->point[i])) ||
-                  list.failed;
+    eo_list_add(&list, word(&this_source->measured[i], &this_source->comparison->point[i]));
   return eo_object_close(&list);
 }
 
@@ -321,11 +319,11 @@ static json_t *write_columns(const void *source)
 static json_t *write_details(const void *source)
 {
   const struct source *this_source = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < this_source->comparison->count; i++) {
     struct detail detail = {&this_source->measured[i], &this_source->comparison->point[i], {0}, {0}};
     eo_comparison_curves(detail.measured, detail.compared, CURVE, detail.measured_te, detail.predicted_te);
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&detail_outline, &detail)) || list.failed;
+    eo_list_add(&list, eo_outline_encode(&detail_outline, &detail));
   }
   return eo_object_close(&list);
 }
@@ -334,14 +332,9 @@ static json_t *write_details(const void *source)
 struct named_reduction {
   struct eo_reduction reduction;
   const char *file;
+  bool stored;
+  int64_t id;
 };
-
-/* The number of a measurement is known to who stores it, and put in there. */
-static bool is_stored(const void *reduction)
-{
-  (void)reduction;
-  return false;
-}
 
 static const struct eo_outline_row reduction_rows[] = {
     EO_KEY("file", "text", "of the modified pair", EO_AT(struct named_reduction, file)),
@@ -357,18 +350,21 @@ static const struct eo_outline_row reduction_rows[] = {
            EO_AT(struct named_reduction, reduction.measured_sigma)),
     EO_KEY("predicted_percent", "number?", "the same, predicted", .unit = &percent,
            EO_AT(struct named_reduction, reduction.predicted)),
-    EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements", .there = is_stored),
+    EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements",
+           EO_AT(struct named_reduction, id), EO_IF(struct named_reduction, stored)),
 };
 static const struct eo_outline reduction_outline = EO_OUTLINE("ComparedReduction", reduction_rows);
 
 static json_t *write_reductions(const void *source)
 {
   const struct source *this_source = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < this_source->comparison->reductions; i++) {
     const struct eo_reduction *reduction = &this_source->comparison->reduction[i];
-    const struct named_reduction named = {*reduction, this_source->measured[reduction->modified].name};
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&reduction_outline, &named)) || list.failed;
+    const int64_t *id = this_source->id;
+    const struct named_reduction named = {*reduction, this_source->measured[reduction->modified].name, id != NULL,
+                                          id ? id[reduction->modified] : 0};
+    eo_list_add(&list, eo_outline_encode(&reduction_outline, &named));
   }
   return eo_object_close(&list);
 }
@@ -395,52 +391,11 @@ static const struct eo_outline_row comparison_rows[] = {
 };
 const struct eo_outline eo_comparison_outline = EO_OUTLINE("ComparisonOfFiles", comparison_rows);
 
-json_t *eo_comparison_encode(const struct eo_comparison *comparison, const struct eo_measured *measured)
+json_t *eo_comparison_encode(const struct eo_comparison *comparison, const struct eo_measured *measured,
+                             const int64_t *id)
 {
-  const struct source source = {comparison, measured};
+  const struct source source = {comparison, measured, id};
   return eo_outline_encode(&eo_comparison_outline, &source);
-}
-
-/* The stretches of a recording whose speed changes. */
-static void print_order_tracks(const struct eo_transmission *transmission, struct eo_text *text)
-{
-  if (transmission->speed_high - transmission->speed_low < CHANGING * transmission->speed || !transmission->tracks)
-    return;
-  eo_text_add(text, "  rpm and m/s2 of stretches:");
-  for (int i = 0; i < transmission->tracks; i++)
-    eo_text_print(text, " %.5g|%.4g", transmission->track[i].speed * 30 / M_PI, transmission->track[i].rms);
-  eo_text_add(text, "\n");
-}
-
-void eo_measurement_summary(const struct eo_measurement *measurement, const struct eo_measurement_label *label,
-                            struct eo_text *text)
-{
-  const struct eo_transmission *transmission = &measurement->transmission;
-  char torque[40] = "torque not known";
-  if (label->torque > 0)
-    snprintf(torque, sizeof torque, "%.6g N m", label->torque);
-  eo_text_print(text, "%s: %s, %s, %s end, %lld rows\n", label->file ? label->file : "recording",
-                label->unmodified ? "unmodified" : "modified", torque, eo_result_end[label->end],
-                (long long)measurement->rows);
-  for (int i = 0; label->notes && i < label->notes->count && i < EO_NOTES; i++)
-    eo_text_print(text, "  note: %s\n", label->notes->text[i]);
-  for (int i = 0; i < measurement->findings.count && i < EO_MAX_FINDINGS; i++)
-    eo_text_print(text, "  %s: %s\n", eo_severity_name(measurement->findings.finding[i].severity),
-                  measurement->findings.finding[i].text);
-  if (measurement->refused) {
-    eo_text_add(text, "  No result.\n");
-    return;
-  }
-  eo_text_print(
-      text, "  %.7g rpm, %.4g turns; RMS %.4f +- %.4f m/s2 of %d mesh orders (spectrum %.4f, with sidebands %.4f)\n",
-      transmission->speed * 30 / M_PI, transmission->revolutions[EO_PINION], transmission->rms, transmission->rms_sigma,
-      transmission->harmonics, transmission->rms_spectrum, transmission->rms_band);
-  eo_text_print(
-      text,
-      "  TE of the mesh %.4g um peak to peak; first shaft orders %.4g um pinion, %.4g um gear; residual %.3g um\n",
-      1e6 * transmission->mesh_peak_to_peak, 1e6 * cabs(transmission->shaft[EO_PINION][0].amplitude),
-      1e6 * cabs(transmission->shaft[EO_GEAR][0].amplitude), 1e6 * transmission->residual);
-  print_order_tracks(transmission, text);
 }
 
 static void fill_sheet(const struct eo_comparison *comparison, const struct eo_measured *measured,

@@ -152,9 +152,9 @@ static json_t *write_end(const void *source)
 static json_t *write_notes(const void *source)
 {
   const struct eo_notes *notes = label_of(source)->notes;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; notes && i < notes->count && i < EO_NOTES; i++)
-    list.failed = json_array_append_new(list.json, json_string(notes->text[i])) || list.failed;
+    eo_list_add(&list, json_string(notes->text[i]));
   return eo_object_close(&list);
 }
 
@@ -166,10 +166,9 @@ static json_t *write_layout(const void *source)
 static json_t *write_findings(const void *source)
 {
   const struct eo_findings *findings = &measurement_of(source)->findings;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++)
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&finding_outline, &findings->finding[i])) ||
-                  list.failed;
+    eo_list_add(&list, eo_outline_encode(&finding_outline, &findings->finding[i]));
   return eo_object_close(&list);
 }
 

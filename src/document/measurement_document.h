@@ -43,7 +43,9 @@ json_t *eo_measurement_encode(const struct eo_measurement *measurement, const st
 /* Back from the document. Errors: EO_ERROR_INPUT (refused, or not such a document). */
 enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *measured, struct eo_error *error);
 
-json_t *eo_comparison_encode(const struct eo_comparison *comparison, const struct eo_measured *measured);
+/* id: [count] numbers of stored measurements; NULL: they are files. */
+json_t *eo_comparison_encode(const struct eo_comparison *comparison, const struct eo_measured *measured,
+                             const int64_t *id);
 
 /* For people. */
 void eo_measurement_summary(const struct eo_measurement *measurement, const struct eo_measurement_label *label,

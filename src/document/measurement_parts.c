@@ -20,9 +20,9 @@ const struct eo_outline eo_part_outline = EO_OUTLINE("TurningPart", part_rows);
 
 json_t *eo_parts_encode(const struct eo_parts *parts)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < parts->count && i < EO_PARTS; i++)
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&eo_part_outline, &parts->part[i])) || list.failed;
+    eo_list_add(&list, eo_outline_encode(&eo_part_outline, &parts->part[i]));
   return eo_object_close(&list);
 }
 
@@ -59,12 +59,12 @@ static json_t *write_track_amplitudes(const void *source)
 {
   const struct eo_transmission *transmission = source;
   double amplitude[EO_MESH_ORDERS];
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < transmission->tracks; i++) {
     for (int h = 0; h < transmission->harmonics; h++)
       amplitude[h] = cabs(transmission->track[i].amplitude[h]);
     json_t *orders = eo_json_reals(transmission->harmonics, amplitude, 1, &eo_unit_um, EO_DIGITS_CURVE);
-    list.failed = json_array_append_new(list.json, orders) || list.failed;
+    eo_list_add(&list, orders);
   }
   return eo_object_close(&list);
 }

@@ -113,14 +113,14 @@ static json_t *write_sidebands(const void *source)
 {
   static const int turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
   const struct eo_transmission *transmission = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int h = 0; h < transmission->harmonics; h++)
     for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
       int shaft = k / EO_SIDEBANDS, at = k % EO_SIDEBANDS;
       const struct sideband sideband = {h + 1, shaft, turns[at], transmission->sideband[h][shaft][at]};
       if (cabs(sideband.line.amplitude) < 4 * sideband.line.sigma)
         continue;
-      list.failed = json_array_append_new(list.json, eo_outline_encode(&sideband_outline, &sideband)) || list.failed;
+      eo_list_add(&list, eo_outline_encode(&sideband_outline, &sideband));
     }
   return eo_object_close(&list);
 }

@@ -28,9 +28,9 @@ static void write(struct eo_text *text, json_t *document)
 
 static json_t *encode_ids(const struct eo_rig_selection *selection)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < selection->count; i++)
-    list.failed = json_array_append_new(list.json, json_integer(selection->id[i])) != 0 || list.failed;
+    eo_list_add(&list, json_integer(selection->id[i]));
   return eo_object_close(&list);
 }
 
@@ -42,41 +42,50 @@ static const struct eo_outline left_out_outline = EO_OUTLINE("LeftOut", left_out
 
 static json_t *encode_left_out(const struct eo_rig_selection *selection)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < selection->left_outs; i++)
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&left_out_outline, &selection->left_out[i])) !=
-                      0 ||
-                  list.failed;
+    eo_list_add(&list, eo_outline_encode(&left_out_outline, &selection->left_out[i]));
   return eo_object_close(&list);
 }
 
+/* What stands before a comparison. */
+struct comparison_head {
+  const char *program;
+  char design_hash[EO_HASH_LENGTH + 1];
+  json_t *ids, *left_out;
+};
+#define OF_HEAD(member) EO_AT(struct comparison_head, member)
+static const struct eo_outline_row head_rows[] = {
+    EO_KEY("program", "text", "name and version", OF_HEAD(program)),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design that predicts", OF_HEAD(design_hash)),
+    EO_KEY("id", "[integer]", "numbers of the measurements, in the order of the columns", OF_HEAD(ids)),
+    EO_KEY("left_out", "[object]", "measurements that cannot be compared", .outline = &left_out_outline,
+           OF_HEAD(left_out)),
+};
+static const struct eo_outline head_outline = EO_OUTLINE(NULL, head_rows);
 static const struct eo_outline_row comparison_rows[] = {
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design that predicts"),
-    EO_KEY("id", "[integer]", "numbers of the measurements, in the order of the columns"),
-    EO_KEY("left_out", "[object]", "measurements that cannot be compared", .outline = &left_out_outline),
+    {.outline = &head_outline},
     {.outline = &eo_comparison_outline},
 };
 const struct eo_outline eo_rig_comparison_outline = EO_OUTLINE("Comparison", comparison_rows);
 
-/* The numbers of the measurements beside the rows that stand for them. */
+/* Takes both; NULL when one is. */
+static json_t *unite(json_t *first, json_t *second)
+{
+  bool good = first && second && json_object_update(first, second) == 0;
+  json_decref(second);
+  return good ? first : (json_decref(first), NULL);
+}
+
 static json_t *encode_comparison(const struct eo_rig_selection *selection, const struct eo_comparison *comparison,
                                  const struct eo_measured *measured, const struct eo_design *design)
 {
-  char hash[EO_HASH_LENGTH + 1];
-  struct eo_object object = eo_object_open();
-  json_t *inner = eo_comparison_encode(comparison, measured), *reduction;
-  size_t i;
-  object.failed = object.failed || !inner;
-  json_array_foreach(json_object_get(inner, "reductions"), i, reduction)
-      eo_json_put(reduction, "id", json_integer(selection->id[comparison->reduction[i].modified]), &object.failed);
-  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&object, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&object, "id", encode_ids(selection));
-  eo_object_put(&object, "left_out", encode_left_out(selection));
-  object.failed = json_object_update(object.json, inner) != 0 || object.failed;
-  json_decref(inner);
-  return eo_object_close(&object);
+  struct comparison_head head = {.program = PACKAGE_STRING};
+  if (eo_design_hash(design, head.design_hash, NULL))
+    return NULL;
+  head.ids = encode_ids(selection);
+  head.left_out = encode_left_out(selection);
+  return unite(eo_outline_encode(&head_outline, &head), eo_comparison_encode(comparison, measured, selection->id));
 }
 
 void eo_rig_comparison_write(const struct eo_rig_selection *selection, const struct eo_comparison *comparison,
@@ -118,22 +127,29 @@ static json_t *changed_design(const char *given, const struct eo_design *design,
   return done ? document : (json_decref(document), NULL);
 }
 
+/* What stands behind a fit. */
+struct fit_tail {
+  json_t *ids, *left_out, *design;
+};
+#define OF_TAIL(member) EO_AT(struct fit_tail, member)
+static const struct eo_outline_row tail_rows[] = {
+    EO_KEY("id", "[integer]", "numbers of the measurements used", OF_TAIL(ids)),
+    EO_KEY("left_out", "[object]", "measurements that were not, outliers too", .outline = &left_out_outline,
+           OF_TAIL(left_out)),
+    EO_KEY("design", "object", "the design with the values found, as it was given but for them",
+           .table = &eo_design_table, .name = "Design", .sparse = true, OF_TAIL(design)),
+};
+static const struct eo_outline tail_outline = EO_OUTLINE(NULL, tail_rows);
 static const struct eo_outline_row fit_rows[] = {
     {.outline = &eo_update_outline},
-    EO_KEY("id", "[integer]", "numbers of the measurements used"),
-    EO_KEY("left_out", "[object]", "measurements that were not, outliers too", .outline = &left_out_outline),
-    EO_KEY("design", "object", "the design with the values found, as it was given but for them",
-           .table = &eo_design_table, .name = "Design", .sparse = true),
+    {.outline = &tail_outline},
 };
 const struct eo_outline eo_rig_fit_outline = EO_OUTLINE("Fit", fit_rows);
 
 void eo_rig_fit_write(const struct eo_rig_selection *selection, const struct eo_update *update, const char *given,
                       const struct eo_design *design, const struct eo_design *updated, struct eo_text *text)
 {
-  struct eo_object object = {.json = eo_update_encode(update)};
-  object.failed = !object.json;
-  eo_object_put(&object, "id", encode_ids(selection));
-  eo_object_put(&object, "left_out", encode_left_out(selection));
-  eo_object_put(&object, "design", changed_design(given, design, updated));
-  write(text, eo_object_close(&object));
+  const struct fit_tail tail = {encode_ids(selection), encode_left_out(selection),
+                                changed_design(given, design, updated)};
+  write(text, unite(eo_update_encode(update), eo_outline_encode(&tail_outline, &tail)));
 }

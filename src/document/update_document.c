@@ -200,10 +200,10 @@ struct found {
 static json_t *write_values(const void *source)
 {
   const struct found *found = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < found->update->unknowns; i++) {
     const struct eo_unit *unit = unit_of(found->update->unknown[i].unknown);
-    list.failed = json_array_append_new(list.json, eo_json_quantity(found->minimum.value[i], unit)) || list.failed;
+    eo_list_add(&list, eo_json_quantity(found->minimum.value[i], unit));
   }
   return eo_object_close(&list);
 }
@@ -211,12 +211,12 @@ static json_t *write_values(const void *source)
 static json_t *write_intervals(const void *source)
 {
   const struct found *found = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < found->update->unknowns; i++) {
     const struct eo_unit *unit = unit_of(found->update->unknown[i].unknown);
     json_t *interval = found->minimum.within ? eo_json_reals(2, found->minimum.confidence[i], 1, unit, EO_DIGITS_CURVE)
                                              : json_null();
-    list.failed = json_array_append_new(list.json, interval) || list.failed;
+    eo_list_add(&list, interval);
   }
   return eo_object_close(&list);
 }
@@ -241,10 +241,10 @@ static const struct eo_outline misfit_outline = EO_OUTLINE("Misfit", misfit_rows
 static json_t *write_unknowns(const void *source)
 {
   const struct eo_update *update = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < update->unknowns; i++) {
     const struct fitted fitted = {update, update->unknown[i]};
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&unknown_outline, &fitted)) || list.failed;
+    eo_list_add(&list, eo_outline_encode(&unknown_outline, &fitted));
   }
   return eo_object_close(&list);
 }
@@ -252,7 +252,7 @@ static json_t *write_unknowns(const void *source)
 static json_t *write_correlation(const void *source)
 {
   const struct eo_update *update = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < update->unknowns; i++)
     list.failed = json_array_append_new(
                       list.json, eo_json_reals(update->unknowns, update->correlation[i], 1, NULL, EO_DIGITS_MAP)) ||
@@ -268,17 +268,17 @@ static json_t *write_misfit(const void *update)
 static json_t *write_minima(const void *source)
 {
   const struct eo_update *update = source;
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   for (int i = 0; i < update->minima; i++) {
     const struct found found = {update, update->minimum[i]};
-    list.failed = json_array_append_new(list.json, eo_outline_encode(&minimum_outline, &found)) || list.failed;
+    eo_list_add(&list, eo_outline_encode(&minimum_outline, &found));
   }
   return eo_object_close(&list);
 }
 
 static json_t *write_warnings(const void *update)
 {
-  struct eo_object list = {.json = json_array()};
+  struct eo_object list = eo_list_open();
   each_warning(update, append_warning, &list);
   return eo_object_close(&list);
 }
