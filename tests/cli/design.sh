@@ -105,5 +105,15 @@ expect 0 "an older document" "$EASEOFF" design "$folder/first.json" --json
 prints '"torque_Nm": 828'
 prints 'is of version 1, whose defaults stand for what it leaves out'
 
+# Without the variables that keep the libraries' threads away it starts itself again with them, so it has one thread while it reads.
+mkfifo "$folder/pipe"
+env -u OPENBLAS_NUM_THREADS -u OMP_THREAD_LIMIT "$EASEOFF" design "$folder/pipe" >"$folder/out" 2>"$folder/err" &
+exec 3>"$folder/pipe"
+set -- "/proc/$!/task"/*
+tr '\0' '\n' <"/proc/$!/environ" | grep -qx OPENBLAS_NUM_THREADS=1 && [ $# -eq 1 ]
+result $? "no thread but the program's own: $#"
+exec 3>&-
+wait
+
 echo "1..$count"
 exit $failed
