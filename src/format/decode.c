@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "format/key_faults.h"
 #include "format/table.h"
 
 static void *member(void *target, const struct eo_field *field)
@@ -367,47 +368,6 @@ static const struct eo_field *find_field(const struct eo_table *table, const cha
   return NULL;
 }
 
-/* Levenshtein's distance between two keys, at most 63 bytes of each. */
-static int key_distance(const char *a, const char *b)
-{
-  int row[64], m = (int)strnlen(a, 63), n = (int)strnlen(b, 63);
-  for (int j = 0; j <= n; j++)
-    row[j] = j;
-  for (int i = 1; i <= m; i++) {
-    int diagonal = row[0];
-    row[0] = i;
-    for (int j = 1; j <= n; j++) {
-      int change = diagonal + (a[i - 1] != b[j - 1]), gap = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
-      diagonal = row[j];
-      row[j] = change < gap ? change : gap;
-    }
-  }
-  return row[n];
-}
-
-static void report_unknown(const struct eo_table *table, const char *key, const struct eo_path *path,
-                           struct eo_faults *faults)
-{
-  for (const struct eo_refused_key *refused = table->refused; refused && refused->key; refused++)
-    if (strcmp(refused->key, key) == 0) {
-      eo_faults_at(faults, path, "%s", refused->text);
-      return;
-    }
-  const char *nearest = NULL;
-  int best = (int)strnlen(key, 63) / 3 + 1;
-  for (int i = 0; i < table->count; i++) {
-    int distance = key_distance(key, table->field[i].key);
-    if (distance <= best) {
-      best = distance - 1;
-      nearest = table->field[i].key;
-    }
-  }
-  if (nearest)
-    eo_faults_at(faults, path, "Unknown key; did you mean \"%s\"?", nearest);
-  else
-    eo_faults_at(faults, path, "Unknown key in %s.", table->name);
-}
-
 /* One of the keys that may stand in the place of a required one is there. */
 static bool is_replaced(const struct eo_field *field, const json_t *object)
 {
@@ -419,15 +379,6 @@ static bool is_replaced(const struct eo_field *field, const json_t *object)
   return false;
 }
 
-static void report_missing(const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults)
-{
-  struct eo_text keys = {0};
-  for (int i = 0; field->instead && field->instead[i]; i++)
-    eo_text_print(&keys, "%s%s", i ? ", " : " In its place: ", field->instead[i]);
-  eo_faults_at(faults, path, "This key is required.%s%s", keys.data ? keys.data : "", keys.data ? "." : "");
-  eo_text_done(&keys);
-}
-
 /* Objects that are absent are read as empty ones, so that each required key in them is named. */
 static void decode_absent(const struct eo_field *field, const json_t *object, const struct eo_path *path, void *target,
                           struct eo_faults *faults)
@@ -437,7 +388,7 @@ static void decode_absent(const struct eo_field *field, const json_t *object, co
     eo_table_decode(field->table, empty, path, member(target, field), faults);
     json_decref(empty);
   } else if (field->flags & EO_FIELD_REQUIRED && !is_replaced(field, object))
-    report_missing(field, path, faults);
+    eo_key_missing(field, path, faults);
 }
 
 /* What stands under the key, or under its other name. */
@@ -496,6 +447,6 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
   json_object_foreach((json_t *)object, key, value) if (!find_field(table, key))
   {
     struct eo_path place = {path, key, 0};
-    report_unknown(table, key, &place, faults);
+    eo_key_unknown(table, key, &place, faults);
   }
 }

@@ -5,58 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "reference/known_law.h"
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
 #include "tolerance/statistics.h"
 #include "tolerance/response_surface.h"
 
-enum { MODEL_POINTS = 256, FUNCTION_POINTS = 4096, SURFACE_POINTS = 512, INDEX_POINTS = 4096 };
-
-static const double OF_RESPONSE = 0.005; /* Sobol indices of a surface, as the files have it */
-
-/* A sample of one response beside what is known of it. */
-struct known {
-  struct eo_verification *v;
-  int points;
-  const double *value; /* [points] */
-  double resolution;   /* beside what the sample leaves open */
-};
-
-/* Percentiles within four standard errors sqrt(p (1 - p)/N)/density of independent samples, which evenly spread points
-   must keep as well. */
-static void check_percentiles(const struct known *known, struct eo_case *rows, const double *sorted)
-{
-  for (int i = 0; i < eo_case_size(rows); i++) {
-    struct eo_case *row = eo_case_at(rows, i);
-    double percent = eo_case_number(row, "percent"), density = eo_case_number(row, "density"), p = percent / 100;
-    double spread = sqrt(p * (1 - p)) / density;
-    eo_verify_member(known->v, row, "value", eo_percentile(known->points, sorted, percent), 0,
-                     4 * spread / sqrt(known->points) + known->resolution);
-    eo_verify_member(known->v, row, "standard_error_1000", spread / sqrt(1000), 2e-3, 2e-5);
-  }
-}
-
-/* An object with mean, std and percentiles. */
-static enum eo_code check_law(const struct known *known, struct eo_case *block, struct eo_error *error)
-{
-  struct eo_summary summary = eo_summary_of(known->points, known->value);
-  double *sorted = malloc(sizeof *sorted * (size_t)known->points), fourth = 0;
-  if (!sorted)
-    return eo_error_memory(error);
-  for (int i = 0; i < known->points; i++)
-    fourth += pow((known->value[i] - summary.mean) / summary.deviation, 4) / known->points;
-  memcpy(sorted, known->value, sizeof *sorted * (size_t)known->points);
-  eo_sort_numbers(known->points, sorted);
-  double root = sqrt(known->points);
-  eo_verify_member(known->v, block, "mean", summary.mean, 0, 4 * summary.deviation / root + known->resolution);
-  eo_verify_member(known->v, block, "std", summary.deviation, 0,
-                   4 * summary.deviation * sqrt(fmax(fourth, 3) - 1) / (2 * root) + known->resolution);
-  check_percentiles(known, eo_case_find(block, "percentiles"), sorted);
-  free(sorted);
-  return EO_OK;
-}
-
-/* ---- responses of a model ---- */
+enum { MODEL_POINTS = 256 };
 
 struct model_case {
   struct eo_tolerance_bench *bench;
@@ -165,9 +120,9 @@ static void check_exact(const struct model_case *model_case, struct eo_case *law
 
 static enum eo_code check_model_law(const struct model_case *model_case, struct eo_case *law, struct eo_error *error)
 {
-  struct known known = {model_case->bench->v, MODEL_POINTS, model_case->value,
-                        model_case->output == EO_BENCH_MEAN ? 0.02 : 5e-4};
-  EO_TRY(check_law(&known, law, error));
+  struct eo_known_law known = {model_case->bench->v, MODEL_POINTS, model_case->value,
+                               model_case->output == EO_BENCH_MEAN ? 0.02 : 5e-4};
+  EO_TRY(eo_verify_law(&known, law, error));
   check_exact(model_case, law);
   return EO_OK;
 }
@@ -217,7 +172,8 @@ static enum eo_code check_model_indices(const struct model_case *model_case, str
     struct eo_case *block = eo_case_find(model_case->expected, key[k]);
     for (int i = 0; i < eo_case_size(block); i++) {
       int input = input_of(model_case, eo_case_at(block, i));
-      eo_verify_number(model_case->bench->v, eo_case_at(block, i), input < 0 ? NAN : index[k][input], 0, OF_RESPONSE);
+      eo_verify_number(model_case->bench->v, eo_case_at(block, i), input < 0 ? NAN : index[k][input], 0,
+                       eo_index_tolerance);
     }
   }
   eo_surface_done(&surface);
@@ -369,180 +325,6 @@ static enum eo_code run_model_case(struct eo_tolerance_bench *bench, struct eo_c
   return code;
 }
 
-/* ---- responses that are written out ---- */
-
-struct response {
-  const char *text;    /* NULL: c0 + b x + x Q x */
-  int inputs, squares; /* squares: the sum of so many, where the text says no more */
-  double constant, linear[EO_BENCH_INPUTS], square[EO_BENCH_INPUTS][EO_BENCH_INPUTS];
-  struct eo_distribution of[EO_BENCH_INPUTS];
-};
-
-static double response_at(const struct response *response, const double *x)
-{
-  double y = response->constant;
-  if (response->text)
-    return eo_response_value(response->text, x, NULL);
-  for (int i = 0; i < response->inputs; i++) {
-    y += response->linear[i] * x[i] + (response->squares ? x[i] * x[i] : 0);
-    for (int j = 0; j < response->inputs && !response->squares; j++)
-      y += x[i] * response->square[i][j] * x[j];
-  }
-  return y;
-}
-
-static double response_of_unit(void *context, const double *u)
-{
-  const struct response *response = context;
-  double x[EO_BENCH_INPUTS];
-  for (int i = 0; i < response->inputs; i++)
-    x[i] = eo_distribution_quantile(&response->of[i], u[i]);
-  return response_at(response, x);
-}
-
-/* "x normal with sigma 1, 2, 3", "x standard normal", "x uniform in +-pi". */
-static bool read_inputs_text(const char *text, struct response *response)
-{
-  const char *sigma = strstr(text, "normal with sigma"), *uniform = strstr(text, "uniform in +-");
-  bool good = sigma || uniform || strstr(text, "standard normal");
-  for (int i = 0; i < response->inputs; i++) {
-    response->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_NORMAL, .sigma = 1, .cut = INFINITY};
-    if (sigma) {
-      char *end;
-      sigma += i == 0 ? strlen("normal with sigma") : strspn(sigma, ", ");
-      response->of[i].sigma = strtod(sigma, &end);
-      good = good && end != sigma;
-      sigma = end;
-    }
-    if (uniform) {
-      const char *half = uniform + strlen("uniform in +-");
-      double width = strncmp(half, "pi", 2) == 0 ? M_PI : strtod(half, NULL);
-      response->of[i] = (struct eo_distribution){.kind = EO_DISTRIBUTION_UNIFORM, .low = -width, .high = width};
-    }
-  }
-  return good;
-}
-
-/* "chi-square, 1 degree: x1^2", or "3 degrees": as many squares. */
-static bool read_response_text(const char *text, struct response *response)
-{
-  const char *colon = strchr(text, ':'), *formula = strstr(text, "y = ");
-  double one[EO_BENCH_INPUTS];
-  for (int i = 0; i < EO_BENCH_INPUTS; i++)
-    one[i] = 1;
-  response->text = formula ? formula + 4 : colon ? colon + 1 : NULL;
-  if (response->text)
-    return !isnan(eo_response_value(response->text, one, &response->inputs)) && response->inputs > 0;
-  response->inputs = response->squares = (int)strtol(text, NULL, 10);
-  return response->inputs > 0 && response->inputs <= EO_BENCH_INPUTS;
-}
-
-static bool read_quadratic(struct eo_case *item, struct response *response)
-{
-  struct eo_case *this_case = eo_case_find(item, "b"), *the_case = eo_case_find(item, "Q");
-  if (!this_case || !the_case)
-    return false;
-  response->constant = eo_case_number(item, "c0");
-  response->inputs = eo_case_numbers(this_case, -1, EO_BENCH_INPUTS, response->linear);
-  for (int i = 0; i < response->inputs; i++)
-    eo_case_numbers(eo_case_at(the_case, i), response->inputs, EO_BENCH_INPUTS, response->square[i]);
-  return true;
-}
-
-/* Draws the response. value[FUNCTION_POINTS], input[FUNCTION_POINTS][inputs]. */
-static enum eo_code draw_response(const struct response *response, double *input, double *value, struct eo_error *error)
-{
-  struct eo_bench_input column[EO_BENCH_INPUTS];
-  for (int i = 0; i < response->inputs; i++)
-    column[i] = (struct eo_bench_input){.distribution = response->of[i]};
-  EO_TRY(eo_bench_draw(column, response->inputs, FUNCTION_POINTS, input, error));
-  for (size_t i = 0; i < FUNCTION_POINTS; i++)
-    value[i] = response_at(response, input + i * (size_t)response->inputs);
-  return EO_OK;
-}
-
-static void check_indices(struct eo_verification *verification, struct eo_case *expected,
-                          const struct response *response, const double first[], const double total[], double within)
-{
-  if (eo_case_find(expected, "sobol_first"))
-    eo_verify_list(verification, eo_case_find(expected, "sobol_first"), response->inputs, first, 1, 0, within);
-  if (eo_case_find(expected, "sobol_total"))
-    eo_verify_list(verification, eo_case_find(expected, "sobol_total"), response->inputs, total, 1, 0, within);
-}
-
-/* Indices of the quadratic surface where it carries, of the response itself where it says that it does not. */
-static enum eo_code check_response_indices(struct eo_verification *verification, struct eo_case *item,
-                                           struct eo_case *expected, struct response *response, const double *input,
-                                           const double *value, struct eo_error *error)
-{
-  double first[EO_BENCH_INPUTS], total[EO_BENCH_INPUTS];
-  struct eo_moments moments[EO_BENCH_INPUTS];
-  struct eo_surface surface;
-  struct eo_case *tolerance = eo_case_find(item, "tolerance"), *sampled = eo_case_find(tolerance, "sobol");
-  for (int i = 0; i < response->inputs; i++)
-    moments[i] = eo_distribution_moments(&response->of[i]);
-  enum eo_code code = eo_surface_fit(&surface, SURFACE_POINTS, response->inputs, moments, input, value, error);
-  bool carries = !code && surface.q2 > 0.99;
-  if (carries)
-    eo_surface_indices(&surface, first, total);
-  eo_surface_done(&surface);
-  if (!code && !carries)
-    code = eo_sobol_indices(response_of_unit, response, response->inputs, INDEX_POINTS, 1, first, total, error);
-  if (code)
-    return code;
-  bool number = sampled && !eo_case_is_text(sampled);
-  eo_verify_fact(verification, item, "a quadratic surface says whether it carries", carries != number);
-  check_indices(verification, expected, response, first, total, number ? eo_case_real(sampled) : OF_RESPONSE);
-  return EO_OK;
-}
-
-static enum eo_code check_response(struct eo_verification *verification, struct eo_case *item, struct eo_case *expected,
-                                   struct eo_case *law, struct response *response, struct eo_error *error)
-{
-  double *input = malloc(sizeof *input * FUNCTION_POINTS * (size_t)(response->inputs + 1)),
-         coefficient[EO_BENCH_INPUTS];
-  if (!input)
-    return eo_error_memory(error);
-  double *value = input + (size_t)FUNCTION_POINTS * (size_t)response->inputs;
-  struct eo_regression regression = {.coefficient = coefficient};
-  enum eo_code code = draw_response(response, input, value, error);
-  struct known known = {verification, FUNCTION_POINTS, value, 0};
-  if (!code)
-    code = check_law(&known, law, error);
-  if (!code && eo_case_find(expected, "standardised_regression")) {
-    code = eo_regression_run(&regression, FUNCTION_POINTS, response->inputs, input, value, error);
-    if (!code)
-      eo_verify_list(verification, eo_case_find(expected, "standardised_regression"), response->inputs, coefficient, 1,
-                     0, OF_RESPONSE);
-  }
-  if (!code && eo_case_find(expected, "sobol_first"))
-    code = check_response_indices(verification, item, expected, response, input, value, error);
-  free(input);
-  return code;
-}
-
-static enum eo_code run_function_case(struct eo_verification *verification, struct eo_case *item,
-                                      struct eo_error *error)
-{
-  struct eo_case *expected = eo_case_need(item, "expected");
-  const char *what = eo_case_peek_text(item, "what");
-  bool many = eo_case_is_list(expected);
-  if (!many)
-    eo_case_remark(expected, "sobol_note");
-  for (int i = 0; i < (many ? eo_case_size(expected) : 1) && !eo_case_faulty(item); i++) {
-    struct eo_case *own = many ? eo_case_at(expected, i) : expected, *law = many ? own : eo_case_need(own, "y");
-    struct response response = {0};
-    const char *text = many ? eo_case_word(own, "y") : what;
-    if (!read_quadratic(item, &response) && !(text && read_response_text(text, &response)))
-      eo_case_fault(own, "The response cannot be read.");
-    if (!what || !read_inputs_text(what, &response))
-      eo_case_fault(item, "\"what\" says how x is distributed.");
-    if (!eo_case_faulty(item))
-      EO_TRY(check_response(verification, item, own, law, &response, error));
-  }
-  return EO_OK;
-}
-
 enum eo_code eo_verify_tolerance_analytic(void *context, struct eo_case *item, struct eo_error *error)
 {
   struct eo_tolerance_bench *bench = context;
@@ -557,5 +339,5 @@ enum eo_code eo_verify_tolerance_analytic(void *context, struct eo_case *item, s
       eo_case_real(value);
   }
   int kind = eo_case_need(item, "kind_of_case") ? eo_case_choice(item, "kind_of_case", kinds, 0) : 0;
-  return kind == 0 ? run_model_case(bench, item, error) : run_function_case(bench->v, item, error);
+  return kind == 0 ? run_model_case(bench, item, error) : eo_verify_tolerance_response(bench->v, item, error);
 }
