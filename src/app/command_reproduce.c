@@ -57,11 +57,12 @@ static int run_request(struct request *request)
     code = eo_store_open(&store, data.data, EO_STORE_WRITE, &error);
   bool keep = eo_app_cache_directory(request->data, &cache);
   eo_watch_start(&watch);
-  const struct eo_reproduction_plan plan = {.store = store,
-                                            .cache_directory = keep ? cache.data : NULL,
-                                            .threads = request->thread_count,
-                                            .quick = request->quick,
-                                            .progress = &watch.progress};
+  struct eo_reproduction_plan plan = {.store = store,
+                                      .cache_directory = keep ? cache.data : NULL,
+                                      .threads = request->thread_count,
+                                      .progress = &watch.progress};
+  eo_table_defaults(&eo_reproduction_order_table, &plan.order);
+  plan.order.quick = request->quick;
   if (!code)
     code = eo_reproduction_run(&plan, &document, &error);
   eo_watch_clear(&watch);

@@ -12,8 +12,9 @@ extern const struct eo_outline eo_outline_exports;                 /* export_rou
 extern const struct eo_outline eo_outline_check;                   /* analysis_routes.c */
 extern const struct eo_outline eo_outline_listed_design;           /* stored_design.c: of a struct eo_stored_design */
 extern const struct eo_outline eo_outline_stored_design;
-extern const struct eo_outline eo_outline_designs; /* design_routes.c */
-extern const struct eo_outline eo_outline_jobs;    /* job_routes.c */
+extern const struct eo_outline eo_outline_designs;   /* design_routes.c */
+extern const struct eo_outline eo_outline_jobs;      /* job_routes.c */
+extern const struct eo_outline eo_outline_job_files; /* reproduction_routes.c */
 
 /* What is being prepared; job: taken over. */
 struct eo_preparing {

@@ -72,6 +72,9 @@ static void add(struct eo_request *request)
     return;
   if (order.kind == EO_JOB_STUDY)
     eo_reply_problem(&request->reply, 400, NULL, "A study says what it varies: POST /studies takes it.");
+  else if (order.kind == EO_JOB_REPRODUCE)
+    eo_reply_problem(&request->reply, 400, NULL,
+                     "A reproduction takes the paper's pair, no other design: POST /reproductions orders it.");
   else if (order.kind == EO_JOB_OPTIMIZE && eo_study_space_init(&space, &design, &geometry, &error))
     eo_reply_error(&request->reply, "/design", &error);
   else {
@@ -253,10 +256,10 @@ const struct eo_route eo_routes_jobs[] = {
      .pattern = "/jobs/{id}/result",
      .handle = get_result,
      .name = "getJobResult",
-     .summary =
-         "What a job found: the document of `easeoff optimize --json` or `easeoff tolerance --json`. 409 while it "
-         "is not finished.",
-     .gives = "200 OptimizationResult|Tolerance",
+     .summary = "What a job found: the document that `easeoff optimize`, `tolerance` or `reproduce` prints with "
+                "--json. 409 while "
+                "it is not finished.",
+     .gives = "200 OptimizationResult|Tolerance|Reproduction",
      .aside = true},
     {.method = EO_GET,
      .pattern = "/jobs/{id}/generations",

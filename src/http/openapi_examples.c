@@ -24,6 +24,7 @@ static const struct example bodies[] = {
     {"JobChange", "{\"priority\":5}"},
     {"Token", "{\"token\":\"the first line of the token file\"}"},
     {"StudyOrder", OF_DESIGN "\"vary\":[{\"key\":\"load_cases.1.torque_Nm\",\"values\":[200,400,600]}]}"},
+    {"ReproductionOrder", "{\"quick\":true}"},
     {"ToleranceRequest", OF_DESIGN "\"pairs\":64}"},
 };
 

@@ -15,6 +15,7 @@
 #include "document/study_result.h"
 #include "http/answers.h"
 #include "http/route.h"
+#include "reproduction/reproduction.h"
 #include "variants/variant_cost.h"
 #include "variants/variant_table.h"
 #include "study/job_document.h"
@@ -157,6 +158,8 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_outline_designs,
                                                     &eo_outline_preparing,
                                                     &eo_outline_jobs,
+                                                    &eo_outline_job_files,
+                                                    &eo_reproduction_outline,
                                                     &eo_outline_job_history_page,
                                                     &eo_outline_problem_rows,
                                                     &storage,

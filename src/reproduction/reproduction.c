@@ -7,28 +7,53 @@
 #include <time.h>
 
 #include "document/examples.h"
+#include "document/design_document.h"
 #include "format/json.h"
+#include "format/outline.h"
 #include "evaluation/analysis.h"
 
 #include <config.h>
 
-static enum eo_code build_designs(struct reproduction *reproduction, struct eo_error *error)
+static const struct eo_field order_fields[] = {
+    EO_FLAG(struct eo_reproduction_order, quick, "quick", 0, "a tenth of the generations, a coarser sweep"),
+    EO_INTEGER_DERIVED(struct eo_reproduction_order, generations, "generations", 1, 1000, "200, or 20 when quick",
+                       "of the paper's algorithm and of the plain one"),
+    EO_INTEGER_DERIVED(struct eo_reproduction_order, true_evaluations, "true_evaluations", 10, 100000,
+                       "1000, or 300 when quick", "of our own search"),
+    EO_INTEGER_DERIVED(struct eo_reproduction_order, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS,
+                       "1000, or 100 when quick", "as they are made, on which the optima are compared"),
+    EO_OBJECT(struct eo_reproduction_order, resolution, "resolution", &eo_resolution_table,
+              "how finely it is computed"),
+};
+const struct eo_table eo_reproduction_order_table = EO_TABLE("a reproduction", struct eo_reproduction_order,
+                                                             order_fields);
+
+static enum eo_code build_design(int variant, const struct eo_reproduction_order *order, struct eo_design *design,
+                                 struct eo_error *error)
 {
   static const char *const example[VARIANTS] = {"paper", "paper-case-a", "paper-case-b", "paper", "paper"};
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < VARIANTS && !code; i++) {
-    struct eo_geometry geometry;
+  struct eo_geometry geometry;
+  eo_example_build(example[variant], design);
+  design->optimization.variables = variant == PAPER_B || variant == OWN_B ? EO_VARIABLES_PER_END : EO_VARIABLES_SHARED;
+  design->resolution = order->resolution;
+  return eo_design_complete(design, &geometry, error);
+}
+
+enum eo_code eo_reproduction_design(const struct eo_reproduction_order *order, struct eo_design *design,
+                                    struct eo_error *error)
+{
+  return build_design(UNMODIFIED, order, design, error);
+}
+
+static enum eo_code build_designs(struct reproduction *reproduction, struct eo_error *error)
+{
+  for (int i = 0; i < VARIANTS; i++) {
     reproduction->design[i] = malloc(sizeof *reproduction->design[i]);
     if (!reproduction->design[i])
       return eo_error_memory(error);
-    eo_example_build(example[i], reproduction->design[i]);
-    reproduction->design[i]->optimization.variables = i == PAPER_B || i == OWN_B ? EO_VARIABLES_PER_END
-                                                                                 : EO_VARIABLES_SHARED;
-    if (reproduction->plan->resolution)
-      reproduction->design[i]->resolution = *reproduction->plan->resolution;
-    code = eo_design_complete(reproduction->design[i], &geometry, error);
+    EO_TRY(build_design(i, &reproduction->plan->order, reproduction->design[i], error));
   }
-  return code;
+  return EO_OK;
 }
 
 static int report_preparation(void *context, const char *what, double fraction)
@@ -41,7 +66,12 @@ static enum eo_code prepare_pair(struct reproduction *reproduction, struct eo_er
 {
   const struct eo_progress progress = {.report = report_preparation, .context = reproduction};
   const struct eo_pair_options options = {.cache_directory = reproduction->plan->cache_directory};
-  return eo_pair_new(&reproduction->pair, reproduction->design[UNMODIFIED], &options, &progress, error);
+  reproduction->pair = reproduction->plan->pair;
+  if (reproduction->pair)
+    return EO_OK;
+  EO_TRY(eo_pair_new(&reproduction->own_pair, reproduction->design[UNMODIFIED], &options, &progress, error));
+  reproduction->pair = reproduction->own_pair;
+  return EO_OK;
 }
 
 static enum eo_code analyse_variant(struct reproduction *reproduction, struct eo_analysis *analysis, int law,
@@ -96,22 +126,55 @@ static json_t *encode_summary(const struct reproduction *reproduction)
   return array;
 }
 
+/* What is written: what others made is taken over. */
+struct document {
+  const char *program;
+  bool quick;
+  json_t *design, *table_3, *results, *comparisons, *optimizations, *figures, *sensitivity, *as_made, *readings;
+  struct duration {
+    double wall; /* s */
+  } run;
+};
+
+static const struct eo_outline_row run_rows[] = {
+    EO_KEY("wall_s", "number", "what it took", EO_AT(struct duration, wall)),
+};
+static const struct eo_outline run_outline = EO_OUTLINE("ReproductionRun", run_rows);
+
+static const struct eo_outline_row document_rows[] = {
+    EO_KEY("program", "text", "name and version", EO_AT(struct document, program)),
+    EO_KEY("quick", "flag", "a tenth of the generations, a coarser sweep", EO_AT(struct document, quick)),
+    EO_KEY("design", "object", "the paper's pair, every default resolved", .table = &eo_design_table,
+           .name = "ResolvedDesign", EO_AT(struct document, design)),
+    EO_KEY("table_3", "any", "rows: parameter, printed and our own", EO_AT(struct document, table_3)),
+    EO_KEY("results", "any", "rows: design, mesh law, objectives, load cases", EO_AT(struct document, results)),
+    EO_KEY("comparisons", "any", "rows: a printed number, ours, whether trend and value agree",
+           EO_AT(struct document, comparisons)),
+    EO_KEY("optimizations", "any", "rows: case, algorithm, objectives, what it took, variables",
+           EO_AT(struct document, optimizations)),
+    EO_KEY("figures", "any", "rows: number, title, axes, series", EO_AT(struct document, figures)),
+    EO_KEY("sensitivity", "any", "rows: one assumption changed", EO_AT(struct document, sensitivity)),
+    EO_KEY("as_made", "any", "the optima on the same pairs as made", EO_AT(struct document, as_made)),
+    EO_KEY("readings", "any", "rows: what the paper leaves open, what was assumed", EO_AT(struct document, readings)),
+    EO_KEY("run", "object", "how long it took", .outline = &run_outline, EO_AT(struct document, run)),
+};
+const struct eo_outline eo_reproduction_outline = EO_OUTLINE("Reproduction", document_rows);
+
 static json_t *encode(const struct reproduction *reproduction, json_t *sensitivity, double seconds)
 {
-  struct eo_object object = eo_object_open();
-  eo_object_put(&object, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&object, "quick", json_boolean(reproduction->plan->quick));
-  eo_object_put(&object, "design", eo_design_encode(reproduction->design[UNMODIFIED]));
-  eo_object_put(&object, "table_3", eo_reproduction_table(reproduction));
-  eo_object_put(&object, "results", encode_summary(reproduction));
-  eo_object_put(&object, "comparisons", eo_reproduction_comparisons(reproduction));
-  eo_object_put(&object, "optimizations", json_incref(reproduction->optimizations));
-  eo_object_put(&object, "figures", json_incref(reproduction->figures));
-  eo_object_put(&object, "sensitivity", sensitivity);
-  eo_object_put(&object, "as_made", json_incref(reproduction->made));
-  eo_object_put(&object, "readings", eo_reproduction_readings());
-  eo_object_put(&object, "run", json_pack("{s:f}", "wall_s", round(1e3 * seconds) / 1e3));
-  return eo_object_close(&object);
+  const struct document document = {.program = PACKAGE_STRING,
+                                    .quick = reproduction->plan->order.quick,
+                                    .design = eo_design_encode(reproduction->design[UNMODIFIED]),
+                                    .table_3 = eo_reproduction_table(reproduction),
+                                    .results = encode_summary(reproduction),
+                                    .comparisons = eo_reproduction_comparisons(reproduction),
+                                    .optimizations = json_incref(reproduction->optimizations),
+                                    .figures = json_incref(reproduction->figures),
+                                    .sensitivity = sensitivity,
+                                    .as_made = json_incref(reproduction->made),
+                                    .readings = eo_reproduction_readings(),
+                                    .run = {round(1e3 * seconds) / 1e3}};
+  return eo_outline_encode(&eo_reproduction_outline, &document);
 }
 
 static double wall(void)
@@ -151,7 +214,7 @@ enum eo_code eo_reproduction_run(const struct eo_reproduction_plan *plan, json_t
     free(reproduction->design[i]);
     json_decref(reproduction->result[i]);
   }
-  eo_pair_free(reproduction->pair);
+  eo_pair_free(reproduction->own_pair);
   json_decref(reproduction->optimizations);
   json_decref(reproduction->figures);
   json_decref(reproduction->made);

@@ -19,19 +19,34 @@
 #include "base/progress.h"
 #include "format/file_set.h"
 #include "design/design.h"
+#include "evaluation/design_scatter.h"
+#include "format/outline.h"
 #include "store/store.h"
 
-struct eo_reproduction_plan {
-  struct eo_store *store;                 /* borrowed, as all here */
-  const char *cache_directory;            /* of the flexibility; NULL: none */
-  int threads;                            /* 0: eo_parallel_cores() */
-  bool quick;                             /* a tenth of the generations, a coarser sweep */
-  const struct eo_resolution *resolution; /* in place of the default one; NULL: none */
-  int generations;                        /* of fpga and ga in place of 200 (20 when quick); 0: those */
-  int budget;                             /* of credibility-ga in place of 1000 (300 when quick); 0: that */
-  int pairs;                              /* as made, in place of 1000 (100 when quick); 0: that */
-  const struct eo_progress *progress;     /* may be NULL */
+/* How thoroughly. */
+struct eo_reproduction_order {
+  bool quick;           /* a tenth of the generations, a coarser sweep */
+  int generations;      /* of fpga and ga in place of 200 (20 when quick); 0: those */
+  int true_evaluations; /* of credibility-ga in place of 1000 (300 when quick); 0: that */
+  int pairs;            /* as made, in place of 1000 (100 when quick); 0: that */
+  struct eo_resolution resolution;
 };
+extern const struct eo_table eo_reproduction_order_table;
+
+struct eo_reproduction_plan {
+  struct eo_store *store;      /* borrowed, as all here */
+  const struct eo_pair *pair;  /* of eo_reproduction_design(); NULL: prepared here */
+  const char *cache_directory; /* of the flexibility that is prepared here; NULL: none */
+  int threads;                 /* 0: eo_parallel_cores() */
+  struct eo_reproduction_order order;
+  const struct eo_progress *progress; /* may be NULL */
+};
+
+/* The paper's pair, complete. Errors: of the resolution. */
+enum eo_code eo_reproduction_design(const struct eo_reproduction_order *order, struct eo_design *design,
+                                    struct eo_error *error);
+
+extern const struct eo_outline eo_reproduction_outline;
 
 /* New document. EO_ERROR_CANCELLED when a stop was asked for; the history keeps what was computed. */
 enum eo_code eo_reproduction_run(const struct eo_reproduction_plan *plan, json_t **document, struct eo_error *error);

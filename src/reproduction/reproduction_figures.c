@@ -36,7 +36,7 @@ struct grid {
 /* 207 N m to 1242 N m in twelfths of 414, so that 414, 621, 828 and 1035 are among them; 400 to 3000 rpm. */
 static void lay_out(const struct reproduction *reproduction, struct grid *grid)
 {
-  int fine = reproduction->plan->quick ? 1 : 2;
+  int fine = reproduction->plan->order.quick ? 1 : 2;
   grid->torques = 15 * fine + 1;
   for (int i = 0; i < grid->torques; i++)
     grid->torque[i] = grid->torque_axis[i] = 207 + 69. / fine * i;

@@ -78,9 +78,9 @@ static enum eo_code compare(const struct reproduction *reproduction, const struc
                                                      &reproduction->design[OWN_A]->modification, found},
                                     .name = {eo_reproduction_variant[PAPER_A], eo_reproduction_variant[PAPER_B],
                                              eo_reproduction_variant[OWN_A], "found over pairs as made, case A"},
-                                    .pairs = reproduction->plan->pairs > 0 ? reproduction->plan->pairs
-                                             : reproduction->plan->quick   ? 100
-                                                                           : 1000,
+                                    .pairs = reproduction->plan->order.pairs > 0 ? reproduction->plan->order.pairs
+                                             : reproduction->plan->order.quick   ? 100
+                                                                                 : 1000,
                                     .threads = reproduction->plan->threads,
                                     .progress = &progress};
   struct eo_made_check check;

@@ -28,12 +28,16 @@ static int watch(void *context, const struct eo_study_report *report)
 
 int eo_reproduction_generations(const struct reproduction *reproduction)
 {
-  return reproduction->plan->generations > 0 ? reproduction->plan->generations : reproduction->plan->quick ? 20 : 200;
+  return reproduction->plan->order.generations > 0 ? reproduction->plan->order.generations
+         : reproduction->plan->order.quick         ? 20
+                                                   : 200;
 }
 
 int eo_reproduction_budget(const struct reproduction *reproduction)
 {
-  return reproduction->plan->budget > 0 ? reproduction->plan->budget : reproduction->plan->quick ? 300 : 1000;
+  return reproduction->plan->order.true_evaluations > 0 ? reproduction->plan->order.true_evaluations
+         : reproduction->plan->order.quick              ? 300
+                                                        : 1000;
 }
 
 static void set_up(const struct reproduction *reproduction, struct eo_design *design, int algorithm)

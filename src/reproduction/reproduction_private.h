@@ -16,7 +16,8 @@ extern const char *const eo_reproduction_variant[VARIANTS];
 
 struct reproduction {
   const struct eo_reproduction_plan *plan;
-  struct eo_pair *pair; /* owned, as all below */
+  const struct eo_pair *pair;
+  struct eo_pair *own_pair; /* NULL: the plan has one; owned, as all below */
   struct eo_design *design[VARIANTS];
   json_t *result[VARIANTS]; /* analysis documents */
   struct eo_objective_case raw[LAWS][VARIANTS][TORQUES];

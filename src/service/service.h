@@ -69,8 +69,8 @@ struct eo_job_order {
   const struct eo_design *design; /* complete (eo_design_complete()) */
   int priority;                   /* -10..10; higher ones first, then the older */
   bool fresh;                     /* see struct eo_study_plan */
-  const char *spec;               /* of a study: its document, checked; design is its base */
-  const char *name, *algorithm;   /* of a study; else NULL: the design's */
+  const char *spec;               /* of a study or a reproduction: its document, checked; design is its base */
+  const char *name, *algorithm;   /* of these; else NULL: the design's */
   const char *key;                /* idempotency key, NULL or "": none; kept as long as the job */
 };
 

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "reproduction/reproduction_job.h"
 #include "service/launcher.h"
 #include "store/spare.h"
 #include "study/tolerance_job.h"
@@ -211,6 +212,27 @@ static enum eo_code draw_pairs(struct eo_service_worker *worker, const struct ta
   return code;
 }
 
+static int follow_reproduction(void *context, const char *what, double fraction)
+{
+  struct eo_service_worker *worker = context;
+  pthread_mutex_lock(&worker->service->live_mutex);
+  eo_reproduction_job_follow(&worker->live, what, fraction);
+  pthread_mutex_unlock(&worker->service->live_mutex);
+  spread(worker);
+  return must_stop(worker);
+}
+
+static enum eo_code reproduce(struct eo_service_worker *worker, const struct task *task, struct eo_error *error)
+{
+  const struct eo_progress progress = {follow_reproduction, worker};
+  const struct eo_reproduction_job job = {.store = worker->store,
+                                          .job = task->id,
+                                          .pair = eo_held_pair(task->held),
+                                          .threads = worker->service->settings.threads,
+                                          .progress = &progress};
+  return eo_reproduction_job_run(&job, error);
+}
+
 /* Jobs of a launcher: */
 
 static enum eo_launch_wish watch_launch(void *context)
@@ -289,6 +311,12 @@ static enum eo_code launch(struct eo_service_worker *worker, const struct task *
   return judge_launch(worker, &before, &after, status, stopped, error);
 }
 
+/* Whether the program has a command that works on such a job on all ranks of a launcher. */
+static bool is_of_crews(enum eo_job_kind kind)
+{
+  return kind == EO_JOB_OPTIMIZE || kind == EO_JOB_STUDY || kind == EO_JOB_TOLERANCE;
+}
+
 static enum eo_code run_job(struct eo_service_worker *worker, struct task *task, bool *stopped, struct eo_error *error)
 {
   const struct eo_progress progress = {follow_preparation, worker};
@@ -296,7 +324,7 @@ static enum eo_code run_job(struct eo_service_worker *worker, struct task *task,
   EO_TRY(eo_queue_find(worker->store, task->id, take_job, task, &outcome, error));
   if (task->stop)
     atomic_store(&worker->cancelled, true);
-  if (worker->kind != EO_JOB_PREPARE && worker->service->settings.launcher)
+  if (is_of_crews(worker->kind) && worker->service->settings.launcher)
     return launch(worker, task, stopped, error);
   if (worker->kind == EO_JOB_STUDY)
     return vary(worker, task, stopped, error);
@@ -304,6 +332,7 @@ static enum eo_code run_job(struct eo_service_worker *worker, struct task *task,
   EO_TRY(eo_pairs_obtain(worker->service->pairs, task->design, &progress, &task->held, error));
   return worker->kind == EO_JOB_OPTIMIZE    ? optimize(worker, task, stopped, error)
          : worker->kind == EO_JOB_TOLERANCE ? draw_pairs(worker, task, stopped, error)
+         : worker->kind == EO_JOB_REPRODUCE ? reproduce(worker, task, error)
                                             : EO_OK;
 }
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 const char *const eo_store_job_states[] = {"queued", "preparing", "running", "done", "failed", "cancelled", NULL};
-const char *const eo_store_job_kinds[] = {"optimize", "prepare", "study", "tolerance", NULL};
+const char *const eo_store_job_kinds[] = {"optimize", "prepare", "study", "tolerance", "reproduce", NULL};
 
 const char *eo_store_job_state_name(enum eo_job_state state)
 {

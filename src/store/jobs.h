@@ -18,14 +18,14 @@ enum eo_job_state {
   EO_JOB_CANCELLED,
   EO_JOB_STATES
 };
-enum eo_job_kind { EO_JOB_OPTIMIZE, EO_JOB_PREPARE, EO_JOB_STUDY, EO_JOB_TOLERANCE, EO_JOB_KINDS };
+enum eo_job_kind { EO_JOB_OPTIMIZE, EO_JOB_PREPARE, EO_JOB_STUDY, EO_JOB_TOLERANCE, EO_JOB_REPRODUCE, EO_JOB_KINDS };
 
 struct eo_stored_job {
   int64_t id, problem; /* problem: 0 before it begins, and of a preparation */
   const char *study;   /* hash of the design: equal studies take equal paths */
   const char *space;   /* hash of the variables and their bounds */
   const char *design;  /* JSON, every default resolved */
-  const char *spec;    /* JSON: the document of a study; "" of another kind */
+  const char *spec;    /* JSON: the document of a study, the order of a reproduction; "" of another kind */
   const char *name, *algorithm;
   bool fresh;          /* the algorithm knew no earlier rows */
   int64_t import_upto; /* the last evaluation that was there when it began */
@@ -49,8 +49,8 @@ struct eo_stored_job {
   const char *started, *finished; /* "" without */
 };
 
-/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study", "tolerance". find:
-   -1 when it is none. */
+/* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare", "study", "tolerance",
+   "reproduce". find: -1 when it is none. */
 const char *eo_store_job_state_name(enum eo_job_state state);
 const char *eo_store_job_kind_name(enum eo_job_kind kind);
 extern const char *const eo_store_job_states[], *const eo_store_job_kinds[]; /* by number; end with NULL */

@@ -24,7 +24,7 @@ enum eo_job_outcome {
 struct eo_queue_entry {
   enum eo_job_kind kind;
   const char *design; /* JSON, every default resolved */
-  const char *spec;   /* JSON: the document of a study; NULL of another kind */
+  const char *spec;   /* JSON: what a study or a reproduction is asked for; NULL of another kind */
   const char *name, *algorithm;
   const char *pair;    /* of a preparation: hash of what is prepared; else NULL */
   const char *key;     /* idempotency key, up to 255 bytes; NULL: none */

@@ -7,7 +7,8 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep, *pairs, *many_pairs, *tolerance_order, *limited, *spur, *stages, *study;
+static char *coarse, *order, *named, *sweep, *pairs, *many_pairs, *tolerance_order, *limited, *spur, *stages, *study,
+    *once_more;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -405,6 +406,14 @@ static const struct command launched[] = {
      .holds = API "/jobs/9"},
     {"pairs for a launcher", "POST", API "/jobs", .body = &tolerance_order, .status = 202, .header = "Location",
      .holds = API "/jobs/10"},
+    {"a reproduction of another design", "POST", API "/jobs", .text = "{\"kind\":\"reproduce\",\"design\":{}}",
+     .status = 400, .pointer = "detail",
+     .value = "A reproduction takes the paper's pair, no other design: POST /reproductions orders it."},
+    {"a reproduction of no pairs", "POST", API "/reproductions", .text = "{\"pairs\":0}", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/pairs"},
+    {"a reproduction, which no launcher takes", "POST", API "/reproductions", .body = &once_more, .status = 202,
+     .header = "Location", .holds = API "/jobs/11"},
+    {"no files of an analysis of pairs", "GET", API "/jobs/10/files", .status = 404},
 };
 static const struct command after_launch[] = {
     {"its table", "GET", API "/studies/8/table", .status = 200, .pointer = "items/5/outcome", .value = "converged"},
@@ -412,13 +421,21 @@ static const struct command after_launch[] = {
     {"the result of its search", "GET", API "/jobs/9/result", .status = 200, .pointer = "true_evaluations",
      .value = "60"},
     {"what its pairs come to", "GET", API "/jobs/10/result", .status = 200, .pointer = "pairs", .value = "12"},
+    {"the paper once more", "GET", API "/jobs/11/result", .status = 200, .pointer = "optimizations/5/case",
+     .value = "B"},
+    {"its files", "GET", API "/jobs/11/files", .status = 200, .pointer = "items/0", .value = "comparisons.csv"},
+    {"its page", "GET", API "/jobs/11/files/reproduction.html", .status = 200, .header = "Content-Type",
+     .holds = "text/html"},
+    {"a table of it", "GET", API "/jobs/11/files/comparisons.csv", .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
+    {"no other file", "GET", API "/jobs/11/files/easeoff.db", .status = 404},
 };
 static const struct command not_launched[] = {
     {"a study for no launcher", "POST", API "/studies", .body = &study, .status = 202, .header = "Location",
-     .holds = API "/jobs/11"},
+     .holds = API "/jobs/12"},
 };
 static const struct command after_no_launch[] = {
-    {"why it failed", "GET", API "/jobs/11", .status = 200, .pointer = "error/detail",
+    {"why it failed", "GET", API "/jobs/12", .status = 200, .pointer = "error/detail",
      .value = "The launcher ended without a result (status 1); the server's log has what it said."},
 };
 
@@ -748,6 +765,10 @@ int main(void)
   limited = json_dumps(many, JSON_COMPACT);
   json_decref(own);
   json_decref(many);
+  json_t *paper = json_pack("{s:b, s:i, s:i, s:i, s:O}", "quick", 1, "generations", 2, "true_evaluations", 10, "pairs",
+                            2, "resolution", json_object_get(document, "resolution"));
+  once_more = json_dumps(paper, JSON_COMPACT);
+  json_decref(paper);
   json_t *varied = json_pack("{s:O, s:[{s:s, s:[i,i,i]}, {s:s, s:[i,f]}]}", "design", document, "vary", "key",
                              "modification.pinion.*.tip_relief_um", "values", 0, 10, 20, "key",
                              "modification.pinion.*.lead_crowning_um", "values", 0, 0.5);
@@ -778,11 +799,12 @@ int main(void)
   ok(start_server("--quiet", "--launcher", "env"), "a server with a launcher");
   RUN(launched);
   ok(wait_for_job(8, "done", 60) && wait_for_job(9, "done", 60) && wait_for_job(10, "done", 60), "its jobs end");
+  ok(wait_for_job(11, "done", 120), "the paper once more ends");
   RUN(after_launch);
   ok(stop_server(SIGTERM) == 0, "it stops");
   ok(start_server("--quiet", "--launcher", "false"), "a server with a launcher that does nothing");
   RUN(not_launched);
-  ok(wait_for_job(11, "failed", 60), "its job fails");
+  ok(wait_for_job(12, "failed", 60), "its job fails");
   RUN(after_no_launch);
   ok(stop_server(SIGTERM) == 0, "it stops");
   setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
@@ -811,6 +833,7 @@ int main(void)
   free(pairs);
   free(many_pairs);
   free(tolerance_order);
+  free(once_more);
   free(limited);
   free(spur);
   free(stages);

@@ -4,20 +4,76 @@
 #include <math.h>
 
 #include "format/plot.h"
-#include "reproduction/reproduction.h"
+#include "reproduction/reproduction_job.h"
+#include "store/queue.h"
 #include "support/study-fixture.h"
 #include "support/tap.h"
 
 static struct eo_design design;
+static struct eo_reproduction_order order = {.quick = true, .generations = 3, .true_evaluations = 40, .pairs = 5};
 
 static json_t *run(int threads)
 {
-  struct eo_reproduction_plan plan = {
-      .threads = threads, .quick = true, .resolution = &design.resolution, .generations = 3, .budget = 40, .pairs = 5};
+  struct eo_reproduction_plan plan = {.threads = threads, .order = order};
   json_t *document = NULL;
   if (eo_store_open(&plan.store, folder, EO_STORE_WRITE, &error) || eo_reproduction_run(&plan, &document, &error))
     printf("# %s\n", error.text);
   eo_store_close(plan.store);
+  return document;
+}
+
+static enum eo_code take_result(void *context, const struct eo_stored_job *job, struct eo_error *fault)
+{
+  (void)fault;
+  ok(job->state == EO_JOB_DONE, "the job is done");
+  eo_text_add(context, job->result);
+  return EO_OK;
+}
+
+static void check_files(const struct eo_text *result)
+{
+  struct eo_file_set files = {0};
+  bool good = !eo_reproduction_job_files(result, &files, &error) && files.count > 8;
+  ok(good && strcmp(files.file[files.count - 1].name, "reproduction.html") == 0 &&
+         strstr(files.file[files.count - 1].text.data, "</html>"),
+     "its files: tables and a page");
+  eo_file_set_done(&files);
+  const struct eo_text other = {.data = "[]", .size = 2};
+  struct eo_file_set none = {0};
+  ok(eo_reproduction_job_files(&other, &none, &error) == EO_ERROR_INPUT, "no files of another document");
+  eo_file_set_done(&none);
+}
+
+/* What the server does with an order. */
+static json_t *run_job(int threads)
+{
+  struct eo_store *store = NULL;
+  struct eo_text spec = {0}, text = {0}, result = {0};
+  struct eo_reproduction_job job = {.threads = threads};
+  enum eo_job_outcome outcome = EO_JOB_OUTCOME_MISSING;
+  json_t *document = NULL;
+  eo_design_write(&design, &text);
+  eo_reproduction_order_write(&order, &spec);
+  const struct eo_queue_entry entry = {
+      .kind = EO_JOB_REPRODUCE, .design = text.data, .spec = spec.data, .name = "", .algorithm = ""};
+  enum eo_code code = eo_store_open(&store, folder, EO_STORE_WRITE, &error);
+  job.store = store;
+  if (!code)
+    code = eo_queue_add(store, &entry, 9, &job.job, &outcome, &error);
+  if (!code)
+    code = eo_reproduction_job_run(&job, &error);
+  if (!code)
+    code = eo_queue_find(store, job.job, take_result, &result, &outcome, &error);
+  if (!ok(!code, "a job of the queue"))
+    printf("# %s\n", error.text);
+  else {
+    check_files(&result);
+    document = eo_json_parse(result.data, result.size, &error);
+  }
+  eo_store_close(store);
+  eo_text_done(&spec);
+  eo_text_done(&text);
+  eo_text_done(&result);
   return document;
 }
 
@@ -178,6 +234,7 @@ int main(void)
   if (!make_folder())
     return 99;
   coarse_design(&design, "ga", 1);
+  order.resolution = design.resolution;
   json_t *document = run(1);
   if (!ok(document != NULL, "runs"))
     return tap_done();
@@ -188,10 +245,10 @@ int main(void)
   test_made(document);
   test_output(document);
   test_plot();
-  json_t *again = run(2);
+  json_t *again = run_job(2);
   json_object_del(document, "run");
   json_object_del(again, "run");
-  ok(json_equal(document, again), "once more with another number of threads: the same");
+  ok(json_equal(document, again), "once more, as a queued job with another number of threads: the same");
   json_decref(document);
   json_decref(again);
   empty_folder();
