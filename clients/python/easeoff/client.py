@@ -267,6 +267,24 @@ class Client:
         """Orders a study: {"design": .., "vary": [{"key": "load_cases.1.torque_Nm", "values": [..]}]}."""
         return self._json("POST", "/studies", document=order, headers={"Idempotency-Key": idempotency_key})
 
+    @operation("addReproduction")
+    def add_reproduction(
+        self, order: Mapping[str, Any] | None = None, idempotency_key: str | None = None
+    ) -> doc.Job:
+        """Orders the paper's tables and figures beside ours: {"quick": True}."""
+        headers = {"Idempotency-Key": idempotency_key}
+        return self._json("POST", "/reproductions", document=order or {}, headers=headers)
+
+    @operation("listJobFiles")
+    def job_files(self, id: int) -> list[str]:
+        """The names of the files of a reproduction that is done."""
+        return self._json("GET", f"/jobs/{id}/files")["items"]
+
+    @operation("getJobFile")
+    def job_file(self, id: int, name: str) -> str:
+        """One of them: a table as CSV, or the page."""
+        return self.transport.request("GET", f"/jobs/{id}/files/{quote(name, safe='')}", accept="*/*").text
+
     @operation("getStudyCost")
     def study_cost(self, order: Mapping[str, Any]) -> dict[str, Any]:
         """What a study would take: variants, gear pairs, memory, time."""
@@ -315,8 +333,8 @@ class Client:
         self.transport.request("DELETE", f"/jobs/{id}")
 
     @operation("getJobResult")
-    def job_result(self, id: int) -> doc.OptimizationResult | doc.Tolerance:
-        """What an optimization or a tolerance analysis found."""
+    def job_result(self, id: int) -> doc.OptimizationResult | doc.Tolerance | doc.Reproduction:
+        """What an optimization, a tolerance analysis or a reproduction found."""
         return self._json("GET", f"/jobs/{id}/result")
 
     @operation("getJobPairs")

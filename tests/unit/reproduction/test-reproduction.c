@@ -77,6 +77,17 @@ static json_t *run_job(int threads)
   return document;
 }
 
+static bool equal_as_text(const json_t *one, const json_t *other)
+{
+  struct eo_text text[2] = {{0}, {0}};
+  eo_json_write(&text[0], one, EO_JSON_COMPACT);
+  eo_json_write(&text[1], other, EO_JSON_COMPACT);
+  bool equal = !text[0].failed && text[0].size == text[1].size && memcmp(text[0].data, text[1].data, text[0].size) == 0;
+  eo_text_done(&text[0]);
+  eo_text_done(&text[1]);
+  return equal;
+}
+
 static const json_t *find_row(const json_t *document, const char *list, const char *key, const char *value)
 {
   const json_t *row;
@@ -248,7 +259,7 @@ int main(void)
   json_t *again = run_job(2);
   json_object_del(document, "run");
   json_object_del(again, "run");
-  ok(json_equal(document, again), "once more, as a queued job with another number of threads: the same");
+  ok(equal_as_text(document, again), "once more, as a queued job with another number of threads: the same");
   json_decref(document);
   json_decref(again);
   empty_folder();
