@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/inch.h"
+#include "format/inch_sentence.h"
 #include "format/json.h"
 
 #include <config.h>
@@ -80,13 +82,18 @@ bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, c
   return false;
 }
 
+/* What one program tells one reader; the only state of a command that is not its own. */
+static bool in_inches;
+
 int eo_app_fail(const char *file, const struct eo_error *error)
 {
   char shown[120] = "";
+  struct eo_error told = *error;
+  if (in_inches)
+    eo_inch_error(&told);
   if (file)
     eo_text_clean(shown, sizeof shown, strcmp(file, "-") == 0 ? "standard input" : file);
-  fprintf(stderr, "easeoff: %s%s%s%s%s\n", shown, file ? ": " : "", error->pointer, *error->pointer ? ": " : "",
-          error->text);
+  fprintf(stderr, "easeoff: %s%s%s%s%s\n", shown, file ? ": " : "", told.pointer, *told.pointer ? ": " : "", told.text);
   return error->code == EO_ERROR_INPUT ? EO_EXIT_INPUT : EO_EXIT_FAILED;
 }
 
@@ -153,9 +160,10 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
     *status = eo_app_fail(path, &error);
   else if (!eo_design_decode(document, design, warnings, faults))
     *status = eo_app_fail_all(path, faults);
-  else if (eo_design_complete(design, geometry, &error))
+  else if (eo_design_complete(design, geometry, &error)) {
+    eo_inch_place(document, &error);
     *status = eo_app_fail(path, &error);
-  else if (warnings)
+  } else if (warnings)
     eo_design_note_findings(design, geometry, warnings);
 out:
   json_decref(document);
@@ -165,7 +173,7 @@ out:
 
 enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error)
 {
-  *inches = word && strcmp(word, "inch") == 0;
+  *inches = in_inches = word && strcmp(word, "inch") == 0;
   if (!word || *inches || strcmp(word, "mm") == 0)
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", word);

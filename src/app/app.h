@@ -88,7 +88,8 @@ int eo_app_print_json(json_t *document, bool compact);
 bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
                         struct eo_warnings *warnings, int *status);
 
-/* --units mm|inch: EO_ERROR_INPUT for another word. */
+/* --units mm|inch, before a design is read: what is told of it from then on, faults too, is told so. EO_ERROR_INPUT for
+   another word. */
 enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error);
 
 #endif

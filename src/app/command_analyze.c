@@ -161,6 +161,6 @@ const struct eo_command eo_command_analyze = {
     "deviations of single teeth from FILE, a table of a measuring\n"
     "machine with headings member, end, flank, tooth and index_um or "
     "single_um, in place of the design's. --units inch shows lengths in\n"
-    "inches and thousandths of an inch, in the document by keys that end in "
-    "_in and _thou; CSV keeps mm.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    "inches and thousandths of an inch, in documents by keys and in CSV by "
+    "heads that end in _in and _thou.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

@@ -8,42 +8,37 @@
 
 struct request {
   const char *file, *units;
-  bool json, complete;
+  bool json, complete, inches;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
 };
 
-/* Takes the document over. */
-static int print_document(json_t *document, bool inches)
+/* The document, taken over, as it is shown. */
+static json_t *in_units(const struct request *request, json_t *document)
 {
-  json_t *shown = inches && document ? eo_inch_from_mm(document) : json_incref(document);
+  json_t *shown = request->inches && document ? eo_inch_from_mm(document) : json_incref(document);
   json_decref(document);
-  return eo_app_print_json(shown, false);
+  return shown;
 }
 
-static int show(const struct request *request, bool inches)
+static int show(const struct request *request)
 {
   if (request->complete)
-    return print_document(eo_design_encode(&request->design), inches);
-  json_t *completion = eo_completion_encode(&request->design, &request->geometry, &request->warnings);
+    return eo_app_print_json(in_units(request, eo_design_encode(&request->design)), false);
+  json_t *completion = in_units(request,
+                                eo_completion_encode(&request->design, &request->geometry, &request->warnings));
   struct eo_text text = {0};
   if (request->json || !completion)
-    return print_document(completion, inches);
-  eo_completion_summary(completion, inches, &text);
+    return eo_app_print_json(completion, false);
+  eo_completion_summary(completion, &text);
   json_decref(completion);
   return eo_app_print(&text);
 }
 
-static int run_request(const struct request *request)
-{
-  struct eo_error error;
-  bool inches;
-  return eo_app_units(request->units, &inches, &error) ? eo_app_fail(NULL, &error) : show(request, inches);
-}
-
 static int run(const struct eo_command *command, int argc, char **argv)
 {
+  struct eo_error error;
   int operands, status;
   struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
@@ -52,9 +47,12 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--complete", .flag = &request->complete},
                                       {.name = "--units", .value = &request->units},
                                       {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
-    status = run_request(request);
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status)) {
+    if (eo_app_units(request->units, &request->inches, &error))
+      status = eo_app_fail(NULL, &error);
+    else if (eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+      status = show(request);
+  }
   free(request);
   return status;
 }

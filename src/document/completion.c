@@ -39,15 +39,13 @@ json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geo
   return eo_outline_encode(&eo_outline_completion, &view);
 }
 
-/* How the key's unit reads: length in inches where they are asked for. */
+/* How the key's unit reads. */
 struct shown_unit {
   const char *suffix; /* of the key */
-  const char *symbol, *inch_symbol;
-  double per_inch;
+  const char *symbol;
 };
-static const struct shown_unit shown_units[] = {{"_mm", "mm", "in", 25.4},        {"_um", "um", "thou", 25.4},
-                                                {"_deg", "deg", "deg", 1},        {"_kg", "kg", "kg", 1},
-                                                {"_N_per_um", "N/um", "N/um", 1}, {"", "", "", 1}};
+static const struct shown_unit shown_units[] = {{"_N_per_um", "N/um"}, {"_mm", "mm"},   {"_um", "um"}, {"_in", "in"},
+                                                {"_thou", "thou"},     {"_deg", "deg"}, {"_kg", "kg"}, {"", ""}};
 
 static bool ends_with(const char *key, const char *suffix)
 {
@@ -58,19 +56,17 @@ static bool ends_with(const char *key, const char *suffix)
 static const struct shown_unit *unit_of(const char *key)
 {
   const struct shown_unit *unit = shown_units;
-  if (ends_with(key, "_N_per_um"))
-    return &shown_units[4];
   while (!ends_with(key, unit->suffix))
     unit++;
   return unit;
 }
 
-static void print_value(const json_t *value, double divisor, struct eo_text *text)
+static void print_value(const json_t *value, struct eo_text *text)
 {
   const json_t *element;
   size_t i;
   if (json_is_number(value))
-    eo_text_print(text, "%.9g", json_number_value(value) / divisor);
+    eo_text_print(text, "%.9g", json_number_value(value));
   else if (json_is_string(value))
     eo_text_add(text, json_string_value(value));
   else if (json_is_boolean(value))
@@ -79,27 +75,27 @@ static void print_value(const json_t *value, double divisor, struct eo_text *tex
     json_array_foreach(value, i, element)
     {
       eo_text_add(text, i ? "  " : "");
-      print_value(element, divisor, text);
+      print_value(element, text);
     }
   else
     eo_text_add(text, json_is_null(value) ? "-" : "unmodified");
 }
 
-static void add_row(struct eo_text_table *sheet, const char *key, const json_t *value, const char *rule, bool inches)
+static void add_row(struct eo_text_table *sheet, const char *key, const json_t *value, const char *rule)
 {
   const struct shown_unit *unit = unit_of(key);
   struct eo_text text = {0};
-  print_value(value, inches ? unit->per_inch : 1, &text);
+  print_value(value, &text);
   eo_text_table_string(sheet, key);
   eo_text_table_string(sheet, text.data ? text.data : "");
-  eo_text_table_string(sheet, inches ? unit->inch_symbol : unit->symbol);
+  eo_text_table_string(sheet, unit->symbol);
   if (rule)
     eo_text_table_string(sheet, rule);
   eo_text_done(&text);
 }
 
 /* The members of an object, one a line; objects in it under their own heading. */
-static void print_object(const json_t *object, const char *title, bool inches, struct eo_text *text)
+static void print_object(const json_t *object, const char *title, struct eo_text *text)
 {
   static const char *const headings[] = {"", "", ""};
   struct eo_text_table sheet;
@@ -109,7 +105,7 @@ static void print_object(const json_t *object, const char *title, bool inches, s
   json_object_foreach((json_t *)object, key, value)
   {
     if (!json_is_object(value))
-      add_row(&sheet, key, value, NULL, inches);
+      add_row(&sheet, key, value, NULL);
   }
   eo_text_print(text, "\n%s\n", title);
   eo_text_table_print(&sheet, 2, text);
@@ -117,11 +113,11 @@ static void print_object(const json_t *object, const char *title, bool inches, s
   json_object_foreach((json_t *)object, key, value)
   {
     if (json_is_object(value))
-      print_object(value, key, inches, text);
+      print_object(value, key, text);
   }
 }
 
-static void print_assumed(const json_t *list, bool inches, struct eo_text *text)
+static void print_assumed(const json_t *list, struct eo_text *text)
 {
   static const char *const headings[] = {"key", "value", "", "rule"};
   struct eo_text_table sheet;
@@ -131,23 +127,23 @@ static void print_assumed(const json_t *list, bool inches, struct eo_text *text)
   json_array_foreach(list, i, row)
   {
     add_row(&sheet, json_string_value(json_object_get(row, "key")), json_object_get(row, "value"),
-            json_string_value(json_object_get(row, "rule")), inches);
+            json_string_value(json_object_get(row, "rule")));
   }
   eo_text_print(text, "\nassumed: not stated by the design, %zu values\n", json_array_size(list));
   eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
 }
 
-void eo_completion_summary(const json_t *completion, bool inches, struct eo_text *text)
+void eo_completion_summary(const json_t *completion, struct eo_text *text)
 {
   const json_t *warnings = json_object_get(completion, "warnings"), *row;
   const char *name = json_string_value(json_object_get(json_object_get(completion, "design"), "name"));
   size_t i;
   eo_text_print(text, "%s\n", name && *name ? name : "unnamed design");
-  print_object(json_object_get(completion, "geometry"), "geometry", inches, text);
+  print_object(json_object_get(completion, "geometry"), "geometry", text);
   print_object(json_object_get(completion, "dimensions"),
-               "dimensions; of three numbers: nominal, with the upper, with the lower allowance", inches, text);
-  print_assumed(json_object_get(completion, "assumed"), inches, text);
+               "dimensions; of three numbers: nominal, with the upper, with the lower allowance", text);
+  print_assumed(json_object_get(completion, "assumed"), text);
   if (json_array_size(warnings))
     eo_text_add(text, "\nnotes\n");
   json_array_foreach(warnings, i, row) eo_text_print(text, "  %s\n", json_string_value(row));

@@ -16,7 +16,7 @@ json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geo
                              const struct eo_warnings *warnings);
 json_t *eo_dimensions_encode(const struct eo_gear_pair *pair, const struct eo_geometry *geometry);
 
-/* The completion for people. inches: lengths in inches instead of mm, um in thousandths of an inch. */
-void eo_completion_summary(const json_t *completion, bool inches, struct eo_text *text);
+/* The completion for people, in mm or as eo_inch_from_mm() has it. */
+void eo_completion_summary(const json_t *completion, struct eo_text *text);
 
 #endif

@@ -176,6 +176,8 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   if (!current)
     eo_faults_add(faults, "", "There is not enough memory for the document.");
   json_decref(current);
+  for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
+    eo_inch_place(document, &faults->fault[i]);
   return good;
 }
 

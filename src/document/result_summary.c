@@ -6,6 +6,7 @@
 
 #include "format/json.h"
 #include "document/result.h"
+#include "format/inch_sentence.h"
 #include "format/text_table.h"
 
 static double find(const json_t *value, const char *path)
@@ -23,8 +24,9 @@ static const char *find_text(const json_t *value, const char *path)
 struct shown_lengths {
   const char *length, *small; /* units in place of mm and um */
   double divisor;
+  void (*say)(struct eo_text *text, const char *sentence);
 };
-static const struct shown_lengths shown[2] = {{"mm", "um", 1}, {"in", "thou", 25.4}};
+static const struct shown_lengths shown[2] = {{"mm", "um", 1, eo_text_add}, {"in", "thou", 25.4, eo_inch_sentence}};
 
 /* "2 x 55", "55 + 48", and in brackets the members' own faces where they differ from what they share. */
 static void print_faces(const json_t *pair, const json_t *geometry, const struct shown_lengths *as,
@@ -185,7 +187,7 @@ static void add_safety(struct eo_text_table *sheet, const char *name, double val
 }
 
 /* Nothing where no rating was asked for. */
-static void print_rating(const json_t *result, struct eo_text *text)
+static void print_rating(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   static const char *const headings[] = {"", "Miner", "required", "static"};
   const json_t *rating = json_object_get(result, "rating"), *verdict = json_object_get(rating, "verdict");
@@ -194,7 +196,9 @@ static void print_rating(const json_t *result, struct eo_text *text)
     return;
   eo_text_print(text, "Rating, ISO 6336:%s: ", find_text(rating, "settings/edition"));
   if (!json_is_boolean(json_object_get(verdict, "passes"))) {
-    eo_text_print(text, "not rated. %s\n\n", find_text(rating, "reason"));
+    eo_text_add(text, "not rated. ");
+    as->say(text, find_text(rating, "reason"));
+    eo_text_add(text, "\n\n");
     return;
   }
   eo_text_print(text, "%s over %.6g h\n",
@@ -216,16 +220,19 @@ static void print_place(const json_t *place, struct eo_text *text)
                 find(place, "cycle"), find(place, "pinion_tooth"), find(place, "gear_tooth"));
 }
 
-static void print_pitch_case(const json_t *load_case, struct eo_text *text)
+static void print_pitch_case(const json_t *load_case, const struct shown_lengths *as, struct eo_text *text)
 {
-  static const char *const headings[] = {"order", "per turn", "LTE, um", "normal, m/s2", "rotational, m/s2"};
+  char lte[16];
+  const char *const headings[] = {"order", "per turn", lte, "normal, m/s2", "rotational, m/s2"};
   const json_t *orders = json_object_get(load_case, "orders"), *row;
   struct eo_text_table sheet;
   size_t i;
-  eo_text_print(text, "  %.6g N m: LTE mean %.5g um, peak to peak %.5g um, within a cycle %.3g to %.3g um\n",
-                find(load_case, "torque_Nm"), find(load_case, "lte/mean_um"), find(load_case, "lte/peak_to_peak_um"),
-                find(load_case, "lte/peak_to_peak_of_one_cycle_um/least_um"),
-                find(load_case, "lte/peak_to_peak_of_one_cycle_um/most_um"));
+  snprintf(lte, sizeof lte, "LTE, %s", as->small);
+  eo_text_print(text, "  %.6g N m: LTE mean %.5g %s, peak to peak %.5g %s, within a cycle %.3g to %.3g %s\n",
+                find(load_case, "torque_Nm"), find(load_case, "lte/mean_um") / as->divisor, as->small,
+                find(load_case, "lte/peak_to_peak_um") / as->divisor, as->small,
+                find(load_case, "lte/peak_to_peak_of_one_cycle_um/least_um") / as->divisor,
+                find(load_case, "lte/peak_to_peak_of_one_cycle_um/most_um") / as->divisor, as->small);
   eo_text_print(text, "    vibration %.4g m/s2 normal, %.4g rotational: %s\n",
                 find(load_case, "vibration/rms_m_per_s2/normal"), find(load_case, "vibration/rms_m_per_s2/rotational"),
                 find_text(load_case, "vibration/outcome"));
@@ -248,7 +255,7 @@ static void print_pitch_case(const json_t *load_case, struct eo_text *text)
       continue;
     eo_text_table_string(&sheet, name);
     eo_text_table_number(&sheet, find(row, "order_per_pinion_revolution"), NULL, 5);
-    eo_text_table_number(&sheet, find(row, "lte_um"), NULL, 4);
+    eo_text_table_number(&sheet, find(row, "lte_um") / as->divisor, NULL, 4);
     eo_text_table_number(&sheet, find(row, "normal_m_per_s2"), NULL, 4);
     eo_text_table_number(&sheet, find(row, "rotational_m_per_s2"), NULL, 4);
   }
@@ -257,7 +264,7 @@ static void print_pitch_case(const json_t *load_case, struct eo_text *text)
 }
 
 /* Nothing where the design states no single teeth. */
-static void print_pitch(const json_t *result, struct eo_text *text)
+static void print_pitch(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *pitch = json_object_get(result, "pitch"), *load_case;
   size_t k;
@@ -265,7 +272,7 @@ static void print_pitch(const json_t *result, struct eo_text *text)
     return;
   eo_text_print(text, "Single teeth: %.0f mesh cycles, %.0f turns of the pinion, %.0f of the gear\n",
                 find(pitch, "cycles"), find(pitch, "pinion_revolutions"), find(pitch, "gear_revolutions"));
-  json_array_foreach(json_object_get(pitch, "load_cases"), k, load_case) print_pitch_case(load_case, text);
+  json_array_foreach(json_object_get(pitch, "load_cases"), k, load_case) print_pitch_case(load_case, as, text);
   eo_text_add(text, "\n");
 }
 
@@ -280,11 +287,15 @@ static void print_frequencies(const json_t *result, struct eo_text *text)
   eo_text_add(text, "\n");
 }
 
-static void print_warnings(const json_t *result, struct eo_text *text)
+static void print_warnings(const json_t *result, const struct shown_lengths *as, struct eo_text *text)
 {
   const json_t *warnings = json_object_get(result, "warnings");
-  for (size_t i = 0; i < json_array_size(warnings); i++)
-    eo_text_print(text, "Note: %s\n", json_string_value(json_array_get(warnings, i)));
+  for (size_t i = 0; i < json_array_size(warnings); i++) {
+    const char *sentence = json_string_value(json_array_get(warnings, i));
+    eo_text_add(text, "Note: ");
+    as->say(text, sentence);
+    eo_text_add(text, "\n");
+  }
 }
 
 static void print_timing(const json_t *result, struct eo_text *text)
@@ -304,10 +315,10 @@ void eo_result_summary(const json_t *result, bool inches, struct eo_text *text)
   for (size_t k = 0; k < json_array_size(json_object_get(result, "load_cases")); k++)
     print_case(result, k, as, text);
   print_objectives(result, as, text);
-  print_rating(result, text);
-  print_pitch(result, text);
+  print_rating(result, as, text);
+  print_pitch(result, as, text);
   print_frequencies(result, text);
-  print_warnings(result, text);
+  print_warnings(result, as, text);
   print_timing(result, text);
 }
 

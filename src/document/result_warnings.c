@@ -115,8 +115,8 @@ static void say_limit(struct list *list, double limit, double value, const char 
 {
   if (!(value > limit)) /* nor when it is off, NaN */
     return;
-  say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g.", what, place, eo_unit_out(unit, value),
-      unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit));
+  say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g%s%s.", what, place, eo_unit_out(unit, value),
+      unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit), unit ? " " : "", unit ? unit->symbol : "");
 }
 
 /* Of the duty cycle as a whole. */

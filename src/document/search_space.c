@@ -102,6 +102,14 @@ static enum eo_code fault(const char *pointer_format, int i, struct eo_error *er
   return eo_error_set(error, EO_ERROR_INPUT, pointer, text, a, b);
 }
 
+static enum eo_code outside(int i, const struct eo_field *field, struct eo_error *error)
+{
+  char pointer[80];
+  snprintf(pointer, sizeof pointer, "/optimization/variable_list/%d/bounds", i);
+  return eo_error_set(error, EO_ERROR_INPUT, pointer, "The bounds must increase and stay inside %.6g .. %.6g%s%s.",
+                      field->low, field->high, field->unit ? " " : "", field->unit ? field->unit->symbol : "");
+}
+
 /* Every flank that it covers has a grid. */
 static bool has_grids(const struct eo_study_variable *variable, const struct eo_design *design)
 {
@@ -144,8 +152,7 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
     return fault("/optimization/variable_list/%d/bounds", i, error,
                  "This parameter has no bounds of its own: state them.", 0, 0);
   if (!(bounds.low < bounds.high) || bounds.low < field->low || bounds.high > field->high)
-    return fault("/optimization/variable_list/%d/bounds", i, error,
-                 "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
+    return outside(i, field, error);
   struct eo_study_variable variable = {row->member, end,         row->flank, field,
                                        bounds.low,  bounds.high, row->row,   row->column};
   if (!is_node(&variable) && (row->row != 0 || row->column != 0))

@@ -9,7 +9,6 @@
 #include "document/completion.h"
 #include "document/result.h"
 #include "evaluation/evaluator.h"
-#include "format/inch.h"
 #include "format/object.h"
 #include "http/request_body.h"
 #include "http/deferred.h"
@@ -61,11 +60,6 @@ static void check(struct eo_request *request)
          *own = eo_outline_encode(&readiness_outline, &readiness);
   json_object_update(reply, own);
   json_decref(own);
-  if (request->inches) {
-    json_t *inches = eo_inch_from_mm(reply);
-    json_decref(reply);
-    reply = inches;
-  }
   eo_reply_json(&request->reply, 200, reply);
 }
 

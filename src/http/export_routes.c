@@ -18,7 +18,7 @@ static void export(struct eo_request *request)
     eo_reply_problem(&request->reply, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
     return;
   }
-  if (request->inches && !eo_export_has_columns(format)) {
+  if (request->reply.inches && !eo_export_has_columns(format)) {
     eo_reply_problem(&request->reply, 400, "query",
                      "The query parameter units=inch is for tables of columns: flank-points, topography, "
                      "modification-chart; %s has the units that its readers expect.",
@@ -34,7 +34,7 @@ static void export(struct eo_request *request)
       eo_reply_error(&request->reply, "", &error);
       return;
     }
-    if (request->inches)
+    if (request->reply.inches)
       eo_inch_table(&text);
     eo_reply_text(&request->reply, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);

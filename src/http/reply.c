@@ -6,6 +6,7 @@
 
 #include <microhttpd.h>
 
+#include "format/inch.h"
 #include "format/json.h"
 #include "http/log.h"
 #include "http/problems.h"
@@ -29,7 +30,13 @@ void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, st
 
 static void reply_document(struct eo_reply *reply, unsigned status, const char *type, json_t *document)
 {
-  struct eo_text text = {.failed = !document};
+  struct eo_text text = {0};
+  if (reply->inches && document) {
+    json_t *metric = document;
+    document = eo_inch_from_mm(metric);
+    json_decref(metric);
+  }
+  text.failed = !document;
   if (document)
     eo_json_write(&text, document, EO_JSON_COMPACT);
   eo_text_add(&text, "\n");

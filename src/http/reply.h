@@ -33,6 +33,7 @@ struct eo_reply {
   unsigned allow;                                 /* methods; 0: no Allow */
   bool authenticate, revalidate; /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */
   bool close;                    /* the connection ends with this reply */
+  bool inches; /* asked for by ?units=inch, of a route that has it: documents and problems are spelt so */
 };
 
 /* Takes the document over; NULL: no memory, 500. */

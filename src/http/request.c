@@ -128,9 +128,10 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
     eo_reply_error(&request->reply, path, (eo_error_memory(&error), &error));
   else if (!eo_design_decode(document, design, warnings, faults))
     eo_reply_faults(&request->reply, path, faults);
-  else if (eo_design_complete(design, geometry, &error))
+  else if (eo_design_complete(design, geometry, &error)) {
+    eo_inch_place(document, &error);
     eo_reply_error(&request->reply, path, &error);
-  else
+  } else
     good = true;
   if (good && warnings)
     eo_design_note_findings(design, geometry, warnings);
@@ -140,7 +141,7 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
 
 void eo_reply_table(struct eo_request *request, struct eo_text *text)
 {
-  if (request->inches)
+  if (request->reply.inches)
     eo_inch_table(text);
   eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", text);
 }

@@ -40,7 +40,6 @@ struct eo_request {
   const struct eo_route *route;    /* NULL: a page, or nothing */
   char argument[EO_ARGUMENTS][64]; /* what stood in the places of the pattern */
   bool csv;                        /* asked for by Accept or by the suffix */
-  bool inches;                     /* asked for by ?units=inch, of a route that has it */
   const char *answer_type;         /* literal: of what the service answers; NULL: JSON, or CSV */
   struct eo_text body;
   json_t *document;         /* the body as JSON, once it was asked for; owned until the handler has returned */

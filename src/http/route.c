@@ -139,9 +139,9 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
 static void take_units(struct eo_request *request)
 {
   const char *units = eo_request_query(request, "units");
-  request->inches = units && strcmp(units, "inch") == 0;
+  request->reply.inches = units && strcmp(units, "inch") == 0;
   for (const struct eo_query *query = request->route->query;
-       request->inches && query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+       request->reply.inches && query < request->route->query + EO_MOST_QUERIES && query->name; query++)
     if (strcmp(query->name, "units") == 0 && query->low == EO_CSV_ALONE && request->route->csv && !request->csv)
       eo_reply_problem(&request->reply, 400, "query",
                        "The query parameter units=inch is for CSV here: ask for text/csv, or at %s.csv.",

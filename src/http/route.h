@@ -56,7 +56,7 @@ struct eo_route {
 
 #define EO_API "/api/v1"
 
-/* The border of units (format/inch.h), a row of `query`: request->inches says whether it is asked for. What is computed
+/* The border of units (format/inch.h), a row of `query`: request->reply.inches says whether it is asked for. What is computed
    and stored keeps mm. */
 #define EO_UNITS_QUERY                                                                          \
   {                                                                                             \

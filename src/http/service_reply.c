@@ -51,9 +51,9 @@ static void take_answer(struct eo_request *request, struct eo_answer *answer)
 {
   switch (answer->kind) {
   case EO_ANSWER_DONE:
-    if (request->inches && request->csv)
+    if (request->reply.inches && request->csv)
       eo_inch_table(&answer->text);
-    else if (request->inches)
+    else if (request->reply.inches)
       spell_in_inches(&answer->text);
     eo_reply_text(&request->reply, 200,
                   request->answer_type ? request->answer_type

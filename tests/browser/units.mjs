@@ -123,6 +123,29 @@ await chapter('and back', async () => {
   ok(JSON.stringify([again.te, again.profile]) === JSON.stringify([metric.te, metric.profile]), 'the same tables');
 });
 
+await chapter('sentences', async () => {
+  // thirteen teeth are undercut; then a bore that leaves no rim
+  await page.getByLabel('Lengths in').selectOption('mm');
+  await page.goto('about:blank');
+  await page.goto(`${server.address}#design?from=narrow&${PAIR.replace('pinion_teeth=23', 'pinion_teeth=13')}&${LOOSE}`);
+  const warnings = () => page.locator('.warning-list').evaluate(list => list.textContent);
+  await page.waitForFunction(() => /undercut/.test(document.querySelector('.warning-list')?.textContent ?? ''));
+  const said = await warnings();
+  const radius = /up to the radius ([\d.]+) mm/.exec(said)?.[1];
+  await page.getByLabel('Lengths in').selectOption('inch');
+  const inches = /up to the radius ([\d.]+) in\b/.exec(await warnings())?.[1];
+  ok(agree(Number(radius), Number(inches), 1e-4), `a warning: ${radius} mm, ${inches} in`);
+  ok(!/\d (mm|um)\b/.test(await page.locator('.remark').first().innerText()), 'a remark at its field');
+  await page.getByLabel('Lengths in').selectOption('mm');
+  ok((await warnings()) === said, 'and back');
+  await page.goto(`${server.address}#design?from=narrow&${PAIR}&gear_pair.pinion_bore_mm=95&${LOOSE}`);
+  const fault = page.locator('.trouble').filter({ hasText: 'bore' }).first();
+  await fault.waitFor();
+  ok(/bore of 95 mm/.test(await fault.innerText()), `a fault: ${await fault.innerText()}`);
+  await page.getByLabel('Lengths in').selectOption('inch');
+  ok(/bore of 3\.7402 in/.test(await fault.innerText()), `in inches: ${await fault.innerText()}`);
+});
+
 await chapter('a gear of one’s own', async () => {
   await page.getByLabel('Lengths in').selectOption('inch');
   await page.getByRole('button', { name: 'Your own gear…' }).first().click();

@@ -46,7 +46,7 @@ prints 'span_mm  *[0-9]'
 ! grep -q '/optimization\|/gear_pair/normal_module_mm' "$folder/out"
 result $? "neither what is stated in another way nor what an analysis does not use"
 expect 0 "in inches" "$EASEOFF" design "$folder/design.json" --units inch
-prints 'centre_distance_mm  *9.25  *in'
+prints 'centre_distance_in  *9.25  *in'
 expect 0 "as a document in inches" "$EASEOFF" design "$folder/design.json" --units inch --json
 prints '"centre_distance_in": 9.25,'
 design '"normal_diametral_pitch_per_inch": 4, "gear_bore_in": 1.5'
@@ -55,6 +55,12 @@ prints '"gear_bore_mm": 38.1'
 design '"normal_diametral_pitch_per_inch": 4, "gear_bore_in": 1.5, "gear_bore_mm": 38'
 expect 1 "but not beside the same in mm" "$EASEOFF" design "$folder/design.json"
 says 'gear_bore_in says the same as gear_bore_mm'
+design '"normal_diametral_pitch_per_inch": 4, "gear_bore_in": 70'
+expect 1 "a fault stands at the key as it was stated" "$EASEOFF" design "$folder/design.json"
+says '/gear_pair/gear_bore_in'
+design '"normal_diametral_pitch_per_inch": 4, "gear_bore_mm": 1778'
+expect 1 "its lengths are in the unit that is asked for" "$EASEOFF" design "$folder/design.json" --units inch
+says 'bore of 70 in'
 design '"normal_diametral_pitch_per_inch": 4'
 expect 1 "in furlongs" "$EASEOFF" design "$folder/design.json" --units furlong
 expect 0 "as a document" "$EASEOFF" design "$folder/design.json" --json

@@ -5,7 +5,7 @@ import { fill, h } from './base/dom.js';
 import { dateText, labelOf, plain } from './base/format.js';
 import { valueAt } from './base/pointer.js';
 import { fieldAt, unitOf } from './base/schema.js';
-import { inInches, shownValue } from './base/units.js';
+import { inInches, shownSentence, shownValue } from './base/units.js';
 import { sheetAsSvg } from './figures/sheet.js';
 import { tableOf } from './verdict.js';
 
@@ -98,7 +98,7 @@ function assumptions(fields, assumed) {
       assumed.map(({ key, value, rule }) => {
         const field = fieldAt(fields, key);
         const text = `${valueText(value, field?.unit)} ${unitOf(field)}`.trim();
-        return [key.split('/').slice(1).map(labelOf).join(', '), text, rule];
+        return [key.split('/').slice(1).map(labelOf).join(', '), text, shownSentence(rule)];
       }),
     ),
   );

@@ -2,7 +2,7 @@
 // The verdict of a result: before and after for every load case, and what to know about it.
 import { h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
-import { shownUnit } from './base/units.js';
+import { shownSentence, shownUnit } from './base/units.js';
 import { caseLong } from './figures/context.js';
 import { NUMBERS, numbersBefore, numbersOf, shownNumber } from './numbers.js';
 
@@ -74,7 +74,7 @@ export function verdict(result, reference) {
 export function groupedWarnings(texts) {
   /** @type {Map<string, string[]>} */
   const groups = new Map();
-  for (const text of texts) {
+  for (const text of texts.map(shownSentence)) {
     const key = text.replace(/[\d.,]+/g, '#').replace(/\b(left|right)\b/g, '#');
     groups.set(key, [...(groups.get(key) ?? []), text]);
   }
@@ -104,6 +104,6 @@ export function warningList(texts, all = false) {
   if (!texts.length) return [];
   return [
     h('h2', null, 'What to know about this result'),
-    h('ul', null, all ? texts.map(text => h('li', null, text)) : groupedWarnings(texts)),
+    h('ul', null, all ? texts.map(text => h('li', null, shownSentence(text))) : groupedWarnings(texts)),
   ];
 }

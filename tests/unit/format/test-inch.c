@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "format/inch.h"
+#include "format/inch_sentence.h"
 #include "format/json.h"
 #include "support/tap.h"
 
@@ -26,6 +27,53 @@ static bool is(const json_t *value, const char *text)
   json_decref(expected);
   free(found);
   return same;
+}
+
+/* What the page reads as well: tests/browser/units.mjs. */
+static void test_sentences(void)
+{
+  static const struct {
+    const char *metric, *inch;
+  } pair[] = {
+      {"The face, 70 mm, is wide.", "The face, 2.7559 in, is wide."},
+      {"177800 is outside 0.5 .. 5000 mm.", "7000 is outside 0.019685 .. 196.85 in."},
+      {"From diameter 152.4001 to 177.8 mm, roll 5 to 7 deg.", "From diameter 6.000004 to 7 in, roll 5 to 7 deg."},
+      {"The gears 17 and 18 are 254 and 127 mm wide; 18 and more.",
+       "The gears 17 and 18 are 10 and 5 in wide; 18 and more."},
+      {"2/3 (0.06 mm + 0.0005 a + 0.03 m_n)", "2/3 (0.0023622 in + 0.0005 a + 0.03 m_n)"},
+      {"-25.4 um, 1e-05 mm, 5.08 \xc2\xb5m", "-1 thou, 3.937e-07 in, 0.2 thou"},
+      {"8 N/um, 3 mm/s, 7 mm2, 7 mm\xc2\xb2, 5 N mm, 600 N m", "8 N/um, 3 mm/s, 7 mm2, 7 mm\xc2\xb2, 5 N mm, 600 N m"},
+      {"ISO 286-1 and 25.4 mm; A2 mm; v1.2 mm", "ISO 286-1 and 1 in; A2 mm; v1.2 mm"},
+      {"State gear_pair.face_width_mm above 0, or crowning_um, not q_N_per_mm.",
+       "State gear_pair.face_width_in above 0, or crowning_thou, not q_N_per_mm."},
+      {"", ""},
+  };
+  for (size_t i = 0; i < sizeof pair / sizeof *pair; i++) {
+    struct eo_text text = {0};
+    eo_inch_sentence(&text, pair[i].metric);
+    const char *made = text.data ? text.data : "";
+    ok(strcmp(made, pair[i].inch) == 0, "a sentence: %s", made);
+    eo_text_done(&text);
+  }
+}
+
+static void test_places(void)
+{
+  json_t *document =
+      parse("{\"gear_pair\":{\"face_width_in\":7000,\"groove_width_mm\":1},\"cases\":[{\"shift_thou\":1}]}");
+  struct eo_error fault = {.pointer = "/gear_pair/face_width_mm", .text = "177800 is outside 0.5 .. 5000 mm."},
+                  other = {.pointer = "/gear_pair/groove_width_mm", .text = "At least 2 mm."},
+                  listed = {.pointer = "/cases/0/shift_um", .text = "At most 2.54 um."};
+  eo_inch_place(document, &fault);
+  eo_inch_place(document, &other);
+  eo_inch_place(document, &listed);
+  ok(strcmp(fault.pointer, "/gear_pair/face_width_in") == 0 &&
+         strstr(fault.text, "7000 is outside 0.019685 .. 196.85 in."),
+     "a fault stands at the key as it was stated: %s: %s", fault.pointer, fault.text);
+  ok(strcmp(other.pointer, "/gear_pair/groove_width_mm") == 0 && strstr(other.text, "2 mm"), "one in mm stays");
+  ok(strcmp(listed.pointer, "/cases/0/shift_thou") == 0 && strstr(listed.text, "0.1 thou"), "one in a list: %s",
+     listed.pointer);
+  json_decref(document);
 }
 
 int main(void)
@@ -55,6 +103,15 @@ int main(void)
      "rows that name a length have it in inches");
   json_decref(document);
   json_decref(other);
+
+  document = parse("{\"warnings\":[\"At 25.4 mm.\"],\"findings\":[{\"text\":\"5.08 um\"}],\"name\":\"25.4 mm\"}");
+  other = eo_inch_from_mm(document);
+  ok(is(other, "{\"warnings\":[\"At 1 in.\"],\"findings\":[{\"text\":\"0.2 thou\"}],\"name\":\"25.4 mm\"}"),
+     "so are the sentences, and no name");
+  json_decref(document);
+  json_decref(other);
+  test_sentences();
+  test_places();
 
   document = parse("{\"gear_pair\":{\"face_width_mm\":50,\"face_width_in\":2}}");
   json_decref(eo_inch_to_mm(document, &faults));

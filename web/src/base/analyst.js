@@ -28,8 +28,7 @@ export class Analyst extends EventTarget {
   /** @type {Page.Result | null} */ pinned = null;
   /** "", "busy", "preparing", "refused" */ state = '';
   /** @type {Api.Job | null} */ job = null;
-  /** @type {import('./api.js').Fault[]} */ faults = [];
-  message = '';
+  /** @type {Error | null} */ refusal = null;
   ms = 0;
   /** Load case that figures of one load case show; the only one with all its curves in a stroke's answers. */
   shown = 0;
@@ -51,8 +50,7 @@ export class Analyst extends EventTarget {
         this.result = data;
         this.partial = task.note === 'stroke';
         this.ms = ms;
-        this.faults = [];
-        this.message = '';
+        this.refusal = null;
         this.#state('');
         this.#tell('result');
         clearTimeout(this.#rest);
@@ -64,8 +62,7 @@ export class Analyst extends EventTarget {
         this.#state('preparing');
       },
       refused: (_task, error) => {
-        this.faults = error instanceof Refusal ? error.faults : [];
-        this.message = error.message;
+        this.refusal = error;
         this.#state('refused');
       },
     });
@@ -102,6 +99,14 @@ export class Analyst extends EventTarget {
     connection.addEventListener('change', () => this.#tell('state'));
   }
 
+  get faults() {
+    return this.refusal instanceof Refusal ? this.refusal.faults : [];
+  }
+
+  get message() {
+    return this.refusal?.message ?? '';
+  }
+
   /** What takes longer is asked for when the design rests. */
   #atRest() {
     const { design } = this.store;
@@ -117,7 +122,7 @@ export class Analyst extends EventTarget {
   update(stroke = false) {
     const { store } = this;
     if (store.faults.size) {
-      this.faults = [];
+      this.refusal = null;
       this.#state('refused');
       return;
     }

@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The public API, and whether it answers.
+import { shownSentence } from './units.js';
 
 /** @typedef {Api.ProblemError} Fault */
 
-/** What the service refused, with its reasons. */
+/** What the service refused, with its reasons, in the units in which lengths are shown when they are read. */
 export class Refusal extends Error {
   /** @param {number} status @param {Partial<Api.Problem> | null} problem */
   constructor(status, problem) {
-    super(problem?.detail || problem?.title || `The service answered ${status}.`);
+    super();
     this.status = status;
     this.type = String(problem?.type ?? '');
     /** Everything that the problem says besides. @type {Record<string, unknown>} */
     this.more = { ...problem };
-    /** @type {Fault[]} */
-    this.faults = Array.isArray(problem?.errors) ? problem.errors : [];
+  }
+
+  get message() {
+    const { detail, title } = this.more;
+    return shownSentence(String(detail || title || `The service answered ${this.status}.`));
+  }
+
+  /** @returns {Fault[]} */
+  get faults() {
+    const faults = Array.isArray(this.more.errors) ? /** @type {Fault[]} */ (this.more.errors) : [];
+    return faults.map(fault => ({ ...fault, detail: shownSentence(fault.detail) }));
   }
 }
 

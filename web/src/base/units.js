@@ -9,6 +9,15 @@ const PER_INCH = 25.4; // mm in an inch, µm in a thousandth of it
  * @type {Record<string, string>} */
 const INCH = { mm: 'in', um: 'thou', µm: 'thou' };
 /** "from mid face (mm)": the unit of a column at the end of its head. */
+/** "0.5 .. 500 mm", "70 mm": a length in a sentence, or several with the unit behind the last; as format/inch_sentence.h
+ * reads it. No mm², mm/s; no number of a name. */
+const NUMBER = String.raw`(?<![\w.]|[\w.]-)\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
+const LENGTHS = new RegExp(
+  String.raw`(${NUMBER}(?:(?: \.\. | to | and | is outside )-?${NUMBER})*) (mm|[uµ]m)(?![\w/^²³])`,
+  'g',
+);
+const LEAST_DIGITS = 5;
+const MOST_DIGITS = 15;
 const HEAD = /^(.*)\((mm|µm)\)$/s;
 
 /** Tells ("change") that lengths are wanted in other units: what is shown is drawn again. */
@@ -67,6 +76,21 @@ export function typedText(text, unit) {
 export function shownValues(values, unit) {
   if (!unitInstead(unit)) return values;
   return /** @type {T} */ (/** @type {unknown} */ (Array.from(values, value => shownValue(value, unit))));
+}
+
+/** A sentence of the service, which is in mm and µm, as it is shown. @param {string} sentence */
+export function shownSentence(sentence) {
+  if (!inches) return sentence;
+  return sentence.replace(
+    LENGTHS,
+    (_all, numbers, unit) => `${numbers.replace(new RegExp(NUMBER, 'g'), numberInInches)} ${INCH[unit]}`,
+  );
+}
+
+/** To as many digits as it has, and at least five. @param {string} text */
+function numberInInches(text) {
+  const digits = text.replace(/e.*/, '').replace('.', '').replace(/^0+/, '').length;
+  return String(Number((Number(text) / PER_INCH).toPrecision(Math.min(Math.max(digits, LEAST_DIGITS), MOST_DIGITS))));
 }
 
 /** The head of a column as it is shown: "from mid face (mm)". @param {string} head */

@@ -5,6 +5,7 @@ import { fill, h } from '../base/dom.js';
 import { plain, sig } from '../base/format.js';
 import { caseNames, endsOf } from './context.js';
 import { Frame } from './frame.js';
+import { shownSentence } from '../base/units.js';
 
 const MEMBERS = /** @type {const} */ (['pinion', 'gear']);
 const HEAD = ['load case', 'end', 'S_H', 'S_F', 'K_V', 'K_Hβ', 'K_Hβ, method C', 'K_Hα'];
@@ -23,7 +24,7 @@ function lifeText(hours) {
 /** One sentence. @param {Api.Rating | null} rating */
 export function verdictText(rating) {
   if (!rating) return '';
-  if (rating.outcome !== 'rated') return `Not rated: ${rating.reason ?? 'no reason given'}`;
+  if (rating.outcome !== 'rated') return `Not rated: ${shownSentence(rating.reason ?? 'no reason given')}`;
   const { passes, S_H: flank, S_Hmin: flankMin, S_F: root, S_Fmin: rootMin, life_h: life } = rating.verdict;
   return (
     `${passes ? 'Passes' : 'Does not pass'}: flank S_H ${sig(flank, 3)} (needs ${sig(flankMin, 3)}), ` +

@@ -3,7 +3,7 @@
 import { fill, h } from '../base/dom.js';
 import { labelOf, plain } from '../base/format.js';
 import { isNumeric, unitOf } from '../base/schema.js';
-import { shownValue } from '../base/units.js';
+import { shownSentence, shownValue } from '../base/units.js';
 import { FieldSet } from './fieldset.js';
 import { unfold } from './group.js';
 
@@ -104,7 +104,7 @@ export class Form {
 
   /** What the service remarks about a value, at its field. @param {{ key: string, text: string }[]} findings */
   showFindings(findings) {
-    const texts = new Map(findings.map(({ key, text }) => [key, text]));
+    const texts = new Map(findings.map(({ key, text }) => [key, shownSentence(text)]));
     for (const { pointer, element } of this.#controls) {
       const text = texts.get(pointer) ?? '';
       let remark = element.querySelector('.remark');
@@ -139,8 +139,10 @@ export class Form {
       return `${ends.join(' … ')} ${unitOf(field)}`.trim();
     };
     const empty = field.nullable && field.derived ? `empty: ${field.derived}` : '';
-    const show = () =>
-      fill(this.help, h('b', null, name), ` ${[field.help, range(), empty].filter(Boolean).join(' · ')}`);
+    const show = () => {
+      const parts = [shownSentence(field.help ?? ''), range(), shownSentence(empty)];
+      fill(this.help, h('b', null, name), ` ${parts.filter(Boolean).join(' · ')}`);
+    };
     row.addEventListener('focusin', show);
     row.addEventListener('pointerenter', show);
   }

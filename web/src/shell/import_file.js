@@ -2,6 +2,7 @@
 // A file of another program: which pairs are in it, what was assumed, left out and not used, before it is opened.
 import { Refusal, ask } from '../base/api.js';
 import { fill, h } from '../base/dom.js';
+import { shownSentence } from '../base/units.js';
 
 const LISTS = /** @type {[keyof Pick<Api.Import, 'assumed' | 'refused' | 'not_used' | 'notes'>, string][]} */ ([
   ['assumed', 'Left open by the file, and assumed'],
@@ -186,7 +187,7 @@ function listed(title, texts) {
     h(
       'ul.findings',
       null,
-      texts.map(text => h('li', null, text)),
+      texts.map(text => h('li', null, shownSentence(text))),
     ),
   );
 }

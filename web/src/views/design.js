@@ -67,7 +67,10 @@ class DesignView {
     app.analyst.addEventListener('rating', () => this.#drawRating());
     app.analyst.addEventListener('teeth', () => this.#drawTeeth());
     app.analyst.addEventListener('state', () => this.#drawState());
-    units.addEventListener('change', () => this.#drawResult());
+    units.addEventListener('change', () => {
+      this.#drawResult();
+      this.#drawState();
+    });
     app.form.finders.push(pointer => this.#find(pointer));
   }
 

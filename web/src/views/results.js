@@ -14,6 +14,7 @@ import { Transmission } from '../figures/transmission.js';
 import { Tribology } from '../figures/tribology.js';
 import { Vibration } from '../figures/vibration.js';
 import { warningList } from '../verdict.js';
+import { shownSentence } from '../base/units.js';
 
 export class Results {
   /** @type {import('../figures/context.js').Context | null} */ #context = null;
@@ -95,7 +96,7 @@ export class Results {
     for (const figure of this.figures) figure.set(context);
     this.speed.show(context);
     const warnings = context.result.warnings ?? [];
-    const text = warnings.join('\n');
+    const text = warnings.map(shownSentence).join('\n');
     if (text === this.#warnings) return;
     this.#warnings = text;
     fill(this.notes, warningList(warnings));

@@ -7,7 +7,7 @@ import { labelOf, plain, sig } from '../base/format.js';
 import { withValue } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
 import { fieldAt, numberFault, unitOf } from '../base/schema.js';
-import { shownUnit, shownValue, typedText, units } from '../base/units.js';
+import { shownSentence, shownUnit, shownValue, typedText, units } from '../base/units.js';
 
 const PAUSE = 350; // ms after the last key before the service is asked
 
@@ -42,7 +42,7 @@ function designOf(values, ends, name) {
 function assumptionsOf(answer, fields) {
   return answer.assumed.map(each => {
       const field = fieldAt(fields, each.key);
-      return [labelOf(each.key.split('/').pop() ?? ''), valueText(each.value, field), each.rule ?? ''];
+      return [labelOf(each.key.split('/').pop() ?? ''), valueText(each.value, field), shownSentence(each.rule ?? '')];
     });
 }
 
@@ -260,7 +260,7 @@ class OwnGear {
         ? h(
             'ul.findings',
             null,
-            answer.warnings.map(text => h('li', null, text)),
+            answer.warnings.map(text => h('li', null, shownSentence(text))),
           )
         : null,
       h('h3', null, 'Assumed, until you state it'),

@@ -2,6 +2,7 @@
 // The measurements of a design with their comparison, asked for anew when the design rests.
 import { list } from '../../base/api.js';
 import { Lane } from '../../base/lane.js';
+import { shownSentence } from '../../base/units.js';
 
 const REST = 350; // ms without a change before the comparison is asked for
 // Parts by which recordings of two pairs may differ and still stand beside each other.
@@ -114,7 +115,7 @@ export class Bench extends EventTarget {
     const found = this.comparison?.left_out ?? [];
     if (!found.length) return '';
     const names = found.map(
-      item => `${this.items.find(each => each.id === item.id)?.file ?? item.id}: ${item.reason}`,
+      item => `${this.items.find(each => each.id === item.id)?.file ?? item.id}: ${shownSentence(item.reason)}`,
     );
     return `Left out of the comparison: ${names.join(' ')}`;
   }

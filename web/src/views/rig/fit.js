@@ -6,6 +6,7 @@ import { parseNumber } from '../../base/quantity.js';
 import { Lane } from '../../base/lane.js';
 import { valueAt } from '../../base/pointer.js';
 import { group } from '../../form/group.js';
+import { shownSentence } from '../../base/units.js';
 
 /** Unknowns: key, unit, where it stands in the design, usual range. */
 const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low: number, high: number }[]} */ ([
@@ -56,7 +57,7 @@ const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low
 ]);
 
 /** Why a measurement was left out. @param {Api.LeftOut} item */
-const reasonOf = item => `measurement ${item.id} (${item.reason})`;
+const reasonOf = item => `measurement ${item.id} (${shownSentence(item.reason)})`;
 
 /** "12.3 … 14.5" @param {Page.Curve} range */
 const rangeText = range => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
@@ -206,7 +207,7 @@ export class FitPanel {
             'ul.findings',
             null,
             answer.warnings.map(text =>
-              h('li', null, h('span.severity.warning', null, 'doubtful'), ' ', text),
+              h('li', null, h('span.severity.warning', null, 'doubtful'), ' ', shownSentence(text)),
             ),
           )
         : null,

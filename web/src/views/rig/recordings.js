@@ -9,6 +9,7 @@ import { guess } from '../../base/recording.js';
 import { RefusedRecording, upload } from '../../base/upload.js';
 import { torqueOf } from '../../figures/context.js';
 import { group } from '../../form/group.js';
+import { shownSentence } from '../../base/units.js';
 
 /**
  * @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' |
@@ -40,7 +41,7 @@ export function findingList(findings) {
         null,
         h(`span.severity.${finding.severity}`, null, SEVERITY[finding.severity] ?? finding.severity),
         ' ',
-        finding.text,
+        shownSentence(finding.text),
         finding.line ? h('span.unit', null, ` line ${finding.line}`) : null,
       ),
     ),

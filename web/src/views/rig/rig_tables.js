@@ -3,7 +3,7 @@
 import { address } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
 import { dateText, plain, sig } from '../../base/format.js';
-import { shownUnit, shownValue } from '../../base/units.js';
+import { shownSentence, shownUnit, shownValue } from '../../base/units.js';
 import { findingList } from './recordings.js';
 
 const HEAD = /** @type {[string, string][]} */ ([
@@ -45,9 +45,9 @@ function findingMarks(item, beside) {
   const worst = ['warning', 'repaired', 'note'].find(severity =>
     item.findings.some(finding => finding.severity === severity),
   );
-  const texts = item.findings.map(finding => finding.text).join('\n');
+  const texts = item.findings.map(finding => shownSentence(finding.text)).join('\n');
   return [
-    beside?.outlier ? h('span.severity.warning', { title: beside.reason }, 'outlier') : null,
+    beside?.outlier ? h('span.severity.warning', { title: shownSentence(beside.reason ?? '') }, 'outlier') : null,
     worst ? h(`span.severity.${worst}`, { title: texts }, worst === 'warning' ? 'doubtful' : worst) : null,
   ];
 }
@@ -228,7 +228,7 @@ export function drawAbout(place, item, whole, beside, parts) {
   fill(
     place,
     h('.figure-head', null, h('h3', null, item.file)),
-    beside?.outlier ? h('p.fault', null, `Outlier: ${beside.reason}`) : null,
+    beside?.outlier ? h('p.fault', null, `Outlier: ${shownSentence(beside.reason ?? '')}`) : null,
     findings.length ? findingList(findings) : h('p.figure-note', null, 'Nothing is wrong with this recording.'),
     h(
       'table.numbers.facts',
@@ -247,7 +247,7 @@ export function drawAbout(place, item, whole, beside, parts) {
       h(
         'ul.findings',
         null,
-        notes.map(text => h('li', null, text)),
+        notes.map(text => h('li', null, shownSentence(text))),
       ),
     ),
   );

@@ -5,7 +5,7 @@ import { fill, h } from '../../base/dom.js';
 import { change, changeText, choiceText, duration, sig } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
 import { documentOf } from '../../base/store.js';
-import { shownUnit, shownValue, units } from '../../base/units.js';
+import { shownSentence, shownUnit, shownValue, units } from '../../base/units.js';
 import { progressText } from '../../jobbar.js';
 import { JobFigures } from './job_figures.js';
 import { MEASURES, footnote, meanOf } from './measures.js';
@@ -120,7 +120,7 @@ export class JobDetail {
       this.head,
       h('h2', null, job.name || `Search ${job.id}`),
       h('span.facts', null, facts.join(' · ')),
-      job.error ? h('span.fault', null, job.error.detail) : null,
+      job.error ? h('span.fault', null, shownSentence(job.error.detail)) : null,
       h('span.actions', null, this.#actions(job, active)),
     );
   }

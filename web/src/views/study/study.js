@@ -10,6 +10,7 @@ import { StudyOrder } from './order.js';
 import { Coordinates } from './coordinates.js';
 import { Rows } from './rows.js';
 import { VariantTable } from './variant_table.js';
+import { shownSentence } from '../../base/units.js';
 
 const COLUMNS = ['Study', 'Samples', 'State', 'Progress', 'Left', 'Started'];
 const PAUSE = 150; // ms between two drawings of the list
@@ -155,7 +156,7 @@ class StudyView {
       this.head,
       h('h2', null, job.name || `Study ${job.id}`),
       h('span.facts', null, facts.join(' · ')),
-      job.error ? h('span.fault', null, job.error.detail) : null,
+      job.error ? h('span.fault', null, shownSentence(job.error.detail)) : null,
       h(
         'span.actions',
         null,
@@ -190,7 +191,7 @@ class StudyView {
     fill(
       this.picked,
       h('strong', null, `Variant ${variant}`),
-      ` ${rows.outcome[row]}${rows.reason[row] ? `: ${rows.reason[row]}` : ''} `,
+      ` ${rows.outcome[row]}${rows.reason[row] ? `: ${shownSentence(rows.reason[row])}` : ''} `,
       h('button', { type: 'button', onclick: () => app.attempt(() => app.opening(open, 'design')) }, 'Open'),
       h(
         'button',

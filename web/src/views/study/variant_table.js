@@ -2,7 +2,7 @@
 // The rows as a table of which only what is in sight is there: ten thousand rows cost no more than forty.
 import { fill, h } from '../../base/dom.js';
 import { unitText } from '../../base/format.js';
-import { shownUnit, units } from '../../base/units.js';
+import { shownSentence, shownUnit, units } from '../../base/units.js';
 import { shortName } from './rows.js';
 
 const HEIGHT = 24; // px of a row, as the style sheet has it
@@ -91,7 +91,7 @@ export class VariantTable {
     const { rows } = this;
     return h(
       'tr',
-      { 'data-variant': rows.variant[row], title: rows.reason[row] || null, onclick: () => this.pick(row) },
+      { 'data-variant': rows.variant[row], title: shownSentence(rows.reason[row]) || null, onclick: () => this.pick(row) },
       h('th', { scope: 'row' }, h('button.link', { type: 'button' }, rows.variant[row])),
       ...rows.columns.map((_column, at) => h('td.number', null, rows.text(at, row))),
       h('td', null, rows.outcome[row].replaceAll('_', ' ')),

@@ -7,7 +7,7 @@ import { ACTIVE } from '../../base/jobs.js';
 import { Lane } from '../../base/lane.js';
 import { readQuantity } from '../../base/quantity.js';
 import { documentOf } from '../../base/store.js';
-import { shownUnit, shownValue, typedText, units } from '../../base/units.js';
+import { shownSentence, shownUnit, shownValue, typedText, units } from '../../base/units.js';
 import { Chart } from '../../figures/chart.js';
 import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
@@ -199,7 +199,7 @@ class ToleranceView {
   async #finish(job) {
     this.#job = 0;
     if (job.state !== 'done') {
-      this.#end(job.state === 'failed' ? (job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
+      this.#end(job.state === 'failed' ? shownSentence(job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
       return;
     }
     try {
@@ -284,7 +284,7 @@ class ToleranceView {
     fill(this.inputs, inputTable(result));
     fill(
       this.notes,
-      result.warnings.map(text => h('p.aside', null, text)),
+      result.warnings.map(text => h('p.aside', null, shownSentence(text))),
     );
   }
 
