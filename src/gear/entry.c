@@ -17,9 +17,12 @@ static const double SAME = 1e-6;
 /* What follows from the other statements anyway, but for rounding. */
 static const double DERIVED = 1e-11;
 
-/* 12 significant digits in a unit: what the paths to one number differ by is behind them. */
+/* 12 significant digits in a unit: what the paths to one number differ by is behind them. What has several paths is
+   held so on each of them, stated by itself as well: 25.4 / 7 mm and a pitch of 7 are one module. */
 static double in_digits(double value, double unit)
 {
+  if (!isfinite(value))
+    return value;
   char text[40];
   snprintf(text, sizeof text, "%.12g", value / unit);
   double rounded = strtod(text, NULL);
@@ -38,7 +41,7 @@ static bool differ(double a, double b, double scale)
 }
 
 /* Takes *target when it is stated, else what was found; both must agree. */
-static enum eo_code agree(double *target, double found, double scale, const char *key, double unit,
+static enum eo_code agree(double *target, double found, double scale, const char *key, double unit, const char *symbol,
                           struct eo_error *error)
 {
   if (isnan(found))
@@ -50,8 +53,20 @@ static enum eo_code agree(double *target, double found, double scale, const char
   if (!differ(*target, found, scale))
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, key,
-                      "This makes it %.9g, but the design states it as %.9g elsewhere too: leave one of the two out.",
-                      found / unit, *target / unit);
+                      "This makes it %.9g %s, but the design states it as %.9g %s elsewhere too: leave one of the two "
+                      "out.",
+                      found / unit, symbol, *target / unit, symbol);
+}
+
+/* What is stated by itself, as the other ways to it would have it. */
+static void hold_digits(struct eo_gear_pair *pair)
+{
+  pair->normal_module = in_digits(pair->normal_module, MM);
+  pair->normal_pressure_angle = in_digits(pair->normal_pressure_angle, DEGREE);
+  for (int i = 0; i < 2; i++) {
+    pair->profile_shift[i] = as_coefficient(pair->profile_shift[i]);
+    pair->tip_diameter[i] = in_digits(pair->tip_diameter[i], MM);
+  }
 }
 
 /* m_n = m_t cos beta, 1/P_n, cos beta / P_t. */
@@ -67,7 +82,8 @@ static enum eo_code settle_module(struct eo_gear_pair *pair, struct eo_error *er
              {"/gear_pair/transverse_diametral_pitch_per_inch", helix / entry->transverse_diametral_pitch}};
   for (size_t i = 0; i < sizeof way / sizeof *way; i++)
     if (!isnan(way[i].module))
-      EO_TRY(agree(&pair->normal_module, in_digits(way[i].module, MM), pair->normal_module, way[i].key, MM, error));
+      EO_TRY(
+          agree(&pair->normal_module, in_digits(way[i].module, MM), pair->normal_module, way[i].key, MM, "mm", error));
   if (!(pair->normal_module > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/normal_module_mm",
                         "The pair needs its module: normal or transverse, or a diametral pitch.");
@@ -81,7 +97,7 @@ static enum eo_code settle_pressure_angle(struct eo_gear_pair *pair, struct eo_e
   double transverse = pair->entry.transverse_pressure_angle;
   if (!isnan(transverse))
     EO_TRY(agree(&pair->normal_pressure_angle, in_digits(atan(tan(transverse) * cos(pair->helix_angle)), DEGREE), 1,
-                 "/gear_pair/transverse_pressure_angle_deg", DEGREE, error));
+                 "/gear_pair/transverse_pressure_angle_deg", DEGREE, "deg", error));
   if (isnan(pair->normal_pressure_angle))
     pair->normal_pressure_angle = BASIC_RACK * DEGREE;
   return EO_OK;
@@ -236,7 +252,7 @@ static enum eo_code settle_stated_shifts(struct eo_gear_pair *pair, struct eo_er
                         "The profile shifts %.9g and %.9g sum to %.9g, not to %.9g: leave one of the three out.",
                         pair->profile_shift[0], pair->profile_shift[1], sum, pair->entry.shift_sum);
   if (!isnan(working) && isnan(pair->centre_distance))
-    pair->centre_distance = in_digits(base_sum(pair) / cos(working), MM);
+    pair->centre_distance = base_sum(pair) / cos(working);
   return EO_OK;
 }
 
@@ -249,8 +265,8 @@ static enum eo_code settle_shifts(struct eo_gear_pair *pair, struct eo_error *er
   if (stated)
     EO_TRY(settle_stated_shifts(pair, error));
   share_sum(pair->profile_shift, sum);
-  if (fabs(eo_gear_pair_tight_distance(pair) - pair->centre_distance) <= DERIVED * pair->centre_distance)
-    pair->centre_distance = NAN;
+  bool tight = fabs(eo_gear_pair_tight_distance(pair) - pair->centre_distance) <= DERIVED * pair->centre_distance;
+  pair->centre_distance = tight ? NAN : in_digits(pair->centre_distance, MM); /* not before the shifts follow from it */
   return EO_OK;
 }
 
@@ -324,6 +340,7 @@ static enum eo_code settle_tip(struct eo_gear_pair *pair, int i, struct eo_error
 enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *error)
 {
   struct eo_gear_pair settled = *pair;
+  hold_digits(&settled);
   EO_TRY(settle_module(&settled, error));
   EO_TRY(settle_pressure_angle(&settled, error));
   EO_TRY(settle_widths(&settled, error));

@@ -146,6 +146,35 @@ static void test_paths(const char *start, const char *what)
   free(expected);
 }
 
+/* One number in two drawings, each with all its digits: a module of its own, and what makes it. */
+static void test_digits(void)
+{
+  static const struct {
+    const char *key, *other;
+    double value, same;
+  } row[] = {
+      {"normal_module_mm", "normal_diametral_pitch_per_inch", 25.4 / 7, 7},
+      {"normal_module_mm", "transverse_diametral_pitch_per_inch", 25.4 / 7 * 0.9510565162951535, 7},
+      {"normal_module_mm", "transverse_module_mm", 3.7 * 0.9510565162951535, 3.7},
+      {"normal_pressure_angle_deg", "transverse_pressure_angle_deg", 20.152236347338746, 21.1},
+      {"pinion_profile_shift", "pinion_profile_shift_mm", 1. / 3, 1},
+      {"pinion_tip_diameter_mm", "pinion_addendum_mm", 69. / 0.9510565162951535 + 6.2, 3.1},
+  };
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    char text[2][400], *made[2];
+    const char *module = strstr(row[i].key, "module") ? "" : "\"normal_module_mm\":3,";
+    for (int way = 0; way < 2; way++) {
+      snprintf(text[way], sizeof text[way], TEETH "%s\"%s\":%.17g", module, way ? row[i].other : row[i].key,
+               way ? row[i].same : row[i].value);
+      made[way] = complete(with_pair(text[way])) ? as_text() : NULL;
+    }
+    ok(made[0] && made[1] && strcmp(made[0], made[1]) == 0, "%s of %.17g is %s of %.17g%s", row[i].key, row[i].value,
+       row[i].other, row[i].same, error.text);
+    free(made[0]);
+    free(made[1]);
+  }
+}
+
 /* Statements that contradict each other: each refused at a key that is one of them, with both numbers. */
 static void test_contradictions(void)
 {
@@ -621,6 +650,7 @@ int main(void)
   test_paths(TEETH "\"normal_diametral_pitch_per_inch\":6,\"pinion_profile_shift\":-0.1,\"gear_profile_shift\":0.3",
              "in inches");
   test_paths(TEETH "\"normal_module_mm\":7,\"pinion_profile_shift\":0.4,\"gear_profile_shift\":-0.4", "zero sum");
+  test_digits();
   test_contradictions();
   test_widths();
   test_error_grade();
