@@ -227,7 +227,7 @@ static void find_pushes(struct response *response, int i, const double *state, d
   }
 }
 
-/* theory (P6): one step to instant i, exact but for the pushes, which are straight in it; those at its end follow from
+/* theory (P5): one step to instant i, exact but for the pushes, which are straight in it; those at its end follow from
    the state there, which they hardly change. */
 static void take_step(struct response *response, int i)
 {

@@ -18,7 +18,7 @@ enum eo_code eo_fft_forward(int n, double complex *x, struct eo_error *error)
   return done ? EO_OK : eo_error_memory(error);
 }
 
-/* theory (P4) */
+/* theory (P3) */
 enum eo_code eo_fft_spectrum(int n, const double *value, double complex *line, struct eo_error *error)
 {
   double complex *x = malloc(sizeof *x * (size_t)n);

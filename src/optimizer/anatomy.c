@@ -38,6 +38,7 @@ double eo_anatomy_soften(const struct eo_part_group *group, const double *part, 
   return group->kind == EO_PART_RANGE ? most + add_soft(group, part, -1, softness, weight) : most;
 }
 
+/* theory (H6) */
 double eo_anatomy_sum(const struct eo_anatomy *anatomy, const double *part)
 {
   double sum = 0;

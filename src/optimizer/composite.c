@@ -46,6 +46,7 @@ bool eo_composite_takes(const struct eo_composite *composite, const struct eo_ar
 }
 
 /* The value of parts[1 + parts] as the composite gives it. */
+/* theory (H7) */
 static double put_together(const struct eo_composite *composite, const double *part)
 {
   return part[0] + eo_anatomy_sum(composite->anatomy, part + 1) / composite->scale;

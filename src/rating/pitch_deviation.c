@@ -170,7 +170,7 @@ static bool looks_ahead(const struct eo_pitch_meeting *meeting, int member)
   return (member == meeting->lead_driver) == (meeting->side == EO_DRIVE_FLANK);
 }
 
-/* theory (P5): what an eccentric toothing displaces tooth i towards the mate, along the line of action over
+/* theory (P4): what an eccentric toothing displaces tooth i towards the mate, along the line of action over
    cos(alpha_t); and what an axial displacement does, z tan(beta) on the reference circle, on the drive flank of a right
    pinion away from the mate. */
 static double displaced(const struct eo_pitch_member *own, const struct eo_geometry *geometry,
