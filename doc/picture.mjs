@@ -20,7 +20,8 @@ try {
     null,
     { polling: 200 },
   );
-  await page.addStyleTag({ content: '.state { visibility: hidden }' }); // how long the last answer took
+  // how long the last answer took
+  await page.evaluate(() => document.querySelectorAll('span.state').forEach(each => (each.style.visibility = 'hidden')));
   await page.mouse.move(1, 1);
   await page.evaluate(() => document.fonts.ready);
   await page.waitForTimeout(1000);
