@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Gears drawn at random as designers state them: 8 to 400 teeth, modules 0.3 to 30, helix 0 to 40 degrees, centre
-   distances up to two modules off, shifts or none. */
+   distances up to two modules off, shifts or none; lengths in mm or inches; none, one or two of hand, rotation and
+   apex; torques and speeds of either sign. */
 #ifndef EASEOFF_TESTS_SUPPORT_DRAWN_GEARS_H
 #define EASEOFF_TESTS_SUPPORT_DRAWN_GEARS_H
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <jansson.h>
@@ -18,21 +20,49 @@ __attribute__((unused)) static double between(int index, int draw, double low, d
   return low + (high - low) * eo_random_unit(eo_random_at(1328, 0, 0, (uint64_t)index), (uint64_t)draw);
 }
 
+static void set_length(json_t *pair, const char *key, double mm, bool inches)
+{
+  char name[40];
+  snprintf(name, sizeof name, "%s_%s", key, inches ? "in" : "mm");
+  json_object_set_new(pair, name, json_real(inches ? mm / 25.4 : mm));
+}
+
+/* Two of the three say the third. */
+static void set_turning(json_t *pair, json_t *alignment, int i)
+{
+  static const char *const words[3][2] = {{"right", "left"},
+                                          {"clockwise", "counterclockwise"},
+                                          {"trailing", "leading"}},
+                           *const keys[3] = {"hand", "pinion_rotation", "apex"};
+  int left_out = (int)between(i, 11, 0, 3);
+  for (int k = 0; k < 3; k++)
+    if (k != left_out && between(i, 12 + k, 0, 1) < 0.6)
+      json_object_set_new(k == 0 ? pair : alignment, keys[k], json_string(words[k][between(i, 15 + k, 0, 1) < 0.5]));
+}
+
 /* A terse document. */
 __attribute__((unused)) static json_t *drawn(int i)
 {
+  bool inches = between(i, 18, 0, 1) < 0.4;
+  json_t *alignment = json_object();
   double module = exp(between(i, 0, log(0.3), log(30))), helix = between(i, 1, 0, 1) < 0.2 ? 0 : between(i, 2, 0, 40);
   int pinion = (int)exp(between(i, 3, log(8), log(120))), gear = (int)exp(between(i, 4, log(pinion), log(401)));
   double reference = module / cos(helix * M_PI / 180) * (pinion + gear) / 2;
-  json_t *pair = json_pack("{s:i,s:i,s:i,s:f,s:f,s:f}", "ends", between(i, 5, 0, 1) < 0.5 ? 1 : 2, "pinion_teeth",
-                           pinion, "gear_teeth", gear, "normal_module_mm", module, "helix_angle_deg", helix,
-                           "face_width_mm", module * between(i, 6, 5, 25));
+  json_t *pair = json_pack("{s:i,s:i,s:i,s:f}", "ends", between(i, 5, 0, 1) < 0.5 ? 1 : 2, "pinion_teeth", pinion,
+                           "gear_teeth", gear, "helix_angle_deg", helix);
+  if (inches && between(i, 19, 0, 1) < 0.5)
+    json_object_set_new(pair, "normal_diametral_pitch_per_inch", json_real(25.4 / module));
+  else
+    set_length(pair, "normal_module", module, inches);
+  set_length(pair, "face_width", module * between(i, 6, 5, 25), inches);
   if (between(i, 7, 0, 1) < 0.6)
-    json_object_set_new(pair, "centre_distance_mm", json_real(reference + between(i, 8, -2, 2) * module));
+    set_length(pair, "centre_distance", reference + between(i, 8, -2, 2) * module, inches);
   if (between(i, 9, 0, 1) < 0.6)
     json_object_set_new(pair, "pinion_profile_shift", json_real(between(i, 10, -0.3, 0.8)));
-  return json_pack("{s:o,s:[{s:f,s:i}]}", "gear_pair", pair, "load_cases", "torque_Nm", module * module * 10,
-                   "speed_rpm", 500);
+  set_turning(pair, alignment, i);
+  return json_pack("{s:o,s:o,s:[{s:f,s:i}]}", "gear_pair", pair, "alignment", alignment, "load_cases", "torque_Nm",
+                   module * module * (between(i, 20, 0, 1) < 0.3 ? -10 : 10), "speed_rpm",
+                   between(i, 21, 0, 1) < 0.3 ? -500 : 500);
 }
 
 static bool has_number(const char *text)
