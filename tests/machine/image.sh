@@ -7,7 +7,7 @@
 #   tests/machine/image.sh [image|compose|all]      compose takes port 8080
 #
 # IMAGE_ENGINE    docker or podman, with options before the command (default: the one that is there and answers)
-# IMAGE_COMPOSE   the command that reads compose files (default: the engine's)
+# IMAGE_COMPOSE   the command that reads compose files (default: the engine's; podman-compose is one)
 # IMAGE_BUILD     options for the engine's build
 # IMAGE_RUN       options for the engine's run
 # IMAGE_BASE      folder with a Debian 12 (debootstrap --variant=minbase, with what a site needs laid over it) that takes the place of
@@ -18,6 +18,8 @@
 # Inside a machine without systemd, with both kinds of control groups and limits of its own (podman 4.3, runc 1.1):
 #   IMAGE_ENGINE="podman --runtime runc" IMAGE_BUILD="--isolation chroot --network host"
 #   IMAGE_RUN="--network host --no-healthcheck --ulimit nofile=20000:20000 --ulimit nproc=4096:4096"
+# for compose the same runtime and limits by a file of podman's, $CONTAINERS_CONF:
+#   [containers] default_ulimits = ["nofile=20000:20000", "nproc=4096:4096"]   [engine] runtime = "runc"
 set -eu
 
 what=${1-all}
@@ -53,7 +55,9 @@ fail() {
 leave() {
   status=$?
   {
-    [ ! -f "$scratch/composed" ] || $compose -p "$name" -f "$here/docker/compose.yaml" down -v --rmi local
+    [ ! -f "$scratch/composed" ] || $compose -p "$name" -f "$here/docker/compose.yaml" down -v
+    [ ! -f "$scratch/composed" ] || $engine network rm "${name}_default"
+    [ ! -f "$scratch/composed" ] || $engine rmi "$name-easeoff" "${name}_easeoff"
     $engine rm -f -v "$name"
     $engine volume rm "$name"
     [ -n "${IMAGE_KEEP-}" ] || $engine rmi "$image"
@@ -296,8 +300,10 @@ try_compose() {
     fail "up"
   }
   url=http://127.0.0.1:8080
-  composed=$($compose -p "$name" -f "$here/docker/compose.yaml" ps -q)
+  composed=$($engine ps -q --filter "label=com.docker.compose.project=$name")
   for _ in $(seq 60); do
+    # podman has systemd ask, where there is one
+    case $engine in *podman*) $engine healthcheck run "$composed" >/dev/null 2>&1 || true ;; esac
     health=$($engine inspect -f '{{.State.Health.Status}}' "$composed")
     [ "$health" = starting ] || break
     sleep 1
