@@ -33,7 +33,7 @@ static const struct eo_field grid_fields[] = {
 };
 const struct eo_table eo_flank_grid_table = EO_TABLE("a flank's grid", struct grid_document, grid_fields);
 
-/* ---- text ---- */
+/* Text: */
 
 /* Where the reading of a table stands. */
 struct cursor {
@@ -180,7 +180,7 @@ void eo_flank_grid_to_text(const struct eo_flank_grid *grid, struct eo_text *tex
   eo_text_add(text, "\n");
 }
 
-/* ---- documents ---- */
+/* Documents: */
 
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 

@@ -58,7 +58,7 @@ static const char *const unchecked_2019[] = {
     "K_Hbeta from a contact analysis: the procedure of annex E is not public; the definition of 7.2 is followed",
     NULL};
 
-/* ---- verdict ---- */
+/* Verdict: */
 
 static bool passes(const struct eo_design_rating *rating)
 {
@@ -106,7 +106,7 @@ static const struct eo_outline_row verdict_rows[] = {
 };
 static const struct eo_outline verdict = EO_OUTLINE("RatingVerdict", verdict_rows);
 
-/* ---- what no load changes ---- */
+/* What no load changes: */
 
 /* One member of the basis, flat. */
 struct basis_member {
@@ -223,7 +223,7 @@ static const struct eo_outline_row basis_rows[] = {
 };
 static const struct eo_outline basis = EO_OUTLINE("RatingBasis", basis_rows);
 
-/* ---- spectrum ---- */
+/* Spectrum: */
 
 #define OF_SIDE(member) EO_AT(struct eo_rated_side, member)
 static const struct eo_outline_row side_rows[] = {
@@ -278,7 +278,7 @@ static json_t *encode_spectrum(const struct eo_result_source *source)
   return eo_outline_encode(&spectrum, &view);
 }
 
-/* ---- all ---- */
+/* All: */
 
 static const char *const outcomes[] = {"rated", "not_rated", NULL};
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measurements beside the prediction, the fit of inputs that nobody knows, and recordings of a rig that does not exist.
+/* Measurements beside the prediction, the fit of inputs that nobody knows, and synthetic recordings.
  */
 #include <math.h>
 #include <stdio.h>

@@ -25,20 +25,6 @@ static enum eo_code put(struct eo_resource *resource, json_t *document, struct e
   return code;
 }
 
-struct listed_examples {
-  json_t *items;
-};
-static const struct eo_outline_row example_rows[] = {
-    EO_KEY("name", "text", "in its address", EO_AT(struct eo_example, name)),
-    EO_KEY("title", "text", "for people", EO_AT(struct eo_example, summary)),
-};
-static const struct eo_outline example_outline = EO_OUTLINE("Example", example_rows);
-static const struct eo_outline_row examples_rows[] = {
-    EO_KEY("items", "[object]", "designs to start from", .outline = &example_outline,
-           EO_AT(struct listed_examples, items)),
-};
-const struct eo_outline eo_outline_examples = EO_OUTLINE("Examples", examples_rows);
-
 static enum eo_code put_examples(struct eo_documents *documents, struct eo_error *error)
 {
   const struct eo_example *example;
@@ -46,13 +32,13 @@ static enum eo_code put_examples(struct eo_documents *documents, struct eo_error
   enum eo_code code = EO_OK;
   struct eo_design design;
   for (int i = 0; !code && i < EO_MOST_EXAMPLES && (example = eo_example_at(i)); i++) {
-    eo_list_add(&items, eo_outline_encode(&example_outline, example));
+    eo_list_add(&items, eo_outline_encode(&eo_outline_example, example));
     eo_example_build(example->name, &design);
     documents->example[i].name = example->name;
     code = put(&documents->example[i].resource, eo_design_encode(&design), error);
     documents->examples = i + 1;
   }
-  const struct listed_examples examples = {eo_object_close(&items)};
+  const struct eo_listed_examples examples = {eo_object_close(&items)};
   json_t *list = eo_outline_encode(&eo_outline_examples, &examples);
   if (code)
     json_decref(list);

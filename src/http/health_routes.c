@@ -31,53 +31,10 @@ static json_t *encode_warnings(const struct eo_http *http, const struct eo_stora
   return warnings;
 }
 
-static const char *const states[] = {"ok", "failing", NULL};
-
-struct health {
-  bool failing;
-  const char *program;
-  double uptime, free_megabytes;
-  struct queue_length {
-    int64_t queued, running;
-  } jobs;
-  enum eo_storage_state database;
-  json_t *warnings;
-};
-
-#define OF_HEALTH(member) EO_AT(struct health, member)
-static json_t *write_state(const void *source)
+static struct eo_health health_of(const struct eo_http *http)
 {
-  return json_string(states[((const struct health *)source)->failing]);
-}
-
-static const struct eo_outline_row jobs_rows[] = {
-    EO_KEY("queued", "integer", "jobs that wait", EO_AT(struct queue_length, queued)),
-    EO_KEY("running", "integer", "jobs that are being worked on", EO_AT(struct queue_length, running)),
-};
-static const struct eo_outline jobs_outline = EO_OUTLINE("HealthJobs", jobs_rows);
-
-static const struct eo_outline_row health_rows[] = {
-    EO_KEY("status", "word", "of all", .words = states, .write = write_state),
-    EO_KEY("program", "text", "name and version", OF_HEALTH(program)),
-    EO_KEY("uptime_s", "number", "since the start, s", OF_HEALTH(uptime)),
-    EO_KEY("jobs", "object", "by state", .outline = &jobs_outline, OF_HEALTH(jobs)),
-    EO_KEY("database", "word", "whether it can be read and written", .words = eo_storage_states, OF_HEALTH(database)),
-    EO_KEY("free_MB", "number", "that its disk has left", OF_HEALTH(free_megabytes)),
-    EO_KEY("warnings", "[text]", "what the start found", OF_HEALTH(warnings)),
-};
-const struct eo_outline eo_outline_health = EO_OUTLINE("Health", health_rows);
-
-static const struct eo_outline_row live_rows[] = {
-    EO_KEY("status", "word", "that it answers", .words = states, .write = write_state),
-    EO_KEY("program", "text", "name and version", OF_HEALTH(program)),
-    EO_KEY("uptime_s", "number", "since the start, s", OF_HEALTH(uptime)),
-};
-const struct eo_outline eo_outline_live = EO_OUTLINE("Live", live_rows);
-
-static struct health health_of(const struct eo_http *http)
-{
-  return (struct health){.program = PACKAGE_STRING,
-                         .uptime = (double)(long)(eo_clock_milliseconds() - http->started) / 1e3};
+  return (struct eo_health){.program = PACKAGE_STRING,
+                            .uptime = (double)(long)(eo_clock_milliseconds() - http->started) / 1e3};
 }
 
 /* Whether what is sent now can be worked on and kept. */
@@ -93,7 +50,7 @@ static void get_health(struct eo_request *request)
   if (!good && storage.state == EO_STORAGE_OK)
     storage.state = error.code == EO_ERROR_DAMAGED ? EO_STORAGE_DAMAGED : EO_STORAGE_FAILING;
   good = storage.state == EO_STORAGE_OK;
-  struct health health = health_of(http);
+  struct eo_health health = health_of(http);
   health.failing = !good;
   health.jobs.queued = status.jobs[EO_JOB_QUEUED];
   health.jobs.running = status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING];
@@ -106,7 +63,7 @@ static void get_health(struct eo_request *request)
 /* That this thread answers is all that is asked. */
 static void get_live(struct eo_request *request)
 {
-  const struct health health = health_of(request->http);
+  const struct eo_health health = health_of(request->http);
   eo_reply_json(&request->reply, 200, eo_outline_encode(&eo_outline_live, &health));
 }
 

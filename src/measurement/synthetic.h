@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A rig that does not exist: what two encoders record of a pair whose transmission error is known. For teaching and for
-   tests: every number is a pure function of the settings and the row, the same for any order of the rows. */
+/* A synthetic recording: what two encoders would record of a pair whose transmission error is known. For teaching and
+   for tests: every number is a pure function of the settings and the row, the same for any order of the rows. */
 #ifndef EASEOFF_MEASUREMENT_SYNTHETIC_H
 #define EASEOFF_MEASUREMENT_SYNTHETIC_H
 

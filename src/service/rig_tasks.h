@@ -36,7 +36,7 @@ enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *point
 enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings,
                         const char *given, struct eo_error *error);
 
-/* Recording of a rig that does not exist, as text. request: complete (eo_rig_complete()). Errors when it runs:
+/* Synthetic recording, as text. request: complete (eo_rig_complete()). Errors when it runs:
    EO_ERROR_INPUT for more than EO_RIG_MOST_ROWS rows. */
 #define EO_RIG_MOST_ROWS 1000000
 enum eo_code eo_rig_recording(struct eo_work *work, const struct eo_rig_request *request, struct eo_error *error);
