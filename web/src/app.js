@@ -84,7 +84,7 @@ export class App extends EventTarget {
     if (chosen !== store.loadCase && chosen < (store.design.load_cases?.length ?? 0)) store.setLoadCase(chosen);
   }
 
-  /** Opens another design, as a step of its own in the browser's history. @param {() => Promise<unknown>} act */
+  /** Opens another design, as a step of its own in the browser's history. @param {() => unknown} act */
   async opening(act, view = this.entries.find(entry => entry.id === this.current)?.title ? this.current : 'design') {
     this.#following = true;
     try {

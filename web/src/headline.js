@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few large numbers, each with its change against what the design is compared with.
 import { NUMBERS, numbersBefore, numbersOf, shownNumber } from './numbers.js';
-import { groupedWarnings } from './verdict.js';
+import { capacityText, groupedWarnings } from './verdict.js';
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
 import { shownUnit } from './base/units.js';
-import { verdictText } from './figures/rating.js';
 import { openPopover } from './base/popover.js';
 import { caseLong, caseNames } from './figures/context.js';
 
@@ -83,7 +82,7 @@ export class Headline {
   /** The load capacity in short. @param {Page.Result} result with its rating */
   rate({ rating }) {
     const verdict = rating?.outcome === 'rated' ? rating.verdict : null;
-    this.capacity.title = verdictText(rating);
+    this.capacity.title = capacityText(rating);
     this.capacity.textContent = verdict
       ? `${verdict.passes ? '✓' : '✗'} S_H ${sig(verdict.S_H, 3)}, S_F ${sig(verdict.S_F, 3)}`
       : 'not rated';

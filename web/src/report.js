@@ -127,18 +127,18 @@ function reportData(fields, result) {
   );
 }
 
-/** @param {import('./figures/frame.js').Frame} frame */
-function pictureOf(frame) {
+/** @param {import('./figures/frame.js').Frame} frame @param {boolean} narrow for a screen of one column */
+function pictureOf(frame, narrow) {
   const wide = frame.element.classList.contains('wide') || frame.element.classList.contains('tall');
   const content = frame.content();
   const kind = wide ? 'figure.report-figure.wide' : 'figure.report-figure';
-  if (content) return h(kind, null, sheetAsSvg(content, wide ? WIDE : NARROW));
+  if (content) return h(kind, null, sheetAsSvg(content, wide && !narrow ? WIDE : NARROW));
   const table = frame.body.querySelector('table');
   return table ? h(kind, null, h('h3', null, frame.title), table.cloneNode(true)) : null;
 }
 
-/** @param {Parts} parts @param {Field[]} fields @returns {HTMLElement} */
-function reportOf(parts, fields) {
+/** @param {Parts} parts @param {Field[]} fields @param {boolean} [narrow] @returns {HTMLElement} */
+function reportOf(parts, fields, narrow = false) {
   const { title, result, lead, figures, missing } = parts;
   return h(
     'article.report',
@@ -154,7 +154,7 @@ function reportOf(parts, fields) {
       ? h('p.report-missing', null, `Not in this report, still being computed: ${missing.join(', ')}.`)
       : null,
     lead,
-    h('section.report-figures', null, figures.map(pictureOf)),
+    h('section.report-figures', null, figures.map(frame => pictureOf(frame, narrow))),
     result ? reportData(fields, result) : null,
   );
 }
@@ -192,6 +192,7 @@ export function reportView(app) {
     h('.report-bar', null, h('button', { type: 'button', onclick: () => history.back() }, '← Back'), state, print),
     sheet,
   );
+  const phone = matchMedia('(max-width: 760px)');
   let drawn = '';
   const draw = () => {
     if (app.current !== 'report') return;
@@ -201,7 +202,7 @@ export function reportView(app) {
     print.disabled = !parts;
     const { title, result } = parts ?? {};
     const shape = JSON.stringify([inInches(), title, result?.evaluation_hash, missing, app.store.pin?.label]);
-    if (parts && shape !== drawn) fill(sheet, reportOf(parts, app.fields));
+    if (parts && shape !== drawn) fill(sheet, reportOf(parts, app.fields, phone.matches));
     drawn = shape;
     if (missing.length) setTimeout(draw, LOOK);
   };

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The verdict of a result: before and after for every load case, and what to know about it.
 import { h } from './base/dom.js';
-import { change, changeText, sig } from './base/format.js';
+import { change, changeText, plain, sig } from './base/format.js';
 import { shownSentence, shownUnit } from './base/units.js';
 import { caseLong } from './figures/context.js';
 import { NUMBERS, numbersBefore, numbersOf, shownNumber } from './numbers.js';
+
+/** "−117.501 µm", and no sentence that begins with a number. @param {string} text */
+const isNumber = text => /^[−\d–±+.]/.test(text) && text.length < 24 && !/[a-z]{4}/.test(text);
 
 /** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
 export function tableOf(head, rows) {
@@ -28,7 +31,7 @@ export function tableOf(head, rows) {
           'tr',
           null,
           name ? h('th', { scope: 'row' }, name) : h('td'),
-          cells.map(cell => h(/^[−\d–±+.]/.test(String(cell)) ? 'td.number' : 'td', null, cell)),
+          cells.map(cell => h(isNumber(String(cell)) ? 'td.number' : 'td', null, cell)),
         ),
       ),
     ),
@@ -64,6 +67,24 @@ export function verdict(result, reference) {
     null,
     h('h2', null, 'Result'),
     tableOf(['load case', '', reference?.label ?? 'before', 'this design', 'change'], [...rows, total]),
+  );
+}
+
+/** "3.6e8 h" @param {Page.Reading} hours */
+function lifeText(hours) {
+  if (hours === null) return 'unknown';
+  return hours > 1e6 ? 'more than 1 000 000 h' : `${plain(Number(hours.toPrecision(3)))} h`;
+}
+
+/** The load capacity in one sentence. @param {Api.Rating | null} rating */
+export function capacityText(rating) {
+  if (!rating) return '';
+  if (rating.outcome !== 'rated') return `Not rated: ${shownSentence(rating.reason ?? 'no reason given')}`;
+  const { passes, S_H: flank, S_Hmin: flankMin, S_F: root, S_Fmin: rootMin, life_h: life } = rating.verdict;
+  return (
+    `${passes ? 'Passes' : 'Does not pass'}: flank S_H ${sig(flank, 3)} (needs ${sig(flankMin, 3)}), ` +
+    `root S_F ${sig(root, 3)} (needs ${sig(rootMin, 3)}), life ${lifeText(life)} ` +
+    `(needs ${lifeText(rating.verdict.required_life_h)}).`
   );
 }
 

@@ -14,6 +14,7 @@ const SYMBOLS = /** @type {Record<string, string>} */ ({
   mm2_per_s: 'mm²/s',
   C: '°C',
   per_um: '1/µm',
+  'm/s2': 'm/s²',
 });
 
 /** The unit as it is printed. @param {string | null | undefined} unit */
@@ -33,15 +34,25 @@ const NAMES = /** @type {Record<string, string>} */ ({
   pressure_viscosity: 'Pressure-viscosity coefficient',
   te_harmonics: 'TE harmonics',
   hub_windup: 'Wind-up of the hub',
-  f1: 'f1',
-  f2: 'f2',
-  f3: 'f3',
+  f1: 'f1, TE',
+  f2: 'f2, impact',
+  f3: 'f3, vibration',
+  peak_to_peak: 'TE, peak to peak',
+  impact: 'Entering impact',
+  rms: 'Vibration, RMS',
+  rms_m_per_s2: 'Vibration, RMS',
 });
 const CHOICES = /** @type {Record<string, string>} */ ({
   ga: 'plain genetic (GA)',
   fpga: 'published method (FPGA)',
   nsga2: 'Pareto front (NSGA-II)',
   'credibility-ga': 'fast (credibility GA)',
+  as_stated: 'as stated below',
+  iso_class: 'a class of ISO 1328-1',
+  sobol: 'Sobol points',
+  latin: 'Latin hypercube',
+  random: 'at random',
+  factorial: 'every with every other',
   shared: 'one flank for both ends (5 variables)',
   per_end: 'a flank for each end (10 variables)',
   listed: 'variables of a list',
@@ -141,6 +152,15 @@ export function duration(seconds) {
   const whole = Math.max(0, Math.round(seconds));
   const parts = [Math.floor(whole / 60) % 60, whole % 60].map(part => String(part).padStart(2, '0'));
   return whole >= 3600 ? `${Math.floor(whole / 3600)}:${parts.join(':')}` : parts.join(':');
+}
+
+/** In a sentence: "2 s", "3 min", "1.5 h". @param {number} seconds */
+export function timeText(seconds) {
+  if (!Number.isFinite(seconds)) return '–';
+  if (seconds < 1) return 'less than 1\u00a0s';
+  if (seconds < 90) return `${Math.round(seconds)}\u00a0s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)}\u00a0min`;
+  return `${plain(Number((seconds / 3600).toPrecision(2)))}\u00a0h`;
 }
 
 /** @param {string | null | undefined} text ISO 8601 */

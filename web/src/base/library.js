@@ -24,6 +24,8 @@ const PIN = 'pin.'; // before the keys of the pinned design
 const isDesignKey = key =>
   !key.startsWith(PIN) && (['id', 'from', 'name', 'load_cases'].includes(key) || key.includes('.'));
 
+const OWN = 'own'; // in an address: a design that is nobody's yet and stated from nothing
+const NOTHING = { design: /** @type {Api.Design} */ ({}), etag: '' };
 const FIRST = 'paper-case-a'; // on the table when nobody says anything: a modification beside the unmodified pair
 
 export class Library {
@@ -56,6 +58,7 @@ export class Library {
 
   /** @param {{ example?: string, id?: string }} from @param {boolean} [anew] not what was fetched before */
   async base(from, anew = false) {
+    if (!from.id && !from.example) return NOTHING;
     const key = from.id ? `id:${from.id}` : `example:${from.example}`;
     let base = anew ? undefined : this.#bases.get(key);
     if (!base) {
@@ -70,28 +73,35 @@ export class Library {
     return (await this.base({ example: name })).design;
   }
 
+  /**
+   * What an address says of a design: where it comes from and what differs from that.
+   * @param {{ example?: string, id?: string }} from @param {Api.Design} design
+   */
+  #tell({ example, id }, design) {
+    const parameters = new URLSearchParams(id ? { id } : { from: example || OWN });
+    const base = id || example ? this.#bases.get(id ? `id:${id}` : `example:${example}`) : NOTHING;
+    if (base) putDifference(base.design, design, parameters);
+    return parameters;
+  }
+
+  /** Where a design comes from, as an address says it. @param {URLSearchParams} parameters @param {string} unsaid */
+  #source(parameters, unsaid) {
+    const id = parameters.get('id') ?? '';
+    const example = parameters.get('from') ?? unsaid;
+    return { id, example: id || example === OWN ? '' : example };
+  }
+
   /** The parameters of the address that say what the design is. */
   address() {
-    const { store } = this;
-    const { example, id } = store.from;
-    const parameters = new URLSearchParams();
-    const base = this.#bases.get(id ? `id:${id}` : `example:${example || FIRST}`);
-    if (id) parameters.set('id', id);
-    else parameters.set('from', example || FIRST);
-    if (base) putDifference(base.design, store.design, parameters);
-    return parameters;
+    return this.#tell(this.store.from, this.store.design);
   }
 
   /** Adds what is pinned, as its difference from the design that it came from. @param {URLSearchParams} parameters */
   putPin(parameters) {
     const { pin } = this.store;
     if (!pin) return;
-    const { example, id } = pin.from ?? {};
-    const base = this.#bases.get(id ? `id:${id}` : `example:${example || FIRST}`);
-    const own = new URLSearchParams(id ? { id } : { from: example || FIRST });
-    if (base) putDifference(base.design, pin.design, own);
     parameters.set('pin', pin.label);
-    for (const [key, value] of own) parameters.set(`${PIN}${key}`, value);
+    for (const [key, value] of this.#tell(pin.from ?? {}, pin.design)) parameters.set(`${PIN}${key}`, value);
   }
 
   /** Pins what an address says, unless it is pinned already. @param {URLSearchParams} parameters */
@@ -104,8 +114,7 @@ export class Library {
     const label = wanted.get('pin');
     if (label === null) return store.setPin(null);
     const difference = new URLSearchParams(own.map(([key, value]) => [key.slice(PIN.length), value]));
-    const id = difference.get('id') ?? '';
-    const from = id ? { id } : { example: difference.get('from') ?? FIRST };
+    const from = this.#source(difference, FIRST);
     const { design } = await this.base(from);
     store.setPin({ label, design: takeDifference(design, difference), from });
   }
@@ -116,10 +125,11 @@ export class Library {
     const wanted = new URLSearchParams([...parameters].filter(([key]) => isDesignKey(key)));
     const open = Boolean(store.design.gear_pair);
     if (open && (wanted.size === 0 || wanted.toString() === this.address().toString())) return;
-    const id = parameters.get('id') ?? '';
-    const example = id ? '' : (parameters.get('from') ?? (wanted.size ? 'paper' : FIRST));
-    const { design, etag } = await this.base({ example, id });
-    store.open(takeDifference(design, wanted), { example, id, etag, base: design }, { fresh: !open });
+    const from = this.#source(parameters, wanted.size ? 'paper' : FIRST);
+    const { design, etag } = await this.base(from);
+    const whole = takeDifference(design, wanted);
+    if (!whole.gear_pair) throw new Missing('This link states no gear pair.');
+    store.open(whole, { ...from, etag, base: design === NOTHING.design ? null : design }, { fresh: !open });
   }
 
   /** Something to start with when an address leads nowhere. */
@@ -140,8 +150,7 @@ export class Library {
   }
 
   /** A design that is nobody's yet: from a file, or made here. @param {Api.Design} design */
-  async openNew(design) {
-    await this.base({ example: FIRST }); // the address tells the difference from it
+  openNew(design) {
     this.store.open(design, {});
   }
 
@@ -158,7 +167,7 @@ export class Library {
     }
     const design = document?.design?.gear_pair ? document.design : document;
     const checked = await ask('POST', 'check', { body: design });
-    await this.openNew(design.load_cases ? design : { ...design, load_cases: checked.data.design?.load_cases });
+    this.openNew(design.load_cases ? design : { ...design, load_cases: checked.data.design?.load_cases });
   }
 
   /** Stores the design on the table as a new one. @returns {Promise<string>} its name */

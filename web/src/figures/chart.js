@@ -83,6 +83,7 @@ export class Chart {
   /** @type {ChartData | null} as it was given */ #given = null;
   /** @type {ChartData | null} as it is shown */ #data = null;
   /** @type {ChartOptions} as they were given */ #said;
+  /** What the plot has: newer data wait while the figure is out of sight. @type {ChartData | null} */ #drawn = null;
   #seen = false;
   #stale = false;
   #shape = '';
@@ -172,6 +173,7 @@ export class Chart {
     const columns = /** @type {uPlot.AlignedData} */ (
       /** @type {unknown} */ ([data.x, ...data.curves.map(curve => onAbscissa(curve, data.x))])
     );
+    this.#drawn = data;
     const shape = JSON.stringify([data.curves.map(curve => [curve.label, curve.colour, curve.line, curve.width])]);
     if (shape === this.#shape && this.#plot) {
       const zoomed = this.#zoom();
@@ -236,9 +238,9 @@ export class Chart {
         })),
       ],
       hooks: {
-        drawClear: [plot => drawMarks(plot, this.#data?.marks ?? [])],
-        draw: bars ? [plot => drawBars(plot, this.#data?.curves ?? [])] : [],
-        setCursor: [plot => this.reading.read(plot, this.#data)],
+        drawClear: [plot => drawMarks(plot, this.#drawn?.marks ?? [])],
+        draw: bars ? [plot => drawBars(plot, this.#drawn?.curves ?? [])] : [],
+        setCursor: [plot => this.reading.read(plot, this.#drawn)],
       },
     };
   }

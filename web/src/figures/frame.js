@@ -220,30 +220,6 @@ export class Frame {
 }
 
 /**
- * One of a few choices as buttons.
- * @template {string} T
- * @param {string} label
- * @param {[T, string][]} choices value and text
- * @param {T} value
- * @param {(value: T) => void} take
- */
-export function switcher(label, choices, value, take) {
-  const name = newId('switch');
-  const group = h('span.switch', { role: 'radiogroup', 'aria-label': label });
-  for (const [choice, text] of choices) {
-    const input = h('input', {
-      type: 'radio',
-      name,
-      value: choice,
-      checked: choice === value,
-      onchange: () => take(choice),
-    });
-    group.append(h('label', null, input, h('span', null, text)));
-  }
-  return group;
-}
-
-/**
  * Puts a reading beside the pointer, inside its figure.
  * @param {HTMLElement} tip
  * @param {number} x of the pointer

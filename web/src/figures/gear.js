@@ -77,9 +77,14 @@ export class GearDrawing {
     const c = (phase.value ?? 0.25) * g.transverse_base_pitch_mm;
     const teeth = this.#profiles();
     if (!teeth) return;
+    pen.save();
+    pen.beginPath();
+    pen.rect(0, 0, width, height); // the circles are larger than the picture
+    pen.clip();
     for (const member of /** @type {(0 | 1)[]} */ ([1, 0]))
       this.#paintMember(pen, member, teeth, centres[member], pressure, c, place);
     this.#paintAction(pen, pressure, c, place);
+    pen.restore();
     pen.fillStyle = colour('muted');
     pen.font = SMALL;
     pen.textAlign = 'left';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh stiffness, load sharing between the tooth pairs, and the root stress of a tooth on its way through the mesh.
+import { switcher } from '../base/switcher.js';
 import { Chart } from './chart.js';
 import { END_COLOUR, caseLong, endsOf, sameCase } from './context.js';
-import { switcher } from './frame.js';
 
 export class Stiffness {
   #kind = 'tangent';

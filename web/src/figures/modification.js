@@ -4,9 +4,9 @@
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { shownUnit, shownValue, unitInstead } from '../base/units.js';
+import { switcher } from '../base/switcher.js';
 import { Painting, SMALL } from './canvas.js';
 import { END_COLOUR, endsOf, faceOf } from './context.js';
-import { switcher } from './frame.js';
 import { tickText } from './ticks.js';
 
 /** Grids over what is taken off, in the unit that is shown: ends at least, whole steps of them, and lines. */

@@ -2,10 +2,10 @@
 // Load capacity by ISO 6336 as the service rates it: the verdict, safeties and load factors of each load case, what the
 // rating does not check.
 import { fill, h } from '../base/dom.js';
-import { plain, sig } from '../base/format.js';
+import { sig } from '../base/format.js';
+import { capacityText } from '../verdict.js';
 import { caseNames, endsOf } from './context.js';
 import { Frame } from './frame.js';
-import { shownSentence } from '../base/units.js';
 
 const MEMBERS = /** @type {const} */ (['pinion', 'gear']);
 const HEAD = ['load case', 'end', 'S_H', 'S_F', 'K_V', 'K_Hβ', 'K_Hβ, method C', 'K_Hα'];
@@ -13,24 +13,6 @@ const HEAD = ['load case', 'end', 'S_H', 'S_F', 'K_V', 'K_Hβ', 'K_Hβ, method C
 /** The smaller safety of both members. @param {Api.RatedEnd} side @param {'S_H' | 'S_F'} key */
 function least(side, key) {
   return Math.min(...MEMBERS.map(member => side[member]?.[key] ?? Infinity));
-}
-
-/** "3.6e8 h" @param {Page.Reading} hours */
-function lifeText(hours) {
-  if (hours === null) return 'unknown';
-  return hours > 1e6 ? 'more than 1 000 000 h' : `${plain(Number(hours.toPrecision(3)))} h`;
-}
-
-/** One sentence. @param {Api.Rating | null} rating */
-export function verdictText(rating) {
-  if (!rating) return '';
-  if (rating.outcome !== 'rated') return `Not rated: ${shownSentence(rating.reason ?? 'no reason given')}`;
-  const { passes, S_H: flank, S_Hmin: flankMin, S_F: root, S_Fmin: rootMin, life_h: life } = rating.verdict;
-  return (
-    `${passes ? 'Passes' : 'Does not pass'}: flank S_H ${sig(flank, 3)} (needs ${sig(flankMin, 3)}), ` +
-    `root S_F ${sig(root, 3)} (needs ${sig(rootMin, 3)}), life ${lifeText(life)} ` +
-    `(needs ${lifeText(rating.verdict.required_life_h)}).`
-  );
 }
 
 export class Rating {
@@ -56,7 +38,7 @@ export class Rating {
     const { rating } = result;
     if (!rating) return;
     if (rating.outcome !== 'rated' || !rating.load_cases) {
-      fill(this.frame.body, h('p', null, verdictText(rating)));
+      fill(this.frame.body, h('p', null, capacityText(rating)));
       return;
     }
     const names = caseNames(result.load_cases);
@@ -77,7 +59,7 @@ export class Rating {
       }),
     );
     this.#rows = [HEAD, ...rows];
-    fill(this.frame.body, h('p', null, verdictText(rating)), table(rows, endsOf(result).length), unchecked(rating));
+    fill(this.frame.body, h('p', null, capacityText(rating)), table(rows, endsOf(result).length), unchecked(rating));
   }
 }
 

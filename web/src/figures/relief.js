@@ -15,7 +15,7 @@ const FACE = 1.5; // length of a face in the picture, as root to tip
 const TALL = 0.55; // of the largest ease-off
 const GAP = 0.2; // between the ends
 const LEAST = 20; // um that the height stands for at least
-const NEAR = 0.045; // of a mesh cycle round a contact line that is bright
+const NEAR = 0.08; // of a mesh cycle round a contact line that is bright: more than a cell, so that it is a line
 const PALE = 0.7; // of the colour elsewhere
 const LIGHT = 2; // of the slope in the brightness
 const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
@@ -264,7 +264,7 @@ function paintAxes(pen, projection, relief) {
     ['tip', -0.5],
   ])) {
     const [x, y] = projection.at([right, -TALL, z]);
-    pen.fillText(text, x + 8, y + 4);
+    pen.fillText(text, x + 8, y + (z === -front ? 17 : 4)); // the heights end at the far one
   }
   paintHeights(pen, projection, relief, [right, -front]);
 }

@@ -2,12 +2,13 @@
 // How much the shown design depends on what no drawing holds: misalignment first, then load and relief as a small
 // figure that is always in sight; any number of the design as a figure of its own.
 import { fill, h } from '../base/dom.js';
-import { labelOf, plain, sig, unitText } from '../base/format.js';
+import { labelOf, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { valueAt, withValue } from '../base/pointer.js';
 import { shownUnit, shownValue, units } from '../base/units.js';
 import { unmodified } from '../base/store.js';
 import { numbersOf } from '../numbers.js';
+import { tickText } from './ticks.js';
 import { Chart } from './chart.js';
 import { OWN_COLOUR, REFERENCE_COLOUR, mainCase, torqueOf } from './context.js';
 
@@ -31,7 +32,10 @@ const [WIDTH, HEIGHT] = [60, 24]; // px of a small curve
 /** @param {Api.Design} design @param {string} pointer */
 const numberAt = (design, pointer) => Number(valueAt(design, pointer) ?? 0);
 
-/** The design with both tip reliefs times a factor. @param {Api.Design} design @param {number} factor */
+/**
+ * The design with all its reliefs times a factor; itself when it has none.
+ * @param {Api.Design} design @param {number} factor
+ */
 function withRelief(design, factor) {
   let next = design;
   for (const member of ['pinion', 'gear'])
@@ -39,7 +43,7 @@ function withRelief(design, factor) {
       for (const key of ['tip_relief_um', 'root_relief_um']) {
         const pointer = `/modification/${member}/${end}/${key}`;
         const value = valueAt(design, pointer);
-        if (typeof value === 'number') next = withValue(next, pointer, value * factor);
+        if (typeof value === 'number' && value !== 0) next = withValue(next, pointer, value * factor);
       }
   return next;
 }
@@ -299,19 +303,16 @@ export class Sensitivity {
     rows.forEach((points, i) => {
       const { name, unit } = STRIP[i];
       const values = points.map(point => shownValue(point.value, 'µm'));
-      const range = `${sig(Math.min(...values), 2)} … ${sig(Math.max(...values), 2)}`;
-      const [first, last] = [points[0], points[points.length - 1]];
+      const range = `${sig(Math.min(...values), 2)} … ${sig(Math.max(...values), 2)} ${shownUnit('µm')}`;
+      const ends = [points[0], points[points.length - 1]].map(
+        point => point && tickText(Number(point.at.toPrecision(3))),
+      );
+      const nothing = name === 'relief' && this.#design && withRelief(this.#design, 2) === this.#design;
       fill(
         this.cells[i],
-        h(
-          'span.sensitivity-name',
-          null,
-          points.length
-            ? `${name} ${plain(Number(first.at.toPrecision(3)))} … ${plain(Number(last.at.toPrecision(3)))} ${unit}`
-            : name,
-        ),
-        points.length ? pictureOf(points) : h('span.sensitivity-blank'),
-        h('b', null, points.length ? `${range} ${shownUnit('µm')}` : '–'),
+        h('span.sensitivity-name', null, points.length ? `${name} ${ends.join(' … ')} ${unit}` : name),
+        points.length && !nothing ? pictureOf(points) : h('span.sensitivity-blank'),
+        h('b', null, nothing ? 'no relief yet' : points.length ? range : '–'),
       );
     });
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Single teeth over the hunting period: their deviations, the transmission error over whole revolutions, the orders of
 // both shafts and of the mesh with its sidebands, what each tooth carries.
+import { switcher } from '../base/switcher.js';
 import { Chart } from './chart.js';
 import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf, lessMean } from './context.js';
-import { switcher } from './frame.js';
 
 const MEMBERS = /** @type {Page.Member[]} */ (['pinion', 'gear']);
 const LEAST = 1e-5; // of the largest line: smaller ones are left at the bottom

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded transmission error over the mesh cycle, of the pair or one end, at every torque, and its orders.
+import { switcher } from '../base/switcher.js';
 import { Chart } from './chart.js';
 import { caseColour, caseNames, counting, endsOf, lessMean, sameCase } from './context.js';
-import { switcher } from './frame.js';
 
 const ORDERS = 8;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vibration acceleration over the mesh cycle and its orders.
+import { switcher } from '../base/switcher.js';
 import { Chart } from './chart.js';
 import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf, sameCase } from './context.js';
-import { switcher } from './frame.js';
 
 /** @typedef {'normal' | 'transverse' | 'rotational'} Reading */
 

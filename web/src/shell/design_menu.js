@@ -3,7 +3,7 @@
 import { ask, get, list } from '../base/api.js';
 import { choose } from '../base/dialog.js';
 import { copyText, download, fileName, fill, h } from '../base/dom.js';
-import { dateText, labelOf, sig } from '../base/format.js';
+import { dateText, labelOf, plain } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { Conflict } from '../base/library.js';
 import { notice } from '../base/notice.js';
@@ -32,7 +32,7 @@ function exportName(name, type) {
 
 /** @param {unknown} value */
 function valueText(value) {
-  if (typeof value === 'number') return sig(value, 5);
+  if (typeof value === 'number') return plain(value);
   return value === undefined || value === null ? '–' : typeof value === 'string' ? value : JSON.stringify(value);
 }
 

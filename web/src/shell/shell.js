@@ -44,7 +44,7 @@ export class Shell {
         ),
     );
     this.state = h('span.state', { role: 'status', 'aria-live': 'off' });
-    this.theme = h('button.icon', { type: 'button', onclick: () => this.#nextTheme() });
+    this.theme = h('button.icon.theme', { type: 'button', onclick: () => this.#nextTheme() });
     this.away = h(
       'p.away-banner',
       { role: 'alert', hidden: true },
@@ -136,6 +136,7 @@ export class Shell {
           item('A tour in three steps', () => startTour(app)),
           item('Examples', () => openExamples(app)),
           item('All words explained', () => app.go('glossary')),
+          item(`Colours: ${this.#themeText()}`, () => this.#nextTheme()),
           h('a', { href: 'doc/', target: '_blank', rel: 'noopener', role: 'menuitem' }, 'Manuals: guide, API, theory'),
         );
       }),
@@ -186,8 +187,13 @@ export class Shell {
     this.#drawTheme();
   }
 
+  #themeText() {
+    return (THEMES[theme.choice] ?? THEMES.system)[1];
+  }
+
   #drawTheme() {
-    const [mark, text] = THEMES[theme.choice] ?? THEMES.system;
+    const [mark] = THEMES[theme.choice] ?? THEMES.system;
+    const text = this.#themeText();
     this.theme.textContent = mark;
     this.theme.title = `Colours: ${text}`;
     this.theme.setAttribute('aria-label', `Colours: ${text}`);

@@ -5,10 +5,10 @@ import { fill, h } from '../base/dom.js';
 import { choiceText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { documentOf, unmodified } from '../base/store.js';
+import { switcher } from '../base/switcher.js';
 import { units } from '../base/units.js';
 import { Chart } from '../figures/chart.js';
 import { caseLong, counting, faceOf, lessMean, mainCase, sameCase } from '../figures/context.js';
-import { switcher } from '../figures/frame.js';
 import { designColour, drawComparison } from './compare_table.js';
 
 /**

@@ -2,7 +2,7 @@
 // Designs beside each other in numbers: for each load case, then their flanks and what differs of the pairs.
 import { fill, h } from '../base/dom.js';
 import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
-import { valueAt } from '../base/pointer.js';
+import { same, valueAt } from '../base/pointer.js';
 import { shownUnit, shownValue } from '../base/units.js';
 import { caseLong } from '../figures/context.js';
 import { NUMBERS, numbersOf, shownNumber } from '../numbers.js';
@@ -78,6 +78,7 @@ function flankRows(items) {
     for (const key of keys) {
       const values = items.map(item => endsOfKey(item, member, key));
       if (values.every(ends => ends.every(value => typeof value !== 'number' || value === 0))) continue;
+      if (/_exponent$/.test(key) && same(values, values.map(() => values[0]))) continue; // says nothing by itself
       const unit = /_(um|mm|per_mm)$/.exec(key)?.[1];
       const text = (/** @type {unknown} */ value) => sig(Number(shownValue(value, unit)), 4);
       rows.push(

@@ -3,13 +3,15 @@
 import { fill, h } from '../base/dom.js';
 import { units } from '../base/units.js';
 import { caseLong, mainCase } from '../figures/context.js';
-import { Sensitivity } from '../figures/sensitivity.js';
 import { subject } from '../figures/subject.js';
 import { Headline } from '../headline.js';
 import { verdict, warningList } from '../verdict.js';
 import { leadLine } from '../welcome/lead.js';
 import { Parameters } from './parameters.js';
-import { Results } from './results.js';
+
+const AGAIN = 2000; // ms after which figures that could not be fetched are asked for again
+
+/** @typedef {import('./results.js').Results} Results */
 
 /** What is not possible, each with the way to its field. */
 class TroubleLine {
@@ -33,13 +35,15 @@ class TroubleLine {
 
 class DesignView {
   #drawn = false;
+  /** The figures, once they are fetched: the form does not wait for them. @type {Results | null} */
+  results = null;
 
   /** @param {import('../app.js').App} app */
   constructor(app) {
     this.app = app;
     this.headline = new Headline(app.store);
-    this.sensitivity = new Sensitivity(app.store);
-    this.results = new Results(this.sensitivity, app.store);
+    this.strip = h('.sensitivity');
+    this.figures = h('.figures');
     this.trouble = new TroubleLine();
     this.foot = h('div');
     this.progress = h('.preparing-note', { role: 'status', hidden: true });
@@ -53,8 +57,8 @@ class DesignView {
         this.foot,
         h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…')),
       ),
-      h('.head-pane', null, leadLine(app), this.headline.element, this.sensitivity.strip, this.trouble.element),
-      h('.figure-pane', null, this.progress, this.results.element),
+      h('.head-pane', null, leadLine(app), this.headline.element, this.strip, this.trouble.element),
+      h('.figure-pane', null, this.progress, this.figures),
     );
     new ResizeObserver(() => {
       const height = `${this.headline.element.offsetHeight}px`;
@@ -72,6 +76,22 @@ class DesignView {
       this.#drawState();
     });
     app.form.finders.push(pointer => this.#find(pointer));
+    this.#fetchFigures();
+  }
+
+  async #fetchFigures() {
+    try {
+      const { Results } = await import('./results.js');
+      this.results = new Results(this.app.store);
+    } catch {
+      setTimeout(() => this.#fetchFigures(), AGAIN);
+      return;
+    }
+    this.strip.replaceWith(this.results.sensitivity.strip);
+    this.figures.replaceWith(this.results.element);
+    this.#drawResult();
+    this.#drawRating();
+    this.#sweep();
   }
 
   /** Fields of the design stand here; those of the search elsewhere. @param {string} pointer */
@@ -100,7 +120,7 @@ class DesignView {
     form.resolved = context.result.design;
     form.showFindings(context.result.findings ?? []);
     this.headline.set(context);
-    this.results.set(context);
+    this.results?.set(context);
     this.#drawTeeth();
     this.#drawTribology();
     if (this.#drawn) return;
@@ -111,7 +131,7 @@ class DesignView {
   #drawRating() {
     const { rated } = this.app.analyst;
     if (!rated) return;
-    this.results.rating.set(rated);
+    this.results?.rating.set(rated);
     this.headline.rate(rated);
     this.#drawTribology();
   }
@@ -123,11 +143,11 @@ class DesignView {
   }
 
   #drawTribology() {
-    this.results.tribology.set(this.app.analyst.rated, this.#context()?.loadCase ?? 0, this.#rated());
+    this.results?.tribology.set(this.app.analyst.rated, this.#context()?.loadCase ?? 0, this.#rated());
   }
 
   #drawTeeth() {
-    this.results.teeth.set(this.app.analyst.teeth, this.#context()?.loadCase ?? 0);
+    this.results?.teeth.set(this.app.analyst.teeth, this.#context()?.loadCase ?? 0);
   }
 
   #drawState() {
@@ -148,10 +168,10 @@ class DesignView {
 
   #sweep() {
     const { store, analyst } = this.app;
-    if (store.faults.size || analyst.state === 'refused') return;
+    if (!this.results || !analyst.result || store.faults.size || analyst.state === 'refused') return;
     this.results.speed.set(store.design, store.pin);
     this.results.torque.set(store.design, store.pin);
-    this.sensitivity.set(store.design);
+    this.results.sensitivity.set(store.design);
   }
 
   show() {
@@ -164,15 +184,16 @@ class DesignView {
   /** @returns {import('../report.js').Parts | null} */
   report() {
     const context = this.#context();
-    if (!context) return null;
+    const { results } = this;
+    if (!context || !results) return null;
     const { store, analyst } = this.app;
     this.#drawResult();
-    this.results.draw();
+    results.draw();
     this.#sweep();
-    const late = [this.results.speed, this.results.torque, this.sensitivity].filter(each => !each.settled);
+    const late = [results.speed, results.torque, results.sensitivity].filter(each => !each.settled);
     for (const each of late) each.now();
     const missing = late.map(each => each.chart.frame.title);
-    const old = this.#rated() ? [] : this.results.tribology.frames;
+    const old = this.#rated() ? [] : results.tribology.frames;
     missing.push(...old.map(frame => frame.title));
     if (analyst.state === 'preparing') missing.push('the teeth of the pair');
     return {
@@ -183,7 +204,7 @@ class DesignView {
         h('section', null, warningList(context.result.warnings ?? [], true)),
         h('p', null, `Figures of one load case are those of ${caseLong(context.result.load_cases[context.loadCase])}.`),
       ],
-      figures: this.results.frames.filter(frame => !old.includes(frame)),
+      figures: results.frames.filter(frame => !old.includes(frame)),
       missing,
     };
   }

@@ -4,7 +4,7 @@ import { fill, h } from '../base/dom.js';
 import { notice } from '../base/notice.js';
 import { valueAt } from '../base/pointer.js';
 import { fieldAt } from '../base/schema.js';
-import { switcher } from '../figures/frame.js';
+import { switcher } from '../base/switcher.js';
 import { more } from '../form/group.js';
 
 const MAIN = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um'];

@@ -9,6 +9,7 @@ import { JobDetail } from './search/job_detail.js';
 import { SearchForm } from './search/search_form.js';
 
 const COLUMNS = ['Search', 'Algorithm', 'State', 'Progress', 'Left', 'Best J', 'Started'];
+const RARE = ['Algorithm', 'Started']; // not on a phone
 const PAUSE = 100; // ms between two drawings of the list
 
 class OptimizeView {
@@ -26,8 +27,8 @@ class OptimizeView {
     this.empty = h(
       'p.empty',
       null,
-      'No search has been started yet. What is searched for stands on the left; the pair, its load and ' +
-        'everything else are those of the Design view.',
+      'No search has been started yet. The form says what is searched for; the pair, its load and everything else ' +
+        'are those of the Design view.',
     );
     this.missing = h('p.trouble', { role: 'alert', hidden: true });
     this.foot = h('div');
@@ -118,7 +119,7 @@ class OptimizeView {
         h(
           'tr',
           null,
-          COLUMNS.map(text => h('th', { scope: 'col' }, text)),
+          COLUMNS.map(text => h(RARE.includes(text) ? 'th.rare' : 'th', { scope: 'col' }, text)),
         ),
       ),
       h(
@@ -138,12 +139,12 @@ class OptimizeView {
       String(job.id) === this.#chosen ? 'tr.chosen' : 'tr',
       { 'data-job': job.id, onclick: () => this.app.go('optimize', { job: String(job.id) }) },
       h('th', { scope: 'row' }, h('button.link', { type: 'button' }, job.name || `search ${job.id}`)),
-      h('td', null, choiceText(job.algorithm ?? '')),
+      h('td.rare', null, choiceText(job.algorithm ?? '')),
       h('td.job-state', null, job.stopping ? 'stopping' : job.state),
       h('td', null, progressBar(job)),
       h('td.number', null, typeof left === 'number' ? duration(left) : ''),
       h('td.number', null, job.best ? sig(job.best.J, 3) : ''),
-      h('td', null, dateText(job.started ?? job.created)),
+      h('td.rare', null, dateText(job.started ?? job.created)),
     );
   }
 

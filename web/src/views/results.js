@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every figure of a result, kept in step.
+// Every figure of a result, kept in step; fetched when the form stands.
 import { fill, h } from '../base/dom.js';
 import { Contact } from '../figures/contact.js';
 import { GearDrawing } from '../figures/gear.js';
 import { Impact } from '../figures/impact.js';
 import { RootStress, Sharing, Stiffness } from '../figures/mesh.js';
 import { ModificationCharts } from '../figures/modification.js';
+import { Sensitivity } from '../figures/sensitivity.js';
 import { SingleTeeth } from '../figures/single_teeth.js';
 import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
 import { Topography } from '../figures/topography.js';
@@ -21,11 +22,8 @@ export class Results {
   #asked = false;
   #warnings = '';
 
-  /**
-   * @param {import('../figures/sensitivity.js').Sensitivity} sensitivity
-   * @param {import('../base/store.js').DesignStore} store
-   */
-  constructor(sensitivity, store) {
+  /** @param {import('../base/store.js').DesignStore} store */
+  constructor(store) {
     const again = () => this.#later();
     const transmission = new Transmission(again);
     const contact = new Contact();
@@ -37,6 +35,7 @@ export class Results {
     const charts = new ModificationCharts();
     const topography = new Topography();
     const drawing = new GearDrawing();
+    this.sensitivity = new Sensitivity(store);
     this.rating = new Rating();
     this.tribology = new Tribology();
     this.speed = new SpeedSweep(store);
@@ -52,7 +51,7 @@ export class Results {
       vibration.cycle.frame,
       vibration.orders.frame,
       impact.frame,
-      sensitivity.chart.frame,
+      this.sensitivity.chart.frame,
       this.speed.chart.frame,
       this.torque.chart.frame,
       stiffness.chart.frame,

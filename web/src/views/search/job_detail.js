@@ -2,7 +2,7 @@
 // One search: what it is doing, its best in numbers, its figures, and what can be done with it.
 import { ask, get, list, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
-import { change, changeText, choiceText, duration, sig } from '../../base/format.js';
+import { change, changeText, choiceText, duration, sig, timeText } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
 import { documentOf } from '../../base/store.js';
 import { shownSentence, shownUnit, shownValue, units } from '../../base/units.js';
@@ -71,7 +71,7 @@ export class JobDetail {
       this.#design = start;
       this.#rows = rows;
       this.#result = result;
-      this.#drawHead(job);
+      this.#drawHead(this.#job ?? job); // which may have ended meanwhile
       this.#drawBest();
       this.figures.draw({ design: start, best: this.#bestOf(), rows, result });
     } catch {
@@ -113,7 +113,7 @@ export class JobDetail {
       typeof progress.true_evaluations === 'number' ? `${progress.true_evaluations} evaluations` : '',
       typeof progress.predicted === 'number' && progress.predicted ? `${progress.predicted} predicted` : '',
       typeof progress.pfc_percent === 'number' && !active ? `PFC ${sig(progress.pfc_percent, 3)} %` : '',
-      typeof progress.seconds === 'number' ? duration(progress.seconds) : '',
+      typeof progress.seconds === 'number' ? timeText(progress.seconds) : '',
       active && typeof progress.seconds_left === 'number' ? `${duration(progress.seconds_left)} left` : '',
     ].filter(Boolean);
     fill(
@@ -208,7 +208,7 @@ export class JobDetail {
 
   /** @param {Partial<Api.JobPoint>} best */
   #flankTable(best) {
-    const rows = changedValues(best.modification);
+    const rows = changedValues(best.modification, this.#design?.modification);
     if (!rows.length) return null;
     return h(
       'table.numbers',

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is searched for and how: variables, algorithm in words, budget with what it costs, bounds, objective.
 import { fill, h } from '../../base/dom.js';
-import { duration } from '../../base/format.js';
+import { timeText } from '../../base/format.js';
 import { fallbackOf, fieldAt } from '../../base/schema.js';
 import { group } from '../../form/group.js';
 
@@ -19,6 +19,15 @@ const WORDS = /** @type {Record<string, string>} */ ({
   ga: 'A plain genetic algorithm: computes every design.',
   nsga2: 'Finds the Pareto front: all designs of which none is better in every objective.',
 });
+/** Keys of the objective for gears that scatter. */
+const SCATTER = [
+  'robust',
+  'robust_percent',
+  'robust_sigmas',
+  'scatter_pairs',
+  'first_pairs',
+  'check_pairs',
+];
 const WEIGHTS = ['transmission error', 'impact', 'vibration'];
 const COUNTS = /** @type {Record<string, number>} */ ({ shared: 5, per_end: 10 });
 
@@ -63,13 +72,18 @@ export class SearchForm {
       group('bounds', 'Bounds of the variables', true, this.fields.fieldsOf('/optimization/bounds')),
       group('objective', 'What is good', true, [
         ...this.fields.fieldsOf('/objective', {
-          skip: ['constraints', 'terms', 'limits', 'scenarios'],
+          skip: ['constraints', 'terms', 'limits', 'scenarios', 'penalty', ...SCATTER],
           looks: { weights: { label: 'Weights', parts: WEIGHTS }, normalise: { label: 'Each divided by' } },
         }),
         this.weights,
         this.terms,
       ]),
-      group('constraints', 'Limits', false, [...this.fields.fieldsOf('/objective/constraints'), this.limits]),
+      group('scatter', 'Good for pairs as made', false, this.fields.fieldsOf('/objective', { only: SCATTER })),
+      group('constraints', 'Limits', false, [
+        ...this.fields.fieldsOf('/objective/constraints'),
+        this.limits,
+        ...this.fields.fieldsOf('/objective', { only: ['penalty'] }),
+      ]),
       group('algorithm', 'The algorithm in detail', false, [this.details]),
     );
     this.store.addEventListener('change', () => this.refresh());
@@ -135,7 +149,7 @@ export class SearchForm {
     const limit = genetic && !budget ? 'at most' : 'about';
     const most = budget ?? (genetic ? this.#value('population') * this.#value('generations') : 500 + 100 * count);
     const each = this.#secondsEach();
-    const time = each ? `, some ${duration(most * each)} on this machine as it is now` : '';
+    const time = each ? `, ${timeText(most * each)} on this machine as it is now` : '';
     this.cost.textContent = `${count} variables, ${limit} ${most} evaluations${time}.`;
   }
 

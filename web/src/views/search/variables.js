@@ -121,10 +121,15 @@ export function withValues(design, values) {
   return next;
 }
 
-/** What is not zero, for people. @param {Flanks} modification */
-export function changedValues(modification) {
+/**
+ * What is not zero, for people; exponents only where they are not those of the design before.
+ * @param {Flanks} modification @param {Flanks} before
+ */
+export function changedValues(modification, before) {
+  const old = new Map(flankValues(before).map(({ member, key, left }) => [`${member}/${key}`, left]));
   return flankValues(modification)
     .filter(({ left, right }) => left !== 0 || right !== 0)
+    .filter(({ member, key, left }) => !/_exponent$/.test(key) || left !== old.get(`${member}/${key}`))
     .map(({ member, key, left, right }) => ({
       label: `${labelOf(key)}${member === 'gear' ? ', gear' : ''}`,
       unit: unitText(/_(um|mm|per_mm)(\[|$)/.exec(key)?.[1]),

@@ -8,6 +8,7 @@ import { shownUnit, shownValue, units } from '../../base/units.js';
 import { shortName } from './rows.js';
 
 const MOST_AXES = 10;
+const EACH = 84; // px of an axis with its name and numbers
 const HEIGHT = 230;
 const LEAST_TOP = 30;
 const BOTTOM = 22;
@@ -66,7 +67,13 @@ export class Coordinates {
 
   /** @param {number} axis */
   #x(axis) {
-    return SIDE + (axis * (this.element.clientWidth - 2 * SIDE)) / Math.max(1, this.#axes.length - 1);
+    return SIDE + (axis * (this.#width - 2 * SIDE)) / Math.max(1, this.#axes.length - 1);
+  }
+
+  /** A narrow screen scrolls over them. */
+  get #width() {
+    const { clientWidth } = this.element;
+    return clientWidth && Math.max(clientWidth, EACH * this.#axes.length);
   }
 
   /** @param {number} column @param {number} number */
@@ -83,12 +90,12 @@ export class Coordinates {
 
   #draw() {
     const { canvas } = this;
-    const width = this.element.clientWidth;
+    const width = this.#width;
     const scale = devicePixelRatio || 1;
     if (!width || this.element.hidden) return;
     canvas.width = Math.round(width * scale);
     canvas.height = Math.round(HEIGHT * scale);
-    canvas.style.height = `${HEIGHT}px`;
+    Object.assign(canvas.style, { width: `${width}px`, height: `${HEIGHT}px` });
     const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     const style = getComputedStyle(this.element);

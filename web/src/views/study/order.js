@@ -2,7 +2,7 @@
 // What a study varies: keys with their values, how they are sampled, what is kept; and what it would cost.
 import { Refusal, ask, post, token } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
-import { duration } from '../../base/format.js';
+import { sig, timeText } from '../../base/format.js';
 import { KeyField } from './key_field.js';
 import { keysOf } from './key_words.js';
 
@@ -157,11 +157,11 @@ export class StudyOrder {
       const cost = await post('study-cost', this.#document());
       if (turn !== this.#turn) return;
       const all = cost.evaluation_s === null ? null : cost.evaluation_s * cost.variants;
-      const each = all === null ? '' : `, some ${duration(all)} of a processor`;
+      const each = all === null ? '' : `: ${timeText(all)} of a processor`;
+      const memory = `${sig(cost.memory_bytes / 1e9, 2)} GB`;
       this.cost.textContent =
         `${cost.variants} variants of ${cost.pairs} gear pair${cost.pairs === 1 ? '' : 's'}${each}; ` +
-        'preparing at most ' +
-        `${duration(cost.preparation_s)} and ${Math.round(cost.memory_bytes / 1e6)} MB.`;
+        `teeth that are new are prepared in at most ${timeText(cost.preparation_s)} and ${memory}.`;
       fill(this.trouble);
     } catch (error) {
       if (turn === this.#turn) this.#complain(error);

@@ -2,7 +2,7 @@
 // The Study view: what varies, the studies, the table of the chosen one with its parallel coordinates.
 import { ask, post } from '../../base/api.js';
 import { fill, h } from '../../base/dom.js';
-import { dateText, duration } from '../../base/format.js';
+import { choiceText, dateText, duration } from '../../base/format.js';
 import { ACTIVE } from '../../base/jobs.js';
 import { documentOf } from '../../base/store.js';
 import { progressBar } from '../../jobbar.js';
@@ -13,6 +13,7 @@ import { VariantTable } from './variant_table.js';
 import { shownSentence } from '../../base/units.js';
 
 const COLUMNS = ['Study', 'Samples', 'State', 'Progress', 'Left', 'Started'];
+const RARE = ['Samples', 'Started']; // not on a phone
 const PAUSE = 150; // ms between two drawings of the list
 const LOOK = 1500; // ms between two looks at the rows of a study that runs
 
@@ -83,7 +84,11 @@ class StudyView {
     if (!this.#chosen && studies.length) this.#chosen = String(studies[0].id);
     fill(
       this.list,
-      h('thead', null, h('tr', null, ...COLUMNS.map(text => h('th', { scope: 'col' }, text)))),
+      h(
+        'thead',
+        null,
+        h('tr', null, ...COLUMNS.map(text => h(RARE.includes(text) ? 'th.rare' : 'th', { scope: 'col' }, text))),
+      ),
       h('tbody', null, ...studies.map(job => this.#row(job))),
     );
     this.#choose(studies.find(job => String(job.id) === this.#chosen) ?? null);
@@ -96,11 +101,11 @@ class StudyView {
       String(job.id) === this.#chosen ? 'tr.chosen' : 'tr',
       { 'data-job': job.id, onclick: () => this.app.go('study', { job: String(job.id) }) },
       h('th', { scope: 'row' }, h('button.link', { type: 'button' }, job.name || `study ${job.id}`)),
-      h('td', null, job.algorithm ?? ''),
+      h('td.rare', null, choiceText(job.algorithm ?? '')),
       h('td.job-state', null, job.stopping ? 'stopping' : job.state),
       h('td', null, progressBar(job)),
       h('td.number', null, typeof left === 'number' ? duration(left) : ''),
-      h('td', null, dateText(job.started ?? job.created)),
+      h('td.rare', null, dateText(job.started ?? job.created)),
     );
   }
 
@@ -186,7 +191,7 @@ class StudyView {
     const variant = rows.variant[row];
     const open = async () => {
       const { data } = await ask('GET', `studies/${rows.study}/variants/${variant}/design`);
-      await app.library.openNew(documentOf({ ...data, name: `${data.name || 'design'}, variant ${variant}` }));
+      app.library.openNew(documentOf({ ...data, name: `${data.name || 'design'}, variant ${variant}` }));
     };
     fill(
       this.picked,

@@ -5,11 +5,12 @@ import { unitText } from '../../base/format.js';
 import { shownSentence, shownUnit, units } from '../../base/units.js';
 import { shortName } from './rows.js';
 
-const HEIGHT = 24; // px of a row, as the style sheet has it
+const USUAL = 24; // px of a row until one is there: fingers need taller ones
 const BEYOND = 6; // rows above and below the window
 
 export class VariantTable {
   #drawn = '';
+  #height = USUAL;
   #asked = false;
 
   /** @param {import('./rows.js').Rows} rows @param {(row: number) => void} pick */
@@ -76,13 +77,15 @@ export class VariantTable {
 
   #draw() {
     const { order } = this.rows;
-    const first = Math.max(0, Math.floor(this.element.scrollTop / HEIGHT) - BEYOND);
-    const last = Math.min(order.length, first + Math.ceil(this.element.clientHeight / HEIGHT) + 2 * BEYOND);
-    const drawn = `${first} ${last}`;
+    const height = this.body.firstElementChild?.getBoundingClientRect().height || this.#height;
+    this.#height = height;
+    const first = Math.max(0, Math.floor(this.element.scrollTop / height) - BEYOND);
+    const last = Math.min(order.length, first + Math.ceil(this.element.clientHeight / height) + 2 * BEYOND);
+    const drawn = `${first} ${last} ${height}`;
     if (drawn === this.#drawn) return;
     this.#drawn = drawn;
-    this.above.style.height = `${first * HEIGHT}px`;
-    this.below.style.height = `${(order.length - last) * HEIGHT}px`;
+    this.above.style.height = `${first * height}px`;
+    this.below.style.height = `${(order.length - last) * height}px`;
     fill(this.body, ...Array.from(order.subarray(first, last), row => this.#row(row)));
   }
 

@@ -9,15 +9,25 @@ import { readQuantity } from '../../base/quantity.js';
 import { documentOf } from '../../base/store.js';
 import { shownSentence, shownUnit, shownValue, typedText, units } from '../../base/units.js';
 import { Chart } from '../../figures/chart.js';
+import { group } from '../../form/group.js';
 import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
-const KEYS = ['preset', 'class', 'edition', 'pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
+const MADE = ['preset', 'class', 'edition'];
+const DRAWN = ['pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
+const LOOKS = {
+  preset: { label: 'Scatter' },
+  class: { label: 'Tolerance class' },
+  edition: { label: 'ISO 1328-1 of' },
+  pairs: { label: 'Pairs drawn' },
+  vibration: { label: 'with their vibration' },
+  root_stress: { label: 'with their root stress' },
+};
 const FIRST = 64; // pairs of the first answer; a job has all of them
 const LIMITS = /** @type {[string, string, string][]} */ ([
-  ['peak_to_peak_um', 'Peak to peak at most', 'um'],
-  ['rms_m_per_s2', 'Vibration RMS at most', 'm_per_s2'],
-  ['max_pressure_MPa', 'Pressure at most', 'MPa'],
+  ['peak_to_peak_um', 'TE, at most', 'um'],
+  ['rms_m_per_s2', 'Vibration, at most', 'm_per_s2'],
+  ['max_pressure_MPa', 'Pressure, at most', 'MPa'],
 ]);
 
 class ToleranceView {
@@ -44,7 +54,7 @@ class ToleranceView {
     this.start = h('button.primary', { type: 'button', onclick: () => this.#begin() }, 'Draw the pairs');
     this.stop = h('button', { type: 'button', hidden: true, onclick: () => this.#halt() }, 'Stop');
     this.state = h('p.aside', { role: 'status' });
-    this.limits = h('fieldset');
+    this.limits = h('div');
     this.output = h('select', { id: 'tolerance-output', onchange: () => this.#draw() });
     this.histogram = new Chart({
       title: 'Pairs',
@@ -55,17 +65,26 @@ class ToleranceView {
       wide: true,
       help: 'How many of the pairs lie in each of 25 equal parts; the lines: as drawn, and the 95 % percentile.',
     });
-    this.percentiles = h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Percentiles' });
-    this.influences = h('section', { 'aria-label': 'What decides' });
-    this.yields = h('section', { 'aria-label': 'Yield' });
-    this.inputs = h('section', { 'aria-label': 'What scatters' });
-    this.notes = h('section', { 'aria-label': 'Notes' });
+    this.percentiles = h('section.figure.with-table', { tabindex: '0', 'aria-label': 'Percentiles' });
+    this.influences = h('section.figure.with-table', { 'aria-label': 'What decides' });
+    this.yields = h('section.figure.with-table', { 'aria-label': 'Yield' });
+    this.inputs = h('section.figure.with-table', { 'aria-label': 'What scatters' });
+    this.notes = h('section.tolerance-notes', { 'aria-label': 'Notes' });
     this.worst = h('button', { type: 'button', onclick: () => this.#openWorst() }, 'Open the worst pair');
     this.empty = h(
       'p.empty',
       null,
       'Nothing has been drawn yet. Choose how the gears are made on the left: a preset from ISO 1328-1 is enough; ' +
         'inputs of your own stand in the block "tolerance" of the design document.',
+    );
+    this.figures = h(
+      '.figures',
+      null,
+      this.histogram.element,
+      this.percentiles,
+      this.influences,
+      this.yields,
+      this.inputs,
     );
     this.head = h('.tolerance-head', null, h('label', { for: 'tolerance-output' }, 'Number '), this.output, this.worst);
     this.element = this.#layOut();
@@ -83,13 +102,28 @@ class ToleranceView {
   }
 
   #layOut() {
+    const fields = (/** @type {string[]} */ only) => this.fields.fieldsOf('/tolerance', { only, looks: LOOKS });
     return h(
       '.design-view.tolerance-view',
       null,
       h(
         'aside.form-pane',
         { 'aria-label': 'Gears as made' },
-        h('.form-scroll', null, this.fields.fieldsOf('/tolerance', { only: KEYS }), this.limits),
+        h(
+          '.form-scroll',
+          null,
+          h(
+            'form.parameters',
+            {
+              'aria-label': 'Gears as made',
+              autocomplete: 'off',
+              onsubmit: (/** @type {Event} */ event) => event.preventDefault(),
+            },
+            group('made', 'How the gears are made', true, fields(MADE)),
+            group('drawn', 'How they are drawn', true, fields(DRAWN)),
+            group('good', 'A good pair has', true, [this.limits]),
+          ),
+        ),
         h('.form-foot', null, this.start, this.stop, this.state),
       ),
       h(
@@ -98,11 +132,7 @@ class ToleranceView {
         this.empty,
         this.head,
         this.notes,
-        h('.figures', null, this.histogram.element),
-        this.percentiles,
-        this.yields,
-        this.influences,
-        this.inputs,
+        this.figures,
       ),
     );
   }
@@ -121,19 +151,27 @@ class ToleranceView {
       store.set('/tolerance/limits', text.trim() === '' ? others : [...others, { output: key, at_most: value }]);
       return '';
     };
-    fill(this.limits, h('legend', null, 'A good pair has'));
+    fill(this.limits);
     for (const [key, label, unit] of LIMITS) {
       const fault = h('span.fault', { role: 'alert' });
-      const input = h('input', {
+      const input = h('input.number', {
         id: `limit-${key}`,
+        type: 'text',
         inputmode: 'decimal',
+        placeholder: 'any',
         value: plain(shownValue(mine(key)?.at_most, unit)),
         onchange: () => {
           fault.textContent = change(key, input.value, unit);
         },
       });
       this.limits.append(
-        h('label.field', { for: input.id }, h('span', null, `${label} (${shownUnit(unitText(unit))})`), input, fault),
+        h(
+          '.field',
+          null,
+          h('label', { for: input.id }, label),
+          h('span.entry', null, input, h('span.unit', null, shownUnit(unitText(unit)))),
+          fault,
+        ),
       );
     }
   }
@@ -273,7 +311,7 @@ class ToleranceView {
     const result = this.#result;
     this.empty.hidden = result !== null;
     this.head.hidden = result === null;
-    this.histogram.element.hidden = result === null;
+    this.figures.hidden = result === null;
     if (!result) return;
     const output = result.outputs[Number(this.output.value) || 0];
     const unit = unitOfKey(output.key);
@@ -281,6 +319,7 @@ class ToleranceView {
     fill(this.percentiles, percentiles(result, output, unit));
     fill(this.influences, influences(output));
     fill(this.yields, yields(result.yields));
+    this.yields.hidden = result.yields.length === 0;
     fill(this.inputs, inputTable(result));
     fill(
       this.notes,

@@ -12,6 +12,14 @@ export const unitOfKey = key => unitText(UNIT.exec(key)?.[1]);
 /** A number of a key, with its unit. @param {string} key @param {number | null} value */
 const shownOf = (key, value) => `${sig(shownValue(value, unitOfKey(key)), 4)} ${shownUnit(unitOfKey(key))}`.trim();
 
+/**
+ * A table below its name and a word about it.
+ * @param {string} title @param {string} about @param {HTMLElement[]} parts @param {string} [kind]
+ */
+function titled(title, about, parts, kind = 'table.numbers') {
+  return [h('.figure-head', null, h('h3', null, title)), h('p.figure-note', null, about), h(kind, null, parts)];
+}
+
 const SHOWN = 10; // inputs with a bar
 
 /** "modification.pinion.left.profile_slope_um" -> "pinion left, profile slope". @param {string} key */
@@ -35,10 +43,7 @@ export function percentiles(result, output, unit) {
       h('td', null, text(row.value)),
       h('td', null, `${text(row.low)} to ${text(row.high)}`),
     );
-  return h(
-    'table.numbers',
-    null,
-    h('caption', null, `${labelOf(output.key)}${unit ? `, ${shownUnit(unit)}` : ''}: ${result.pairs} pairs`),
+  return titled('Percentiles', `${labelOf(output.key)}${unit ? `, ${shownUnit(unit)}` : ''}: ${result.pairs} pairs`, [
     h(
       'thead',
       null,
@@ -70,7 +75,7 @@ export function percentiles(result, output, unit) {
       ),
       h('tr', null, h('th', { scope: 'row' }, 'as drawn'), h('td', null, text(output.nominal)), h('td')),
     ),
-  );
+  ]);
 }
 
 /** Bars of the inputs that decide most, by the measure that explains more. @param {Api.ScatterOutput} output */
@@ -93,12 +98,7 @@ export function influences(output) {
   const measure = bySurface
     ? `total Sobol indices of a quadratic surface; it explains ${share} of the variance of pairs it was not fitted to`
     : `standardised coefficients of a linear regression, which explains ${share} of the variance`;
-  return h(
-    'table.numbers.influences',
-    null,
-    h('caption', null, `What decides: ${measure}`),
-    h('tbody', null, rows.map(bar)),
-  );
+  return titled('What decides', measure, [h('tbody', null, rows.map(bar))], 'table.numbers.influences');
 }
 
 /** @param {Api.ScatterYield[]} rows */
@@ -117,13 +117,11 @@ export function yields(rows) {
       h('td', null, `${sig(100 * row.fraction, 4)} %`),
       h('td', null, row.clopper_pearson.map(end => `${sig(100 * end, 3)} %`).join(' to ')),
     );
-  const caption = h('caption', null, 'Yield, with its 95 % interval');
-  return h('table.numbers', null, caption, h('tbody', null, rows.map(line)));
+  return titled('Yield', 'with its 95 % interval', [h('tbody', null, rows.map(line))]);
 }
 
 /** @param {Api.Tolerance} result */
 export function inputTable(result) {
-  const title = `What scatters: ${result.inputs.length} inputs`;
   /** @param {Api.ScatterInput} row */
   const line = row =>
     h(
@@ -134,5 +132,8 @@ export function inputTable(result) {
       h('td', null, row.distribution),
     );
   const table = h('table.numbers', null, h('tbody', null, result.inputs.map(line)));
-  return h('details', null, h('summary', null, title), table);
+  return [
+    h('.figure-head', null, h('h3', null, 'What scatters')),
+    h('details.more', null, h('summary', null, `${result.inputs.length} inputs`), table),
+  ];
 }
