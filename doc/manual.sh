@@ -5,8 +5,6 @@
 set -eu
 program=$1 version=$2 folder=$3
 mkdir -p "$folder"
-# The program would start itself again with these: src/app/main.c.
-export OPENBLAS_NUM_THREADS=1 OMP_THREAD_LIMIT=1
 
 # Text of the help as roff: a block that is indented stands as it is, an option with its words as a tagged paragraph.
 roff() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A server with its own data folder, a browser, and TAP.
 import { spawn } from 'node:child_process';
-import { mkdtemp, rm } from 'node:fs/promises';
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -71,6 +71,41 @@ export function settled(page) {
     null,
     { polling: 100 }, // a page behind another one has no frames
   );
+}
+
+/** What axe-core finds on a page, one line each. */
+export async function findings(page) {
+  if (!(await page.evaluate(() => 'axe' in window)))
+    await page.evaluate(await readFile(load.resolve('axe-core/axe.min.js'), 'utf8'));
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+  return violations.map(({ id, nodes }) => {
+    const places = nodes.slice(0, 3).map(node => node.target.join(' '));
+    return `${id}: ${places.join(' | ')} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`;
+  });
+}
+
+/** Nothing is found by axe-core, light and dark. */
+export async function accessible(page, what) {
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme });
+    const texts = await findings(page);
+    ok(texts.length === 0, `${what}, ${colorScheme}: accessible`);
+    texts.forEach(note);
+  }
+  await page.emulateMedia({ colorScheme: 'light' });
+}
+
+/** Labels whose text does not fit, and what sticks out of the screen. */
+export function cutLabels(page) {
+  return page.evaluate(() => {
+    const labels = 'h1, h2, h3, button, label, legend, th, dt, b, .label, .sub, .key, .chip span, .case-chip, .unit';
+    const cut = [...document.querySelectorAll(labels)]
+      .filter(each => each.clientWidth && each.scrollWidth > each.clientWidth + 1 && !each.matches('.unseen'))
+      .filter(each => getComputedStyle(each).overflowX !== 'visible')
+      .map(each => each.textContent);
+    const { scrollWidth } = document.documentElement;
+    return scrollWidth > innerWidth ? [...cut, `${scrollWidth} px of ${innerWidth}`] : cut;
+  });
 }
 
 /** Drops files on an element as a hand does. @param files `{ name, text }` or `{ name, base64 }` */

@@ -2,7 +2,7 @@
 // A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
 // one is deleted.
 import { readFile } from 'node:fs/promises';
-import { LOOSE, Server, chapter, finish, load, note, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, accessible, chapter, cutLabels, finish, ok, openBrowser } from './harness.mjs';
 
 const START = `#rig?from=paper-case-a&${LOOSE}`;
 
@@ -119,31 +119,11 @@ await chapter('fit', async () => {
 });
 
 await chapter('for everybody', async () => {
-  const source = await readFile(load.resolve('axe-core/axe.min.js'), 'utf8');
-  for (const [scheme, width] of [
-    ['light', 1280],
-    ['dark', 1280],
-    ['light', 390],
-  ]) {
-    await page.emulateMedia({ colorScheme: scheme });
-    await page.setViewportSize({ width, height: 800 });
-    await page.waitForTimeout(300);
-    ok(
-      (await page.evaluate(() => document.documentElement.scrollWidth)) <= width,
-      `${scheme}, ${width} px: nothing sticks out`,
-    );
-    await page.evaluate(source);
-    const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-    const serious = violations.filter(violation => violation.impact === 'serious' || violation.impact === 'critical');
-    for (const violation of serious)
-      note(
-        `${violation.id}: ${violation.nodes
-          .slice(0, 3)
-          .map(node => node.target.join(' '))
-          .join(' | ')} ${violation.nodes[0].failureSummary.split('\n')[1] ?? ''}`,
-      );
-    ok(serious.length === 0, `${scheme}, ${width} px: no serious finding`);
-  }
+  await accessible(page, 'the rig');
+  await page.setViewportSize({ width: 390, height: 800 });
+  await page.waitForTimeout(300);
+  const cut = await cutLabels(page);
+  ok(cut.length === 0, `390 px: nothing is cut ${cut.slice(0, 3).join(' | ')}`);
   await page.setViewportSize({ width: 1280, height: 800 });
 });
 

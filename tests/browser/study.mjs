@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study from the page: keys, cost, start, table, sort, brush, a row that is opened; no long task while doing so.
 import { cp, rm } from 'node:fs/promises';
-import { Server, chapter, finish, note, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, accessible, chapter, finish, note, ok, openBrowser } from './harness.mjs';
 
 const [FOLDER, JOB] = (process.env.EASEOFF_STUDY ?? '').split(':');
-const LOOSE =
-  'resolution.positions=16&resolution.cells_per_line=6&resolution.sector_teeth=3&resolution.neighbour_coupling=false&' +
-  'resolution.layers=6&resolution.flank_rows=4&resolution.fillet_elements=6&resolution.harmonics=6&' +
-  'resolution.te_harmonics=6';
 const MOST_TASK = 100; // ms
 
 const server = await Server.start();
@@ -116,6 +112,8 @@ if (JOB) {
   const longest = longestTask(await browser.stopTracing());
   ok(longest > 0 && longest < MOST_TASK, `the longest task of the table took ${longest.toFixed(1)} ms of a processor`);
 }
+
+await chapter('for everybody', () => accessible(page, 'a study'));
 
 await chapter('a variant', async () => {
   await rows.first().click();

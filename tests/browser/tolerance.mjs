@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs as made from the page: the first at once, all of them from a job that another page finds again and can stop.
-import { Server, chapter, finish, ok, openBrowser } from './harness.mjs';
-
-const LOOSE =
-  'resolution.positions=16&resolution.cells_per_line=6&resolution.sector_teeth=3&resolution.neighbour_coupling=false&' +
-  'resolution.layers=6&resolution.flank_rows=4&resolution.fillet_elements=6&resolution.harmonics=6&' +
-  'resolution.te_harmonics=6';
+import { LOOSE, Server, accessible, chapter, finish, ok, openBrowser } from './harness.mjs';
 
 const server = await Server.start();
 const browser = await openBrowser();
@@ -36,6 +31,8 @@ await chapter('another page', async () => {
   await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
   ok((await state.textContent()).includes('20'), 'shows what was drawn, with its date');
 });
+
+await chapter('for everybody', () => accessible(page, 'a tolerance analysis'));
 
 await chapter('stopping', async () => {
   await page.goto('about:blank');
