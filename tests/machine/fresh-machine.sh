@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A fresh Debian 12 with nothing but a clone of this repository, in a chroot: ./bootstrap serve answers on /health, ./bootstrap check is
-# green. By hand and as root; needs debootstrap, some gigabytes and most of an hour.
+# A fresh Debian 12 with nothing but a clone of this repository, in a chroot: ./bootstrap serve answers on /health with the page, a stranger's
+# tour (the commands of README.md and doc/guide.md, and the robust flank by Python of doc/api.md) runs at full resolution, ./bootstrap check
+# is green. By hand and as root; needs debootstrap, some gigabytes and most of an hour.
 #
-#   tests/machine/fresh-machine.sh [serve|check|all]
+#   tests/machine/fresh-machine.sh [serve|tour|check|all]      tour: after serve
 #
 # FRESH_DIR       where the machine stands (default: a new folder beside $TMPDIR's files); it is removed at the end unless FRESH_KEEP is set
 # FRESH_MIRROR    Debian mirror (default: the one debootstrap knows)
@@ -61,11 +62,46 @@ try_serve() {
     sleep 1
   done
   curl -fsS "$url/api/v1/health"
-  curl -fsS "$url/" | grep -q '<title>Easeoff'
+  curl -fsS "$url/" | grep -q '<title>Easeoff' || {
+    say "NOT the page: npm could not fetch its libraries? FRESH_OVERLAY lays a site's certificates over the machine"
+    return 1
+  }
   say "./bootstrap serve answered after $(($(date +%s) - started)) s"
   kill "$server"
   wait "$server" || true
   server=
+}
+
+# The blocks of shell of a text, one file each.
+blocks_of() {
+  awk -v folder="$2" '/^```sh$/ { n++; on = 1; next } /^```$/ { on = 0 } on { print > sprintf("%s/%02d.sh", folder, n) }' "$1"
+}
+
+try_tour() {
+  whole=$(date +%s)
+  inside sh -c 'command -v python3 >/dev/null || { apt-get update -qq && apt-get install -y -qq --no-install-recommends python3; } >/dev/null 2>&1'
+  for text in README.md doc/guide.md; do
+    place=$root/root/tour/$(basename "$text" .md)
+    mkdir -p "$place/blocks"
+    blocks_of "$root/root/easeoff/$text" "$place/blocks"
+    for block in "$place"/blocks/*.sh; do
+      started=$(date +%s)
+      inside sh -c "cd ${place#"$root"} && PATH=/root/easeoff/build:\$PATH && export PATH && exec sh -e ${block#"$root"}" >"$block.out" 2>&1 || {
+        tail -n 20 "$block.out"
+        say "NOT $text: $(head -n 1 "$block")"
+        return 1
+      }
+      say "$(($(date +%s) - started)) s: $text: $(head -n 1 "$block" | cut -c 1-90)"
+    done
+  done
+  started=$(date +%s)
+  inside sh -c 'cd /root/tour/README && PATH=/root/easeoff/build:$PATH && export PATH
+    easeoff serve --listen 127.0.0.1:0 --quiet >serve.out & server=$!
+    until grep -q http serve.out; do sleep 0.1; done
+    PYTHONPATH=/root/easeoff/clients/python python3 /root/easeoff/clients/python/examples/robust_flank.py own.json "$(sed "s/.* //; s#/\$##" serve.out)"
+    status=$?; kill $server; exit $status' >"$machine/robust.log" 2>&1 || { tail -n 20 "$machine/robust.log"; return 1; }
+  tail -n 3 "$machine/robust.log"
+  say "$(($(date +%s) - started)) s: a robust flank by Python; the tour took $(($(date +%s) - whole)) s"
 }
 
 try_check() {
@@ -78,13 +114,18 @@ try_check() {
 build_machine
 case $what in
 serve) try_serve ;;
+tour)
+  try_serve
+  try_tour
+  ;;
 check) try_check ;;
 all)
   try_serve
+  try_tour
   try_check
   ;;
 *)
-  say "serve, check or all"
+  say "serve, tour, check or all"
   exit 1
   ;;
 esac
