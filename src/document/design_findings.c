@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "document/flank_grid_document.h"
 #include "document/search_space.h"
 #include "format/object.h"
+#include "gear/surface.h"
 
 static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
@@ -177,6 +179,88 @@ static void note_thrust(const struct eo_design *design, struct eo_warnings *warn
                    design->gear_pair.helix_angle * 180 / M_PI, tan(design->gear_pair.helix_angle));
 }
 
+/* The longest fold in mid face and at both face ends; 0 where it is too short to matter. */
+static double fold_of(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                      double fold[2])
+{
+  static const double NOTABLE = 0.02; /* of the active profile: the sides of a kink cross within less */
+  double longest = 0, end[2], at[2];
+  eo_active_profile(geometry, member, end);
+  for (int i = -1; i <= 1; i++) {
+    struct eo_modification_shape slice;
+    eo_modification_slice(shape, i * geometry->face_width / 2, &slice);
+    double length = eo_slice_fold(geometry, member, shape->varies ? &slice : shape, at);
+    if (length > longest) {
+      longest = length;
+      memcpy(fold, at, sizeof at);
+    }
+  }
+  return longest > NOTABLE * (end[1] - end[0]) ? longest : 0;
+}
+
+/* The most relief on a side with which the flank does not fold, m; 0: it folds without. */
+static double most_relief(const struct eo_geometry *geometry, int member, const struct eo_flank_modification *flank,
+                          const struct eo_modification_shape *shape, int side)
+{
+  enum { HALVINGS = 20 };
+  struct eo_flank_modification tried = *flank;
+  double *amount = side == EO_TIP_SIDE ? &tried.tip_relief : &tried.root_relief, low = 0, high = *amount, fold[2];
+  for (int i = 0; i < HALVINGS; i++) {
+    struct eo_modification_shape less;
+    *amount = i ? (low + high) / 2 : 0;
+    eo_modification_init(&less, geometry, member, &tried);
+    eo_modification_complete(&less, shape->grid, shape->mirrored);
+    bool folds = fold_of(geometry, member, &less, fold) > 0;
+    if (i == 0 && folds)
+      return 0;
+    *(folds ? &high : &low) = *amount;
+  }
+  return low;
+}
+
+static void note_fold(const struct eo_design *design, const struct eo_geometry *geometry, enum eo_flank_side side,
+                      int member, int end, struct eo_warnings *warnings)
+{
+  static const char *const end_name[2] = {"left", "right"}, *const relief_name[2] = {"root", "tip"};
+  const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
+  const struct eo_flank_modification *flank = side == EO_COAST_FLANK ? &design->modification.coast[member][end]
+                                                                     : &design->modification.flank[member][end];
+  struct eo_modification_shape shape;
+  struct eo_flank_spline *spline;
+  double fold[2], place[2];
+  char key[128], remedy[160] = "Less of what is taken off there avoids it.";
+  if (eo_flank_shape(design, &half, side, member, end, &shape, &spline))
+    return;
+  if (fold_of(&half, member, &shape, fold) > 0) {
+    int relief = fold[0] + fold[1] > 0 ? EO_TIP_SIDE : EO_ROOT_SIDE;
+    double amount = relief == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief;
+    int length = snprintf(key, sizeof key, "/modification/%s/%s%s", member_name[member], end_name[end],
+                          side == EO_COAST_FLANK ? "/coast" : "");
+    double most = amount > 0 ? most_relief(&half, member, flank, &shape, relief) : 0;
+    if (most > 0) {
+      snprintf(key + length, sizeof key - (size_t)length, "/%s_relief_um", relief_name[relief]);
+      snprintf(remedy, sizeof remedy, "Up to %.4g um in place of %.4g um, or a start further away, avoids it.",
+               1e6 * most, 1e6 * amount);
+    }
+    for (int i = 0; i < 2; i++)
+      place[i] = 1e3 * eo_profile_place_at(&half, member, fold[i]).diameter;
+    eo_warnings_at(warnings, key,
+                   "The flank folds between the diameters %.6g and %.6g mm: a tool with this relief cuts away there "
+                   "what it has made, and no gear has such a flank. %s",
+                   place[0], place[1], remedy);
+  }
+  eo_flank_spline_free(spline);
+}
+
+static void note_folds(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_warnings *warnings)
+{
+  int sides = eo_design_shows_coast(design) ? 2 : 1;
+  for (int side = 0; side < sides; side++)
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < design->gear_pair.ends; end++)
+        note_fold(design, geometry, (enum eo_flank_side)side, member, end, warnings);
+}
+
 static void note_search(const struct eo_design *design, const struct eo_geometry *geometry,
                         struct eo_warnings *warnings)
 {
@@ -200,5 +284,6 @@ void eo_design_note_findings(const struct eo_design *design, const struct eo_geo
   note_allowances(design, warnings);
   note_proportions(design, geometry, warnings);
   note_thrust(design, warnings);
+  note_folds(design, geometry, warnings);
   note_search(design, geometry, warnings);
 }

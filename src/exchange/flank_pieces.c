@@ -25,10 +25,10 @@ static const struct eo_modification_shape *shape_of(const struct eo_flank_pieces
 
 /* Lines and bands: */
 
-static void add_line(struct eo_flank_pieces *pieces, double at, double rate, double low, double high)
+static void add_line(struct eo_flank_pieces *pieces, double at, double rate)
 {
   if (pieces->lines < EO_FLANK_LINES)
-    pieces->line[pieces->lines++] = (struct eo_flank_line){at, rate, low, high};
+    pieces->line[pieces->lines++] = (struct eo_flank_line){at, rate};
 }
 
 static double line_at(const struct eo_flank_pieces *pieces, int k, double y)
@@ -48,10 +48,9 @@ static void add_corner_lines(struct eo_flank_pieces *pieces)
     int outwards = i / 2 == EO_TIP_SIDE ? 1 : -1, face = i % 2 == EO_LEADING_SIDE ? 1 : -1;
     if (relief->amount == 0 || !(relief->profile_length > 0) || !(relief->face_length > 0))
       continue;
-    double end = outwards * shape->middle + shape->half_profile, from = face * (half_face - relief->face_length);
+    double end = outwards * shape->middle + shape->half_profile;
     add_line(pieces, outwards * (end - relief->profile_length * (1 - half_face / relief->face_length)),
-             -outwards * face * relief->profile_length / relief->face_length, face > 0 ? from : -INFINITY,
-             face > 0 ? INFINITY : from);
+             -outwards * face * relief->profile_length / relief->face_length);
   }
 }
 
@@ -59,12 +58,12 @@ static void find_lines(struct eo_flank_pieces *pieces)
 {
   const struct eo_modification_shape *shape = shape_of(pieces);
   for (int end = 0; end < 2; end++)
-    add_line(pieces, pieces->u[end], 0, -INFINITY, INFINITY);
+    add_line(pieces, pieces->u[end], 0);
   for (int side = 0; side < 2; side++)
     if (shape->side[side].length > 0)
-      add_line(pieces, (side ? 1 : -1) * shape->side[side].start, 0, -INFINITY, INFINITY);
+      add_line(pieces, (side ? 1 : -1) * shape->side[side].start, 0);
   for (int border = 0; shape->grid && border < 2; border++)
-    add_line(pieces, shape->grid->u[border * (shape->grid->u_knots - 1)], 0, -INFINITY, INFINITY);
+    add_line(pieces, shape->grid->u[border * (shape->grid->u_knots - 1)], 0);
   add_corner_lines(pieces);
 }
 
@@ -74,7 +73,16 @@ static int compare_numbers(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Bands end where end reliefs start, where a grid and a corner relief end, and where lines cross. */
+/* Where two lines cross within the flank; NaN: they do not. */
+static double crossing_of(const struct eo_flank_pieces *pieces, const struct eo_flank_line *a,
+                          const struct eo_flank_line *b)
+{
+  const struct eo_flank_line *level = fabs(a->rate) < fabs(b->rate) ? a : b;
+  double y = (a->at - b->at) / (b->rate - a->rate), u = level->at + level->rate * y;
+  return a->rate != b->rate && u >= pieces->u[0] && u <= pieces->u[1] ? y : NAN;
+}
+
+/* Bands end where end reliefs start, where a grid ends, and where lines cross. */
 static void find_bands(struct eo_flank_pieces *pieces)
 {
   enum { MOST = 8 + EO_FLANK_LINES * (EO_FLANK_LINES + 1) };
@@ -87,13 +95,9 @@ static void find_bands(struct eo_flank_pieces *pieces)
   for (int i = 0; shape->grid && i < 2; i++)
     at[count++] = shape->grid->y[i * (shape->grid->y_knots - 1)];
   for (int i = 0; i < pieces->lines; i++) {
-    const struct eo_flank_line *a = &pieces->line[i];
-    if (a->rate != 0)
-      at[count++] = isfinite(a->low) ? a->low : a->high;
     for (int k = 0; k < i; k++) {
-      const struct eo_flank_line *b = &pieces->line[k];
-      double y = (a->at - b->at) / (b->rate - a->rate);
-      if (a->rate != b->rate && y > fmax(a->low, b->low) && y < fmin(a->high, b->high))
+      double y = crossing_of(pieces, &pieces->line[i], &pieces->line[k]);
+      if (isfinite(y))
         at[count++] = y;
     }
   }
@@ -108,14 +112,28 @@ static void find_bands(struct eo_flank_pieces *pieces)
 
 /* What is generated: */
 
-/* Where a side of a kink is, and how far from it its slopes are to be taken. */
-static double keep_within(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double u, double y)
+/* How far from a line slopes are to be taken, along u. */
+static double clear_of(const struct eo_flank_pieces *pieces, int line)
 {
-  double low = line_at(pieces, piece->line[0], y) + beside +
-               4 * EO_SURFACE_STEP * fabs(pieces->line[piece->line[0]].rate),
-         high = line_at(pieces, piece->line[1], y) - beside -
-                4 * EO_SURFACE_STEP * fabs(pieces->line[piece->line[1]].rate);
-  return low < high ? fmin(fmax(u, low), high) : (low + high) / 2;
+  return beside + 4 * EO_SURFACE_STEP * fabs(pieces->line[line].rate);
+}
+
+/* The nearest place of a piece at which its slopes are those of its own side; where it narrows to a point, as far from
+   that as it needs to be wide enough. */
+static void keep_within(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double *u, double *y)
+{
+  const double *ends = pieces->y + piece->band, step = shape_of(pieces)->varies ? 2 * EO_SURFACE_STEP : beside;
+  double clear[2] = {clear_of(pieces, piece->line[0]), clear_of(pieces, piece->line[1])}, width[2];
+  for (int k = 0; k < 2; k++)
+    width[k] = line_at(pieces, piece->line[1], ends[k]) - line_at(pieces, piece->line[0], ends[k]);
+  double most = fmax(width[0], width[1]), wanted = fmin(2 * (clear[0] + clear[1]), most / 2),
+         per_width = most > 0 ? (ends[1] - ends[0]) / fabs(width[1] - width[0]) : 0,
+         low = ends[0] + fmax(step, width[0] < wanted ? (wanted - width[0]) * per_width : 0),
+         high = ends[1] - fmax(step, width[1] < wanted ? (wanted - width[1]) * per_width : 0);
+  *y = low < high ? fmin(fmax(*y, low), high) : (low + high) / 2;
+  low = line_at(pieces, piece->line[0], *y) + clear[0];
+  high = line_at(pieces, piece->line[1], *y) - clear[1];
+  *u = low < high ? fmin(fmax(*u, low), high) : (low + high) / 2;
 }
 
 /* Slopes that a piece has at (u, y), at its ends those of its own side, beyond them in a line; returns delta, m. */
@@ -123,12 +141,9 @@ static double piece_relief(const struct eo_flank_pieces *pieces, const struct eo
                            double slope[2])
 {
   const struct eo_modification_shape *shape = shape_of(pieces);
-  double unused[2], step = shape->varies ? 2 * EO_SURFACE_STEP : beside, low = pieces->y[piece->band] + step,
-                    high = pieces->y[piece->band + 1] - step, sign = pieces->coast ? -1 : 1;
-  double within = low < high ? fmin(fmax(y, low), high) : (low + high) / 2;
-  double own = keep_within(pieces, piece, u, within);
-  eo_surface_relief(shape, own, sign * within * shape->lengthen, slope);
-  return eo_surface_relief(shape, own, sign * y * shape->lengthen, unused) + slope[0] * (u - own);
+  double along = (pieces->coast ? -1 : 1) * shape->lengthen, own = u, within = y;
+  keep_within(pieces, piece, &own, &within);
+  return eo_surface_relief(shape, own, along * within, slope) + slope[0] * (u - own) + slope[1] * along * (y - within);
 }
 
 static void generate(const struct eo_flank_pieces *pieces, double u, double y, double delta, const double slope[2],
@@ -224,14 +239,50 @@ static double find_place(const struct eo_flank_pieces *pieces, const double posi
 
 /* Seams: */
 
+/* How much of a step along u the flank goes on towards the tip; below 0 it folds. */
+static double progress_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                          const struct frame *frame, double u, double y)
+{
+  struct eo_surface_point here, there;
+  piece_at(pieces, piece, u - difference / 2, y, &here);
+  piece_at(pieces, piece, u + difference / 2, y, &there);
+  return (ahead(frame, there.position) - ahead(frame, here.position)) / difference;
+}
+
+/* From an end of a piece to where the flank goes on towards the tip; the end itself where it never does. A relief whose
+   exponent is below 2 starts with an infinite curvature and folds there, and so does a steep one near the base circle.
+   which: end of the piece. */
+static double beyond_fold(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y)
+{
+  enum { HALVINGS = 40 };
+  const double least = 0.02;
+  double line = line_at(pieces, piece->line[which], y), far = line_at(pieces, piece->line[1 - which], y), from = 0,
+         to = 0, direction = which ? -1 : 1;
+  struct frame frame = frame_at(pieces, line, y);
+  while (progress_at(pieces, piece, &frame, line + direction * to, y) < least) {
+    from = to;
+    to = fmax(2 * to, 4 * difference);
+    if (to > fabs(far - line))
+      return line;
+  }
+  for (int i = 0; i < HALVINGS && from < to; i++) {
+    double middle = (from + to) / 2;
+    bool on = progress_at(pieces, piece, &frame, line + direction * middle, y) >= least;
+    *(on ? &to : &from) = middle;
+  }
+  return line + direction * to;
+}
+
 /* Where the sides of a line cross: u on each, and the point; false: not within both. */
 static bool find_crossing(const struct eo_flank_pieces *pieces, const struct eo_flank_piece side[2], double u, double y,
                           double own[2], struct eo_surface_point *point)
 {
   bool found = false;
+  double most = (pieces->u[1] - pieces->u[0]) / 20;
   struct frame frame = frame_at(pieces, u, y);
   struct eo_surface_point at[2], moved[2];
-  own[0] = own[1] = u;
+  for (int k = 0; k < 2; k++)
+    own[k] = beyond_fold(pieces, &side[k], 1 - k, y);
   for (int i = 0; i < MOST_STEPS; i++) {
     double off[2], rate[2][2];
     for (int k = 0; k < 2; k++) {
@@ -246,8 +297,8 @@ static bool find_crossing(const struct eo_flank_pieces *pieces, const struct eo_
     found = fabs(off[0]) + fabs(off[1]) < 100 * near_enough;
     if (fabs(off[0]) + fabs(off[1]) < near_enough || determinant == 0)
       break;
-    own[0] -= (off[1] * rate[0][1] - off[0] * rate[1][1]) / determinant;
-    own[1] -= (off[1] * rate[0][0] - off[0] * rate[1][0]) / determinant;
+    for (int k = 0; k < 2; k++)
+      own[k] -= fmin(most, fmax(-most, (off[1] * rate[0][1 - k] - off[0] * rate[1][1 - k]) / determinant));
   }
   *point = at[0];
   return found && own[0] >= line_at(pieces, side[0].line[0], y) && own[1] <= line_at(pieces, side[1].line[1], y);
@@ -270,6 +321,7 @@ static enum eo_flank_seam seam_at(const struct eo_flank_pieces *pieces, const st
   struct eo_flank_piece side[2];
   double from = pieces->y[piece->band], width = pieces->y[piece->band + 1] - from, largest = 0;
   int apart = 0, crossings = 0;
+  bool fold = false;
   sides_of(piece, which, side);
   for (int i = 0; i < PLACES; i++) {
     double y = from + width * (i + 0.5) / PLACES, u = line_at(pieces, piece->line[which], y), turn[3], own[2];
@@ -282,8 +334,10 @@ static enum eo_flank_seam seam_at(const struct eo_flank_pieces *pieces, const st
     largest = fmax(largest, fabs(step) * sqrt(dot(turn, turn)) / 8);
     apart += step > 0 ? 1 : -1;
     crossings += find_crossing(pieces, side, u, y, own, &unused);
+    for (int k = 0; k < 2; k++)
+      fold = fold || beyond_fold(pieces, &side[k], 1 - k, y) != u;
   }
-  if (largest < least)
+  if (largest < least && !fold)
     return EO_SEAM_SMOOTH;
   if (apart == PLACES)
     return EO_SEAM_SWEPT;
@@ -303,11 +357,13 @@ static double end_place(const struct eo_flank_pieces *pieces, const struct eo_fl
   sides_of(piece, which, side);
   for (int k = 0; k < 2; k++)
     piece_at(pieces, &side[k], u, y, &at[k]);
+  int mine = which ? 0 : 1;
   if (piece->seam[which] == EO_SEAM_CROSSING) {
     find_crossing(pieces, side, u, y, own, &at[0]);
-    at[1] = at[0];
+    double far = line_at(pieces, piece->line[1 - which], y); /* a crossing beyond it leaves nothing of the piece */
+    own[mine] = which ? fmax(own[mine], far) : fmin(own[mine], far);
+    piece_at(pieces, piece, own[mine], y, &at[mine]);
   }
-  int mine = which ? 0 : 1;
   if (piece->direct)
     return own[mine];
   double place = find_place(pieces, at[mine].position, u, y);
@@ -352,7 +408,7 @@ static int sort_lines(const struct eo_flank_pieces *pieces, double y, int order[
   double least = 1e-6 * (pieces->u[1] - pieces->u[0]);
   for (int k = 0; k < pieces->lines; k++) {
     double u = line_at(pieces, k, y);
-    bool wanted = y > pieces->line[k].low && y < pieces->line[k].high;
+    bool wanted = true;
     int at = 0;
     for (int i = 0; i < count; i++) {
       double other = line_at(pieces, order[i], y);

@@ -10,9 +10,9 @@
 
 enum { EO_FLANK_LINES = 12, EO_FLANK_BANDS = 48, EO_FLANK_PIECES = EO_FLANK_BANDS * 2 * EO_FLANK_LINES };
 
-/* u = at + rate y, m, where y lies in low .. high. */
+/* u = at + rate y, m. */
 struct eo_flank_line {
-  double at, rate, low, high;
+  double at, rate;
 };
 
 /* Apart: near the base circle the sides can overlap further than the shorter one reaches; each ends on its own. */

@@ -45,8 +45,8 @@ struct part {
   bool flank;
   struct eo_flank_pieces pieces; /* of a flank */
   double at[2][EO_TOOTH_PIECES + 1];
-  int count[2][GROUPS]; /* points of each group */
-  double error;         /* m off the exact surface at most, between the points */
+  struct eo_patch_sites sites[2][GROUPS]; /* of each group */
+  double error;                           /* m off the exact surface at most, between the points */
   int faces;
   struct face *face; /* owned */
   int edges, vertices;
@@ -103,7 +103,7 @@ static void set_flank_faces(struct part *part)
     face->group[0] = piece->line[0] * EO_FLANK_LINES + piece->line[1];
     face->group[1] = piece->band;
     if (piece->line[0] == piece->line[1])
-      part->count[0][face->group[0]] = SWEPT_COUNT;
+      part->sites[0][face->group[0]] = eo_patch_even_sites(SWEPT_COUNT);
   }
 }
 
@@ -111,7 +111,7 @@ static bool cut_faces(struct part *part)
 {
   int pieces[2] = {1, 1};
   for (int k = 0; k < GROUPS; k++)
-    part->count[0][k] = part->count[1][k] = FIRST_COUNT;
+    part->sites[0][k] = part->sites[1][k] = eo_patch_even_sites(FIRST_COUNT);
   if (part->flank) {
     eo_flank_pieces_init(&part->pieces, part->tooth, part->part);
     part->faces = part->pieces.count;
@@ -135,35 +135,33 @@ static bool cut_faces(struct part *part)
   return true;
 }
 
-/* Fits a piece to the points that it has now; asks for more along the direction in which it is off. */
-static bool fit_face(struct part *part, int number, bool more[2][GROUPS])
+/* Fits a piece to the points that it has now; says where it asks for more. */
+static bool fit_face(struct part *part, int number, bool wide[2][GROUPS][EO_PATCH_MOST])
 {
   struct face *face = &part->face[number];
   struct eo_flank_row row = {.b = -1};
   const struct piece piece = {part, number, &row};
-  const int points[2] = {part->count[0][face->group[0]], part->count[1][face->group[1]]};
-  double error[EO_PATCH_ERRORS];
-  if (!eo_patch_fit(&face->patch, points, piece_point, &piece))
+  const struct eo_patch_sites *const sites[2] = {&part->sites[0][face->group[0]], &part->sites[1][face->group[1]]};
+  bool own[2][EO_PATCH_MOST] = {{false}};
+  if (!eo_patch_fit(&face->patch, sites, piece_point, &piece))
     return false;
-  eo_patch_error(&face->patch, piece_point, &piece, error);
-  bool off[2] = {error[0] > tolerance, error[1] > tolerance};
-  face->error = fmax(fmax(error[0], error[1]), error[EO_PATCH_BOTH]);
+  face->error = eo_patch_error(&face->patch, piece_point, &piece, tolerance, own);
   for (int d = 0; d < 2; d++)
-    if (off[d] || (error[EO_PATCH_BOTH] > tolerance && !off[1 - d]))
-      more[d][face->group[d]] = true;
+    for (int i = 0; i < EO_PATCH_MOST; i++)
+      wide[d][face->group[d]][i] = wide[d][face->group[d]][i] || own[d][i];
   return true;
 }
 
 /* Where points on the flank are no good parameters, those of the rack may be. */
-static bool fit_evenly(struct part *part, int number)
+static bool fit_evenly(struct part *part, int number, bool wide[2][GROUPS][EO_PATCH_MOST])
 {
-  bool more[2][GROUPS], *direct = &part->pieces.piece[number].direct, before = *direct;
+  bool *direct = &part->pieces.piece[number].direct, before = *direct;
   double error = part->face[number].error;
   *direct = true;
-  bool fitted = fit_face(part, number, more);
+  bool fitted = fit_face(part, number, wide);
   if (fitted && part->face[number].error > error) {
     *direct = before;
-    fitted = fit_face(part, number, more);
+    fitted = fit_face(part, number, wide);
   }
   return fitted;
 }
@@ -171,26 +169,23 @@ static bool fit_evenly(struct part *part, int number)
 /* Every piece with as many points as it needs; false: memory, or a system that has no solution. */
 static bool fit_faces(struct part *part)
 {
-  bool again = true;
+  bool again = true, wide[2][GROUPS][EO_PATCH_MOST];
   while (again) {
-    bool more[2][GROUPS] = {{false}};
+    memset(wide, 0, sizeof wide);
     for (int k = 0; k < part->faces; k++) {
       const struct face *face = &part->face[k];
-      bool same = face->patch.count[0] == part->count[0][face->group[0]] &&
-                  face->patch.count[1] == part->count[1][face->group[1]];
-      if (!same && !fit_face(part, k, more))
+      bool same = face->patch.sites[0].count == part->sites[0][face->group[0]].count &&
+                  face->patch.sites[1].count == part->sites[1][face->group[1]].count;
+      if (!same && !fit_face(part, k, wide))
         return false;
     }
     again = false;
     for (int d = 0; d < 2; d++)
       for (int g = 0; g < GROUPS; g++)
-        if (more[d][g] && part->count[d][g] < EO_PATCH_MOST) {
-          part->count[d][g] = part->count[d][g] * 3 / 2 < EO_PATCH_MOST ? part->count[d][g] * 3 / 2 : EO_PATCH_MOST;
-          again = true;
-        }
+        again = eo_patch_halve(&part->sites[d][g], wide[d][g]) || again;
   }
   for (int k = 0; k < part->faces; k++) {
-    if (part->face[k].error > tolerance && part->flank && !fit_evenly(part, k))
+    if (part->face[k].error > tolerance && part->flank && !fit_evenly(part, k, wide))
       return false;
     part->error = fmax(part->error, part->face[k].error);
   }
@@ -206,7 +201,7 @@ struct strip {
 
 static struct strip strip_of(const struct eo_patch *patch, int side)
 {
-  int rows = patch->count[0], columns = patch->count[1];
+  int rows = patch->sites[0].count, columns = patch->sites[1].count;
   if (side % 2 == 0)
     return (struct strip){side ? columns - 1 : 0, columns, rows};
   return (struct strip){side == 1 ? (rows - 1) * columns : 0, 1, columns};
@@ -237,7 +232,7 @@ static bool is_point(const struct face *face, int side)
 
 static const double *corner_of(const struct face *face, int corner)
 {
-  int rows = face->patch.count[0], columns = face->patch.count[1];
+  int rows = face->patch.sites[0].count, columns = face->patch.sites[1].count;
   return face->patch.control[(corner == 1 || corner == 2 ? (rows - 1) * columns : 0) + (corner >= 2 ? columns - 1 : 0)];
 }
 
@@ -335,13 +330,13 @@ static int put_surface(struct writer *writer, const struct eo_patch *patch, cons
 {
   struct eo_text *text = writer->text;
   eo_text_print(text, "#%d=B_SPLINE_SURFACE_WITH_KNOTS('',3,3,(", ++writer->last);
-  for (int i = 0; i < patch->count[0]; i++) {
+  for (int i = 0; i < patch->sites[0].count; i++) {
     eo_text_add(text, i ? "," : "");
-    add_list(text, patch->count[1], point + i * patch->count[1], 1);
+    add_list(text, patch->sites[1].count, point + i * patch->sites[1].count, 1);
   }
   eo_text_add(text, "),.UNSPECIFIED.,.F.,.F.,.F.,");
   for (int part = 0; part < 4; part++) {
-    add_knots(text, patch->count[part % 2], patch->knot[part % 2], part >= 2);
+    add_knots(text, patch->sites[part % 2].count, patch->knot[part % 2], part >= 2);
     eo_text_add(text, ",");
   }
   eo_text_add(text, ".UNSPECIFIED.);\n");
@@ -366,7 +361,7 @@ static void put_edges(struct writer *writer, struct part *part, const struct fac
 {
   static const int ends[SIDES][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
   const struct eo_patch *patch = &face->patch;
-  int *edge = part->id, *vertex = part->id + part->edges, rows = patch->count[0], columns = patch->count[1];
+  int *edge = part->id, *vertex = part->id + part->edges, rows = patch->sites[0].count, columns = patch->sites[1].count;
   const int corner[SIDES] = {0, (rows - 1) * columns, rows * columns - 1, columns - 1};
   for (int k = 0; k < SIDES; k++)
     if (!vertex[face->vertex[k]])
@@ -385,7 +380,8 @@ static void put_edges(struct writer *writer, struct part *part, const struct fac
 static int put_face(struct writer *writer, struct part *part, const struct face *face, double turn)
 {
   const struct eo_patch *patch = &face->patch;
-  int count = patch->count[0] * patch->count[1], point[EO_PATCH_MOST * EO_PATCH_MOST], edge[SIDES], edges = 0;
+  int count = patch->sites[0].count * patch->sites[1].count, point[EO_PATCH_MOST * EO_PATCH_MOST], edge[SIDES],
+      edges = 0;
   for (int k = 0; k < count; k++)
     point[k] = put_point(writer, patch->control[k], turn);
   int surface = put_surface(writer, patch, point);

@@ -244,7 +244,9 @@ void eo_modification_complete(struct eo_modification_shape *shape, const struct 
 }
 
 /* The line along which the plane of a triangular relief cuts the slice at distance q from the face end: at the
-   profile's end 1 - q/L_y of it is left, and it starts L_u times that before. */
+   profile's end 1 - q/L_y of it is left, and it starts L_u times that before. Beyond L_y that is less than nothing, and
+   the plane starts as far behind the profile's end: a tip that goes on there, and the margin that slices have, meet it
+   still. */
 static void cut_triangles(struct eo_modification_shape *slice, double y)
 {
   double half_face = slice->half_width / slice->lengthen;
@@ -255,7 +257,7 @@ static void cut_triangles(struct eo_modification_shape *slice, double y)
       double left = 1 - (half_face - (face == EO_LEADING_SIDE ? y : -y)) / triangular_relief->face_length;
       int outwards = side == EO_TIP_SIDE ? 1 : -1;
       double end = outwards * slice->middle + slice->half_profile;
-      if (triangular_relief->amount != 0 && left > 0)
+      if (triangular_relief->amount != 0)
         slice->wedge[slice->wedges++] =
             (struct eo_wedge){.start = end - triangular_relief->profile_length * left,
                               .length = outwards * triangular_relief->profile_length,

@@ -54,6 +54,31 @@ void eo_slice_point_at(const struct eo_geometry *geometry, int member, const str
   point->position[1] = ray.distance * s + ray.arm * c;
 }
 
+double eo_slice_fold(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *slice,
+                     double fold[2])
+{
+  enum { STEPS = 128 };
+  double end[2], before = 0, from = NAN, longest = 0;
+  eo_active_profile(geometry, member, end);
+  for (int i = 0; i <= STEPS; i++) {
+    struct eo_slice_point point;
+    double u = end[0] + (end[1] - end[0]) * i / STEPS, step = (end[1] - end[0]) / STEPS;
+    eo_slice_point_at(geometry, member, slice, u, &point);
+    double radius = hypot(point.position[0], point.position[1]);
+    bool back = i > 0 && radius < before;
+    if (back && isnan(from))
+      from = u - step;
+    if (back && u - from > longest) {
+      longest = u - from;
+      fold[0] = from;
+      fold[1] = u;
+    }
+    from = back ? from : NAN;
+    before = radius;
+  }
+  return longest;
+}
+
 struct eo_slice_ray eo_slice_involute_ray(const struct eo_geometry *geometry, int member, double distance)
 {
   double base = geometry->base_radius[member], start = base * tan(geometry->transverse_pressure_angle);

@@ -42,6 +42,11 @@ struct eo_slice_point {
 void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                        double u, struct eo_slice_point *point);
 
+/* The longest stretch of a slice's active profile, fold[0] to fold[1] along u, m, on which it leads back to smaller
+   radii: a rack so relieved cuts away there what it has made. Returns its length, m; 0: there is none. */
+double eo_slice_fold(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *slice,
+                     double fold[2]);
+
 /* Shaft angle errors:
    A rigid rotation of the gear by kappa about x (in the plane of the axes) and gamma about y (across it), about a pivot
    on its axis at the axial distance z from the slice, moves the gear's point r (from its centre) by

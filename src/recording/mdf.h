@@ -64,6 +64,7 @@ struct eo_mdf_group {
   int64_t skip;           /* bytes of the number before a record */
   int64_t data, record;   /* bytes of values, and of them with the invalidation bits */
   int64_t comment;        /* place of a text about it; 0: none */
+  int64_t at, master_at;  /* its own place, and that of the group whose master counts here too; 0: none */
   int64_t stated, rows;   /* records as stated, and as found */
   int master;             /* series with the times; -1: none */
   double interval, start; /* of times that are counted, s; interval 0: they are not */

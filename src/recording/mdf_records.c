@@ -30,6 +30,7 @@ struct block {
 struct blocks {
   struct block *block; /* owned */
   int64_t count, room, length;
+  bool apart; /* values (DV) without the invalidation bits, which stand in blocks of their own (DI) */
 };
 
 static enum eo_code add_block(struct blocks *blocks, const struct block *block, struct eo_error *error)
@@ -71,23 +72,45 @@ static enum eo_code add_packed(struct blocks *blocks, const struct eo_mdf_block 
 static enum eo_code add_blocks(struct eo_mdf *mdf, int64_t at, int depth, struct blocks *blocks,
                                struct eo_error *error);
 
+/* How many links of a list lead to data. A list of columns (LD, MDF 4.2) states it, and behind them may stand links to
+   the invalidation bits of the same records. */
+static enum eo_code count_data_links(const struct eo_mdf_block *list, int64_t *count, struct eo_error *error)
+{
+  const uint32_t has_bits = (uint32_t)1 << 31;
+  *count = list->links - 1;
+  if (strcmp(list->id, "LD") != 0)
+    return EO_OK;
+  int64_t stated = eo_bytes_32(list->data + 4, false);
+  if (eo_bytes_32(list->data, false) & has_bits)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "MDF: which values at byte %lld mean nothing is stored apart from them (MDF 4.2), which is not "
+                        "read; save the file as MDF 4.1 or export the channels as text, MATLAB or HDF5.",
+                        (long long)list->at);
+  if (stated > *count)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: the list at byte %lld states %lld blocks and has %lld links.",
+                        (long long)list->at, (long long)stated, (long long)list->links);
+  *count = stated;
+  return EO_OK;
+}
+
 /* A list: its links lead to the next list and to data blocks. */
 static enum eo_code add_list(struct eo_mdf *mdf, struct eo_mdf_block *list, struct blocks *blocks,
                              struct eo_error *error)
 {
   for (;;) {
-    for (int64_t i = 1; i < list->links; i++) {
+    int64_t count;
+    enum eo_code code = count_data_links(list, &count, error);
+    for (int64_t i = 1; i <= count && !code; i++) {
       unsigned char bytes[8];
-      enum eo_code code = eo_bytes_read(mdf->file, list->data_at - 8 * (list->links - i), bytes, 8, error);
+      code = eo_bytes_read(mdf->file, list->data_at - 8 * (list->links - i), bytes, 8, error);
       int64_t at = code ? 0 : (int64_t)eo_bytes_64(bytes, false);
       if (!code && at)
         code = add_blocks(mdf, at, 1, blocks, error);
-      if (code)
-        return code;
     }
-    if (!list->link[0])
-      return EO_OK;
-    enum eo_code code = eo_mdf_open(mdf, list->link[0], "DL", list, error);
+    if (code || !list->link[0])
+      return code;
+    const char id[3] = {list->id[0], list->id[1], 0};
+    code = eo_mdf_open(mdf, list->link[0], id, list, error);
     if (code)
       return code;
   }
@@ -100,12 +123,15 @@ static enum eo_code add_blocks(struct eo_mdf *mdf, int64_t at, int depth, struct
   enum eo_code code = eo_mdf_open(mdf, at, NULL, &found, error);
   if (code)
     return code;
-  if (!strcmp(found.id, "DT")) {
+  if (!strcmp(found.id, "DT") || !strcmp(found.id, "DV")) {
+    blocks->apart = blocks->apart || found.id[1] == 'V';
     struct block block = {PLAIN, found.data_at, found.size, found.size, 0};
     return add_block(blocks, &block, error);
   }
-  if (!strcmp(found.id, "DZ"))
+  if (!strcmp(found.id, "DZ")) {
+    blocks->apart = blocks->apart || !memcmp(found.data, "DV", 2);
     return add_packed(blocks, &found, error);
+  }
   if (!strcmp(found.id, "HL") && !depth) {
     if (!found.link[0])
       return EO_OK;
@@ -113,13 +139,8 @@ static enum eo_code add_blocks(struct eo_mdf *mdf, int64_t at, int depth, struct
     if (code)
       return code;
   }
-  if (!strcmp(found.id, "DL") && !depth)
+  if ((!strcmp(found.id, "DL") || !strcmp(found.id, "LD")) && !depth)
     return add_list(mdf, &found, blocks, error);
-  if (!strcmp(found.id, "LD") || !strcmp(found.id, "DV"))
-    return eo_error_set(error, EO_ERROR_INPUT, "",
-                        "MDF: the data at byte %lld stand column by column (MDF 4.2); save the file as MDF 4.1 or "
-                        "export the channels as text, MATLAB or HDF5.",
-                        (long long)at);
   return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: at byte %lld there are no data but a block %s.", (long long)at,
                       found.id);
 }
@@ -422,6 +443,8 @@ enum eo_code eo_mdf_find_records(struct eo_mdf *mdf, int64_t at, int number, int
   enum eo_code code = at && count ? add_blocks(mdf, at, 0, &blocks, error) : EO_OK;
   if (!code)
     code = check_growth(mdf, &blocks, error);
+  if (blocks.apart)
+    mdf->group[first].record = mdf->group[first].data;
   bool plain = count == 1 && !mdf->group[first].variable;
   for (int64_t i = 0; i < blocks.count; i++)
     plain = plain && blocks.block[i].packing == PLAIN;

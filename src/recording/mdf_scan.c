@@ -64,7 +64,7 @@ static struct eo_mdf_group *add_group(struct eo_mdf *mdf, struct eo_error *error
    their length. */
 static enum eo_code read_group(struct eo_mdf *mdf, const struct eo_mdf_block *block, struct eo_error *error)
 {
-  enum { VARIABLE = 1, BUS = 2 | 4 };
+  enum { VARIABLE = 1, BUS = 2 | 4, REMOTE_MASTER = 8 };
   struct eo_mdf_group *group = add_group(mdf, error);
   if (!group)
     return error->code;
@@ -76,6 +76,8 @@ static enum eo_code read_group(struct eo_mdf *mdf, const struct eo_mdf_block *bl
   group->record = group->data + invalidation;
   group->variable = flags & VARIABLE;
   group->comment = block->link[5];
+  group->at = block->at;
+  group->master_at = flags & REMOTE_MASTER ? block->link[6] : 0;
   eo_mdf_text(mdf, block->link[2], group->name, sizeof group->name);
   mdf->frames += (flags & BUS) != 0;
   if (!group->variable && group->record > EO_MDF_RECORD)
@@ -261,19 +263,29 @@ static void name_by_group(struct eo_mdf *mdf)
   }
 }
 
+/* The group that has the times of a group: itself, or (MDF 4.2, column by column) another one with as many records. */
+static const struct eo_mdf_group *clock_group(const struct eo_mdf *mdf, const struct eo_mdf_group *group)
+{
+  for (int g = 0; group->master < 0 && !(group->interval > 0) && group->master_at && g < mdf->groups; g++)
+    if (mdf->group[g].at == group->master_at && mdf->group[g].rows == group->rows)
+      return &mdf->group[g];
+  return group;
+}
+
 /* Each channel gets length and clock of its group. */
 static void settle(struct eo_mdf *mdf)
 {
   for (int c = 0; c < mdf->channels; c++) {
     struct eo_series *series = &mdf->series[c];
     const struct eo_mdf_group *group = &mdf->group[mdf->channel[c].group];
+    const struct eo_mdf_group *times = clock_group(mdf, group);
     series->length = group->rows;
     series->clock.epoch = mdf->epoch;
-    if (group->master >= 0 && group->master != c)
-      series->clock.column = group->master;
-    if (group->interval > 0) {
-      series->clock.interval = group->interval;
-      series->clock.start = group->start;
+    if (times->master >= 0 && times->master != c)
+      series->clock.column = times->master;
+    if (times->interval > 0) {
+      series->clock.interval = times->interval;
+      series->clock.start = times->start;
     }
   }
   name_by_group(mdf);

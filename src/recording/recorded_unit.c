@@ -55,6 +55,7 @@ static const struct {
     {"ma", EO_QUANTITY_CURRENT, 1e-3},
     {"ua", EO_QUANTITY_CURRENT, 1e-6},
     {"hz hertz 1/s s-1 s/s sa/s samples/s samples/sec sps spers s/sec samplespersecond", EO_QUANTITY_FREQUENCY, 1},
+    {"samples/min sa/min samplesperminute", EO_QUANTITY_FREQUENCY, 1. / 60},
     {"khz ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
     {"mhz ms/s msa/s msps megahertz", EO_QUANTITY_FREQUENCY, 1e6},
     {"ghz gs/s gsa/s", EO_QUANTITY_FREQUENCY, 1e9},

@@ -188,6 +188,23 @@ static bool is_sampling_unit(const char *unit)
   return holds(folded, "s/s sps sa/s samples") && eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
 }
 
+/* "Values/h": a unit that is not known and counts something per something. A number under it is no rate in Hz. */
+static bool is_unknown_ratio(const char *unit)
+{
+  char folded[KEY];
+  double factor;
+  fold(unit, folded);
+  return holds(folded, "/ per pro") &&
+         (eo_unit_find(unit, &factor) == EO_QUANTITY_OTHER || eo_unit_find(unit, &factor) == EO_QUANTITY_NONE);
+}
+
+/* German calls the rate of a logger and the clock of a counter a Takt; counters run at 1 MHz and more. */
+static bool is_slow_clock(const char *folded, double number, enum eo_quantity quantity, double factor)
+{
+  return quantity == EO_QUANTITY_FREQUENCY && number * factor < 1e6 && holds(folded, "taktrate taktfreq") &&
+         !holds(folded, "zaehler zahler timer counter");
+}
+
 /* What a key of one meaning says; folded: in lower case, its unit taken off. */
 static void judge_key(const char *folded, double number, enum eo_quantity quantity, double factor, bool turn_unit,
                       struct eo_stated *stated)
@@ -195,6 +212,8 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
   bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
   bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
   bool rate = is_rate(folded), interval = is_interval(folded), tick = is_tick(folded);
+  if (is_slow_clock(folded, number, quantity, factor))
+    rate = true, tick = false;
   if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)
     stated->kind = EO_STATED_TURN, stated->value = number;
   else if (tick && positive && (time || frequency || number > 1000))
@@ -236,5 +255,7 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
     fold(rest, folded);
     judge_key(folded, number, quantity, factor, false, &stated);
   }
+  if (stated.kind == EO_STATED_INTERVAL && is_unknown_ratio(unit))
+    return nothing();
   return stated;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest sheet of an Excel workbook as text with tabs. Source: ECMA-376, SpreadsheetML: sheets in
-   xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
+/* The largest sheet of an Excel workbook as text with tabs, small ones before it. Source: ECMA-376, SpreadsheetML:
+   sheets in xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
 #include "recording/zip_files.h"
 #include "recording/sheet_text.h"
 
@@ -14,6 +14,8 @@
 #define TEXTS ((size_t)64 << 20) /* bytes of shared texts at most */
 #define VALUE 1024               /* bytes of a cell's value at most; longer texts are cut */
 #define NAME 64
+
+enum { FACT_SHEETS = 8, FACT_CELLS = 200 }; /* sheets that are no table, and what they hold at most */
 
 struct workbook {
   struct eo_archive *archive;
@@ -30,6 +32,8 @@ struct workbook {
   /* sheets */
   char best[NAME], current[NAME];
   int64_t cells, most; /* of the current sheet, of the best one */
+  char small[FACT_SHEETS][NAME];
+  int smalls;
   /* the cell or text that is being read */
   bool in_value, in_text, writing;
   char type[16], value[VALUE];
@@ -280,10 +284,28 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
     return true;
   workbook->cells = 0;
   bool good = parse(workbook, begin_cell, end_cell);
+  if (workbook->cells > 0 && workbook->cells <= FACT_CELLS && workbook->smalls < FACT_SHEETS)
+    snprintf(workbook->small[workbook->smalls++], sizeof *workbook->small, "%s", name);
   if (workbook->cells > workbook->most) {
     workbook->most = workbook->cells;
     snprintf(workbook->best, sizeof workbook->best, "%s", name);
   }
+  return good;
+}
+
+/* A small sheet beside the table: what it states stands before the rows. */
+static bool write_facts(void *context, struct eo_archive *archive, const char *name)
+{
+  struct workbook *workbook = context;
+  bool small = false;
+  (void)archive;
+  for (int i = 0; i < workbook->smalls; i++)
+    small = small || !strcmp(workbook->small[i], name);
+  if (!small || !strcmp(name, workbook->best))
+    return true;
+  workbook->writing = true;
+  bool good = parse(workbook, begin_cell, end_cell);
+  workbook->writing = false;
   return good;
 }
 
@@ -308,6 +330,8 @@ enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *nam
   enum eo_code code = eo_archive_visit(archive, look, workbook);
   if (!code && !workbook->most)
     code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
+  if (!code)
+    code = eo_archive_visit(archive, write_facts, workbook);
   if (!code)
     code = eo_archive_visit(archive, write_best, workbook);
   const char *base = strrchr(workbook->best, '/');

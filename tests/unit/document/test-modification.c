@@ -163,6 +163,41 @@ static void test_gain(void)
   refuse("a gain of no grid", "{\"pinion\":{\"left\":{\"grid_gain\":0.5}}}", "", "/modification/pinion/left/grid_gain");
 }
 
+static struct eo_warnings found;
+
+/* What a finding says of a flank's root relief; NULL: nothing. */
+static const char *fold_found(struct eo_design *design)
+{
+  struct eo_error error;
+  struct eo_geometry own;
+  found.count = 0;
+  if (eo_design_complete(design, &own, &error))
+    printf("Bail out! %s\n", error.text);
+  eo_design_note_findings(design, &own, &found);
+  for (int i = 0; i < found.count; i++)
+    if (!strcmp(found.key[i], "/modification/pinion/left/root_relief_um"))
+      return found.text[i];
+  return NULL;
+}
+
+/* A rack with a steep relief near the base circle cuts away what it has made: said with the most that does not. */
+static void test_fold(void)
+{
+  static struct eo_design folded;
+  eo_example_build("paper", &folded);
+  struct eo_flank_modification *flank = &folded.modification.flank[EO_PINION][EO_LEFT];
+  flank->root_relief_start = 4.5e-3;
+  flank->root_relief = 80e-6;
+  const char *text = fold_found(&folded), *most = text ? strstr(text, "Up to ") : NULL;
+  double amount = most ? 1e-6 * strtod(most + 6, NULL) : 0;
+  ok(amount > 1e-6 && amount < 80e-6 && strstr(text, "The flank folds between the diameters 104."), "a fold: %s",
+     text ? text : "not found");
+  flank->root_relief = 0.99 * amount;
+  ok(!fold_found(&folded), "a little less than that does not fold");
+  flank->root_relief = 1.01 * amount;
+  ok(fold_found(&folded) != NULL, "a little more does");
+}
+
 /* deviations by name against the formulas of their definition. */
 static void test_terms(void)
 {
@@ -179,7 +214,7 @@ static void test_terms(void)
   struct eo_modification_shape shape;
   eo_active_profile(&geometry, EO_GEAR, end);
   eo_modification_init(&shape, &geometry, EO_GEAR, &flank);
-  for (int i = 0; i <= 20; i++)
+  for (int i = -4; i <= 24; i++) /* beyond the active profile too, where a tip goes on */
     for (int j = 0; j <= 20; j++) {
       double u = end[0] + (end[1] - end[0]) * i / 20, y = half * (j / 10. - 1);
       double xi = (u - (end[0] + end[1]) / 2) / ((end[1] - end[0]) / 2), zeta = y / half;
@@ -408,6 +443,7 @@ int main(void)
   test_refusals();
   test_gain();
   test_terms();
+  test_fold();
   test_spline();
   test_grid_document();
   test_export();

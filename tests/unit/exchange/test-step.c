@@ -13,6 +13,7 @@
 #include "exchange/patch.h"
 #include "exchange/step.h"
 #include "exchange/tooth.h"
+#include "support/step-mesh.h"
 #include "support/tap.h"
 
 static const double allowed = 10e-9; /* m off the exact surface */
@@ -258,109 +259,6 @@ static void check_tooth(const char *name)
 
 /* OpenCASCADE: */
 
-static double apart(const double a[3], const double b[3])
-{
-  return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-}
-
-static double clamp(double value)
-{
-  return fmin(1, fmax(0, value));
-}
-
-/* One step of Gauss and Newton on the parameters of the nearest point. */
-static void refine(const struct eo_tooth *tooth, enum eo_tooth_part part, const double node[3], double *p, double *q)
-{
-  const double step = 1e-5;
-  double point[3], other[3], along[2][3], gram[3] = {0}, right[2] = {0};
-  eo_tooth_point(tooth, part, 0, *p, *q, point, NULL);
-  for (int d = 0; d < 2; d++) {
-    double to = (d ? *q : *p) > 0.5 ? -step : step;
-    eo_tooth_point(tooth, part, 0, d ? *p : *p + to, d ? *q + to : *q, other, NULL);
-    for (int c = 0; c < 3; c++)
-      along[d][c] = (other[c] - point[c]) / to;
-  }
-  for (int c = 0; c < 3; c++) {
-    gram[0] += along[0][c] * along[0][c];
-    gram[1] += along[0][c] * along[1][c];
-    gram[2] += along[1][c] * along[1][c];
-    right[0] += along[0][c] * (node[c] - point[c]);
-    right[1] += along[1][c] * (node[c] - point[c]);
-  }
-  double determinant = gram[0] * gram[2] - gram[1] * gram[1];
-  *p = clamp(*p + (gram[2] * right[0] - gram[1] * right[1]) / determinant);
-  *q = clamp(*q + (gram[0] * right[1] - gram[1] * right[0]) / determinant);
-}
-
-/* Distance of a point from the exact part, m: along its normal where the part is nearest, found step by step. */
-static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part part, const double node[3])
-{
-  double p = 0.5, q = 0.5, best = 1, point[3], normal[3], other[3];
-  for (int i = 0; i <= 12; i++)
-    for (int k = 0; k <= 12; k++) {
-      eo_tooth_point(tooth, part, 0, i / 12., k / 12., point, NULL);
-      double d = apart(node, point);
-      if (d < best) {
-        best = d;
-        p = i / 12.;
-        q = k / 12.;
-      }
-    }
-  if (best > 20e-3)
-    return best;
-  for (double step = 1 / 24.; step > 1e-6;) { /* to the neighbour that is nearer, else closer around */
-    double to[2] = {p, q}, nearest = best;
-    for (int i = -1; i <= 1; i++)
-      for (int k = -1; k <= 1; k++) {
-        eo_tooth_point(tooth, part, 0, clamp(p + i * step), clamp(q + k * step), other, NULL);
-        if (apart(node, other) < nearest) {
-          nearest = apart(node, other);
-          to[0] = clamp(p + i * step);
-          to[1] = clamp(q + k * step);
-        }
-      }
-    step = nearest < best ? step : step / 2;
-    best = nearest;
-    p = to[0];
-    q = to[1];
-  }
-  for (int round = 0; round < 6; round++)
-    refine(tooth, part, node, &p, &q);
-  eo_tooth_point(tooth, part, 0, p, q, point, normal);
-  double along_normal = 0, whole = apart(node, point);
-  for (int c = 0; c < 3; c++)
-    along_normal += (node[c] - point[c]) * normal[c];
-  return whole > 1e-6 ? whole : fabs(along_normal);
-}
-
-static bool make_mesh(char folder[64], int member)
-{
-  struct eo_text text = {0};
-  struct eo_error error;
-  char path[100], command[300];
-  strcpy(folder, "/tmp/easeoff-step-XXXXXX");
-  if (!mkdtemp(folder))
-    return false;
-  snprintf(path, sizeof path, "%s/tooth.step", folder);
-  eo_step_write(&design, &geometry, member, false, &text);
-  bool good = !eo_text_save(&text, path, &error);
-  eo_text_done(&text);
-  snprintf(command, sizeof command,
-           "cd %s && timeout 120 gmsh -2 -clmax 9 -format msh2 -o tooth.msh tooth.step >log 2>&1", folder);
-  return good && system(command) == 0;
-}
-
-static void remove_mesh(const char *folder)
-{
-  static const char *const names[] = {"tooth.step", "tooth.msh", "log"};
-  char path[100];
-  for (int i = 0; i < 3; i++) {
-    snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-    unlink(path);
-  }
-  rmdir(folder);
-}
-
 static void check_loaded(const char *name, int member)
 {
   char folder[64], path[100], line[200];
@@ -368,7 +266,7 @@ static void check_loaded(const char *name, int member)
   int nodes = 0, ends;
   build(name);
   ends = design.gear_pair.ends;
-  bool made = make_mesh(folder, member);
+  bool made = make_mesh(&design, &geometry, member, folder);
   snprintf(path, sizeof path, "%s/tooth.msh", folder);
   FILE *mesh = made ? fopen(path, "r") : NULL;
   struct eo_tooth tooth[2];

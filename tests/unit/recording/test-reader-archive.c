@@ -106,6 +106,33 @@ static void test_zip(void)
   refuse("cannot be read", "a wrong check sum");
 }
 
+/* What a small sheet states holds for the table on another one, before it or behind. */
+static void test_facts_beside(int first)
+{
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  add("xl/workbook.xml", "<workbook><workbookPr/></workbook>");
+  for (int i = 1; i <= 2; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "xl/worksheets/sheet%d.xml", i);
+    add(name, i == first
+                  ? "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>Abtastrate</t></is></c>"
+                    "<c r=\"B1\"><v>4</v></c><c r=\"C1\" t=\"inlineStr\"><is><t>kHz</t></is></c></row></sheetData>"
+                    "</worksheet>"
+                  : "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>Pinion [deg]</t></is></c>"
+                    "<c r=\"B1\" t=\"inlineStr\"><is><t>Gear [deg]</t></is></c></row>"
+                    "<row r=\"2\"><c r=\"A2\"><v>1</v></c><c r=\"B2\"><v>2</v></c></row>"
+                    "<row r=\"3\"><c r=\"A3\"><v>3</v></c><c r=\"B3\"><v>4</v></c></row>"
+                    "<row r=\"4\"><c r=\"A4\"><v>5</v></c><c r=\"B4\"><v>7</v></c></row></sheetData></worksheet>");
+  }
+  finish();
+  struct eo_recording *r = take(&notes, &error);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 7 && !strcmp(eo_recording_name(r, 1), "Gear"),
+     "a sheet of facts %s the table: its rows%s", first == 1 ? "before" : "behind", r ? "" : error.text);
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-15, "and its rate");
+  eo_recording_free(r);
+}
+
 static void test_workbook(void)
 {
   struct eo_error error;
@@ -175,6 +202,8 @@ int main(void)
   fixture_open();
   test_zip();
   test_workbook();
+  test_facts_beside(1);
+  test_facts_beside(2);
   test_opendocument();
   test_names();
   return fixture_close();

@@ -151,6 +151,10 @@ static void test_stated(void)
   stated("scale_factor", 4e-6, "", EO_STATED_SCALE, 4e-6);
   stated("Operators", 4, "", EO_STATED_NOTHING, 0);
   stated("Sampling rate", -4, "Hz", EO_STATED_NOTHING, 0);
+  stated("Rate", 240000, "samples/min", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Rate", 240000, "values/h", EO_STATED_NOTHING, 0);
+  stated("Taktrate", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Taktrate", 80, "MHz", EO_STATED_TICK, 1.25e-8);
   ok(eo_stated_read("Rate gear", 1, "Hz").member == 1 && eo_stated_read("fs_pinion", 1, "Hz").member == 0,
      "whose it is");
   ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"), "when it began");
