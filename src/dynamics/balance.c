@@ -27,6 +27,7 @@ struct eo_balance {
   double *jacobian;                  /* [2 terms][2 terms] */
   double *scale;                     /* [2][2 terms] of the unknowns and of the equations */
   double *residual;                  /* [2 terms] */
+  double *noted;                     /* [2 terms] where KINSOL has asked for the residual last */
   int *pivot;
 };
 
@@ -49,12 +50,13 @@ enum eo_code eo_balance_new(struct eo_balance **workspace, int harmonics, int sa
   balance->load = malloc(sizeof *balance->load * 2 * n);
   balance->force = malloc(sizeof *balance->force * 2 * n);
   balance->residual = malloc(sizeof *balance->residual * 2 * n);
+  balance->noted = malloc(sizeof *balance->noted * 2 * n);
   balance->scale = malloc(sizeof *balance->scale * 4 * n);
   balance->jacobian = malloc(sizeof *balance->jacobian * 4 * n * n);
   balance->pivot = malloc(sizeof *balance->pivot * 2 * n);
   enum eo_code code = EO_OK;
-  if (!balance->stiffness || !balance->load || !balance->force || !balance->residual || !balance->scale ||
-      !balance->jacobian || !balance->pivot)
+  if (!balance->stiffness || !balance->load || !balance->force || !balance->residual || !balance->noted ||
+      !balance->scale || !balance->jacobian || !balance->pivot)
     code = eo_error_memory(error);
   if (!code)
     code = eo_alternating_new(&balance->coarse, harmonics, coarse, error);
@@ -80,6 +82,7 @@ void eo_balance_free(struct eo_balance *balance)
   free(balance->load);
   free(balance->force);
   free(balance->residual);
+  free(balance->noted);
   free(balance->scale);
   free(balance->jacobian);
   free(balance->pivot);
@@ -240,6 +243,23 @@ static int balance_jacobian(void *context, const double *x, double *jacobian)
   return code;
 }
 
+/* For KINSOL, which asks for it where it has asked for the residual last: the forces are there already. */
+static int noted_residual(void *context, const double *x, double *residual)
+{
+  struct eo_balance *balance = context;
+  memcpy(balance->noted, x, sizeof *x * balance->ends * balance->terms);
+  return balance_residual(balance, x, residual);
+}
+
+static int noted_jacobian(void *context, const double *x, double *jacobian)
+{
+  struct eo_balance *balance = context;
+  if (memcmp(balance->noted, x, sizeof *x * balance->ends * balance->terms) != 0)
+    return balance_jacobian(balance, x, jacobian);
+  fill_jacobian(balance, jacobian);
+  return 0;
+}
+
 static enum eo_code use_grid(struct eo_balance *balance, struct eo_alternating *grid, bool attached,
                              struct eo_error *error)
 {
@@ -328,7 +348,7 @@ static enum eo_code solve_nonlinear(struct eo_balance *balance, double *x, struc
     balance->scale[i] = size > 0 ? size : 1;
     balance->scale[all + i] = load;
   }
-  const struct eo_nonlinear_problem problem = {balance_residual, balance_jacobian, balance};
+  const struct eo_nonlinear_problem problem = {noted_residual, noted_jacobian, balance};
   const struct eo_nonlinear_options options = {.x_scale = balance->scale,
                                                .residual_scale = balance->scale + all,
                                                .residual_tolerance = tolerance,
