@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/evaluator_private.h"
 
-#include "base/parallel.h"
-
 #include <string.h>
 
 /* Forgets what belongs to the last run alone. */
@@ -149,13 +147,23 @@ static int end_of_batch(const struct batches *batches, int first)
   return last;
 }
 
-static enum eo_code solve_batch(void *context, int thread, int batch, struct eo_error *error)
+/* Those of a batch whose loads are what they are in the end: their root stress may begin. */
+static void offer_roots(const struct batches *batches, int first, int last)
+{
+  struct eo_end_result *owner[EO_EVALUATOR_BATCH];
+  int count = 0;
+  for (int i = first; i < last && batches->run->roots->early; i++)
+    if (batches->solution[i].owner)
+      owner[count++] = batches->solution[i].owner;
+  eo_roots_offer(batches->run->roots, count, owner);
+}
+
+static void solve_batch(void *context, int thread, int batch)
 {
   const struct batches *batches = context;
   struct eo_loaded_end loaded[EO_EVALUATOR_BATCH];
   double load[EO_EVALUATOR_BATCH] = {0};
   int first = 0, last = end_of_batch(batches, 0);
-  (void)error;
   for (int i = 0; i < batch; i++) {
     first = last;
     last = end_of_batch(batches, first);
@@ -169,7 +177,7 @@ static enum eo_code solve_batch(void *context, int thread, int batch, struct eo_
                   batches->solution[first].gaps, batches->run->scenario.compliance, last - first, load, loaded);
   for (int i = first; i < last; i++)
     batches->solution[i].result->failures = loaded[i - first].failures;
-  return EO_OK;
+  offer_roots(batches, first, last);
 }
 
 void eo_evaluator_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int solutions,
@@ -180,10 +188,7 @@ void eo_evaluator_solve(struct eo_evaluator *evaluator, const struct eo_run *run
                             share < EO_EVALUATOR_BATCH ? share : EO_EVALUATOR_BATCH};
   for (int first = 0; first < solutions; first = end_of_batch(&batches, first))
     count++;
-  const struct eo_parallel parallel = {
-      .threads = count < 2 ? 1 : evaluator->threads, .work = solve_batch, .context = &batches};
-  struct eo_error none;
-  eo_parallel_run(&parallel, count, &none); /* nothing in it can fail */
+  eo_team_do(run->team, &(struct eo_work_list){solve_batch, &batches, .pieces = count});
   evaluator->result.solutions += solutions;
 }
 
@@ -197,10 +202,11 @@ void eo_evaluator_solve_cases(struct eo_evaluator *evaluator, const struct eo_ru
     for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++)
       for (int k = 0; k < result->cases; k++)
         if (evaluator->meeting_of[k] == m) {
-          struct eo_loaded_end *loaded = &result->load_case[k].end[end].loaded;
+          struct eo_end_result *owner = &result->load_case[k].end[end];
+          struct eo_loaded_end *loaded = &owner->loaded;
           loaded->around = evaluator->solved_for[end].around && !evaluator->bodies_are_elastic;
           solution[solutions++] = (struct eo_solution){end, &evaluator->meeting[m]->gaps[end],
-                                                       result->load_case[k].end_force[end], loaded};
+                                                       result->load_case[k].end_force[end], loaded, owner};
         }
   eo_evaluator_solve(evaluator, run, solutions, solution);
 }

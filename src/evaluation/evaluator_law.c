@@ -99,7 +99,7 @@ static enum eo_code solve_table(struct eo_evaluator *evaluator, const struct eo_
   EO_TRY(make_table_storage(evaluator, error));
   const struct eo_loaded_gaps *gaps = eo_evaluator_gaps_of(evaluator, run, request->load_case, request->end);
   for (int i = 0; i < loads; i++)
-    solution[i] = (struct eo_solution){request->end, gaps, load[i], &evaluator->table[i]};
+    solution[i] = (struct eo_solution){request->end, gaps, load[i], &evaluator->table[i], NULL};
   eo_evaluator_solve(evaluator, run, loads, solution);
   return EO_OK;
 }

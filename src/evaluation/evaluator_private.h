@@ -24,6 +24,28 @@ enum {
 /* Beside EO_WANT_...: stop after the entering impact. */
 enum { EO_WANT_CONTACT_ALONE = 1 << 8 };
 
+/* A list of pieces of work, in any order and on either thread. */
+struct eo_work_list {
+  void (*work)(void *context, int thread, int piece);
+  void *context; /* borrowed */
+  int pieces;
+  bool filler; /* what nobody waits for yet: taken where there is nothing else */
+  int next, done;
+  struct eo_work_list *behind;
+};
+
+/* The two threads of a run, or the one. */
+struct eo_team {
+  pthread_t thread; /* the second one */
+  bool started;
+  pthread_mutex_t mutex; /* guards what follows, and the lists */
+  pthread_cond_t changed;
+  bool closed;
+  struct eo_work_list *first;
+};
+
+struct eo_roots;
+
 /* What one run is asked for. */
 struct eo_run {
   const struct eo_design *design; /* resolved, borrowed */
@@ -31,6 +53,8 @@ struct eo_run {
   int want;                       /* EO_WANT_... */
   bool root;                      /* with root stress */
   bool rating;                    /* with the rating: a limit asks for it */
+  struct eo_team *team;           /* borrowed */
+  struct eo_roots *roots;         /* borrowed; the root stress of this run */
 };
 
 /* What the gap fields, the gaps and the loads of one end depend on beside the pair and the grids. */
@@ -94,12 +118,12 @@ struct eo_evaluator {
   struct eo_root_peak *peaks[2];        /* [half]: [member][teeth][most_cases * 2]; NULL until asked for */
 
   /* mesh laws and vibration */
-  struct eo_loaded_end *table; /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */
-  double *table_rows;          /* [EO_EVALUATOR_TABLE_ROWS][positions] scratch of one mesh law */
-  double *shifted;             /* [positions] scratch of one mesh law */
-  struct eo_law (*law)[2];     /* [most_cases][end] */
-  struct eo_vibration_solver *vibration;
-  int vibration_harmonics;
+  struct eo_loaded_end *table;              /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */
+  double *table_rows;                       /* [EO_EVALUATOR_TABLE_ROWS][positions] scratch of one mesh law */
+  double *shifted;                          /* [positions] scratch of one mesh law */
+  struct eo_law (*law)[2];                  /* [most_cases][end] */
+  struct eo_vibration_solver *vibration[2]; /* [thread]; NULL until needed */
+  int vibration_harmonics[2];
   struct eo_vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;
@@ -163,6 +187,7 @@ struct eo_solution {
   const struct eo_loaded_gaps *gaps; /* borrowed */
   double load;
   struct eo_loaded_end *result; /* borrowed */
+  struct eo_end_result *owner;  /* whose result it is, for its root stress; NULL: nobody's. Borrowed */
 };
 
 /* Solves them at the compliance of the run, on both threads where there are two; those with the same gaps stand
@@ -208,44 +233,59 @@ void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_r
 
 /* In evaluator_threads.c. */
 
+/* A second thread where there are to be two. */
+void eo_team_start(struct eo_team *team, int threads);
+
+/* Leaves a list to whoever has time; it is borrowed until settle(), and any thread may offer one. */
+void eo_team_offer(struct eo_team *team, struct eo_work_list *list);
+
+/* Works a list off, with the other thread; back when it is done. */
+void eo_team_do(struct eo_team *team, struct eo_work_list *list);
+
+/* Back when everything that was offered is done. */
+void eo_team_settle(struct eo_team *team);
+void eo_team_finish(struct eo_team *team);
+
 /* Takes each end through a step, two ends at once where there are two threads. */
-enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step,
-                                   struct eo_error *error);
-
-/* Work of a second thread beside the calling one. */
-struct eo_beside {
-  pthread_t thread;
-  bool started;
-  void (*work)(void *context, int thread);
-  void *context; /* borrowed */
-};
-
-/* Starts work(context, 1) where there are two threads; otherwise nothing. */
-void eo_beside_start(struct eo_beside *beside, int threads);
-
-/* work(context, 0) on the calling thread, then waits for the other one. */
-void eo_beside_finish(struct eo_beside *beside);
+void eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step);
 
 /* In evaluator_roots.c. */
 
-/* Root stress of several ends; the work is one tooth of a member under a batch of ends of one half at a time. */
+enum { EO_ROOT_BATCH = 8 }; /* ends at a time, so that the stresses of a tooth stay in the cache */
+
+/* Root stress of several ends of one half; the work is one tooth of a member. */
+struct eo_root_group {
+  struct eo_roots *roots;
+  int half, ends;
+  int place[EO_ROOT_BATCH]; /* among the ends of the half */
+  struct eo_end_result *end[EO_ROOT_BATCH];
+  struct eo_work_list list;
+};
 struct eo_root_half {
   int ends, teeth, first_tooth; /* ends: to compute; teeth: of a member that are in mesh over the cycle */
   struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
+  bool offered[EO_MAX_LOAD_CASES * 2];
 };
 struct eo_roots {
   struct eo_evaluator *evaluator;
-  bool wanted, copies_left;    /* copies_left: the right end is a copy of the left one */
+  struct eo_team *team;        /* borrowed */
+  bool wanted, early;          /* early: the loads of an end alone are those it has in the end */
+  bool copies_left;            /* the right end is a copy of the left one */
   struct eo_root_half half[2]; /* both ends in the first where they are alike */
-  atomic_int next;             /* piece of work to be taken */
-  double milliseconds[2];      /* [thread] */
-  struct eo_beside beside;
+  atomic_int groups;
+  struct eo_root_group group[EO_MAX_LOAD_CASES * 2];
+  double milliseconds[2]; /* [thread] */
 };
 
-/* Begins on the second thread where there is one; from here to the end the loads must not change. After an error
-   nothing has begun. */
+/* Lists the ends whose root stress is to be found, before loads are solved. */
 enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluator, const struct eo_run *run,
                             struct eo_error *error);
+
+/* The loads of these ends of one half are what they are: whoever has time begins. On any thread. */
+void eo_roots_offer(struct eo_roots *roots, int ends, struct eo_end_result *const *end);
+
+/* Those of all ends are. */
+void eo_roots_offer_rest(struct eo_roots *roots);
 void eo_roots_finish(struct eo_roots *roots);
 
 /* In evaluator_vibration.c. */

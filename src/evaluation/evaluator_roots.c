@@ -4,15 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* STEP: every other position, the stress is a smooth function of the phase. BATCH: ends at a time, so that the stresses
-   of a tooth stay in the cache. */
-enum { ROOT_STEP = 2, ROOT_BATCH = 8 };
+enum { ROOT_STEP = 2 }; /* every other position: the stress is a smooth function of the phase */
 
 static enum eo_code make_workspaces(struct eo_evaluator *evaluator, int half, int teeth, struct eo_error *error)
 {
   const struct eo_pair *pair = eo_pair_half(evaluator->pair, half);
   const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
-  int ends = 2 * evaluator->most_cases < ROOT_BATCH ? 2 * evaluator->most_cases : ROOT_BATCH;
+  int ends = 2 * evaluator->most_cases < EO_ROOT_BATCH ? 2 * evaluator->most_cases : EO_ROOT_BATCH;
   for (int thread = 0; thread < evaluator->threads; thread++)
     if (!evaluator->root[thread][half])
       EO_TRY(eo_root_workspace_new(&evaluator->root[thread][half], pair->grid, modes, ROOT_STEP, ends, error));
@@ -33,48 +31,90 @@ static void list_ends(struct eo_roots *roots)
       }
 }
 
-/* One tooth of a member under a batch of ends. */
-static void find_tooth(const struct eo_roots *roots, int thread, int number, int piece)
+/* One tooth of a member under a group of ends. */
+static void find_tooth(void *context, int thread, int piece)
 {
-  const struct eo_root_half *half = &roots->half[number];
-  int tooth = piece % half->teeth, member = piece / half->teeth % 2;
-  int first = piece / half->teeth / 2 * ROOT_BATCH;
-  int count = half->ends - first < ROOT_BATCH ? half->ends - first : ROOT_BATCH;
-  const struct eo_loaded_end *loaded[ROOT_BATCH];
-  struct eo_root_history *history[ROOT_BATCH];
-  for (int i = 0; i < count; i++) {
-    loaded[i] = &half->end[first + i]->loaded;
-    history[i] = &half->end[first + i]->root[member];
-  }
-  eo_root_tooth_compute(roots->evaluator->root[thread][number], member, half->first_tooth + tooth, count, loaded,
-                        history, roots->evaluator->peaks[number] + (member * half->teeth + tooth) * half->ends + first);
-}
-
-static int pieces_of(const struct eo_root_half *half)
-{
-  int batches = (half->ends + ROOT_BATCH - 1) / ROOT_BATCH;
-  return batches * 2 * half->teeth;
-}
-
-/* Takes teeth until none is left. */
-static void find_teeth(void *context, int thread)
-{
-  struct eo_roots *roots = context;
+  const struct eo_root_group *group = context;
+  struct eo_roots *roots = group->roots;
   EO_TIMED(roots->milliseconds[thread]);
-  int left = pieces_of(&roots->half[0]), pieces = left + pieces_of(&roots->half[1]);
-  for (int piece; (piece = atomic_fetch_add(&roots->next, 1)) < pieces;)
-    find_tooth(roots, thread, piece >= left, piece >= left ? piece - left : piece);
+  const struct eo_root_half *half = &roots->half[group->half];
+  int tooth = piece % half->teeth, member = piece / half->teeth;
+  const struct eo_loaded_end *loaded[EO_ROOT_BATCH];
+  struct eo_root_history *history[EO_ROOT_BATCH];
+  struct eo_root_peak found[EO_ROOT_BATCH],
+      *peak = roots->evaluator->peaks[group->half] + (member * half->teeth + tooth) * half->ends;
+  for (int i = 0; i < group->ends; i++) {
+    loaded[i] = &group->end[i]->loaded;
+    history[i] = &group->end[i]->root[member];
+  }
+  eo_root_tooth_compute(roots->evaluator->root[thread][group->half], member, half->first_tooth + tooth, group->ends,
+                        loaded, history, found);
+  for (int i = 0; i < group->ends; i++)
+    peak[group->place[i]] = found[i];
+}
+
+static int place_of(const struct eo_root_half *half, const struct eo_end_result *end)
+{
+  int place = 0;
+  while (place < half->ends && half->end[place] != end)
+    place++;
+  return place;
+}
+
+static void offer_group(struct eo_roots *roots, int number, int ends, const int *place)
+{
+  struct eo_root_half *half = &roots->half[number];
+  struct eo_root_group *group = &roots->group[atomic_fetch_add(&roots->groups, 1)];
+  *group = (struct eo_root_group){.roots = roots, .half = number, .ends = ends};
+  group->list = (struct eo_work_list){find_tooth, group, .pieces = 2 * half->teeth, .filler = true};
+  for (int i = 0; i < ends; i++) {
+    half->offered[place[i]] = true;
+    group->place[i] = place[i];
+    group->end[i] = half->end[place[i]];
+  }
+  eo_team_offer(roots->team, &group->list);
+}
+
+/* Those of the places that are not offered yet, in groups. */
+static void offer_places(struct eo_roots *roots, int number, int count, const int *place)
+{
+  int waiting[EO_ROOT_BATCH], n = 0;
+  for (int i = 0; i < count; i++) {
+    if (!roots->half[number].offered[place[i]])
+      waiting[n++] = place[i];
+    if (n > 0 && (n == EO_ROOT_BATCH || i == count - 1)) {
+      offer_group(roots, number, n, waiting);
+      n = 0;
+    }
+  }
+}
+
+void eo_roots_offer(struct eo_roots *roots, int ends, struct eo_end_result *const *end)
+{
+  for (int number = 0; number < 2; number++) {
+    int place[EO_MAX_LOAD_CASES * 2], count = 0;
+    for (int i = 0; i < ends; i++) {
+      place[count] = place_of(&roots->half[number], end[i]);
+      count += place[count] < roots->half[number].ends;
+    }
+    offer_places(roots, number, count, place);
+  }
+}
+
+void eo_roots_offer_rest(struct eo_roots *roots)
+{
+  for (int number = 0; number < 2; number++)
+    eo_roots_offer(roots, roots->half[number].ends, roots->half[number].end);
 }
 
 enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluator, const struct eo_run *run,
                             struct eo_error *error)
 {
-  *roots = (struct eo_roots){.evaluator = evaluator,
-                             .wanted = run->root,
-                             .copies_left = eo_reuse_copies_left(evaluator, run->design),
-                             .beside = {.work = find_teeth, .context = roots}};
+  roots->wanted = run->root;
   if (!run->root)
     return EO_OK;
+  roots->early = !evaluator->bodies_are_elastic && !eo_reuse_shares_unevenly(evaluator, run->design);
+  roots->copies_left = eo_reuse_copies_left(evaluator, run->design);
   for (int half = 0; half < eo_pair_halves(evaluator->pair); half++) {
     int range[2];
     eo_contact_grid_pairs(eo_evaluator_grid(evaluator, half), range);
@@ -83,7 +123,6 @@ enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluat
     EO_TRY(make_workspaces(evaluator, half, roots->half[half].teeth, error));
   }
   list_ends(roots);
-  eo_beside_start(&roots->beside, evaluator->threads);
   return EO_OK;
 }
 
@@ -133,7 +172,7 @@ void eo_roots_finish(struct eo_roots *roots)
   struct eo_evaluator *evaluator = roots->evaluator;
   if (!roots->wanted)
     return;
-  eo_beside_finish(&roots->beside);
+  eo_team_settle(roots->team);
   finish_histories(roots);
   complete_histories(roots);
   for (int end = 0; end < evaluator->result.ends; end++)

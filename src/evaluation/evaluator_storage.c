@@ -157,6 +157,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
   free(evaluator->made);
   eo_meetings_done(evaluator);
   eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);
-  eo_vibration_free(evaluator->vibration);
+  for (int thread = 0; thread < 2; thread++)
+    eo_vibration_free(evaluator->vibration[thread]);
   free(evaluator);
 }

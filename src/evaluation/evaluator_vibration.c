@@ -109,62 +109,100 @@ enum eo_code eo_evaluator_set_laws(struct eo_evaluator *evaluator, const struct 
   return EO_OK;
 }
 
-/* Makes a solver for the harmonics of the design when it has another number. */
-static enum eo_code fit_solver(struct eo_evaluator *evaluator, int harmonics, struct eo_error *error)
+/* Makes a solver of a thread for the harmonics of the design when it has another number. */
+static enum eo_code fit_solver(struct eo_evaluator *evaluator, int thread, int harmonics, struct eo_error *error)
 {
   struct eo_vibration_solver *solver;
-  if (evaluator->vibration && evaluator->vibration_harmonics == harmonics)
+  if (evaluator->vibration[thread] && evaluator->vibration_harmonics[thread] == harmonics)
     return EO_OK;
   EO_TRY(eo_vibration_new(&solver, harmonics, 0, error));
-  eo_vibration_free(evaluator->vibration);
-  evaluator->vibration = solver;
-  evaluator->vibration_harmonics = evaluator->result.harmonics = harmonics;
+  eo_vibration_free(evaluator->vibration[thread]);
+  evaluator->vibration[thread] = solver;
+  evaluator->vibration_harmonics[thread] = harmonics;
   return EO_OK;
 }
 
 /* The periodic state of a load case whose contact has converged; without a mesh law there is none. */
-static enum eo_code settle(struct eo_evaluator *evaluator, const struct eo_run *run, int k,
+static enum eo_code settle(const struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int k,
                            struct eo_vibration *vibration, struct eo_error *error)
 {
   const struct eo_vibration_problem *problem = &evaluator->problem[k];
+  struct eo_vibration_solver *solver = evaluator->vibration[thread];
   *vibration =
       (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = evaluator->result.ends, .multiplier = NAN};
-  EO_TRY(eo_vibration_set_model(evaluator->vibration, &problem->parameters, error));
+  EO_TRY(eo_vibration_set_model(solver, &problem->parameters, error));
   if (!problem->solvable)
     return EO_OK;
   return run->design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
-             ? eo_vibration_settle_integrated(evaluator->vibration, &problem->load, vibration, error)
-             : eo_vibration_settle(evaluator->vibration, &problem->load, vibration, error);
+             ? eo_vibration_settle_integrated(solver, &problem->load, vibration, error)
+             : eo_vibration_settle(solver, &problem->load, vibration, error);
 }
 
-static void read_curves(struct eo_evaluator *evaluator, struct eo_case_result *load_case)
+static void read_curves(const struct eo_evaluator *evaluator, int thread, struct eo_case_result *load_case)
 {
   double *const *const curve[] = {load_case->end[EO_LEFT].curve, load_case->end[EO_RIGHT].curve};
-  eo_vibration_histories(evaluator->vibration, EO_EVALUATOR_SAMPLES, curve);
+  eo_vibration_histories(evaluator->vibration[thread], EO_EVALUATOR_SAMPLES, curve);
   for (int end = 0; end < evaluator->result.ends; end++)
     for (int channel = 0; channel < EO_CURVE_CHANNELS; channel++)
-      eo_vibration_orders(evaluator->vibration, (enum eo_channel)channel, end, load_case->end[end].order[channel]);
+      eo_vibration_orders(evaluator->vibration[thread], (enum eo_channel)channel, end,
+                          load_case->end[end].order[channel]);
+}
+
+static enum eo_code find_vibration(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int k,
+                                   struct eo_error *error)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  struct eo_case_result *load_case = &result->load_case[k];
+  load_case->vibration =
+      (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = result->ends, .multiplier = NAN};
+  EO_TRY(fit_solver(evaluator, thread, run->design->resolution.harmonics, error));
+  if (load_case->contact_failures == 0)
+    EO_TRY(settle(evaluator, run, thread, k, &load_case->vibration, error));
+  load_case->dynamic_force_factor = 1;
+  for (int end = 0; end < result->ends; end++)
+    load_case->dynamic_force_factor = fmax(load_case->dynamic_force_factor, load_case->vibration.dynamic_factor[end]);
+  if (run->want & EO_WANT_CURVES && load_case->vibration.outcome != EO_VIBRATION_NOT_CONVERGED)
+    read_curves(evaluator, thread, load_case);
+  return EO_OK;
+}
+
+/* Load cases on their way to their vibration. */
+struct settling {
+  struct eo_evaluator *evaluator;
+  const struct eo_run *run;
+  struct {
+    int load_case; /* the first that failed */
+    struct eo_error error;
+  } failed[2]; /* [thread] */
+};
+
+static void settle_case(void *context, int thread, int k)
+{
+  struct settling *settling = context;
+  struct eo_error error;
+  enum eo_code code = find_vibration(settling->evaluator, settling->run, thread, k, &error);
+  if (!code || settling->failed[thread].load_case <= k)
+    return;
+  settling->failed[thread].load_case = k;
+  settling->failed[thread].error = error;
+  settling->failed[thread].error.code = code;
 }
 
 enum eo_code eo_evaluator_find_vibrations(struct eo_evaluator *evaluator, const struct eo_run *run,
                                           struct eo_error *error)
 {
   struct eo_evaluation *result = &evaluator->result;
+  int none = result->cases;
+  struct settling settling = {evaluator, run, .failed = {{.load_case = none}, {.load_case = none}}};
   EO_TIMED(result->dynamics_ms);
-  EO_TRY(fit_solver(evaluator, run->design->resolution.harmonics, error));
-  for (int k = 0; k < result->cases; k++) {
-    struct eo_case_result *load_case = &result->load_case[k];
-    load_case->vibration =
-        (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = result->ends, .multiplier = NAN};
-    if (load_case->contact_failures == 0)
-      EO_TRY(settle(evaluator, run, k, &load_case->vibration, error));
-    load_case->dynamic_force_factor = 1;
-    for (int end = 0; end < result->ends; end++)
-      load_case->dynamic_force_factor = fmax(load_case->dynamic_force_factor, load_case->vibration.dynamic_factor[end]);
-    if (run->want & EO_WANT_CURVES && load_case->vibration.outcome != EO_VIBRATION_NOT_CONVERGED)
-      read_curves(evaluator, load_case);
-  }
-  return EO_OK;
+  EO_TRY(fit_solver(evaluator, 0, run->design->resolution.harmonics, error));
+  eo_team_do(run->team, &(struct eo_work_list){settle_case, &settling, .pieces = result->cases});
+  result->harmonics = run->design->resolution.harmonics;
+  int thread = settling.failed[1].load_case < settling.failed[0].load_case;
+  if (settling.failed[thread].load_case == none)
+    return EO_OK;
+  *error = settling.failed[thread].error;
+  return error->code;
 }
 
 static const struct eo_case_result *heaviest_case(const struct eo_evaluation *result)
@@ -193,7 +231,11 @@ enum eo_code eo_evaluator_find_modes(struct eo_evaluator *evaluator, const struc
   result->modes = (struct eo_dynamics_modes){0};
   if (!elastic)
     return EO_OK;
-  return eo_dynamics_model_modes(eo_vibration_model(evaluator->vibration), stiffness, &result->modes, error);
+  int last = result->cases - 1; /* whose mesh damping they have */
+  while (result->load_case[last].contact_failures > 0)
+    last--;
+  EO_TRY(eo_vibration_set_model(evaluator->vibration[0], &evaluator->problem[last].parameters, error));
+  return eo_dynamics_model_modes(eo_vibration_model(evaluator->vibration[0]), stiffness, &result->modes, error);
 }
 
 /* Loads of both ends of a load case at the compliance of the run: loaded[end] points to them. */
@@ -227,7 +269,7 @@ static enum eo_code find_band_of(struct eo_evaluator *evaluator, const struct eo
     scaled.scenario.compliance *= BAND[side];
     load_spare_ends(evaluator, &scaled, load_case, loaded);
     EO_TRY(set_problem(evaluator, &scaled, k, loaded, error));
-    EO_TRY(settle(evaluator, &scaled, k, &vibration, error));
+    EO_TRY(settle(evaluator, &scaled, 0, k, &vibration, error));
     for (int reading = 0; reading < EO_READINGS; reading++)
       load_case->band[reading][side] = vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN
                                                                                        : vibration.rms_pair[reading];

@@ -34,7 +34,9 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   eo_reuse_compare(evaluator, run);
 
   /* slice gap, lead, tip corners, misalignment at every point of each end, both at once */
-  EO_TRY(eo_evaluator_each_end(evaluator, run, eo_end_set_gaps, error));
+  eo_evaluator_each_end(evaluator, run, eo_end_set_gaps);
+  /* root stress, tooth by tooth: by whichever thread has nothing else to do once the loads of an end are there */
+  EO_TRY(eo_roots_begin(run->roots, evaluator, run, error));
   /* loaded contact, each end alone: Z, k_tan, line loads at every position and P */
   eo_evaluator_solve_cases(evaluator, run);
   /* equal ends: the right one carries what the left one does */
@@ -43,30 +45,25 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   eo_evaluator_bend_cases(evaluator, run);
   /* a held pinion: the ends share the torque as the springs have it */
   eo_evaluator_balance_cases(evaluator, run);
+  /* all loads are what they are: the rest of the root stress */
+  eo_roots_offer_rest(run->roots);
   /* first contact, secant stiffness, pressure, edge load, load over the face of each end */
-  EO_TRY(eo_evaluator_each_end(evaluator, run, eo_end_summarise, error));
+  eo_evaluator_each_end(evaluator, run, eo_end_summarise);
   /* transmission error of the pair */
   eo_evaluator_summarise_pairs(evaluator, run);
-
-  /* root stress, tooth by tooth: on the second thread from here on */
-  struct eo_roots roots;
-  EO_TRY(eo_roots_begin(&roots, evaluator, run, error));
   /* entering impact: first touch, speed, force */
   eo_evaluator_find_impacts(evaluator, run);
   /* contact alone ends here; it has no root stress */
   if (run->want & EO_WANT_CONTACT_ALONE)
     return EO_OK;
   /* Z and k_tan of every end as mesh laws of the dynamic model */
-  enum eo_code code = eo_evaluator_set_laws(evaluator, run, error);
-  /* the periodic state of every load case */
-  if (!code)
-    code = eo_evaluator_find_vibrations(evaluator, run, error);
+  EO_TRY(eo_evaluator_set_laws(evaluator, run, error));
+  /* the periodic state of every load case, two at once */
+  EO_TRY(eo_evaluator_find_vibrations(evaluator, run, error));
   /* natural frequencies at the mean mesh stiffness */
-  if (!code)
-    code = eo_evaluator_find_modes(evaluator, run, error);
-  /* teeth that are left; histories and their maxima */
-  eo_roots_finish(&roots);
-  EO_TRY(code);
+  EO_TRY(eo_evaluator_find_modes(evaluator, run, error));
+  /* teeth that are left; histories of the root stress and their maxima */
+  eo_roots_finish(run->roots);
 
   /* contact and vibration again at other compliances */
   EO_TRY(eo_evaluator_find_band(evaluator, run, error));
@@ -81,9 +78,16 @@ static enum eo_code follow(struct eo_evaluator *evaluator, const struct eo_desig
                            struct eo_error *error)
 {
   struct eo_run run = run_of(evaluator, design, scenario, want);
+  struct eo_team team;
+  struct eo_roots roots = {.evaluator = evaluator, .team = &team};
+  run.team = &team;
+  run.roots = &roots;
   enum eo_code code = run.rating ? eo_evaluator_lean(evaluator, &run, error) : EO_OK;
-  if (!code)
+  if (!code) {
+    eo_team_start(&team, evaluator->threads);
     code = follow_order(evaluator, &run, error);
+    eo_team_finish(&team);
+  }
   if (!code && run.rating)
     eo_evaluator_rate(evaluator, &run);
   if (code)
