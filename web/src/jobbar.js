@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bar below every view: the search that runs, how far it is, how long it still takes.
 import { connection, post } from './base/api.js';
-import { fill, h } from './base/dom.js';
+import { fill, h, unlessHeld } from './base/dom.js';
 import { choiceText, duration, sig } from './base/format.js';
 import { ACTIVE } from './base/jobs.js';
 
@@ -55,12 +55,13 @@ export class JobBar {
   constructor(app) {
     this.app = app;
     this.element = h('footer.job-bar', { 'aria-label': 'Jobs' });
-    app.jobs.addEventListener('change', () => this.draw());
-    connection.addEventListener('change', () => this.draw());
-    this.draw();
+    const draw = unlessHeld(this.element, () => this.#draw());
+    app.jobs.addEventListener('change', draw);
+    connection.addEventListener('change', draw);
+    draw();
   }
 
-  draw() {
+  #draw() {
     const searches = this.app.jobs.searches();
     const active = searches.filter(job => ACTIVE.includes(job.state));
     const job = active.find(each => each.state === 'running') ?? active[active.length - 1];

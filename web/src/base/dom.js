@@ -100,3 +100,25 @@ export async function copyText(text) {
     area.remove();
   }
 }
+
+/**
+ * Draws, but later while something of the place is held down: a click is lost on a button that is replaced under it.
+ * @param {HTMLElement} place @param {() => void} draw
+ */
+export function unlessHeld(place, draw) {
+  let [held, late] = [false, false];
+  const release = () =>
+    setTimeout(() => {
+      held = false; // the click has been told
+      if (late) draw();
+      late = false;
+    });
+  place.addEventListener('pointerdown', () => {
+    held = true;
+    for (const end of ['pointerup', 'pointercancel']) window.addEventListener(end, release, { once: true });
+  });
+  return () => {
+    if (held) late = true;
+    else draw();
+  };
+}

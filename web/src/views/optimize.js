@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Optimize view: what is searched for and how; the searches; what the chosen one has found so far.
 import { Refusal, ask, token } from '../base/api.js';
-import { fill, h } from '../base/dom.js';
+import { fill, h, unlessHeld } from '../base/dom.js';
 import { choiceText, dateText, duration, sig } from '../base/format.js';
 import { ACTIVE } from '../base/jobs.js';
 import { progressBar } from '../jobbar.js';
@@ -49,6 +49,7 @@ class OptimizeView {
         this.detail.element,
       ),
     );
+    this.redraw = unlessHeld(this.element, () => this.#draw());
     app.jobs.addEventListener('change', () => this.#later());
     app.analyst.addEventListener('state', () => this.#drawFaults([]));
     app.analyst.addEventListener('result', () => this.search.refresh());
@@ -95,7 +96,7 @@ class OptimizeView {
     this.#asked = true;
     setTimeout(() => {
       this.#asked = false;
-      this.#draw();
+      this.redraw();
     }, PAUSE);
   }
 

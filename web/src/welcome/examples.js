@@ -44,7 +44,8 @@ function drawTeeth(canvas, geometry, pair) {
 /** @param {Api.Design} design */
 function hasModification(design) {
   const { left = {}, right = {} } = design.modification?.pinion ?? {};
-  return [left, right].some(flank => Object.entries(flank).some(([key, value]) => /_um$/.test(key) && Number(value) > 0));
+  const entries = [left, right].flatMap(flank => Object.entries(flank));
+  return entries.some(([key, value]) => /_um$/.test(key) && Number(value) > 0);
 }
 
 /** @param {number | null} value mm */

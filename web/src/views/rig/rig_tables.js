@@ -24,9 +24,9 @@ const HASH = 12; // digits shown of a check sum
 /** @typedef {ReturnType<Bench['of']>} Beside what the comparison says of it */
 /** @typedef {{ choose: (id: number) => void, remove: (item: Api.ListedMeasurement) => void }} Acts */
 
-/** @param {HTMLElement} table */
-function scrolled(table) {
-  return h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Table' }, table);
+/** @param {string} name @param {HTMLElement} table */
+function scrolled(name, table) {
+  return h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': name }, table);
 }
 
 /** @param {Api.ListedMeasurement[]} items by torque, speed, pair */
@@ -127,6 +127,7 @@ export function drawMeasurements(place, bench, chosen, what, acts) {
       h('.figure-controls', null, link),
     ),
     scrolled(
+      'Measurements, all columns',
       h(
         'table.numbers.jobs',
         null,
@@ -171,7 +172,10 @@ export function drawReductions(place, bench, chosen) {
   fill(
     place,
     h('.figure-head', null, h('h3', null, 'Less vibration by the modification')),
-    scrolled(h('table.numbers', null, h('thead', null, h('tr', null, head)), h('tbody', null, rows))),
+    scrolled(
+      'Reductions, all columns',
+      h('table.numbers', null, h('thead', null, h('tr', null, head)), h('tbody', null, rows)),
+    ),
   );
 }
 

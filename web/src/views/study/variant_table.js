@@ -94,7 +94,11 @@ export class VariantTable {
     const { rows } = this;
     return h(
       'tr',
-      { 'data-variant': rows.variant[row], title: shownSentence(rows.reason[row]) || null, onclick: () => this.pick(row) },
+      {
+        'data-variant': rows.variant[row],
+        title: shownSentence(rows.reason[row]) || null,
+        onclick: () => this.pick(row),
+      },
       h('th', { scope: 'row' }, h('button.link', { type: 'button' }, rows.variant[row])),
       ...rows.columns.map((_column, at) => h('td.number', null, rows.text(at, row))),
       h('td', null, rows.outcome[row].replaceAll('_', ' ')),

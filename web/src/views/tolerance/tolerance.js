@@ -237,7 +237,8 @@ class ToleranceView {
   async #finish(job) {
     this.#job = 0;
     if (job.state !== 'done') {
-      this.#end(job.state === 'failed' ? shownSentence(job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
+      const failed = job.state === 'failed';
+      this.#end(failed ? shownSentence(job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
       return;
     }
     try {
@@ -336,8 +337,8 @@ class ToleranceView {
       from + (i + 1) * width * (1 - 1e-9),
     ]);
     const y = count.flatMap(n => [n, n]);
-    const high = output.percentiles.find(row => row.percent === 95);
-    const marks = high ? [{ x: high.value, label: '95 %', strong: true }] : [];
+    const high = output.percentiles.find(row => row.percent === 95)?.value;
+    const marks = typeof high === 'number' ? [{ x: high, label: '95 %', strong: true }] : [];
     if (output.nominal !== null && output.nominal >= from && output.nominal <= to)
       marks.push({ x: output.nominal, label: 'as drawn', strong: false });
     this.histogram.name({ xLabel: labelOf(output.key), xUnit: unit }, `${labelOf(output.key)}, ${output.rows} pairs`);
