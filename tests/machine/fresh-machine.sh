@@ -8,8 +8,11 @@
 #
 # FRESH_DIR       where the machine stands (default: a new folder beside $TMPDIR's files); it is removed at the end unless FRESH_KEEP is set
 # FRESH_MIRROR    Debian mirror (default: the one debootstrap knows)
-# FRESH_OVERLAY   folder laid over the machine's root: apt sources, certificates, npm settings of a site
-# FRESH_ENV       NAME=VALUE ... for the commands inside, of a site as well
+# FRESH_OVERLAY   folder laid over the machine's root: what a site needs for apt and npm. Where its connections carry a certificate of its own:
+#                 etc/ssl/certs/ca-certificates.crt and usr/local/share/ca-certificates/ of a machine that works there, root/.npmrc with
+#                 cafile=/etc/ssl/certs/ca-certificates.crt, etc/apt/sources.list.d/ and etc/apt/apt.conf.d/
+# FRESH_ENV       NAME=VALUE ... for the commands inside, of a site as well: NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt
+# FRESH_PATIENCE  seconds for ./bootstrap serve to answer, packages and build included (default 1800; a busy machine needs more)
 set -eu
 
 what=${1-all}
@@ -55,12 +58,14 @@ try_serve() {
   started=$(date +%s)
   inside sh -c 'cd && cd easeoff && exec ./bootstrap serve --listen 127.0.0.1:0' >"$machine/serve.log" 2>&1 &
   server=$!
-  for _ in $(seq 1800); do
+  patience=${FRESH_PATIENCE-1800} url=
+  for _ in $(seq "$patience"); do
     url=$(sed -n 's#.*\(http://127\.0\.0\.1:[0-9]*\).*#\1#p' "$machine/serve.log" | head -n 1)
     [ -z "$url" ] || break
     kill -0 "$server" 2>/dev/null || { tail -n 20 "$machine/serve.log"; return 1; }
     sleep 1
   done
+  [ -n "$url" ] || { tail -n 20 "$machine/serve.log"; say "NOT an address within $patience s"; return 1; }
   curl -fsS "$url/api/v1/health"
   curl -fsS "$url/" | grep -q '<title>Easeoff' || {
     say "NOT the page: npm could not fetch its libraries? FRESH_OVERLAY lays a site's certificates over the machine"
