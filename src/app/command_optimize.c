@@ -15,7 +15,8 @@
 #include "study/study.h"
 
 struct request {
-  const char *work, *file, *data, *algorithm, *budget, *threads, *cache; /* cache: read by eo_app_crew_begin() */
+  const char *work, *file, *data, *algorithm, *budget, *threads, *front,
+      *cache; /* cache: read by eo_app_crew_begin() */
   struct eo_app_crew *crew;
   struct eo_watch watch;
   struct eo_work_note note;
@@ -76,6 +77,11 @@ static bool apply_options(struct request *request, struct eo_error *error)
   if (request->budget && !eo_app_read_whole(request->budget, "--budget", 1, 10000000, &budget, error))
     return false;
   search->true_evaluations = budget;
+  if (request->front && search->algorithm != EO_NSGA2) {
+    eo_error_set(error, EO_ERROR_INPUT, "", "--front is a Pareto front, and %s finds none: --algorithm nsga2 does.",
+                 eo_optimizer_algorithm_name(search->algorithm));
+    return false;
+  }
   return !request->threads ||
          eo_app_read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, error);
 }
@@ -97,6 +103,16 @@ static int show(const struct request *request, json_t *document)
   return eo_app_print(&text);
 }
 
+static enum eo_code save_front(const struct request *request, const json_t *document, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  enum eo_code code = EO_OK;
+  if (request->front && eo_study_front_csv(document, &text))
+    code = eo_text_save(&text, request->front, error);
+  eo_text_done(&text);
+  return code;
+}
+
 static int run_study(struct request *request, const struct eo_pair *pair, struct eo_store *store)
 {
   const struct eo_study_plan plan = {.design = &request->design,
@@ -115,6 +131,8 @@ static int run_study(struct request *request, const struct eo_pair *pair, struct
   enum eo_code code = eo_study_run(&plan, &result, &error);
   if (!code)
     code = eo_study_document(&plan, &result, &request->warnings, &document, &error);
+  if (!code)
+    code = save_front(request, document, &error);
   if (!code)
     eo_job_live_conclude(&request->note.live, &result);
   if (!code && result.stopped != EO_STOP_CANCELLED)
@@ -219,6 +237,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--data", .value = &request->data},
                                       {.name = "--cache", .value = &request->cache},
                                       {.name = "--work", .value = &request->work},
+                                      {.name = "--front", .value = &request->front},
                                       {.name = "--json", .flag = &request->json},
                                       {.name = "--fresh", .flag = &request->fresh},
                                       {.name = "--restart", .flag = &request->restart},
@@ -235,7 +254,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_optimize = {
     "optimize",
     "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] "
-    "[--json] | --work N",
+    "[--front FILE] [--json] | --work N",
     "searches the modification that runs quietest over the duty cycle",
     "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
     "whatever their\n"
@@ -247,6 +266,7 @@ const struct eo_command eo_command_optimize = {
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
+    "  --front FILE      the Pareto front of nsga2 as comma-separated values (-: standard output)\n"
     "  --json            the result document, as the server returns it\n"
     "  --work N          works on that job of a server's queue\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP
         EO_APP_DATA_HELP,

@@ -269,6 +269,20 @@ enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_
   return code;
 }
 
+int eo_study_space_blocks(const struct eo_study_space *space, int *block)
+{
+  int known[EO_MAX_LISTED], blocks = 0;
+  for (int i = 0; i < space->count; i++) {
+    int b = 0;
+    while (b < blocks && known[b] != space->variable[i].end)
+      b++;
+    if (b == blocks)
+      known[blocks++] = space->variable[i].end;
+    block[i] = b;
+  }
+  return blocks;
+}
+
 void eo_study_space_apply(const struct eo_study_space *space, const struct eo_modification *base, const double *x,
                           struct eo_modification *modification)
 {

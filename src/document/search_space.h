@@ -44,6 +44,10 @@ bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_m
 double eo_study_variable_value(const struct eo_study_variable *variable, const struct eo_modification *modification);
 void eo_study_variable_name(const struct eo_study_variable *variable, char *name, size_t size);
 
+/* block[count]: variables of one end, of the other, of both are a block each, since every end carries its own load;
+   returns how many blocks there are, at most 3. */
+int eo_study_space_blocks(const struct eo_study_space *space, int *block);
+
 /* Two spaces with the same hash have the same variables with the same bounds in the same order. */
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1]);
 

@@ -77,4 +77,8 @@ json_t *eo_study_result_encode(const struct eo_study_result *result, const struc
 /* For people: variables, objectives and load cases unmodified and optimal, what it took. */
 void eo_study_result_summary(const json_t *document, struct eo_text *text);
 
+/* The front of such a document as CSV: the axes, f1 to f3, J, the violation, which point is the knee and which has the
+   least J, and the variables. False: it has none. */
+bool eo_study_front_csv(const json_t *document, struct eo_text *text);
+
 #endif

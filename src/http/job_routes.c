@@ -8,6 +8,7 @@
 #include "format/list_page.h"
 #include "format/object.h"
 #include "document/search_space.h"
+#include "document/study_result.h"
 #include "http/request_body.h"
 #include "http/job_reply.h"
 #include "http/route.h"
@@ -161,6 +162,38 @@ static void get_result(struct eo_request *request)
   eo_text_done(&text);
 }
 
+/* The front of a result; false: the reply says what is in the way. */
+static bool read_front(struct eo_request *request, const struct eo_text *result, struct eo_text *front)
+{
+  struct eo_error error;
+  json_t *document = json_loadb(result->data, result->size, 0, NULL);
+  const bool there = document && eo_study_front_csv(document, front);
+  if (!document)
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+  else if (!there)
+    eo_reply_problem(&request->reply, 404, NULL, "This job has no Pareto front: the algorithm nsga2 finds one.");
+  json_decref(document);
+  return there;
+}
+
+static void get_front(struct eo_request *request)
+{
+  enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
+  struct eo_error error;
+  struct eo_text result = {0}, front = {0};
+  int64_t id;
+  if (!eo_request_id_at(request, 0, &id))
+    return;
+  if (eo_service_result(request->http->service, id, &outcome, &result, &error))
+    eo_reply_error(&request->reply, "", &error);
+  else if (outcome != EO_JOB_OUTCOME_DONE)
+    eo_reply_job_outcome(&request->reply, outcome);
+  else if (read_front(request, &result, &front))
+    eo_reply_table(request, &front);
+  eo_text_done(&result);
+  eo_text_done(&front);
+}
+
 static void get_generations(struct eo_request *request)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
@@ -261,6 +294,15 @@ const struct eo_route eo_routes_jobs[] = {
                 "it is not finished.",
      .gives = "200 OptimizationResult|Tolerance|Reproduction",
      .aside = true},
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}/front",
+     .handle = get_front,
+     .name = "getJobFront",
+     .gives = "200 text/csv",
+     .aside = true,
+     .query = {EO_UNITS_QUERY},
+     .summary = "The Pareto front that a search by nsga2 found as CSV, a line for each point: `easeoff optimize "
+                "--front`. 409 while it is not finished."},
     {.method = EO_GET,
      .pattern = "/jobs/{id}/generations",
      .handle = get_generations,

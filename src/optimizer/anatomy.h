@@ -8,6 +8,8 @@
 #ifndef EASEOFF_OPTIMIZER_ANATOMY_H
 #define EASEOFF_OPTIMIZER_ANATOMY_H
 
+#include "optimizer/settings.h"
+
 enum eo_part_kind { EO_PART_LARGEST, EO_PART_RANGE };
 
 struct eo_part_group {
@@ -19,6 +21,8 @@ struct eo_part_group {
 struct eo_anatomy {
   int parts, groups;           /* parts: sum of the groups' */
   struct eo_part_group *group; /* [groups] */
+  int blocks;                  /* of variables whose effects on the parts nearly add up; 0: none */
+  int block[EO_MAX_VARIABLES]; /* whose block a variable is in */
 };
 
 /* The parts among a group's that its reduction takes: most, and least of a range (else -1). Returns the reduction. */

@@ -24,7 +24,8 @@ enum eo_code eo_composite_init(struct eo_composite *composite, const struct eo_a
     return eo_error_memory(error);
   if (!composite->y || !composite->part || !composite->residual || !composite->coefficient || !composite->polynomial)
     return eo_error_memory(error);
-  return eo_surrogate_init(&composite->surrogate, variables, rows_max, (int)outputs, tail, error);
+  const enum eo_code code = eo_surrogate_init(&composite->surrogate, variables, rows_max, (int)outputs, tail, error);
+  return code ? code : eo_surrogate_set_blocks(&composite->surrogate, anatomy->blocks, anatomy->block, error);
 }
 
 void eo_composite_done(struct eo_composite *composite)

@@ -16,18 +16,21 @@
    from afar. Its even epochs go to the minima of the model of the whole cube (global_minima.h), the trust region beside
    them, two of eight places to what nobody knows; every epoch but the first begins where the model promises most or
    knows least away from what is finished, not with a hypercube; they end sooner, and nothing is refined between them.
+   How far points are from what is finished is told by what is seen of them (eo_optimizer_set_view()).
  */
 #include "optimizer/credibility_pool.h"
 #include "optimizer/global_minima.h"
 #include "optimizer/optimizer_private.h"
 #include "optimizer/trust_region.h"
 #include "optimizer/operators.h"
+#include "optimizer/view_distance.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum search { BREED, SAMPLE, MODEL, REFINE };
+enum { USUAL_STARTS = 8 };                /* of descents on the model for a batch; an epoch begins with more */
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
@@ -54,6 +57,7 @@ struct credibility {
   struct eo_local local;
   struct eo_evolution evolution;
   struct eo_global_minima global;
+  struct eo_view_distance distance;
 };
 
 static void stop(struct eo_optimizer *optimizer)
@@ -72,6 +76,7 @@ static void stop(struct eo_optimizer *optimizer)
   eo_local_done(&credibility->local);
   eo_evolution_done(&credibility->evolution);
   eo_global_minima_done(&credibility->global);
+  eo_view_distance_done(&credibility->distance);
   free(credibility);
 }
 
@@ -130,6 +135,8 @@ static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error
   if (code == EO_OK)
     code = eo_global_minima_init(&credibility->global, settings->variables, error);
   if (code == EO_OK)
+    code = eo_view_distance_init(&credibility->distance, &optimizer->warp, error);
+  if (code == EO_OK)
     plan_epoch(optimizer);
   return code == EO_OK ? eo_optimizer_reserve_batch(optimizer, (int)batch, error) : code;
 }
@@ -151,13 +158,25 @@ static double taboo_radius(const struct eo_optimizer *optimizer)
   return (is_described(optimizer) ? 2 : 1) * optimizer->settings.taboo_radius * sqrt(optimizer->settings.variables);
 }
 
-static bool is_taboo(const struct eo_optimizer *optimizer, const double *x)
+static bool is_taboo(const struct eo_optimizer *optimizer, int row)
 {
   const struct credibility *credibility = optimizer->state;
-  const int n = optimizer->settings.variables;
   const double radius = taboo_radius(optimizer);
   for (int i = 0; i < credibility->taboo_count && !sees_all(credibility); i++)
-    if (eo_unit_distance(row_x(optimizer, credibility->taboo[i]), x, n) < radius)
+    if (eo_view_distance_between(&credibility->distance, credibility->taboo[i], row) < radius)
+      return true;
+  return false;
+}
+
+/* The same of a point that is no row. */
+static bool is_near_taboo(struct eo_optimizer *optimizer, const double *x)
+{
+  struct credibility *credibility = optimizer->state;
+  const double radius = taboo_radius(optimizer);
+  if (credibility->taboo_count && !sees_all(credibility))
+    eo_view_distance_visit(&credibility->distance, x);
+  for (int i = 0; i < credibility->taboo_count && !sees_all(credibility); i++)
+    if (eo_view_distance_from(&credibility->distance, credibility->taboo[i]) < radius)
       return true;
   return false;
 }
@@ -170,7 +189,7 @@ static int gather_parents(struct eo_optimizer *optimizer)
   int count = 0, *parent = credibility->parent;
   for (int row = sees_all(credibility) ? 0 : credibility->epoch_first; row < optimizer->archive.count; row++) {
     const double value = optimizer->archive.value[row];
-    if (eo_archive_failed(&optimizer->archive, row) || is_taboo(optimizer, row_x(optimizer, row)) ||
+    if (eo_archive_failed(&optimizer->archive, row) || is_taboo(optimizer, row) ||
         (count == most && value >= optimizer->archive.value[parent[count - 1]]))
       continue;
     int j = count < most ? count++ : count - 1;
@@ -197,10 +216,11 @@ static void request_chosen(struct eo_optimizer *optimizer, int count, int local)
 
 /* Fills c->chosen from `first` to `count` with minima of the model, away from what is finished; `unknown` of the places
    go to what nobody knows. */
-static int choose_minima(struct eo_optimizer *optimizer, int best, int first, int count, int unknown)
+static int choose_minima(struct eo_optimizer *optimizer, int best, int first, int count, int unknown, int starts)
 {
   struct credibility *credibility = optimizer->state;
-  const struct eo_global_bars bars = {credibility->taboo, credibility->taboo_count, taboo_radius(optimizer)};
+  const struct eo_global_bars bars = {credibility->taboo, credibility->taboo_count, taboo_radius(optimizer),
+                                      &credibility->distance, starts};
   const int minima = count - first > unknown ? count - first - unknown : 0;
   eo_credibility_model_fit(&credibility->model, &optimizer->archive, row_x(optimizer, best));
   return eo_global_minima_choose(&credibility->global, &credibility->model, &optimizer->archive, &bars, best,
@@ -215,10 +235,13 @@ static void propose_epoch(struct eo_optimizer *optimizer)
   credibility->fresh = false;
   if (is_described(optimizer) && credibility->epoch > 0 && best >= 0) {
     const int places = 2 * optimizer->settings.batch < count ? 2 * optimizer->settings.batch : count;
-    request_chosen(optimizer, choose_minima(optimizer, best, 0, places, places / 2), 0);
+    request_chosen(optimizer, choose_minima(optimizer, best, 0, places, places / 2, EO_GLOBAL_STARTS), 0);
     return;
   }
   eo_latin_hypercube(credibility->chosen, count, n, optimizer->settings.seed, credibility->epoch, credibility->latin);
+  for (int i = 1; i < count; i += 2) /* what lies where little is seen to change has its share */
+    eo_cube_warp_in(&optimizer->warp, credibility->chosen + (size_t)i * (size_t)n,
+                    credibility->chosen + (size_t)i * (size_t)n);
   request_chosen(optimizer, count, 0);
 }
 
@@ -250,7 +273,8 @@ static int choose_children(struct eo_optimizer *optimizer, int parents, int firs
   eo_credibility_pool_breed(&credibility->pool, &credibility->model, &optimizer->archive, credibility->parent, parents,
                             credibility->batch);
   for (int i = 0; i < credibility->pool.count; i++)
-    credibility->pool.barred[i] = is_taboo(optimizer, credibility->pool.x + (size_t)i * optimizer->settings.variables);
+    credibility->pool.barred[i] = is_near_taboo(optimizer,
+                                                credibility->pool.x + (size_t)i * optimizer->settings.variables);
   return eo_credibility_pool_spread(&credibility->pool, &optimizer->archive, credibility->chosen, first, count);
 }
 
@@ -287,7 +311,8 @@ static void propose_batch(struct eo_optimizer *optimizer)
   if (credibility->evolving)
     choose_samples(optimizer, local, chosen);
   else if (credibility->search == MODEL)
-    chosen = choose_minima(optimizer, credibility->parent[0], local, chosen, optimizer->settings.batch / 4);
+    chosen = choose_minima(optimizer, credibility->parent[0], local, chosen, optimizer->settings.batch / 4,
+                           USUAL_STARTS);
   else if (share < batch)
     chosen = choose_children(optimizer, parents, local, chosen);
   request_chosen(optimizer, chosen, local);
@@ -309,7 +334,9 @@ static enum eo_code propose(struct eo_optimizer *optimizer, struct eo_error *err
     optimizer->finished = true;
     return EO_OK;
   }
-  const enum eo_code code = eo_credibility_model_reserve(&credibility->model, optimizer->archive.count, error);
+  enum eo_code code = eo_credibility_model_reserve(&credibility->model, optimizer->archive.count, error);
+  if (code == EO_OK)
+    code = eo_view_distance_follow(&credibility->distance, &optimizer->archive, error);
   while (code == EO_OK && optimizer->batch_count == 0) {
     if (credibility->fresh)
       propose_epoch(optimizer);
@@ -327,7 +354,7 @@ static double best_row(const struct eo_optimizer *optimizer, int *best)
   double value = INFINITY;
   *best = -1;
   for (int row = sees_all(credibility) ? 0 : credibility->epoch_first; row < optimizer->archive.count; row++)
-    if (optimizer->archive.value[row] < value && !is_taboo(optimizer, row_x(optimizer, row))) {
+    if (optimizer->archive.value[row] < value && !is_taboo(optimizer, row)) {
       value = optimizer->archive.value[row];
       *best = row;
     }
@@ -450,7 +477,9 @@ static enum eo_code absorb(struct eo_optimizer *optimizer, struct eo_error *erro
 {
   struct credibility *credibility = optimizer->state;
   const struct eo_generation statistics = {.true_count = optimizer->batch_count, .epoch = credibility->epoch};
-  const enum eo_code code = eo_optimizer_close_generation(optimizer, &statistics, error);
+  enum eo_code code = eo_optimizer_close_generation(optimizer, &statistics, error);
+  if (code == EO_OK)
+    code = eo_view_distance_follow(&credibility->distance, &optimizer->archive, error);
   if (code != EO_OK)
     return code;
   if (credibility->local_count > 0)

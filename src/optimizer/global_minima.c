@@ -36,12 +36,13 @@ static bool is_apart(const double *points, int count, const double *x, int n, do
   return apart;
 }
 
-static bool is_barred(const struct eo_global_bars *bars, const struct eo_archive *archive, const double *x)
+static bool is_barred(const struct eo_global_bars *bars, const double *x)
 {
-  const int n = archive->variables;
   bool barred = false;
+  if (bars->count)
+    eo_view_distance_visit(bars->distance, x);
   for (int i = 0; i < bars->count && !barred; i++)
-    barred = eo_unit_distance(archive->x + (size_t)bars->row[i] * (size_t)n, x, n) < bars->radius;
+    barred = eo_view_distance_from(bars->distance, bars->row[i]) < bars->radius;
   return barred;
 }
 
@@ -62,22 +63,35 @@ static int take_sample(struct eo_global_minima *global, const double *points, in
   }
 }
 
-/* Half of the samples are anywhere, half are near the best row in some variables. */
-static void draw(struct eo_global_minima *global, const double *best, uint64_t seed, int batch)
+/* A third of the samples are anywhere, a third are near the best row in some variables, a third crosses two rows of the
+   model, one of them among its best. What is drawn lies evenly in the stretched cube, every second time in that of the
+   variables. */
+static void draw(struct eo_global_minima *global, const struct eo_credibility_model *model,
+                 const struct eo_archive *archive, const struct eo_cube_warp *warp, const double *best, int batch)
 {
-  const int n = global->variables;
+  const int n = global->variables, rows = model->fitted ? model->composite.surrogate.rows : 0;
   for (int i = 0; i < SAMPLES; i++) {
-    const struct eo_random random = eo_random_at(seed, EO_STREAM_GLOBAL, (uint64_t)batch, (uint64_t)i);
+    const struct eo_random random = eo_random_at(model->settings->seed, EO_STREAM_GLOBAL, (uint64_t)batch, (uint64_t)i),
+                           choice = eo_random_at(model->settings->seed, EO_STREAM_GLOBAL_CROSS, (uint64_t)batch,
+                                                 (uint64_t)i);
     double *x = global->sample + (size_t)i * (size_t)n;
-    for (int k = 0; k < n; k++) {
-      const bool kept = i % 2 == 1 && eo_random_unit(random, 2 * (uint64_t)k + 1) < 0.5;
-      x[k] = kept ? best[k] : eo_random_unit(random, 2 * (uint64_t)k);
+    const double *one = i % 3 == 1 ? best : NULL, *other = NULL;
+    if (i % 3 == 2 && rows > 0) {
+      one = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 0) * ((rows + 2) / 3))] * (size_t)n;
+      other = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 1) * rows)] * (size_t)n;
     }
+    for (int k = 0; k < n; k++)
+      x[k] = eo_random_unit(random, (uint64_t)k);
+    if (i % 2 == 1)
+      eo_cube_warp_in(warp, x, x);
+    for (int k = 0; k < n; k++)
+      x[k] = one && eo_random_unit(choice, (uint64_t)k) < 0.5 ? one[k] : other ? other[k] : x[k];
   }
 }
 
 /* Minima from the best row and from the samples that promise most, best first; returns how many. */
-static int find_minima(struct eo_global_minima *global, struct eo_credibility_model *model, const double *best)
+static int find_minima(struct eo_global_minima *global, struct eo_credibility_model *model,
+                       const struct eo_global_bars *bars, const double *best)
 {
   const int n = global->variables;
   double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES], starts[EO_GLOBAL_STARTS * EO_MAX_VARIABLES];
@@ -87,7 +101,7 @@ static int find_minima(struct eo_global_minima *global, struct eo_credibility_mo
     high[k] = 1;
   }
   memcpy(starts, best, (size_t)n * sizeof *best);
-  for (count = 1; count < EO_GLOBAL_STARTS; count++) {
+  for (count = 1; count < bars->starts; count++) {
     const int i = take_sample(global, starts, count, start_apart * sqrt(n));
     if (i < 0)
       break;
@@ -114,22 +128,22 @@ int eo_global_minima_choose(struct eo_global_minima *global, struct eo_credibili
 {
   const int n = global->variables;
   const double *centre = archive->x + (size_t)best * (size_t)n;
-  draw(global, centre, model->settings->seed, batch);
+  draw(global, model, archive, bars->distance->warp, centre, batch);
   for (int i = 0; i < SAMPLES; i++) {
     const double *x = global->sample + (size_t)i * (size_t)n;
-    global->score[i] = is_barred(bars, archive, x) ? -INFINITY : eo_credibility_predict(model, x);
+    global->score[i] = is_barred(bars, x) ? -INFINITY : eo_credibility_predict(model, x);
   }
-  const int found = model->fitted ? find_minima(global, model, centre) : 0;
+  const int found = model->fitted ? find_minima(global, model, bars, centre) : 0;
   int filled = first;
   for (int i = 0; i < found && filled < count && filled - first < minima; i++) {
     const double *x = global->minimum + (size_t)i * (size_t)n, apart = minimum_apart * sqrt(n);
     if (is_apart(archive->x, archive->count, x, n, apart) && is_apart(chosen, filled, x, n, apart) &&
-        !is_barred(bars, archive, x))
+        !is_barred(bars, x))
       memcpy(chosen + (size_t)filled++ * (size_t)n, x, (size_t)n * sizeof *x);
   }
   for (int i = 0; i < SAMPLES; i++) {
     const double *x = global->sample + (size_t)i * (size_t)n;
-    global->score[i] = is_barred(bars, archive, x) ? -INFINITY : eo_credibility_score(model, x);
+    global->score[i] = is_barred(bars, x) ? -INFINITY : eo_credibility_score(model, x);
   }
   while (filled < count) {
     const int i = take_sample(global, chosen, filled, doubt_apart * sqrt(n));

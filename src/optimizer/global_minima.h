@@ -5,8 +5,9 @@
 #define EASEOFF_OPTIMIZER_GLOBAL_MINIMA_H
 
 #include "optimizer/credibility_model.h"
+#include "optimizer/view_distance.h"
 
-enum { EO_GLOBAL_STARTS = 8 };
+enum { EO_GLOBAL_STARTS = 48 };
 
 struct eo_global_minima {
   int variables;
@@ -24,6 +25,8 @@ struct eo_global_bars {
   const int *row;
   int count;
   double radius;
+  struct eo_view_distance *distance; /* borrowed; knows the rows */
+  int starts;                        /* of descents on the model, at most EO_GLOBAL_STARTS */
 };
 
 /* Fills chosen[][n] from `first` to `count`: minima of the fitted model, from the row `best` and from samples, each

@@ -26,6 +26,7 @@ enum eo_code eo_optimizer_new(const struct eo_optimizer_settings *settings, stru
     return eo_error_memory(error);
   this_optimizer->settings = *settings;
   this_optimizer->algorithm = algorithms[settings->algorithm];
+  this_optimizer->warp.variables = settings->variables;
   this_optimizer->budget = eo_optimizer_budget(settings);
   code = eo_archive_init(&this_optimizer->archive, settings->variables,
                          settings->algorithm == EO_NSGA2 ? settings->objectives : 0, error);
@@ -49,6 +50,8 @@ void eo_optimizer_free(struct eo_optimizer *optimizer)
   free(optimizer->batch_objective);
   free(optimizer->batch_part);
   free(optimizer->anatomy.group);
+  free(optimizer->batch_asked);
+  eo_cube_warp_done(&optimizer->warp);
   free(optimizer->told);
   free(optimizer->prediction_x);
   free(optimizer->prediction);
@@ -64,12 +67,24 @@ static bool has_failed(const struct eo_optimizer *optimizer, const struct eo_out
   return failed;
 }
 
-static void store(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome, int generation,
-                  int individual)
+/* asked: x as the caller knows it. */
+static void store(struct eo_optimizer *optimizer, const double *x, const double *asked,
+                  const struct eo_outcome *outcome, int generation, int individual)
 {
   const bool failed = has_failed(optimizer, outcome);
-  eo_archive_add(&optimizer->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
-                 failed ? NULL : outcome->objectives, failed ? NULL : outcome->parts, generation, individual);
+  eo_archive_add(&optimizer->archive, x, asked, failed ? INFINITY : outcome->value,
+                 failed ? INFINITY : outcome->violation, failed ? NULL : outcome->objectives,
+                 failed ? NULL : outcome->parts, generation, individual);
+}
+
+enum eo_code eo_optimizer_set_view(struct eo_optimizer *optimizer, const struct eo_view *view, struct eo_error *error)
+{
+  if (optimizer->started || optimizer->archive.count)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The view must be set before the first row.");
+  if (optimizer->settings.algorithm != EO_CREDIBILITY_GA && optimizer->settings.algorithm != EO_NSGA2)
+    return EO_OK;
+  eo_cube_warp_done(&optimizer->warp);
+  return eo_cube_warp_init(&optimizer->warp, view, optimizer->settings.variables, error);
 }
 
 enum eo_code eo_optimizer_describe(struct eo_optimizer *optimizer, const struct eo_anatomy *anatomy,
@@ -101,11 +116,13 @@ enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x
     if (!(x[k] >= 0 && x[k] <= 1))
       return eo_error_set(error, EO_ERROR_INPUT, "", "Variable %d of an imported row is %g, outside 0..1.", k + 1,
                           x[k]);
+  double inside[EO_MAX_VARIABLES];
   if (eo_archive_find(&optimizer->archive, x) >= 0)
     return EO_OK;
+  eo_cube_warp_in(&optimizer->warp, x, inside);
   const enum eo_code code = eo_archive_reserve(&optimizer->archive, 1, error);
   if (code == EO_OK)
-    store(optimizer, x, outcome, -1, -1);
+    store(optimizer, inside, x, outcome, -1, -1);
   return code;
 }
 
@@ -137,8 +154,8 @@ enum eo_code eo_optimizer_ask(struct eo_optimizer *optimizer, struct eo_batch *b
 static void apply_batch(struct eo_optimizer *optimizer)
 {
   for (int i = 0; i < optimizer->batch_count; i++)
-    store(optimizer, optimizer->candidate[i].x, &optimizer->outcome[i], optimizer->candidate[i].generation,
-          optimizer->candidate[i].individual);
+    store(optimizer, optimizer->batch_x + (size_t)i * optimizer->settings.variables, optimizer->candidate[i].x,
+          &optimizer->outcome[i], optimizer->candidate[i].generation, optimizer->candidate[i].individual);
   optimizer->true_evaluations += optimizer->batch_count;
 }
 
@@ -172,11 +189,11 @@ int eo_optimizer_left(const struct eo_optimizer *optimizer)
   return optimizer->budget - optimizer->true_evaluations - pending;
 }
 
-static int find_pending(const struct eo_optimizer *optimizer, const double *x)
+static int find_pending(const struct eo_optimizer *optimizer, const double *asked)
 {
-  const size_t bytes = (size_t)optimizer->settings.variables * sizeof *x;
+  const size_t bytes = (size_t)optimizer->settings.variables * sizeof *asked;
   for (int i = 0; i < optimizer->batch_count; i++)
-    if (memcmp(optimizer->candidate[i].x, x, bytes) == 0)
+    if (memcmp(optimizer->candidate[i].x, asked, bytes) == 0)
       return optimizer->archive.count + i;
   return -1;
 }
@@ -184,18 +201,21 @@ static int find_pending(const struct eo_optimizer *optimizer, const double *x)
 int eo_optimizer_request(struct eo_optimizer *optimizer, const double *x, int generation, int individual, bool repeat,
                          bool *known)
 {
-  int row = repeat ? -1 : eo_archive_find(&optimizer->archive, x);
+  const size_t n = (size_t)optimizer->settings.variables;
+  double asked[EO_MAX_VARIABLES];
+  eo_cube_warp_out(&optimizer->warp, x, asked);
+  int row = repeat ? -1 : eo_archive_find(&optimizer->archive, asked);
   if (row < 0 && !repeat)
-    row = find_pending(optimizer, x);
+    row = find_pending(optimizer, asked);
   *known = row >= 0;
   if (row >= 0)
     return row;
   if (eo_optimizer_left(optimizer) <= 0)
     return -1;
-  const int i = optimizer->batch_count++, n = optimizer->settings.variables;
-  double *copy = optimizer->batch_x + (size_t)i * n;
-  memcpy(copy, x, (size_t)n * sizeof *x);
-  optimizer->candidate[i] = (struct eo_candidate){copy, generation, individual};
+  const int i = optimizer->batch_count++;
+  memcpy(optimizer->batch_x + (size_t)i * n, x, n * sizeof *x);
+  optimizer->candidate[i] = (struct eo_candidate){
+      memcpy(optimizer->batch_asked + (size_t)i * n, asked, n * sizeof *asked), generation, individual};
   optimizer->told[i] = false;
   return optimizer->archive.count + i;
 }
@@ -205,13 +225,14 @@ enum eo_code eo_optimizer_reserve_batch(struct eo_optimizer *optimizer, int coun
   const size_t c = (size_t)count, n = (size_t)optimizer->settings.variables, m = (size_t)optimizer->archive.objectives;
   optimizer->batch_capacity = count;
   optimizer->batch_x = malloc(c * n * sizeof(double));
+  optimizer->batch_asked = malloc(c * n * sizeof(double));
   optimizer->candidate = malloc(c * sizeof *optimizer->candidate);
   optimizer->outcome = malloc(c * sizeof *optimizer->outcome);
   optimizer->batch_objective = malloc((c * m + 1) * sizeof(double));
   optimizer->batch_part = malloc((c * (size_t)optimizer->anatomy.parts + 1) * sizeof(double));
   optimizer->told = malloc(c * sizeof *optimizer->told);
-  return optimizer->batch_x && optimizer->batch_part && optimizer->candidate && optimizer->outcome &&
-                 optimizer->batch_objective && optimizer->told
+  return optimizer->batch_x && optimizer->batch_asked && optimizer->batch_part && optimizer->candidate &&
+                 optimizer->outcome && optimizer->batch_objective && optimizer->told
              ? EO_OK
              : eo_error_memory(error);
 }
@@ -277,7 +298,7 @@ struct eo_row eo_optimizer_row(const struct eo_optimizer *optimizer, int index)
 {
   const struct eo_archive *archive = &optimizer->archive;
   return (struct eo_row){
-      .x = archive->x + (size_t)index * archive->variables,
+      .x = archive->asked + (size_t)index * archive->variables,
       .objectives = archive->objectives ? archive->objective + (size_t)index * archive->objectives : NULL,
       .value = archive->value[index],
       .violation = archive->violation[index],

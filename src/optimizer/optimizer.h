@@ -24,6 +24,7 @@
 
 #include "base/error.h"
 #include "optimizer/anatomy.h"
+#include "optimizer/cube_warp.h"
 #include "optimizer/settings.h"
 
 #include <stdbool.h>
@@ -91,6 +92,10 @@ void eo_optimizer_free(struct eo_optimizer *optimizer);
    do not look at them. anatomy is copied. */
 enum eo_code eo_optimizer_describe(struct eo_optimizer *optimizer, const struct eo_anatomy *anatomy,
                                    struct eo_error *error);
+
+/* How a point is seen, before the first row: credibility-ga and nsga2 search a cube that is stretched by it; the
+   others do not look at it. What is asked for and told stays in the cube of the variables. */
+enum eo_code eo_optimizer_set_view(struct eo_optimizer *optimizer, const struct eo_view *view, struct eo_error *error);
 
 /* Adds a true row known from elsewhere, before the first ask. A second row with the same x is ignored. */
 enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome,

@@ -6,6 +6,7 @@
 #ifndef EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
 #define EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
 
+#include "optimizer/cube_warp.h"
 #include "optimizer/true_rows.h"
 #include "optimizer/optimizer.h"
 
@@ -26,10 +27,12 @@ struct eo_optimizer {
   int budget;
   struct eo_archive archive;
   struct eo_anatomy anatomy; /* owned; empty unless described */
+  struct eo_cube_warp warp;  /* from the archive's x to what is asked for */
 
   /* the pending batch: candidate i becomes the archive's row archive.count + i */
   int batch_count, batch_capacity, told_count;
-  double *batch_x;                /* [batch_capacity][variables] */
+  double *batch_x;                /* [batch_capacity][variables], as in the archive */
+  double *batch_asked;            /* [batch_capacity][variables], as asked for */
   struct eo_candidate *candidate; /* [batch_capacity] */
   struct eo_outcome *outcome;     /* [batch_capacity], objectives pointing into batch_objective */
   double *batch_objective;        /* [batch_capacity][objectives] */
@@ -45,8 +48,9 @@ struct eo_optimizer {
   struct eo_generation *generation; /* [generation_capacity], the last one may be in work */
 };
 
-/* Asks for a true evaluation of x and returns the archive row that holds it or will hold it after the batch; -1 when
-   the budget is spent. repeat: evaluate even what is known. *known tells that nothing new is asked for. */
+/* Asks for a true evaluation of x (of the archive's) and returns the archive row that holds it or will hold it after
+   the batch; -1 when the budget is spent. repeat: evaluate even what is known. *known tells that nothing new is asked
+   for. */
 int eo_optimizer_request(struct eo_optimizer *optimizer, const double *x, int generation, int individual, bool repeat,
                          bool *known);
 

@@ -24,7 +24,7 @@ extern const char *const eo_algorithm_names[],
 
 /* Raised with every change after which a search of the same settings takes another path: a search that was begun by
    another version is not taken up, its evaluations are known to the new one. */
-enum { EO_OPTIMIZER_VERSION = 2 };
+enum { EO_OPTIMIZER_VERSION = 3 };
 
 enum { EO_MAX_VARIABLES = 64, EO_MAX_OBJECTIVES = 8 };
 

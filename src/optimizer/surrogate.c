@@ -24,14 +24,14 @@ enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, in
   surrogate->residual = malloc(o * m * sizeof(double));
   surrogate->belief = malloc(m * sizeof(double));
   surrogate->distance = malloc(m * sizeof(double));
-  surrogate->cube = malloc(m * sizeof(double));
+  surrogate->kernel = malloc(m * sizeof(double));
   surrogate->term = malloc(q * sizeof(double));
   surrogate->point = malloc(n * sizeof(double));
   surrogate->matrix = malloc(m * m * sizeof(double));
   surrogate->columns = malloc(q * m * sizeof(double));
   surrogate->diagonal = malloc(m * sizeof(double));
   if (surrogate->mean && surrogate->x && surrogate->coefficient && surrogate->polynomial && surrogate->residual &&
-      surrogate->belief && surrogate->distance && surrogate->cube && surrogate->term && surrogate->point &&
+      surrogate->belief && surrogate->distance && surrogate->kernel && surrogate->term && surrogate->point &&
       surrogate->matrix && surrogate->columns && surrogate->diagonal)
     return eo_saddle_init(&surrogate->saddle, rows_max, terms_max, error);
   eo_surrogate_done(surrogate);
@@ -47,7 +47,8 @@ void eo_surrogate_done(struct eo_surrogate *surrogate)
   free(surrogate->residual);
   free(surrogate->belief);
   free(surrogate->distance);
-  free(surrogate->cube);
+  free(surrogate->apart);
+  free(surrogate->kernel);
   free(surrogate->term);
   free(surrogate->point);
   free(surrogate->matrix);
@@ -55,6 +56,16 @@ void eo_surrogate_done(struct eo_surrogate *surrogate)
   free(surrogate->diagonal);
   eo_saddle_done(&surrogate->saddle);
   *surrogate = (struct eo_surrogate){0};
+}
+
+enum eo_code eo_surrogate_set_blocks(struct eo_surrogate *surrogate, int blocks, const int *block,
+                                     struct eo_error *error)
+{
+  free(surrogate->apart);
+  surrogate->blocks = blocks > 1 ? blocks : 0;
+  surrogate->block = block;
+  surrogate->apart = malloc((size_t)surrogate->blocks * (size_t)surrogate->rows_max * sizeof(double) + 1);
+  return surrogate->apart ? EO_OK : eo_error_memory(error);
 }
 
 /* p(z): 1, z_k; then z_k^2; then z_k z_l, k < l. */
@@ -84,16 +95,42 @@ static void copy_rows(struct eo_surrogate *surrogate, const double *x, int rows)
   }
 }
 
-static void measure(const struct eo_surrogate *surrogate, const double *z, int rows, double *distance)
+/* Distances of a point, less the mean, from the first rows, whole and within each block. */
+static void measure(const struct eo_surrogate *surrogate, const double *z, int rows)
 {
-  memset(distance, 0, (size_t)rows * sizeof *distance);
+  const size_t stride = (size_t)surrogate->rows_max;
+  double *whole = surrogate->distance;
+  memset(whole, 0, (size_t)rows * sizeof *whole);
+  for (int b = 0; b < surrogate->blocks; b++)
+    memset(surrogate->apart + (size_t)b * stride, 0, (size_t)rows * sizeof *whole);
   for (int k = 0; k < surrogate->variables; k++) {
-    const double *column = surrogate->x + (size_t)k * surrogate->rows_max, zk = z[k];
+    const double *column = surrogate->x + (size_t)k * stride, zk = z[k];
+    double *sum = surrogate->blocks ? surrogate->apart + (size_t)surrogate->block[k] * stride : whole;
     for (int j = 0; j < rows; j++)
-      distance[j] += (column[j] - zk) * (column[j] - zk);
+      sum[j] += (column[j] - zk) * (column[j] - zk);
+  }
+  for (int b = 0; b < surrogate->blocks; b++) {
+    double *part = surrogate->apart + (size_t)b * stride;
+    for (int j = 0; j < rows; j++) {
+      whole[j] += part[j];
+      part[j] = sqrt(part[j]);
+    }
   }
   for (int j = 0; j < rows; j++)
-    distance[j] = sqrt(distance[j]);
+    whole[j] = sqrt(whole[j]);
+}
+
+/* The cubes of all of them: theory (S5). */
+static void fill_kernel(const struct eo_surrogate *surrogate, int rows, double *kernel)
+{
+  const double *d = surrogate->distance;
+  for (int j = 0; j < rows; j++)
+    kernel[j] = d[j] * d[j] * d[j];
+  for (int b = 0; b < surrogate->blocks; b++) {
+    d = surrogate->apart + (size_t)b * (size_t)surrogate->rows_max;
+    for (int j = 0; j < rows; j++)
+      kernel[j] += d[j] * d[j] * d[j];
+  }
 }
 
 static void fill_matrices(struct eo_surrogate *surrogate, double ridge)
@@ -103,9 +140,10 @@ static void fill_matrices(struct eo_surrogate *surrogate, double ridge)
     double *row = surrogate->matrix + (size_t)i * m;
     for (int k = 0; k < surrogate->variables; k++)
       surrogate->point[k] = surrogate->x[(size_t)k * surrogate->rows_max + i];
-    measure(surrogate, surrogate->point, i, row);
+    measure(surrogate, surrogate->point, i);
+    fill_kernel(surrogate, i, row);
     for (int j = 0; j < i; j++)
-      row[j] = surrogate->matrix[(size_t)j * m + i] = row[j] * row[j] * row[j];
+      surrogate->matrix[(size_t)j * m + i] = row[j];
     row[i] = ridge;
     fill_terms(surrogate->tail, surrogate->variables, surrogate->point, surrogate->columns + i, m);
   }
@@ -151,17 +189,18 @@ void eo_surrogate_visit(struct eo_surrogate *surrogate, const double *x)
 {
   for (int k = 0; k < surrogate->variables; k++)
     surrogate->point[k] = x[k] - surrogate->mean[k];
-  measure(surrogate, surrogate->point, surrogate->rows, surrogate->distance);
+  measure(surrogate, surrogate->point, surrogate->rows);
+  fill_kernel(surrogate, surrogate->rows, surrogate->kernel);
   fill_terms(surrogate->tail, surrogate->variables, surrogate->point, surrogate->term, 1);
 }
 
 double eo_surrogate_value(const struct eo_surrogate *surrogate, int output)
 {
-  const double *c = surrogate->coefficient + (size_t)output * surrogate->rows_max, *d = surrogate->distance;
+  const double *c = surrogate->coefficient + (size_t)output * surrogate->rows_max;
   const double *b = surrogate->polynomial + (size_t)output * surrogate->terms;
   double value = 0;
   for (int j = 0; j < surrogate->rows; j++)
-    value += c[j] * (d[j] * d[j] * d[j]);
+    value += c[j] * surrogate->kernel[j];
   for (int t = 0; t < surrogate->terms; t++)
     value += b[t] * surrogate->term[t];
   return value;
@@ -170,10 +209,8 @@ double eo_surrogate_value(const struct eo_surrogate *surrogate, int output)
 void eo_surrogate_values(struct eo_surrogate *surrogate, double *value)
 {
   const struct eo_surrogate *this_surrogate = surrogate;
-  for (int j = 0; j < this_surrogate->rows; j++)
-    this_surrogate->cube[j] = this_surrogate->distance[j] * this_surrogate->distance[j] * this_surrogate->distance[j];
   cblas_dgemv(CblasRowMajor, CblasNoTrans, this_surrogate->outputs, this_surrogate->rows, 1,
-              this_surrogate->coefficient, this_surrogate->rows_max, this_surrogate->cube, 1, 0, value, 1);
+              this_surrogate->coefficient, this_surrogate->rows_max, this_surrogate->kernel, 1, 0, value, 1);
   cblas_dgemv(CblasRowMajor, CblasNoTrans, this_surrogate->outputs, this_surrogate->terms, 1,
               this_surrogate->polynomial, this_surrogate->terms, this_surrogate->term, 1, 1, value, 1);
 }
@@ -199,9 +236,11 @@ void eo_surrogate_slope(const struct eo_surrogate *surrogate, const double *coef
   const double *c = coefficient, *d = surrogate->distance;
   for (int k = 0; k < surrogate->variables; k++) {
     const double *column = surrogate->x + (size_t)k * surrogate->rows_max, z = surrogate->point[k];
+    const double *own = surrogate->blocks ? surrogate->apart + (size_t)surrogate->block[k] * (size_t)surrogate->rows_max
+                                          : NULL;
     double sum = 0;
     for (int j = 0; j < surrogate->rows; j++)
-      sum += c[j] * d[j] * (z - column[j]);
+      sum += c[j] * (d[j] + (own ? own[j] : 0)) * (z - column[j]);
     gradient[k] = 3 * sum;
   }
   add_tail_gradient(surrogate, polynomial, gradient);

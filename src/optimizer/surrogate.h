@@ -27,8 +27,11 @@ struct eo_surrogate {
   double *polynomial;                  /* [outputs_max][terms] b */
   double *residual;                    /* [outputs_max][rows_max] leave-one-out, absolute */
   double *belief;                      /* [rows_max] exp(-3 e_j / s) */
+  int blocks;                          /* of variables; 0: none */
+  const int *block;                    /* [variables] whose block; borrowed */
   double *distance;                    /* [rows_max] of the point last visited */
-  double *cube;                        /* [rows_max] scratch: of the distances */
+  double *apart;                       /* [blocks][rows_max] likewise, within each block */
+  double *kernel;                      /* [rows_max] likewise */
   double *term;                        /* [terms] likewise */
   double *point;                       /* [variables] likewise, less the mean */
   double *matrix, *columns, *diagonal; /* scratch of the fit: [rows][rows], [terms][rows], [rows] */
@@ -42,6 +45,10 @@ int eo_surrogate_terms(enum eo_tail tail, int n);
 enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max,
                                enum eo_tail tail, struct eo_error *error);
 void eo_surrogate_done(struct eo_surrogate *surrogate);
+
+/* Variables in blocks whose effects nearly add up: block[variables] in 0 .. blocks - 1, borrowed. */
+enum eo_code eo_surrogate_set_blocks(struct eo_surrogate *surrogate, int blocks, const int *block,
+                                     struct eo_error *error);
 
 /* Fits x[rows][variables], y[outputs][rows]. False when the rows do not determine the tail: then there is no surrogate.
  */

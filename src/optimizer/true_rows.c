@@ -14,6 +14,7 @@ enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int obje
 void eo_archive_done(struct eo_archive *archive)
 {
   free(archive->x);
+  free(archive->asked);
   free(archive->value);
   free(archive->violation);
   free(archive->objective);
@@ -47,7 +48,7 @@ static uint64_t hash(const double *x, int n)
 
 static void chain(struct eo_archive *archive, int row)
 {
-  const uint64_t h = hash(archive->x + (size_t)row * archive->variables, archive->variables);
+  const uint64_t h = hash(archive->asked + (size_t)row * archive->variables, archive->variables);
   int *bucket = &archive->bucket[h % (uint64_t)archive->bucket_count];
   archive->next[row] = *bucket;
   *bucket = row;
@@ -71,6 +72,7 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
   const size_t c = (size_t)capacity;
   bool failed = false;
   archive->x = grow(archive->x, c * (size_t)archive->variables, sizeof(double), &failed);
+  archive->asked = grow(archive->asked, c * (size_t)archive->variables, sizeof(double), &failed);
   archive->value = grow(archive->value, c, sizeof(double), &failed);
   archive->violation = grow(archive->violation, c, sizeof(double), &failed);
   archive->objective = grow(archive->objective, c * (size_t)archive->objectives, sizeof(double), &failed);
@@ -91,11 +93,12 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
   return EO_OK;
 }
 
-int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
+int eo_archive_add(struct eo_archive *archive, const double *x, const double *asked, double value, double violation,
                    const double *objectives, const double *part, int generation, int individual)
 {
   const int row = archive->count++, n = archive->variables, m = archive->objectives;
   memcpy(archive->x + (size_t)row * n, x, (size_t)n * sizeof *x);
+  memcpy(archive->asked + (size_t)row * n, asked, (size_t)n * sizeof *asked);
   archive->value[row] = isfinite(value) ? value : INFINITY;
   archive->violation[row] = violation;
   for (int k = 0; k < m; k++)
@@ -113,11 +116,11 @@ int eo_archive_add(struct eo_archive *archive, const double *x, double value, do
   return row;
 }
 
-int eo_archive_find(const struct eo_archive *archive, const double *x)
+int eo_archive_find(const struct eo_archive *archive, const double *asked)
 {
-  const size_t bytes = (size_t)archive->variables * sizeof *x;
-  int row = archive->bucket[hash(x, archive->variables) % (uint64_t)archive->bucket_count];
-  while (row >= 0 && memcmp(archive->x + (size_t)row * archive->variables, x, bytes) != 0)
+  const size_t bytes = (size_t)archive->variables * sizeof *asked;
+  int row = archive->bucket[hash(asked, archive->variables) % (uint64_t)archive->bucket_count];
+  while (row >= 0 && memcmp(archive->asked + (size_t)row * archive->variables, asked, bytes) != 0)
     row = archive->next[row];
   return row;
 }

@@ -12,6 +12,7 @@ struct eo_archive {
   int variables, objectives, parts;
   int count, capacity;
   double *x;         /* [count][variables]; owned, as all below */
+  double *asked;     /* [count][variables] as the caller knows it (cube_warp.h) */
   double *value;     /* [count], infinite when failed */
   double *violation; /* [count] */
   double *objective; /* [count][objectives] */
@@ -36,11 +37,11 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
 
 /* Adds a row and returns its index. objectives and part may be NULL. A value that is not finite is stored as infinite.
  */
-int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
+int eo_archive_add(struct eo_archive *archive, const double *x, const double *asked, double value, double violation,
                    const double *objectives, const double *part, int generation, int individual);
 
-/* The row bit-equal to x, or -1. */
-int eo_archive_find(const struct eo_archive *archive, const double *x);
+/* The row asked for by the same bits, or -1. */
+int eo_archive_find(const struct eo_archive *archive, const double *asked);
 
 static inline bool eo_archive_failed(const struct eo_archive *archive, int row)
 {

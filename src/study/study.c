@@ -353,6 +353,7 @@ static void release(struct study *study)
   eo_text_done(&study->problem);
   free(study->anatomy.group);
   free(study->part);
+  free(study->view);
   free(study->missing);
   free(study->scratch);
   free(study);

@@ -132,8 +132,20 @@ static enum eo_code describe_value(struct study *study, struct eo_error *error)
                                            &study->anatomy, error);
   if (code || study->anatomy.parts == 0)
     return code;
+  study->anatomy.blocks = eo_study_space_blocks(&study->result->space, study->anatomy.block);
   study->part = malloc((size_t)study->anatomy.parts * sizeof *study->part);
   return study->part ? eo_optimizer_describe(study->optimizer, &study->anatomy, error) : eo_error_memory(error);
+}
+
+/* Pairs as made scatter about the flanks that are seen. */
+static enum eo_code set_view(struct study *study, struct eo_error *error)
+{
+  study->view = malloc(sizeof *study->view);
+  if (!study->view)
+    return eo_error_memory(error);
+  const struct eo_view view = eo_search_view_init(study->view, study->plan->design, &study->result->space,
+                                                  &study->plan->pair->geometry);
+  return eo_optimizer_set_view(study->optimizer, &view, error);
 }
 
 /* One row of other jobs, if this study can ask for it. x: bit for bit as it was asked for in the same space, so that it
@@ -184,6 +196,8 @@ enum eo_code eo_study_begin(struct study *study, struct eo_error *error)
     return code;
   eo_study_space_hash(&result->space, study->space_hash);
   code = eo_optimizer_new(&study->settings, &study->optimizer, error);
+  if (!code)
+    code = set_view(study, error);
   if (!code)
     code = eo_race_begin(study, error);
   if (!code)

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "evaluation/evaluator.h"
+#include "document/search_view.h"
 #include "evaluation/objective_anatomy.h"
 #include "study/study_rows.h"
 #include "study/study.h"
@@ -49,6 +50,7 @@ struct study {
   struct eo_anatomy anatomy;      /* of what is minimised; its groups owned */
   int parted;                     /* scenarios whose values the parts are */
   double *part;                   /* [anatomy.parts] of the row told; owned */
+  struct eo_search_view *view;    /* of the optimizer; owned */
   double started, first_computed; /* s; first_computed: 0 until something was */
   double fraction_before;         /* of the work that was done then */
 };

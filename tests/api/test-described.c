@@ -177,6 +177,29 @@ static void look_at(int id)
   }
 }
 
+/* As CSV: a heading and a line for each point of the result. */
+static void look_at_front(int id, bool there)
+{
+  char path[100];
+  snprintf(path, sizeof path, API "/jobs/%d/front", id);
+  struct reply csv = call("GET", path, NULL, NULL);
+  ok(csv.status == (there ? 200 : 404), "job %d/front: %d", id, csv.status);
+  snprintf(path, sizeof path, API "/jobs/%d/result", id);
+  struct reply result = call("GET", path, NULL, NULL);
+  json_t *document = json_loadb(result.body ? result.body : "", result.size, 0, NULL);
+  const json_t *axes = json_object_get(document, "front_axes");
+  const char *first = json_string_value(json_array_get(axes, 0));
+  size_t lines = 0;
+  for (size_t i = 0; csv.body && i < csv.size; i++)
+    lines += csv.body[i] == '\n';
+  if (there)
+    ok(lines == 1 + json_array_size(json_object_get(document, "front")) && first && strstr(csv.body, first),
+       "its heading has \"%s\", %zu points follow", first ? first : "", lines - 1);
+  json_decref(document);
+  free_reply(&result);
+  free_reply(&csv);
+}
+
 static void test_job(const char *algorithm, int budget, const char *patch)
 {
   int status;
@@ -187,6 +210,7 @@ static void test_job(const char *algorithm, int budget, const char *patch)
   ok(status == 202 && wait_for_job(id, "done", 60), "%s: job %d", algorithm, id);
   json_decref(job);
   look_at(id);
+  look_at_front(id, strcmp(algorithm, "nsga2") == 0);
 }
 
 static void test_jobs(void)

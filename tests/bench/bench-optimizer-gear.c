@@ -4,15 +4,17 @@
    of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
 
      bench-optimizer-gear [--quick] [--front] [--seeds N] [--first SEED] [--case a|b] [--design FILE] [--coarse]
-   [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
+   [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR] [--rows FILE] [--blind]
 
    --front: Pareto fronts of the three objectives in those of the unmodified pair. --case: the variables, shared or per
    end; a design without it: as it states. --coarse: a third of the positions, cells and harmonics: an objective of the
-   same kind in a fraction of the time. */
+   same kind in a fraction of the time. --blind: our own searches are not shown the flanks. --rows: every evaluation of
+   seed, number, value and x. */
 #include "contest.h"
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "document/search_space.h"
+#include "document/search_view.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/objective_anatomy.h"
 
@@ -31,6 +33,9 @@ struct gear {
   struct eo_objective_case *unmodified, *raw; /* [values] */
   struct eo_objective_value value, unmodified_value;
   struct eo_anatomy anatomy;
+  struct eo_search_view search_view;
+  struct eo_view view;
+  bool shown;   /* to the searches */
   double *part; /* [anatomy.parts] of the last evaluation */
 };
 
@@ -70,9 +75,11 @@ static void prepare(struct trace *trace, const struct contest_problem *problem, 
   trace->value = value;
   trace->objectives = objectives;
   trace->context = (void *)problem->detail;
+  const struct gear *gear = problem->detail;
+  trace->view = gear->shown ? &gear->view : NULL;
   if (!getenv("PLAIN")) {
-    trace->anatomy = &((struct gear *)problem->detail)->anatomy;
-    trace->parts = ((struct gear *)problem->detail)->part;
+    trace->anatomy = &gear->anatomy;
+    trace->parts = gear->part;
   }
 }
 
@@ -135,6 +142,9 @@ static enum eo_code run_space(const struct contest *contest, struct gear *gear, 
                               struct eo_error *error)
 {
   const enum eo_code code = eo_study_space_init(&gear->space, &gear->design, &gear->pair->geometry, error);
+  gear->view = eo_search_view_init(&gear->search_view, &gear->design, &gear->space, &gear->pair->geometry);
+  gear->anatomy.blocks = eo_study_space_blocks(&gear->space, gear->anatomy.block);
+  gear->search_view.base = &gear->base; /* the design's own is what is evaluated */
   const struct contest_problem problem = {name, gear->space.count, prepare, gear};
   if (!code)
     contest_run(contest, &problem);
@@ -149,10 +159,13 @@ int main(int argc, char **argv)
   const char *cache = NULL, *file = NULL;
   char only = '\0';
   bool coarse = false;
+  gear.shown = true;
   for (int i = 1; i < argc; i++) {
     const int taken = contest_option(&contest, argc, argv, i);
     if (strcmp(argv[i], "--coarse") == 0)
       coarse = true;
+    else if (strcmp(argv[i], "--blind") == 0)
+      gear.shown = false;
     else if (!taken && i + 1 < argc && strcmp(argv[i], "--case") == 0)
       only = argv[++i][0];
     else if (!taken && i + 1 < argc && strcmp(argv[i], "--design") == 0)

@@ -30,6 +30,12 @@ double trace_evaluate(struct trace *trace, const double *x)
   if (trace->count < trace->budget && value < trace->best)
     trace->best = value;
   trace->count++;
+  if (trace->rows) {
+    fprintf(trace->rows, "%llu %d %.17g", (unsigned long long)trace->seed, trace->count, value);
+    for (int k = 0; k < trace->n; k++)
+      fprintf(trace->rows, " %.17g", x[k]);
+    fputc('\n', trace->rows);
+  }
   if (!trace->reached && trace->best <= trace->target)
     trace->reached = trace->count;
   for (int m = 0; m < CONTEST_MARKS; m++)
@@ -88,6 +94,8 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
     return;
   }
   if (trace->anatomy && eo_optimizer_describe(optimizer, trace->anatomy, &error) != EO_OK)
+    printf("%s\n", error.text);
+  if (trace->view && eo_optimizer_set_view(optimizer, trace->view, &error) != EO_OK)
     printf("%s\n", error.text);
   while (batch.count > 0 && eo_optimizer_ask(optimizer, &batch, &error) == EO_OK)
     for (int i = 0; i < batch.count; i++) {
@@ -199,6 +207,7 @@ static void print_line(const struct contest *contest, const struct contest_probl
       spent = cpu_seconds();
   const int seeds = contest->seeds;
   long evaluations = 0;
+  FILE *const rows = contest->rows ? fopen(contest->rows, "a") : NULL;
   for (int s = 0; s < seeds; s++) {
     struct trace trace = {.n = problem->n,
                           .budget = contest->budget,
@@ -206,6 +215,8 @@ static void print_line(const struct contest *contest, const struct contest_probl
                           .target = contest->target,
                           .front = c->front ? front : NULL};
     const uint64_t seed = (uint64_t)(contest->first + s);
+    trace.rows = rows;
+    trace.seed = seed;
     problem->prepare(&trace, problem, seed);
     c->run(contest, &trace, c->algorithm, seed);
     evaluations += trace.count;
@@ -217,6 +228,8 @@ static void print_line(const struct contest *contest, const struct contest_probl
     reached[s] = trace.reached ? (double)trace.reached : (double)INFINITY;
   }
   spent = cpu_seconds() - spent;
+  if (rows)
+    fclose(rows);
   printf("%-13s %2d  %-15s", problem->name, problem->n, c->name);
   for (int m = 0; m < CONTEST_MARKS; m++) {
     qsort(at[m], (size_t)seeds, sizeof(double), compare_doubles);
@@ -274,6 +287,8 @@ int contest_option(struct contest *contest, int argc, char **argv, int i)
   } else if (strcmp(argv[i], "--budget") == 0) {
     const int budget = atoi(argv[i + 1]);
     contest->budget = budget < 1 ? 1 : budget > CONTEST_BUDGET_MAX ? CONTEST_BUDGET_MAX : budget;
+  } else if (strcmp(argv[i], "--rows") == 0) {
+    contest->rows = argv[i + 1];
   } else if (strcmp(argv[i], "--target") == 0) {
     contest->target = atof(argv[i + 1]);
   } else if (strcmp(argv[i], "--algorithm") == 0) {

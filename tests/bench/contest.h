@@ -4,9 +4,11 @@
 #define EASEOFF_BENCH_CONTEST_H
 
 #include "optimizer/anatomy.h"
+#include "optimizer/cube_warp.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum {
   CONTEST_BUDGET = 1000,
@@ -24,6 +26,7 @@ struct trace {
   double (*value)(void *context, const double *x);               /* infinite when the evaluation fails */
   void (*objectives)(void *context, const double *x, double *f); /* [CONTEST_OBJECTIVES], likewise */
   const struct eo_anatomy *anatomy;                              /* of the value; NULL: not known */
+  const struct eo_view *view;                                    /* of a point; NULL: none */
   const double *parts;                                           /* of the point evaluated last */
   void *context;
   int budget, count;
@@ -31,6 +34,8 @@ struct trace {
   double target;
   int reached;                         /* evaluations until the best value was at most the target; 0: never */
   double (*front)[CONTEST_OBJECTIVES]; /* [CONTEST_BUDGET_MAX] of all that was evaluated; NULL: one objective */
+  FILE *rows;                          /* what is evaluated is written here: seed, number, value, x; NULL: nowhere */
+  uint64_t seed;
 };
 
 double trace_evaluate(struct trace *trace, const double *x);
@@ -47,14 +52,15 @@ struct contest {
   const char *algorithm;  /* how the names begin; NULL: all */
   const char *change[32]; /* KEY=NUMBER: parameters of our own other than the defaults */
   int changes;
-  bool front; /* Pareto fronts instead of one value */
+  const char *rows; /* file for every evaluation of the run; NULL: none */
+  bool front;       /* Pareto fronts instead of one value */
 };
 
 /* 11 seeds, 1000 evaluations, every algorithm. */
 struct contest contest_default(void);
 
-/* Understands --seeds N, --first SEED, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and
-   --quick at argv[i]; returns how many words it took, 0: none. */
+/* Understands --seeds N, --first SEED, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --rows FILE,
+   --front and --quick at argv[i]; returns how many words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
 void contest_print_head(const struct contest *contest);

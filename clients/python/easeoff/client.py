@@ -342,6 +342,11 @@ class Client:
         """The pairs of a tolerance analysis that is done, as CSV; units: "inch" for lengths in inches."""
         return self.transport.request("GET", f"/jobs/{id}/pairs", query={"units": units}, accept="text/csv").text
 
+    @operation("getJobFront")
+    def job_front(self, id: int, *, units: str | None = None) -> str:
+        """The Pareto front that a search by nsga2 found, as CSV; units: "inch" for lengths in inches."""
+        return self.transport.request("GET", f"/jobs/{id}/front", query={"units": units}, accept="text/csv").text
+
     @operation("getJobGenerations")
     def job_generations(self, id: int) -> doc.Generations:
         """The convergence of an optimization as columns, also while it runs."""

@@ -13,7 +13,7 @@
 enum { N = 4, SAMPLES = 8, PARTS = SAMPLES + 2, GROUPS = 2, ROWS = 30 };
 
 static struct eo_part_group group[GROUPS] = {{EO_PART_RANGE, SAMPLES, 0.7}, {EO_PART_LARGEST, 2, 0.3}};
-static const struct eo_anatomy anatomy = {PARTS, GROUPS, group}, none = {0, 0, NULL};
+static const struct eo_anatomy anatomy = {.parts = PARTS, .groups = GROUPS, .group = group}, none = {0};
 
 /* A wave whose range is to vanish, and two rivals: every part is linear in x, the value is not. */
 static void fill_parts(const double *x, double *part)
@@ -63,7 +63,7 @@ static void fill_archive(struct eo_archive *archive, int *row, double *x, double
     for (int k = 0; k < N; k++)
       place[k] = unit(j, k);
     const double v = value_at(place, part);
-    eo_archive_add(archive, place, v, 0, NULL, j < ROWS ? part : NULL, 0, j);
+    eo_archive_add(archive, place, place, v, 0, NULL, j < ROWS ? part : NULL, 0, j);
     if (j == ROWS)
       continue;
     row[j] = j;

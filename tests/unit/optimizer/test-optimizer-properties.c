@@ -48,7 +48,7 @@ static struct eo_part_group groups[] = {{EO_PART_LARGEST, 2, 1}, {EO_PART_RANGE,
 
 static enum eo_code make(const struct eo_optimizer_settings *s, struct eo_optimizer **o, struct eo_error *error)
 {
-  const struct eo_anatomy anatomy = {PARTS, 2, groups};
+  const struct eo_anatomy anatomy = {.parts = PARTS, .groups = 2, .group = groups};
   enum eo_code code = eo_optimizer_new(s, o, error);
   return code || !described ? code : eo_optimizer_describe(*o, &anatomy, error);
 }
