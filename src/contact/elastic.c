@@ -20,6 +20,7 @@ struct place {
 
 struct eo_elastic {
   const struct eo_contact_grid *grid[2]; /* [end] */
+  struct eo_double_helix helix;
   struct eo_shaft_influence influence;
   struct place *place[2];             /* [end][most_points] of the present position */
   double *gap[2];                     /* [end][points of its grid] of the bent bodies */
@@ -28,8 +29,8 @@ struct eo_elastic {
   struct eo_deflection asked[2], load[2];
   struct eo_deflection response[MODES][2]; /* H V: load given up per unit of a mode */
   struct eo_deflection shifted[2];         /* load taken on per N of shift */
-  double shift;                            /* P_L - P */
-  double rate[2];                          /* [end] dZ/dP, m/N */
+  double shift;                            /* P'_L - P */
+  double rate[2];                          /* [end] dZ'/dP', m/N */
   struct eo_deflection *history[2];        /* [end][positions] */
 };
 
@@ -126,14 +127,15 @@ static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, doubl
       el->answer[i] = -el->answer[i];
     gather(position->points, el->place[end], el->answer, &el->response[k][end]);
   }
-  el->rate[end] = eo_loaded_response(ws, position, factor, NULL, el->answer);
+  double scale = el->helix.scale[end];
+  el->rate[end] = eo_loaded_response(ws, position, factor, NULL, el->answer) * scale * scale;
   for (int i = 0; end == EO_RIGHT && i < position->points; i++)
-    el->answer[i] = -el->answer[i];
+    el->answer[i] = -el->answer[i] * scale;
   gather(position->points, el->place[end], el->answer, &el->shifted[end]);
 }
 
 /* Newton's correction of the deflection and, when the pinion is held, of the shift: [M, -V'g; g'V, rate] [c; d shift] =
-   -[(HV)'r; miss + g'r] with g the load taken on per N of shift (which is also how Z_L - Z_R follows the gaps). */
+   -[(HV)'r; miss + g'r] with g the load taken on per N of shift (which is also how Z'_L - Z'_R follows the gaps). */
 static void correct(struct eo_elastic *el, bool held, double soft, double miss)
 {
   int ends = el->influence.ends, n = el->influence.size, rows = MODES + held, pivot[MODES + 1];
@@ -181,16 +183,18 @@ static double departure(const struct eo_elastic *el)
   return most;
 }
 
-/* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let
-   go. */
+/* Z'_L - Z'_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would
+   let go. */
 static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *elastic_case, double soft,
                          const int at[2], const struct eo_loaded_end *result, bool *held)
 {
   *held = el->influence.ends == 2 && elastic_case->hold.stiffness > 0;
   if (!*held)
     return 0;
-  double apart = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]], stopped;
-  stopped = eo_axial_beyond_play(&elastic_case->hold, apart);
+  double apart = result[EO_LEFT].approach[at[EO_LEFT]] -
+                 result[EO_RIGHT].approach[at[EO_RIGHT]] * el->helix.scale[EO_RIGHT],
+         stopped;
+  stopped = eo_axial_beyond_play(&elastic_case->hold, apart - elastic_case->hold.rest);
   double miss = stopped + soft * (el->shift - elastic_case->hold.shift);
   if (elastic_case->hold.play > 0 && stopped == 0) { /* free between the stops: the thrust alone decides */
     *held = false;
@@ -218,7 +222,8 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *con
   for (int iteration = 1; iteration <= ITERATIONS; iteration++) {
     el->shift = fmax(-MOST_SHIFT * elastic_case->load, fmin(MOST_SHIFT * elastic_case->load, el->shift));
     for (int end = 0; end < ends; end++) {
-      double load = end == EO_LEFT ? elastic_case->load + el->shift : elastic_case->load - el->shift;
+      double load = (end == EO_LEFT ? elastic_case->load + el->shift : elastic_case->load - el->shift) *
+                    el->helix.scale[end];
       resolve(el, ws[end], &gaps[end], elastic_case->compliance_factor, end, at[end], load, iteration == 1,
               &result[end]);
       if (ask)
@@ -273,9 +278,8 @@ void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *const w
                       const struct eo_elastic_case *elastic_case, struct eo_loaded_end *result,
                       struct eo_elastic_report *report)
 {
-  double lean = sin(el->grid[EO_LEFT]->geometry.base_helix_angle);
-  double stiffness = elastic_case->hold.stiffness,
-         soft = stiffness > 0 && isfinite(stiffness) ? 4 * lean * lean / stiffness : 0;
+  double lean = eo_double_helix_lean(&el->helix), stiffness = elastic_case->hold.stiffness,
+         soft = stiffness > 0 && isfinite(stiffness) ? lean * lean / stiffness : 0;
   *report = (struct eo_elastic_report){0};
   el->shift = elastic_case->hold.shift;
   for (int j = 0; j < el->grid[EO_LEFT]->positions; j++) {
@@ -328,6 +332,7 @@ enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_
   if (!el)
     return eo_error_memory(error);
   memcpy(el->grid, grid, sizeof el->grid);
+  el->helix = eo_contact_double_helix(grid[EO_LEFT], grid[EO_RIGHT]);
   enum eo_code code = eo_shaft_influence_init(&el->influence, &grid[EO_LEFT]->geometry, pair, &grid[EO_LEFT]->material,
                                               shafts, inwards, error);
   if (!code)

@@ -27,7 +27,7 @@ enum eo_code eo_elastic_new(struct eo_elastic **elastic, const struct eo_contact
 void eo_elastic_free(struct eo_elastic *elastic);
 
 struct eo_elastic_case {
-  double load;               /* P per end, normal, N */
+  double load;               /* P' per end, normal, N */
   double compliance_factor;  /* of the teeth, as in eo_loaded_solve(); the bodies stay as they are */
   struct eo_axial_hold hold; /* of the pinion; stiffness 0: floating */
   int stagger;               /* positions by which the right end lags */

@@ -18,6 +18,7 @@
 
 #include "contact/field.h"
 #include "contact/grid.h"
+#include "gear/double_helix.h"
 
 #include <stdbool.h>
 
@@ -64,26 +65,32 @@ void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_cont
                      const struct eo_loaded_gaps *gaps, double compliance_factor, int loads, const double *load,
                      struct eo_loaded_end *result);
 
-/* How the pinion is held along its axis. A force A on it moves P_L - P to the shift at which the teeth alone carry it;
+/* Both ends' helices; P' and Z' below are loads and approaches on their common footing, which equal helices have
+   anyway: gear/double_helix.h. */
+struct eo_double_helix eo_contact_double_helix(const struct eo_contact_grid *left, const struct eo_contact_grid *right);
+
+/* How the pinion is held along its axis. A force A on it moves P'_L - P to the shift at which the teeth alone carry it;
    between stops it floats. */
 struct eo_axial_hold {
-  double stiffness; /* of the axial support, N/m: 0 floating, INFINITY fixed (one Z for both ends) */
-  double shift;     /* P_L - P of a floating pinion, N: A / (2 sin(beta_b)), with the sign of A's axis as eta runs */
-  double play;      /* of Z_L - Z_R to either side before a stop is met: sin(beta_b) times the clearance, m; 0: none */
+  double stiffness; /* of the axial support, N/m: 0 floating, INFINITY fixed (one Z' for both ends) */
+  double shift;     /* P'_L - P of a floating pinion, N: A / (lean of both ends), with the sign of A's axis as eta runs,
+                       and what unequal helices part by themselves */
+  double rest;      /* Z'_L - Z'_R at that shift, m: what bearings leave of unequal helices, 0 otherwise */
+  double play;      /* of Z'_L - Z'_R to either side before a stop is met: mean lean times the clearance, m; 0: none */
 };
 
-/* What is left of Z_L - Z_R beyond the play, m. */
+/* What is left of Z'_L - Z'_R beyond the play, m. */
 double eo_axial_beyond_play(const struct eo_axial_hold *hold, double apart);
 
-/* What one end is solved on; halves of unequal width have grids of their own, with as many positions. Borrowed. */
+/* What one end is solved on; halves that differ have grids of their own, with as many positions. Borrowed. */
 struct eo_loaded_half {
   struct eo_loaded_workspace *workspace;
   const struct eo_contact_grid *grid;
   const struct eo_loaded_gaps *gaps;
 };
 
-/* Both ends of an axially held pinion: P_L + P_R = 2 load. A displacement z towards + loads the left end less and the
-   right end more: Z_L = Z_m + sin(beta_b) z, Z_R = Z_m - sin(beta_b) z. stagger: positions by which the right end lags.
+/* Both ends of an axially held pinion: P'_L + P'_R = 2 load. A displacement z towards + loads the left end less and the
+   right end more: Z'_L = Z_m + lean_L z, Z'_R = Z_m - lean_R z. stagger: positions by which the right end lags.
    Works on results of eo_loaded_solve() for the same load. An end that does not touch although the other one carries
    2 load has load, tangent and line loads 0, and the approach that the axial condition gives it. */
 void eo_loaded_balance(const struct eo_loaded_half half[2], double compliance_factor, const struct eo_axial_hold *hold,

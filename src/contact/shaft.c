@@ -30,6 +30,7 @@ struct body {
   const struct eo_geometry *geometry;
   int member, ends;
   double mid[2], width[2]; /* [end] z of mid face, face width, m */
+  double helix[2];         /* [end] beta_b, rad */
   double bearing[2];
   double clamp; /* z where twist is measured from */
   double arm;   /* xi of the pitch point */
@@ -85,6 +86,7 @@ static void init_body(struct body *body, const struct eo_geometry *geometry, con
   struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(geometry, member), bore);
   *body = (struct body){.geometry = geometry, .member = member, .ends = pair->ends};
   for (int end = 0; end < 2; end++) {
+    body->helix[end] = eo_geometry_of_half(geometry, pair, end).base_helix_angle;
     body->width[end] = pair->ends == 2 ? eo_gear_pair_face_width(pair, end) : pair->face_width;
     body->mid[end] = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(pair, end);
     half[end] = eo_gear_pair_mid_face(pair, end) + body->width[end] / 2 + beyond;
@@ -133,9 +135,9 @@ enum { BENDING, SHEAR, SIDE_BENDING, SIDE_SHEAR, TWIST, KINDS };
 static void internal_forces(const struct body *body, double x, double row[KINDS][MOST_SIZE])
 {
   const struct eo_geometry *geometry = body->geometry;
-  double normal = cos(geometry->base_helix_angle), lean = sin(geometry->base_helix_angle),
-         radius = geometry->base_radius[body->member];
-  for (int end = 0; end < body->ends; end++)
+  double radius = geometry->base_radius[body->member];
+  for (int end = 0; end < body->ends; end++) {
+    double normal = cos(body->helix[end]), lean = sin(body->helix[end]);
     for (int node = 0; node < NODES; node++) {
       double z = node_place(body, end, node), hand = (end == EO_LEFT) != body->inwards ? lean : -lean;
       double moment = moment_of_moment(body->bearing, z, x), shear = shear_of_moment(body->bearing);
@@ -149,6 +151,7 @@ static void internal_forces(const struct body *body, double x, double row[KINDS]
       row[TWIST][level] = (x > fmin(body->clamp, z) && x < fmax(body->clamp, z)) ? radius * normal : 0;
       row[SIDE_BENDING][tilt] = row[SIDE_SHEAR][tilt] = row[TWIST][tilt] = 0;
     }
+  }
 }
 
 /* matrix += weight row row', lower triangle. */

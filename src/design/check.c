@@ -26,6 +26,23 @@ static enum eo_code check_body(const struct eo_gear_pair *pair, const struct eo_
   return EO_OK;
 }
 
+/* A right half of its own helix must be a pair by itself, on the blanks of the left one. */
+static enum eo_code check_right_helix(const struct eo_gear_pair *pair, struct eo_error *error)
+{
+  if (!eo_gear_pair_has_two_helices(pair))
+    return EO_OK;
+  const struct eo_gear_pair half = eo_gear_pair_half(pair, EO_RIGHT);
+  struct eo_geometry geometry;
+  struct eo_error reason;
+  enum eo_code code = eo_geometry_init(&geometry, &half, &reason);
+  return code ? eo_error_set(
+                    error, code, "/gear_pair/right_helix_angle_deg",
+                    "The right half, with a normal module of %.6g mm and a normal pressure angle of %.6g deg at "
+                    "this helix angle, cannot be made: %.300s",
+                    1e3 * half.normal_module, half.normal_pressure_angle * 180 / M_PI, reason.text)
+              : EO_OK;
+}
+
 /* A narrow right half must keep the teeth in mesh by itself. */
 static enum eo_code check_right_half(const struct eo_gear_pair *pair, const struct eo_geometry *right,
                                      struct eo_error *error)
@@ -33,7 +50,9 @@ static enum eo_code check_right_half(const struct eo_gear_pair *pair, const stru
   double total = right->transverse_contact_ratio + right->overlap_ratio;
   if (!eo_gear_pair_is_uneven(pair) || total >= 1)
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/right_face_width_mm",
+  return eo_error_set(error, EO_ERROR_INPUT,
+                      eo_gear_pair_has_two_helices(pair) ? "/gear_pair/right_helix_angle_deg"
+                                                         : "/gear_pair/right_face_width_mm",
                       "The total contact ratio of the right end, %.4g, is below 1: the teeth do not mesh continuously. "
                       "A wider face than %.6g mm, a larger helix angle or a longer addendum adds to it.",
                       total, 1e3 * right->face_width);
@@ -360,6 +379,7 @@ static enum eo_code check_objective(const struct eo_objective *objective, struct
 
 enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_error *error)
 {
+  EO_TRY(check_right_helix(&design->gear_pair, error));
   const struct eo_geometry right = eo_geometry_of_half(geometry, &design->gear_pair, EO_RIGHT);
   enum eo_code code = check_right_half(&design->gear_pair, &right, error);
   if (!code)

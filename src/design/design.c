@@ -210,6 +210,13 @@ struct eo_running eo_design_running(const struct eo_design *design, int load_cas
   return running;
 }
 
+double eo_design_right_lag(const struct eo_design *design, const struct eo_geometry *geometry)
+{
+  double lead = eo_geometry_right_lead(geometry, &design->gear_pair) / geometry->transverse_base_pitch;
+  return lead == 0 ? design->alignment.stagger
+                   : design->alignment.stagger - eo_alignment_outwards(&design->alignment) * lead;
+}
+
 static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);
@@ -246,9 +253,12 @@ static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_p
   fill(&supports->mass[i], density * M_PI * volume[EO_LEFT]);
   fill(&supports->inertia[i], density * M_PI / 2 * polar[EO_LEFT]);
   supports->right_mass[i] = supports->right_inertia[i] = 0;
+  supports->right_base_helix_angle = 0;
   if (!eo_gear_pair_is_uneven(pair))
     return;
   const struct eo_gear_pair right = eo_gear_pair_half(pair, EO_RIGHT);
+  if (eo_gear_pair_has_two_helices(pair))
+    supports->right_base_helix_angle = asin(sin(right.helix_angle) * cos(right.normal_pressure_angle));
   cylinder(&right, i, pitch_radius, &volume[EO_RIGHT], &polar[EO_RIGHT]);
   supports->right_mass[i] = supports->mass[i] * volume[EO_RIGHT] / volume[EO_LEFT];
   supports->right_inertia[i] = supports->inertia[i] * polar[EO_RIGHT] / polar[EO_LEFT];

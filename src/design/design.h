@@ -212,6 +212,10 @@ struct eo_design {
 
 struct eo_geometry;
 
+/* Pitches by which the mid face of the right half is behind that of the left one on the drive flanks: the stagger, less
+   what halves of unequal width or helix bring. geometry: of the left half. */
+double eo_design_right_lag(const struct eo_design *design, const struct eo_geometry *geometry);
+
 /* Before there is a geometry: what was entered in another way becomes the members themselves (gear/entry.h), allowances
    come from their series, the backlash from stated allowances, shaft angle errors from a stated grade, apex or hand
    from a stated rotation. EO_ERROR_INPUT

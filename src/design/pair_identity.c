@@ -15,6 +15,7 @@
   ROW("pinion_face_width", pair->member_width[EO_PINION])                                  \
   ROW("gear_face_width", pair->member_width[EO_GEAR])                                      \
   ROW("right_face_width", pair->right_face_width)                                          \
+  ROW("right_helix_angle", pair->right_helix_angle)                                        \
   ROW("groove_width", pair->groove_width)                                                  \
   ROW("addendum_coefficient", pair->addendum_coefficient)                                  \
   ROW("dedendum_coefficient", pair->dedendum_coefficient)                                  \

@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "design/design.h"
 
-enum { EO_PAIR_MEMBERS = 56 };
+enum { EO_PAIR_MEMBERS = 57 };
 
 /* One number for each member. */
 struct eo_pair_identity {

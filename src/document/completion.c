@@ -9,16 +9,23 @@
 #include "format/text_table.h"
 
 struct completion {
-  json_t *design, *geometry, *dimensions, *assumed, *warnings, *findings;
+  bool uneven, two_helices; /* halves that differ; in their helices */
+  json_t *design, *geometry[2], *dimensions[2], *assumed, *warnings, *findings;
 };
 
 static const struct eo_outline_row completion_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
            EO_AT(struct completion, design)),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry",
-           EO_AT(struct completion, geometry)),
+           EO_AT(struct completion, geometry[EO_LEFT])),
+    EO_KEY("right_geometry", "object?", "the same of the right end", .table = &eo_geometry_table, .name = "Geometry",
+           .when = "with halves of unequal width or helix", EO_AT(struct completion, geometry[EO_RIGHT]),
+           EO_IF(struct completion, uneven)),
     EO_KEY("dimensions", "object", "what is measured on the members and between them",
-           .outline = &eo_outline_dimensions, EO_AT(struct completion, dimensions)),
+           .outline = &eo_outline_dimensions, EO_AT(struct completion, dimensions[EO_LEFT])),
+    EO_KEY("right_dimensions", "object?", "the same of the right end", .outline = &eo_outline_dimensions,
+           .when = "with halves of unequal helix", EO_AT(struct completion, dimensions[EO_RIGHT]),
+           EO_IF(struct completion, two_helices)),
     EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
            .outline = &eo_outline_assumption, EO_AT(struct completion, assumed)),
     EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct completion, warnings)),
@@ -30,9 +37,16 @@ const struct eo_outline eo_outline_completion = EO_OUTLINE("Completion", complet
 json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geometry *geometry,
                              const struct eo_warnings *warnings)
 {
-  const struct completion view = {.design = eo_design_encode(design),
-                                  .geometry = eo_table_encode(&eo_geometry_table, geometry),
-                                  .dimensions = eo_dimensions_encode(&design->gear_pair, geometry),
+  const struct eo_gear_pair *pair = &design->gear_pair, right = eo_gear_pair_half(pair, EO_RIGHT);
+  const struct eo_geometry half = eo_geometry_of_half(geometry, pair, EO_RIGHT);
+  bool uneven = eo_gear_pair_is_uneven(pair), two_helices = eo_gear_pair_has_two_helices(pair);
+  const struct completion view = {.uneven = uneven,
+                                  .two_helices = two_helices,
+                                  .design = eo_design_encode(design),
+                                  .geometry = {eo_table_encode(&eo_geometry_table, geometry),
+                                               uneven ? eo_table_encode(&eo_geometry_table, &half) : NULL},
+                                  .dimensions = {eo_dimensions_encode(pair, geometry),
+                                                 two_helices ? eo_dimensions_encode(&right, &half) : NULL},
                                   .assumed = eo_assumptions_encode(design, true),
                                   .warnings = eo_warnings_encode(warnings),
                                   .findings = eo_design_findings(warnings)};
@@ -141,8 +155,12 @@ void eo_completion_summary(const json_t *completion, struct eo_text *text)
   size_t i;
   eo_text_print(text, "%s\n", name && *name ? name : "unnamed design");
   print_object(json_object_get(completion, "geometry"), "geometry", text);
+  if (json_object_get(completion, "right_geometry"))
+    print_object(json_object_get(completion, "right_geometry"), "geometry of the right end", text);
   print_object(json_object_get(completion, "dimensions"),
                "dimensions; of three numbers: nominal, with the upper, with the lower allowance", text);
+  if (json_object_get(completion, "right_dimensions"))
+    print_object(json_object_get(completion, "right_dimensions"), "dimensions of the right end", text);
   print_assumed(json_object_get(completion, "assumed"), text);
   if (json_array_size(warnings))
     eo_text_add(text, "\nnotes\n");

@@ -292,15 +292,30 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   return code;
 }
 
+/* Without a key that came later and is not used: a design of before it stays the same one. New; NULL without memory. */
+static json_t *without_unused(const json_t *document)
+{
+  json_t *whole = json_copy((json_t *)document), *pair = json_copy(json_object_get(document, "gear_pair"));
+  if (pair && json_is_null(json_object_get(pair, "right_helix_angle_deg")))
+    json_object_del(pair, "right_helix_angle_deg");
+  if (!whole || !pair || json_object_set_new(whole, "gear_pair", pair) == 0)
+    return whole;
+  json_decref(whole);
+  return NULL;
+}
+
 enum eo_code eo_design_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   struct eo_text text = {0};
+  json_t *used = without_unused(document);
+  document = used;
   if (document)
     eo_json_write(&text, document, EO_JSON_CANONICAL);
   enum eo_code code = !document || text.failed ? eo_error_memory(error) : EO_OK;
   if (!code)
     eo_hash_hex(text.data, text.size, hex);
   eo_text_done(&text);
+  json_decref(used);
   return code;
 }
 
@@ -375,8 +390,9 @@ static json_t *encode_problem(const struct eo_design *design)
 {
   static const char *const without[] = {"version", "name",      "modification", "rating",
                                         "pitch",   "tolerance", "objective",    "optimization"};
-  json_t *document = eo_design_encode(design), *load_case;
+  json_t *whole = eo_design_encode(design), *document = whole ? without_unused(whole) : NULL, *load_case;
   bool failed = !document;
+  json_decref(whole);
   size_t i;
   for (i = 0; i < sizeof without / sizeof without[0]; i++)
     json_object_del(document, without[i]);

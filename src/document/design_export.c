@@ -79,7 +79,7 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
     flank.offset = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(&design->gear_pair, end);
     flank.along = (end == EO_LEFT ? -1 : 1) * eo_alignment_outwards(&design->alignment);
     flank.across = -eo_design_rotation(design);
-    double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+    double behind = end == EO_RIGHT ? eo_design_right_lag(design, geometry) * 2 * M_PI / geometry->teeth[member] : 0;
     flank.pitch = pitch_angle(geometry, member);
     flank.behind = member == EO_PINION ? behind : -behind;
     eo_geometry_involute(geometry, member, geometry->working_radius[member], point, normal);

@@ -109,5 +109,13 @@ void eo_dimensions_csv(const struct eo_design *design, const struct eo_geometry 
   put_row(text, "centre distance allowance both ways", "A_a", &eo_unit_um, "", dimensions->centre_distance_allowance,
           "");
   put_backlash(text, dimensions);
+  if (eo_gear_pair_has_two_helices(&design->gear_pair)) {
+    const struct eo_gear_pair right = eo_gear_pair_half(&design->gear_pair, EO_RIGHT);
+    const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, EO_RIGHT);
+    eo_pair_dimensions_init(dimensions, &right, &half);
+    put_member(text, "pinion, right end", &dimensions->member[EO_PINION]);
+    put_member(text, "gear, right end", &dimensions->member[EO_GEAR]);
+    put_backlash(text, dimensions);
+  }
   free(dimensions);
 }

@@ -113,6 +113,11 @@ static const struct eo_field gear_pair[] = {
                       "that of the left end",
                       "face width of the right end where the halves are unequal; face_width_mm and the members' own "
                       "widths are those of the left one then, and what is beyond the common face is alike on both"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, right_helix_angle, "right_helix_angle_deg", &eo_unit_deg, 0.1, 60,
+                      "that of the left end",
+                      "helix angle of the right end where the halves differ; helix_angle_deg, normal module, normal "
+                      "pressure angle and all coefficients are those of the left one then, and the halves share the "
+                      "transverse section"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, groove_width, "groove_width_mm", &eo_unit_mm, 0, 5000,
                       "8 m_n with two ends, 0 with one", "tool withdrawal groove between the ends"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, addendum_coefficient, "addendum_coefficient", NULL, 0.2, 2,

@@ -312,7 +312,8 @@ static json_t *encode_timing(const struct eo_result_source *source)
 /* What stands before the load cases. */
 struct result_head {
   const char *program;
-  json_t *design, *assumed, *dimensions, *flexibility, *modification, *unloaded;
+  bool uneven, two_helices; /* halves that differ; in their helices */
+  json_t *design, *assumed, *right_geometry, *dimensions, *right_dimensions, *flexibility, *modification, *unloaded;
   char design_hash[EO_HASH_LENGTH + 1], evaluation_hash[EO_HASH_LENGTH + 1];
   struct eo_resolution resolution;
   struct eo_geometry geometry;
@@ -332,8 +333,12 @@ static const struct eo_outline_row head_rows[] = {
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution",
            OF_HEAD(resolution)),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry", OF_HEAD(geometry)),
+    EO_KEY("right_geometry", "object?", "the same of the right end", .table = &eo_geometry_table, .name = "Geometry",
+           .when = EO_UNEVEN, OF_HEAD(right_geometry), EO_IF(struct result_head, uneven)),
     EO_KEY("dimensions", "object?", "what is measured on the members and between them; null when left out",
            .outline = &eo_outline_dimensions, OF_HEAD(dimensions)),
+    EO_KEY("right_dimensions", "object?", "the same of the right end", .outline = &eo_outline_dimensions,
+           .when = EO_TWO_HELICES, OF_HEAD(right_dimensions), EO_IF(struct result_head, two_helices)),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility,
            OF_HEAD(flexibility)),
     EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification,
@@ -402,6 +407,14 @@ json_t *eo_result_head(struct eo_result_source *source)
   json_decref(document);
   head.assumed = assumed ? eo_assumptions_encode(design, rating) : json_null();
   head.dimensions = assumed ? eo_dimensions_encode(&design->gear_pair, geometry) : json_null();
+  head.uneven = source->pair->right;
+  head.two_helices = eo_gear_pair_has_two_helices(&source->pair->gear_pair);
+  if (head.uneven)
+    head.right_geometry = eo_table_encode(&eo_geometry_table, &source->pair->right->geometry);
+  if (head.two_helices) {
+    const struct eo_gear_pair right = eo_gear_pair_half(&design->gear_pair, EO_RIGHT);
+    head.right_dimensions = assumed ? eo_dimensions_encode(&right, &source->pair->right->geometry) : json_null();
+  }
   head.flexibility = eo_result_flexibility(source);
   head.modification = modification ? eo_result_modification(source) : json_null();
   head.unloaded = eo_result_unloaded(source);

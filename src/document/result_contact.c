@@ -36,8 +36,8 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
   const struct unloaded_end view = {
-      .te = eo_result_curve(source, end, curves ? end_result->unloaded : NULL, 1 / source->normal),
-      .swing = eo_periodic_swing(source->positions, end_result->unloaded) / source->normal,
+      .te = eo_result_curve(source, end, curves ? end_result->unloaded : NULL, 1 / eo_result_normal(source, end)),
+      .swing = eo_periodic_swing(source->positions, end_result->unloaded) / eo_result_normal(source, end),
       .gap = end_result->datum,
       .clearance = eo_result_map(source, curves ? pattern->clearance : NULL),
       .marked = (double)marked / points,
@@ -113,7 +113,9 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
     view.end[end] = encode_unloaded_end(source, end);
   for (int j = 0; j < n; j++)
     source->scratch[j] =
-        (case_result->end[0].unloaded[j] + case_result->end[last].unloaded[(j + n - source->lag) % n]) / 2;
+        (eo_result_weight(source, EO_LEFT) * case_result->end[0].unloaded[j] +
+         eo_result_weight(source, EO_RIGHT) * case_result->end[last].unloaded[(j + n - source->lag) % n]) /
+        2;
   view.pair = eo_result_curve(source, EO_LEFT, curves ? source->scratch : NULL, 1 / source->normal);
   view.swing = eo_periodic_swing(n, source->scratch) / source->normal;
   return eo_outline_encode(&eo_outline_unloaded, &view);

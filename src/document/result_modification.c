@@ -93,10 +93,11 @@ static json_t *encode_surface(const struct eo_modification_shape *shape, const s
   return eo_object_close(&rows);
 }
 
-static void find_curves(const struct eo_result_source *source, int member, const struct eo_flank_modification *flank,
-                        const struct eo_modification_shape *shape, const struct places *places, struct curves *curves)
+static void find_curves(const struct eo_result_source *source, int member, int end,
+                        const struct eo_flank_modification *flank, const struct eo_modification_shape *shape,
+                        const struct places *places, struct curves *curves)
 {
-  const struct eo_geometry *geometry = &source->pair->geometry;
+  const struct eo_geometry *geometry = &eo_pair_half(source->pair, end)->geometry;
   double slope[2];
   *curves = (struct curves){.crowning = flank->lead_crowning,
                             .coefficient = eo_modification_lead_coefficient(geometry, flank->lead_crowning),
@@ -122,7 +123,7 @@ static json_t *encode_coast(const struct eo_result_source *source, int member, i
   json_t *encoded = json_null();
   if (!failed && (spline || !eo_modification_is_none(flank))) {
     struct curves view;
-    find_curves(source, member, flank, &shape, places, &view);
+    find_curves(source, member, end, flank, &shape, places, &view);
     encoded = eo_outline_encode(&coast_curves, &view);
   }
   eo_flank_spline_free(spline);
@@ -140,7 +141,7 @@ static json_t *encode_flank(const struct eo_result_source *source, int member, i
   json_t *encoded = NULL;
   if (!eo_flank_shape(source->design, geometry, EO_DRIVE_FLANK, member, end, &shape, &spline)) {
     struct curves view;
-    find_curves(source, member, &source->design->modification.flank[member][end], &shape, &places, &view);
+    find_curves(source, member, end, &source->design->modification.flank[member][end], &shape, &places, &view);
     view.coast = encode_coast(source, member, end, &places);
     encoded = eo_outline_encode(&flank_curves, &view);
   }
@@ -149,8 +150,8 @@ static json_t *encode_flank(const struct eo_result_source *source, int member, i
 }
 
 struct member_curves {
-  bool two;
-  struct eo_series u, map_u;
+  bool two, two_helices;
+  struct eo_series u, map_u, right_u, right_map_u;
   json_t *end[2];
 };
 
@@ -160,6 +161,10 @@ static const struct eo_outline_row member_rows[] = {
            "profile coordinate of the generating rack, from the root end of the active profile to its tip end",
            .unit = &eo_unit_mm, OF_MEMBER(u)),
     EO_KEY("surface_u_mm", "[number]", "the same, for surfaces", .unit = &eo_unit_mm, OF_MEMBER(map_u)),
+    EO_KEY("right_u_mm", "[number]", "u_mm of the right end", .unit = &eo_unit_mm, .when = EO_TWO_HELICES,
+           OF_MEMBER(right_u), EO_IF(struct member_curves, two_helices)),
+    EO_KEY("right_surface_u_mm", "[number]", "surface_u_mm of the right end", .unit = &eo_unit_mm,
+           .when = EO_TWO_HELICES, OF_MEMBER(right_map_u), EO_IF(struct member_curves, two_helices)),
     EO_KEY("left", "object", "flank of the left end", .outline = &flank_curves, OF_MEMBER(end[EO_LEFT])),
     EO_KEY("right", "object", "flank of the right end", .when = EO_TWO_ENDS, .outline = &flank_curves,
            OF_MEMBER(end[EO_RIGHT]), EO_IF(struct member_curves, two)),
@@ -167,17 +172,28 @@ static const struct eo_outline_row member_rows[] = {
 static const struct eo_outline member_curves = EO_OUTLINE("MemberCurves", member_rows);
 
 /* u runs from the root end of the member's own active profile to its tip end. */
-static json_t *encode_member(const struct eo_result_source *source, int member, struct places *places)
+static void spread_profile(const struct eo_geometry *geometry, int member, struct places *places)
 {
   double ends[2];
-  eo_active_profile(&source->pair->geometry, member, ends);
+  eo_active_profile(geometry, member, ends);
   spread(POINTS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->u);
   spread(MAP_ROWS, ends[EO_ROOT_SIDE], ends[EO_TIP_SIDE], places->map_u);
+}
+
+static json_t *encode_member(const struct eo_result_source *source, int member, struct places *places)
+{
+  bool two_helices = eo_gear_pair_has_two_helices(&source->pair->gear_pair);
+  struct places right = *places;
+  spread_profile(&source->pair->geometry, member, places);
+  spread_profile(&eo_pair_half(source->pair, EO_RIGHT)->geometry, member, &right);
   struct member_curves view = {.two = source->ends == 2,
+                               .two_helices = two_helices,
                                .u = eo_series_of(POINTS, places->u, source->digits),
-                               .map_u = eo_series_of(MAP_ROWS, places->map_u, source->digits)};
+                               .map_u = eo_series_of(MAP_ROWS, places->map_u, source->digits),
+                               .right_u = eo_series_of(POINTS, right.u, source->digits),
+                               .right_map_u = eo_series_of(MAP_ROWS, right.map_u, source->digits)};
   for (int end = 0; end < source->ends; end++)
-    view.end[end] = encode_flank(source, member, end, places);
+    view.end[end] = encode_flank(source, member, end, end == EO_RIGHT && two_helices ? &right : places);
   return eo_outline_encode(&member_curves, &view);
 }
 

@@ -227,7 +227,7 @@ static struct pitch_largest largest_at(const struct pitch_case *pitch_case, cons
                                        bool instant)
 {
   return (struct pitch_largest){.value = place->value,
-                                .share = place->value / pitch_case->own->force,
+                                .share = place->value / pitch_case->own->force[place->end],
                                 .end = place->end,
                                 .cycle = place->cycle,
                                 .position = instant ? (double)place->position : NAN,

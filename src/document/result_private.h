@@ -15,7 +15,8 @@ struct eo_result_source {
   const struct eo_pair *pair;
   const struct eo_design *design;
   int ends, positions, lag;           /* lag: positions by which the right end's columns are shifted */
-  double normal;                      /* cos(beta_b): normal = transverse times it */
+  double normal;                      /* cos(beta_b) of the left end: normal = transverse times it */
+  struct eo_double_helix helix;       /* both ends on that footing */
   unsigned left_out;                  /* EO_RESULT_NO_..., EO_RESULT_CURVES_OF(), EO_RESULT_OVERVIEW */
   int digits, map_digits;             /* of curves; of maps and histories; `ready` in them */
   int ready;                          /* EO_DIGITS_READY where the result is only written, else 0 */
@@ -35,6 +36,18 @@ bool eo_result_has(const struct eo_result_source *source, unsigned part, const s
 bool eo_result_has_overview(const struct eo_result_source *source, unsigned part,
                             const struct eo_case_result *load_case);
 
+/* cos(beta_b) of an end. */
+static inline double eo_result_normal(const struct eo_result_source *source, int end)
+{
+  return source->normal / source->helix.scale[end];
+}
+
+/* Twice the weight with which Z of an end is part of the pair's: 1 of equal helices. */
+static inline double eo_result_weight(const struct eo_result_source *source, int end)
+{
+  return 2 * source->helix.share[end] * source->helix.scale[end];
+}
+
 /* A curve over the mesh positions of one end, shifted so that both ends stand at the same instant; value NULL: left
    out. */
 struct eo_series eo_result_curve(const struct eo_result_source *source, int end, const double *value, double scale);
@@ -48,7 +61,8 @@ struct eo_contact_pattern *eo_result_pattern(const struct eo_result_source *sour
 /* Places on the right end's face, m, where it has a width of its own: as many as on the left one, in proportion; place
    NULL: left out. New; null where both ends are alike, NULL without memory. */
 json_t *eo_result_right_face(const struct eo_result_source *source, int count, const double *place);
-#define EO_UNEVEN "with halves of unequal width"
+#define EO_TWO_HELICES "with halves of unequal helix"
+#define EO_UNEVEN "with halves of unequal width or helix"
 
 /* What is there when the pair has two ends. */
 #define EO_TWO_ENDS "with two ends"

@@ -81,6 +81,7 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
                                 .positions = evaluation->positions,
                                 .lag = eo_evaluator_stagger(analysis->pair, design, &evaluation->load_case[0].running),
                                 .normal = cos(analysis->pair->geometry.base_helix_angle),
+                                .helix = eo_pair_double_helix(analysis->pair),
                                 .left_out = left_out,
                                 .digits = digits_of(EO_DIGITS_CURVE, left_out, 0),
                                 .map_digits = digits_of(EO_DIGITS_MAP, left_out, 2)};

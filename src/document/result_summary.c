@@ -48,6 +48,8 @@ static void print_faces(const json_t *pair, const json_t *geometry, const struct
 static void print_hand(const json_t *pair, struct eo_text *text)
 {
   const char *hand = find_text(pair, "hand");
+  if (find(pair, "right_helix_angle_deg") > 0)
+    eo_text_print(text, " + %.6g deg", find(pair, "right_helix_angle_deg"));
   if (*hand)
     eo_text_print(text, find(pair, "ends") == 2 ? " (left end %s-handed)" : " (%s-handed)", hand);
   eo_text_add(text, ", face ");

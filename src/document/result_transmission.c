@@ -24,14 +24,16 @@ static json_t *encode_orders(const struct eo_result_source *source, const double
   return column;
 }
 
-/* Where a floating pinion settles, + to the right: z = (Z_L - Z_R)/(2 sin beta_b), with the other sign where the face
-   ends at the groove meet first. */
+/* Where a floating pinion settles, + to the right: z = (Z'_L - Z'_R)/(lean of both ends), which is
+   (Z_L - Z_R)/(2 sin beta_b) of equal helices, with the other sign where the face ends at the groove meet first. */
 static json_t *encode_float(const struct eo_result_source *source, const double *const approach[2], bool inwards)
 {
   int n = source->positions;
-  double scale = (inwards ? -1 : 1) / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
+  double lean = source->helix.scale[EO_RIGHT] != 1 ? eo_double_helix_lean(&source->helix)
+                                                   : 2 * sqrt(fmax(0, 1 - source->normal * source->normal)),
+         scale = (inwards ? -1 : 1) / lean;
   for (int j = 0; j < n; j++)
-    source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n];
+    source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n] * source->helix.scale[EO_RIGHT];
   return eo_json_column(n, source->scratch, scale, &eo_unit_um, source->digits);
 }
 
@@ -45,7 +47,10 @@ struct transmission {
 
 #define OF_TRANSMISSION(member) EO_AT(struct transmission, member)
 static const struct eo_outline_row lte_rows[] = {
-    EO_KEY("pair_um", "[number?]?", "mean of the ends, over the positions", .unit = &eo_unit_um, OF_TRANSMISSION(pair)),
+    EO_KEY("pair_um", "[number?]?",
+           "mean of the ends, over the positions; of unequal helices weighted by the other end's tan(beta_b): the "
+           "rotation alone",
+           .unit = &eo_unit_um, OF_TRANSMISSION(pair)),
     EO_KEY("left_um", "[number?]?", "left end, over the positions", .unit = &eo_unit_um, OF_TRANSMISSION(end[EO_LEFT])),
     EO_KEY("right_um", "[number?]?", "right end, over the positions", .unit = &eo_unit_um, .when = EO_TWO_ENDS,
            OF_TRANSMISSION(end[EO_RIGHT]), EO_IF(struct transmission, two)),
@@ -98,6 +103,16 @@ static void find_second_derivative(const struct eo_result_source *source, const 
   view->second_rms = sqrt(squares);
 }
 
+/* P over the face, mean of the ends as that of Z is. */
+static double mean_line_load(const struct eo_result_source *source, const struct eo_case_result *case_result)
+{
+  double sum = 0;
+  for (int end = 0; end < source->ends; end++)
+    sum += eo_result_weight(source, end) / source->ends * case_result->even_force[end] /
+           eo_pair_half(source->pair, end)->geometry.face_width;
+  return sum;
+}
+
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *case_result)
 {
   const double *const approach[2] = {case_result->end[0].loaded.approach, case_result->end[1].loaded.approach};
@@ -110,11 +125,11 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
       .pair = eo_result_curve(source, EO_LEFT, curves ? case_result->transmission : NULL, 1),
       .swing = case_result->peak_to_peak,
       .mean = case_result->mean,
-      .windup = windup * case_result->force / source->pair->geometry.face_width / source->normal,
+      .windup = windup * mean_line_load(source, case_result) / source->normal,
       .orders = curves ? encode_orders(source, case_result->transmission, &eo_unit_um) : json_null(),
   };
   for (int end = 0; end < source->ends; end++) {
-    view.end[end] = eo_result_curve(source, end, curves ? approach[end] : NULL, 1 / source->normal);
+    view.end[end] = eo_result_curve(source, end, curves ? approach[end] : NULL, 1 / eo_result_normal(source, end));
     view.end_swing[end] = case_result->end[end].transmission_peak;
   }
   find_second_derivative(source, case_result, &view);
@@ -192,7 +207,7 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
     view.tangent[end] = eo_result_curve(source, end, curves ? tangent : NULL, 1);
     view.orders[end] = curves ? encode_orders(source, secant, &eo_unit_N_per_um) : json_null();
     view.mean.end[end] = (struct mean_stiffness){mean, eo_periodic_mean(source->positions, tangent),
-                                                 mean * source->normal * source->normal /
+                                                 mean * eo_result_normal(source, end) * eo_result_normal(source, end) /
                                                      eo_pair_half(source->pair, end)->geometry.face_width};
   }
   return eo_outline_encode(&eo_outline_stiffness, &view);

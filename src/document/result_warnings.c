@@ -70,8 +70,8 @@ static void say_contact(struct list *list, const struct eo_result_source *source
 static void say_swing(struct list *list, const struct eo_result_source *source,
                       const struct eo_case_result *case_result, int end)
 {
-  double swing = fmax(case_result->vibration.force_max[end] / case_result->force - 1,
-                      1 - case_result->vibration.force_min[end] / case_result->force);
+  double swing = fmax(case_result->vibration.force_max[end] / case_result->even_force[end] - 1,
+                      1 - case_result->vibration.force_min[end] / case_result->even_force[end]);
   if (swing > case_result->law_reach)
     say(list,
         "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".",

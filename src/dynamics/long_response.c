@@ -92,7 +92,7 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
 {
   const struct eo_long_case *load = response->load;
   int n = load->cycles * load->positions, ends = load->parameters->ends;
-  double nominal = eo_dynamics_mesh_load(load->parameters, load->torque), mean = 0;
+  double mean = 0;
   for (int end = 0; end < ends; end++)
     mean += eo_periodic_mean(n, load->tangent[end]) / ends;
   set_steps(response, mean);
@@ -106,7 +106,7 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
       *lawful = *lawful && response->row[end][(size_t)i * ROWS + 1] > 0;
     response->law[end] = (struct eo_law){.kind = EO_MESH_TANGENT,
                                          .rows = ROWS,
-                                         .nominal = nominal,
+                                         .nominal = eo_dynamics_mesh_load(load->parameters, load->torque, end),
                                          .back = load->back,
                                          .back_stiffness = eo_periodic_mean(n, load->tangent[end])};
   }

@@ -58,6 +58,12 @@ static void hold_pinion(struct eo_dynamics_model *model, struct elements *all)
   put_element(model, all, e, parameters->pinion_axial_stiffness, parameters->pinion_axial_damping);
 }
 
+/* Of the torque by which an end turns, so that groove and screw mode bear none of it at rest: theory (F11). */
+static double torque_share(const struct eo_dynamics_parameters *parameters, int end)
+{
+  return parameters->ends == 1 ? 1 : eo_dynamics_double_helix(parameters).share[end];
+}
+
 static void join_machines(struct eo_dynamics_model *model, struct elements *all)
 {
   const struct eo_dynamics_parameters *parameters = &model->parameters;
@@ -67,7 +73,7 @@ static void join_machines(struct eo_dynamics_model *model, struct elements *all)
       continue;
     e[model->machine[member]] = 1;
     for (int end = 0; end < parameters->ends; end++)
-      e[eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_ROTATION)] = -1.0 / parameters->ends;
+      e[eo_dynamics_freedom(parameters->ends, member, end, EO_MOTION_ROTATION)] = -torque_share(parameters, end);
     put_element(model, all, e, parameters->machine_stiffness[member], parameters->machine_damping[member]);
   }
 }
@@ -102,8 +108,8 @@ static void add_supports(struct eo_dynamics_model *model, struct elements *all)
 static void set_readings(struct eo_dynamics_model *model)
 {
   const struct eo_dynamics_parameters *parameters = &model->parameters;
-  double c = cos(parameters->base_helix_angle), s = sin(parameters->base_helix_angle);
   for (int end = 0; end < parameters->ends; end++) {
+    double helix = eo_dynamics_base_helix_angle(parameters, end), c = cos(helix), s = sin(helix);
     double hand = end == 0 ? s : -s;
     for (int member = 0; member < 2; member++) {
       double sign = member == EO_PINION ? 1 : -1;
@@ -249,6 +255,7 @@ static void reduce(struct eo_dynamics_model *model)
   oscillator->shift = isfinite(parameters->bearing_stiffness[EO_PINION]) ? parameters->bearing_stiffness[EO_PINION]
                                                                          : rigid_shift;
   oscillator->symmetric = parameters->ends == 2 &&
+                          eo_dynamics_base_helix_angle(parameters, EO_RIGHT) == parameters->base_helix_angle &&
                           parameters->gear_axial_stiffness[0] == parameters->gear_axial_stiffness[1] &&
                           parameters->gear_axial_damping[0] == parameters->gear_axial_damping[1];
   project_matrix(model, model->stiffness, oscillator->stiffness);
@@ -294,7 +301,8 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
   return EO_OK;
 }
 
-/* Where the torque comes in and goes out: at the machine, or by equal parts at the ends. */
+/* Where the torque comes in and goes out: at the machine, or at the ends, by equal parts or, of unequal helices, by
+   those that balance the thrusts. */
 static void set_torque(const struct eo_dynamics_model *model, int member, double torque, double *load)
 {
   int ends = model->parameters.ends;
@@ -302,7 +310,7 @@ static void set_torque(const struct eo_dynamics_model *model, int member, double
     load[model->machine[member]] = torque;
   else
     for (int end = 0; end < ends; end++)
-      load[eo_dynamics_freedom(ends, member, end, EO_MOTION_ROTATION)] = torque / ends;
+      load[eo_dynamics_freedom(ends, member, end, EO_MOTION_ROTATION)] = torque * torque_share(&model->parameters, end);
 }
 
 void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum eo_impact_in_dynamics impact)
@@ -320,7 +328,7 @@ void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum
       for (int k = 0; k < oscillator->n; k++)
         oscillator->pulse[end][k] = impact == EO_IMPACT_NONE
                                         ? 0
-                                        : oscillator->mesh[end][k] / cos(parameters->base_helix_angle);
+                                        : oscillator->mesh[end][k] / cos(eo_dynamics_base_helix_angle(parameters, end));
   }
   project(model, load, model->oscillator.load);
   model->zero_mode_load = 0;
@@ -348,26 +356,69 @@ double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, con
   return sqrt(square);
 }
 
+/* dX'/dr of both ends, which their helices have in common when the pair rolls. */
+static void level_meshes(const struct eo_dynamics_model *model, double mesh[2][EO_MAX_COORDINATES])
+{
+  const struct eo_double_helix helix = eo_dynamics_double_helix(&model->parameters);
+  for (int end = 0; end < 2; end++)
+    for (int i = 0; i < model->oscillator.n; i++)
+      mesh[end][i] = model->oscillator.mesh[end][i] * helix.scale[end];
+}
+
+static bool is_held(const struct eo_dynamics_model *model, double lean)
+{
+  return model->oscillator.ends == 2 && lean != 0 && model->parameters.pinion_axial_stiffness != 0 &&
+         model->zero_modes <= 1;
+}
+
 /* H = mesh' (K + shift mesh mesh')^-1 mesh is (S + shift)^-1 and S = s [1 -1; -1 1], since both ends together roll
-   freely: (1, -1) H (1, -1)' = 2 / (2 s + shift). */
+   freely: (1, -1) H (1, -1)' = 2 / (2 s + shift). Of unequal helices with X' in place of X. */
 double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model)
 {
   const struct eo_oscillator *oscillator = &model->oscillator;
-  double lean = sin(model->parameters.base_helix_angle);
-  if (oscillator->ends == 1 || lean == 0 || model->parameters.pinion_axial_stiffness == 0 || model->zero_modes > 1)
+  const struct eo_double_helix helix = eo_dynamics_double_helix(&model->parameters);
+  double lean = eo_double_helix_lean(&helix) / 2;
+  if (!is_held(model, lean))
     return 0;
   int n = oscillator->n, pivot[EO_MAX_COORDINATES];
-  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], apart[EO_MAX_COORDINATES], response[EO_MAX_COORDINATES];
+  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], apart[EO_MAX_COORDINATES], response[EO_MAX_COORDINATES],
+      mesh[2][EO_MAX_COORDINATES];
+  level_meshes(model, mesh);
   memcpy(k, oscillator->stiffness, sizeof k);
   for (int i = 0; i < n; i++) {
-    response[i] = apart[i] = oscillator->mesh[0][i] - oscillator->mesh[1][i];
+    response[i] = apart[i] = mesh[0][i] - mesh[1][i];
     for (int j = 0; j < n; j++)
       for (int end = 0; end < 2; end++)
-        k[i * n + j] += oscillator->shift * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+        k[i * n + j] += oscillator->shift * mesh[end][i] * mesh[end][j];
   }
   if (eo_dense_solve(n, k, pivot, 1, response))
     return 0;
   double soft = oscillator->shift * dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
   const double none = 1e-12;
   return soft < none ? INFINITY : 2 * lean * lean * oscillator->shift * (1 / soft - 1);
+}
+
+/* K r = load - mesh forces, with X'_L + X'_R held at 0 by a spring that bears nothing: the forces do no work when the
+   pair rolls. */
+double eo_dynamics_model_axial_rest(struct eo_dynamics_model *model)
+{
+  struct eo_oscillator *oscillator = &model->oscillator;
+  const struct eo_dynamics_parameters *parameters = &model->parameters;
+  const struct eo_double_helix helix = eo_dynamics_double_helix(parameters);
+  if (!is_held(model, eo_double_helix_lean(&helix)) || helix.scale[EO_RIGHT] == 1)
+    return 0;
+  int n = oscillator->n, pivot[EO_MAX_COORDINATES];
+  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], rest[EO_MAX_COORDINATES], mesh[2][EO_MAX_COORDINATES],
+      torque = 2 * parameters->base_radius[EO_PINION] * cos(parameters->base_helix_angle);
+  level_meshes(model, mesh);
+  eo_dynamics_model_load(model, torque, EO_IMPACT_NONE);
+  memcpy(k, oscillator->stiffness, sizeof k);
+  for (int i = 0; i < n; i++) {
+    rest[i] = oscillator->load[i];
+    for (int end = 0; end < 2; end++)
+      rest[i] -= oscillator->mesh[end][i] * eo_double_helix_load(&helix, end, 1);
+    for (int j = 0; j < n; j++)
+      k[i * n + j] += oscillator->shift * (mesh[0][i] + mesh[1][i]) * (mesh[0][j] + mesh[1][j]);
+  }
+  return eo_dense_solve(n, k, pivot, 1, rest) ? 0 : dot(n, mesh[0], rest) - dot(n, mesh[1], rest); /* theory (F13) */
 }

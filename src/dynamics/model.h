@@ -3,7 +3,8 @@
    direction e of relative motion and adds k e e', c e e'. So K and C are symmetric and C is positive semi-definite.
    Coordinates: y_p1 z_p1 th_p1 [y_p2 z_p2 th_p2] y_g1 z_g1 th_g1 [y_g2 z_g2 th_g2] [th_driver] [th_load].
    A rigid spring takes its direction e out of the motions there are. A machine turns against the mean rotation of the
-   ends it is joined to, so that half the torque goes to each end. */
+   ends it is joined to, so that half the torque goes to each end; of unequal helices against that mean of theirs by
+   which each has the torque that balances the thrusts. */
 #ifndef EASEOFF_DYNAMICS_MODEL_H
 #define EASEOFF_DYNAMICS_MODEL_H
 
@@ -68,6 +69,11 @@ struct eo_dynamics_modes {
    sin^2(beta_b). 0: each end carries P (floating pinion, ends not coupled in torsion, no helix, one end); INFINITY: X_L
    = X_R. */
 double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model);
+
+/* X'_L - X'_R, m per N of P', that bearings and grooves leave where the ends of unequal helices carry what balances
+   their thrusts: bearings give by unlike forces, and one axial displacement is not the same rotation on both ends. 0
+   where the axial stiffness is, and of equal helices. Sets the torque as eo_dynamics_model_load() does. */
+double eo_dynamics_model_axial_rest(struct eo_dynamics_model *model);
 
 /* Eigenfrequencies with a constant mesh stiffness per end (N/m, > 0) and the mesh damping of the parameters.
    Errors: EO_ERROR_INPUT (stiffness), EO_ERROR_MEMORY, EO_ERROR_NUMERIC. */

@@ -150,14 +150,29 @@ double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *paramete
 
 double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *parameters, double damping_ratio, double stiffness)
 {
+  double left = cos(parameters->base_helix_angle), right = cos(eo_dynamics_base_helix_angle(parameters, EO_RIGHT));
   /* theory (D3) */
   return 2 * damping_ratio * sqrt(stiffness * eo_dynamics_equivalent_mass(parameters)) /
-         cos(parameters->base_helix_angle);
+         (left == right ? left : 2 / (1 / left + 1 / right));
 }
 
-double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *parameters, double torque)
+double eo_dynamics_base_helix_angle(const struct eo_dynamics_parameters *parameters, int end)
 {
-  return torque / (parameters->ends * parameters->base_radius[EO_PINION] * cos(parameters->base_helix_angle));
+  return end == EO_RIGHT && parameters->ends == 2 && parameters->right_base_helix_angle > 0
+             ? parameters->right_base_helix_angle
+             : parameters->base_helix_angle;
+}
+
+struct eo_double_helix eo_dynamics_double_helix(const struct eo_dynamics_parameters *parameters)
+{
+  return eo_double_helix_of(parameters->base_helix_angle, eo_dynamics_base_helix_angle(parameters, EO_RIGHT));
+}
+
+double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *parameters, double torque, int end)
+{
+  const struct eo_double_helix helix = eo_dynamics_double_helix(parameters);
+  double even = torque / (parameters->ends * parameters->base_radius[EO_PINION] * cos(parameters->base_helix_angle));
+  return eo_double_helix_load(&helix, end, even);
 }
 
 static double or_default(double given, double otherwise)
@@ -256,7 +271,10 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
   enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
   if (code)
     return code;
-  struct eo_dynamics_parameters dynamics_parameters = {.ends = ends, .base_helix_angle = geometry->base_helix_angle};
+  struct eo_dynamics_parameters dynamics_parameters = {
+      .ends = ends,
+      .base_helix_angle = geometry->base_helix_angle,
+      .right_base_helix_angle = ends == 2 ? supports->right_base_helix_angle : 0};
   dynamics_parameters.base_radius[0] = geometry->base_radius[0];
   dynamics_parameters.base_radius[1] = geometry->base_radius[1];
   for (int m = 0; m < 2; m++) {

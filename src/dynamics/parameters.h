@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "base/error.h"
+#include "gear/double_helix.h"
 #include "gear/geometry.h"
 
 /* What a design says of bearings, bodies and damping. [2] is [member]. */
@@ -25,6 +26,7 @@ struct eo_supports {
   double inertia[2];                      /* likewise, kg m2 */
   double right_mass[2], right_inertia[2]; /* of the right end of halves of unequal width; not above 0: as the left one
                                            */
+  double right_base_helix_angle; /* of the right end of halves of unequal helix, rad; not above 0: as the left one */
   double bearing_damping_ratio;
   double groove_damping_ratio;
   double mesh_damping_ratio;
@@ -47,6 +49,7 @@ struct eo_dynamics_parameters {
   double base_helix_angle;                /* rad */
   double mass[2], inertia[2];             /* of one end with half the groove, kg, kg m2 */
   double right_mass[2], right_inertia[2]; /* of the right end where it differs; not above 0: as the left one */
+  double right_base_helix_angle;          /* likewise, rad */
   double bearing_stiffness[2], bearing_damping[2];       /* k_py, k_gy per end, N/m, N s/m; may be INFINITY */
   double gear_axial_stiffness[2], gear_axial_damping[2]; /* [end] k_g1z, k_g2z, gear to ground; may be INFINITY */
   double groove_axial_stiffness[2],
@@ -85,11 +88,16 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
    kg. */
 double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *parameters);
 
-/* c_m = 2 zeta sqrt(k m_e) / cos(beta_b), N s/m, k normal. */
+/* beta_b of an end, rad, and both on one footing. */
+double eo_dynamics_base_helix_angle(const struct eo_dynamics_parameters *parameters, int end);
+struct eo_double_helix eo_dynamics_double_helix(const struct eo_dynamics_parameters *parameters);
+
+/* c_m = 2 zeta sqrt(k m_e) / cos(beta_b), N s/m, k normal; 1/cos(beta_b) of ends that differ: the mean. */
 double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *parameters, double damping_ratio,
                                 double stiffness);
 
-/* Mean normal mesh force of one end that balances the torque (total, on the pinion), N. */
-double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *parameters, double torque);
+/* Mean normal mesh force of one end that balances the torque (total, on the pinion), N; of unequal helices with the
+   thrusts of a floating pinion in balance. */
+double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *parameters, double torque, int end);
 
 #endif

@@ -184,7 +184,7 @@ static double complex pinion_thrust(const struct eo_vibration_solver *solver, co
     double lean = solver->model.reading[EO_READING_NORMAL][end][freedom_z];
     force -= lean * spectrum->force[end][k];
     if (solver->condensed_impact == EO_IMPACT_CONSISTENT)
-      force -= lean / cos(parameters->base_helix_angle) *
+      force -= lean / cos(eo_dynamics_base_helix_angle(parameters, end)) *
                eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, cycle->shift[end], k);
     z += freedom(spectrum, EO_PINION, end, EO_MOTION_Z, k) / parameters->ends;
   }
@@ -334,7 +334,7 @@ void eo_vibration_read_balance(struct eo_vibration_solver *solver, const struct 
   fill_spectrum(solver, cycle, report, result);
   for (int end = 0; end < solver->spectrum.ends; end++)
     read_mesh(solver, report->grid, end % report->ends, cycle, end,
-              eo_dynamics_mesh_load(&solver->model.parameters, load->torque), result);
+              eo_dynamics_mesh_load(&solver->model.parameters, load->torque, end), result);
   read_accelerations(solver, result);
   read_bearings(solver, cycle, report->grid, result);
   set_outcome(solver, true, result);

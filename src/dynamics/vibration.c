@@ -142,8 +142,8 @@ enum eo_code eo_vibration_prepare(struct eo_vibration_solver *solver, const stru
                              .shift = {0, load->phase_right},
                              .mesh_damping = solver->model.parameters.mesh_damping,
                              .gated = load->gated};
-  double sine = sin(solver->model.parameters.base_helix_angle);
   for (int end = 0; end < solver->model.parameters.ends; end++) {
+    double sine = sin(eo_dynamics_base_helix_angle(&solver->model.parameters, end));
     if (load->impact != EO_IMPACT_NONE)
       cycle->pulse[end] = load->pulse[end];
     if (load->axial_order < 1)

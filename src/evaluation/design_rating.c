@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum eo_code eo_design_rating_new(struct eo_design_rating **result, int most_cases, struct eo_error *error)
 {
@@ -58,14 +59,15 @@ static struct eo_rating_input input_of(const struct eo_pair *whole, const struct
 
 /* The design with the helix slope deviation of each end more on the pinion's flanks, one way or the other; transverse,
    over the face width, + takes off where the teeth meet first. */
-static void lean(struct eo_design *leaning, const struct eo_design *design, const struct eo_geometry *geometry,
+static void lean(struct eo_design *leaning, const struct eo_design *design, const struct eo_pair *pair,
                  const struct eo_rating_basis basis[2], double way)
 {
   *leaning = *design;
   for (int end = 0; end < design->gear_pair.ends; end++) {
-    double deviation = way * basis[end].mesh_deviation;
-    leaning->modification.flank[EO_PINION][end].helix_slope += deviation * cos(geometry->base_helix_angle);
-    leaning->modification.coast[EO_PINION][end].helix_slope -= deviation * cos(geometry->base_helix_angle);
+    double deviation = way * basis[end].mesh_deviation,
+           normal = cos(eo_pair_half(pair, end)->geometry.base_helix_angle);
+    leaning->modification.flank[EO_PINION][end].helix_slope += deviation * normal;
+    leaning->modification.coast[EO_PINION][end].helix_slope -= deviation * normal;
   }
 }
 
@@ -75,7 +77,7 @@ static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_ev
 {
   for (int side = 0; side < 2; side++) {
     const struct eo_evaluation *evaluation;
-    lean(leaning, design, &eo_evaluator_pair(evaluator)->geometry, rating->basis, side ? -1 : 1);
+    lean(leaning, design, eo_evaluator_pair(evaluator), rating->basis, side ? -1 : 1);
     EO_TRY(eo_evaluator_contact_at(evaluator, leaning, scenario, &evaluation, error));
     for (int k = 0; k < evaluation->cases; k++)
       for (int end = 0; end < evaluation->ends; end++)
@@ -123,7 +125,7 @@ static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_ca
   struct eo_face_factors *face = &rating->load_case[k].face[end];
   bool periodic = case_result->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
   const struct eo_rating_load load = {
-      .torque = case_result->load_case.torque / rating->ends,
+      .torque = case_result->load_case.torque * (rating->ends == 1 ? 1 : rating->share[end]),
       .speed = case_result->load_case.speed,
       .time = time_of(settings, &case_result->load_case),
       .side = case_result->load_case.flank == EO_COAST_FLANK,
@@ -148,7 +150,7 @@ static void describe_end(struct eo_design_rating *rating, const struct eo_pair *
     face->leaning[0] = face->leaning[1] = NAN;
   face->worse = rating->rated ? fmax(face->leaning[0], face->leaning[1]) : NAN;
   case_rating->sharing[end] = eo_periodic_mean(pair->grid->positions, case_result->end[end].loaded.load) /
-                              case_result->force;
+                              case_result->even_force[end];
   eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, case_result->load_case.speed);
   eo_tribology_find(&case_rating->tribology[end], &state, eo_pair_half(pair, end)->grid, &case_result->end[end].loaded);
 }
@@ -182,6 +184,7 @@ void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair
                            const struct eo_evaluation *evaluation)
 {
   rating->ends = evaluation->ends;
+  memcpy(rating->share, eo_pair_double_helix(pair).share, sizeof rating->share);
   rating->cases = evaluation->cases;
   for (int end = 0; end < 2; end++)
     rating->basis[end].input = input_of(pair, design, end);

@@ -26,6 +26,7 @@ struct eo_design_rating {
   bool rated;             /* false: `reason` says why ISO 6336 gives no rating; tribology is there all the same */
   struct eo_error reason; /* with the pointer of the key */
   int ends, cases, most_cases;
+  double share[2];                  /* [end] of the torque, as both stand even: a half each of equal helices */
   struct eo_rating_basis basis[2];  /* [end] alike but for the faces of halves of unequal width */
   struct eo_case_rating *load_case; /* [cases] */
   struct eo_rated_spectrum end[2];

@@ -47,8 +47,9 @@ struct eo_end_result {
 
 struct eo_case_result {
   struct eo_load_case load_case;
-  double force;        /* P per end, normal, N */
-  double end_force[2]; /* [end] of a floating pinion: P, and what a coupling's thrust moves from one to the other */
+  double force;         /* P per end, normal, N; P' of both where their helices differ */
+  double even_force[2]; /* [end] what it carries on a floating pinion without a thrust: P, or its share by its helix */
+  double end_force[2];  /* [end] of a floating pinion: that, and what a coupling's thrust moves from one to the other */
   struct eo_running running; /* flank, sense, alignment */
   bool at_stop;              /* the pinion has play, and on the mean it is at a stop */
   struct eo_end_result end[2];

@@ -17,10 +17,11 @@ static void clear_case(struct eo_case_result *load_case)
   }
 }
 
-/* P = T / (ends r_b cos(beta_b)), normal to the flank. */
+/* P = T / (ends r_b cos(beta_b)), normal to the flank; of unequal helices each end's own. */
 void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   const struct eo_geometry *geometry = &evaluator->pair->geometry;
+  const struct eo_double_helix helix = eo_pair_double_helix(evaluator->pair);
   struct eo_evaluation *result = &evaluator->result;
   result->ends = run->design->gear_pair.ends;
   result->cases = run->design->load_cases;
@@ -32,7 +33,8 @@ void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run 
     /* theory (Y3) */
     load_case->force = load_case->load_case.torque /
                        (result->ends * geometry->base_radius[EO_PINION] * cos(geometry->base_helix_angle));
-    load_case->end_force[EO_LEFT] = load_case->end_force[EO_RIGHT] = load_case->force;
+    for (int end = 0; end < 2; end++)
+      load_case->end_force[end] = load_case->even_force[end] = eo_double_helix_load(&helix, end, load_case->force);
     clear_case(load_case);
   }
 }
@@ -74,17 +76,18 @@ enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *evaluator, const struc
 static enum eo_code share_thrust(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_error *error)
 {
   struct eo_evaluation *result = &evaluator->result;
+  const struct eo_double_helix helix = eo_pair_double_helix(evaluator->pair);
   for (int k = 0; k < result->cases; k++) {
     struct eo_case_result *load_case = &result->load_case[k];
-    struct eo_axial_hold hold = eo_meeting_hold(evaluator, design, &load_case->running);
+    struct eo_axial_hold hold = eo_meeting_hold(evaluator, design, load_case);
     if (fabs(hold.shift) >= load_case->force)
       return eo_error_set(error, EO_ERROR_INPUT, "/alignment/coupling_thrust_N",
                           "A thrust of %.6g N takes all load off one end of the pinion at %.6g N m: at most %.6g N.",
                           design->alignment.coupling_thrust, load_case->load_case.torque,
-                          2 * load_case->force * sin(evaluator->pair->geometry.base_helix_angle));
+                          2 * load_case->force * helix.lean[hold.shift > 0 ? EO_LEFT : EO_RIGHT]);
     if (hold.stiffness == 0) {
       load_case->end_force[EO_LEFT] = load_case->force + hold.shift;
-      load_case->end_force[EO_RIGHT] = load_case->force - hold.shift;
+      load_case->end_force[EO_RIGHT] = (load_case->force - hold.shift) * helix.scale[EO_RIGHT];
     }
   }
   return EO_OK;
@@ -98,7 +101,7 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
   const struct eo_design *design = run->design;
   struct eo_dynamics_parameters parameters;
   struct eo_dynamics_model model;
-  evaluator->axial_stiffness = 0;
+  evaluator->axial_stiffness = evaluator->axial_rest = 0;
   if (design->gear_pair.ends == 1 || eo_alignment_axial_stiffness(&design->alignment) == 0)
     return share_thrust(evaluator, design, error);
   EO_TRY(eo_evaluator_parameters(evaluator, design, 1, true, &parameters, error));
@@ -109,6 +112,7 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
     }
   EO_TRY(eo_dynamics_model_init(&model, &parameters, error));
   evaluator->axial_stiffness = eo_dynamics_model_axial_stiffness(&model);
+  evaluator->axial_rest = eo_dynamics_model_axial_rest(&model);
   return share_thrust(evaluator, design, error);
 }
 
@@ -249,7 +253,7 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_ru
 {
   const struct eo_running *running = &load_case->running;
   struct eo_elastic_case load = {load_case->force, run->scenario.compliance,
-                                 eo_meeting_hold(evaluator, run->design, running),
+                                 eo_meeting_hold(evaluator, run->design, load_case),
                                  eo_evaluator_stagger(evaluator->pair, run->design, running)};
   struct eo_loaded_workspace *const workspace[2] = {eo_evaluator_workspace(evaluator, 0, EO_LEFT),
                                                     eo_evaluator_workspace(evaluator, 0, EO_RIGHT)};
@@ -289,7 +293,7 @@ static void balance_case(struct eo_evaluator *evaluator, const struct eo_run *ru
       {eo_evaluator_workspace(evaluator, 0, EO_RIGHT), eo_evaluator_grid(evaluator, EO_RIGHT),
        &meeting->gaps[eo_reuse_stored_at(evaluator, EO_RIGHT)]}};
   struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
-  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, &load_case->running);
+  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, load_case);
   int stagger = eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running);
   eo_loaded_balance(half, run->scenario.compliance, &hold, stagger, load_case->force, both);
   for (int end = 0; end < 2; end++)
@@ -300,10 +304,11 @@ static void balance_case(struct eo_evaluator *evaluator, const struct eo_run *ru
 static bool is_at_stop(const struct eo_evaluator *evaluator, const struct eo_run *run,
                        const struct eo_case_result *load_case)
 {
-  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, &load_case->running);
-  double apart = 0;
+  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, load_case);
+  double scale = eo_pair_double_helix(evaluator->pair).scale[EO_RIGHT],
+         apart = -hold.rest * evaluator->result.positions;
   for (int j = 0; j < evaluator->result.positions && hold.play > 0; j++)
-    apart += load_case->end[EO_LEFT].loaded.approach[j] - load_case->end[EO_RIGHT].loaded.approach[j];
+    apart += load_case->end[EO_LEFT].loaded.approach[j] - load_case->end[EO_RIGHT].loaded.approach[j] * scale;
   return hold.play > 0 && fabs(apart) >= hold.play * evaluator->result.positions;
 }
 

@@ -112,7 +112,7 @@ static enum eo_code set_table_law(struct eo_evaluator *evaluator, const struct e
   int n = evaluator->result.positions;
   double load[EO_EVALUATOR_TABLE_LOADS];
   for (int i = 0; i < EO_EVALUATOR_TABLE_LOADS; i++)
-    load[i] = TABLE_LOAD[i] * request->load_case->force;
+    load[i] = TABLE_LOAD[i] * request->load_case->even_force[request->end];
   EO_TRY(solve_table(evaluator, run, request, EO_EVALUATOR_TABLE_LOADS, load, error));
   for (int i = 0; i < EO_EVALUATOR_TABLE_LOADS; i++)
     memcpy(evaluator->table_rows + i * n, evaluator->table[i].approach, sizeof(double) * (size_t)n);
@@ -128,8 +128,9 @@ static enum eo_code set_bent_law(struct eo_evaluator *evaluator, const struct eo
   enum { INSIDE = EO_EVALUATOR_TABLE_ROWS - 2 }; /* between the outer loads; and where the tangents end: 0, 2 P */
   int n = evaluator->result.positions;
   const struct eo_loaded_end *loaded = request->loaded;
-  double force = request->load_case->force, load[EO_EVALUATOR_TABLE_ROWS] = {0, [INSIDE + 1] = 2 * force},
-         first = EO_LOADED_NEARBY_SHARE[0] - 1, last = EO_LOADED_NEARBY_SHARE[EO_LOADED_NEARBY - 1] - 1;
+  double force = request->load_case->even_force[request->end],
+         load[EO_EVALUATOR_TABLE_ROWS] = {0, [INSIDE + 1] = 2 * force}, first = EO_LOADED_NEARBY_SHARE[0] - 1,
+         last = EO_LOADED_NEARBY_SHARE[EO_LOADED_NEARBY - 1] - 1;
   for (int i = 0; i < INSIDE; i++)
     load[i + 1] = force + loaded->load[0] * (first + (last - first) * i / (INSIDE - 1));
   for (int j = 0; j < n; j++) {
@@ -149,7 +150,8 @@ static const double *secant_deflections(struct eo_evaluator *evaluator, const st
 {
   int n = evaluator->result.positions;
   const struct eo_loaded_end *loaded = request->loaded;
-  double force = request->load_case->force, datum = request->load_case->end[request->end].loaded_datum;
+  double force = request->load_case->even_force[request->end],
+         datum = request->load_case->end[request->end].loaded_datum;
   bool even = true;
   for (int j = 0; j < n; j++)
     even = even && loaded->load[j] == force;
@@ -175,7 +177,7 @@ static struct eo_law_key key_of(const struct eo_evaluator *evaluator, const stru
   const struct eo_design *design = run->design;
   const struct eo_end_result *end = &request->load_case->end[request->end];
   struct eo_law_key key = {.order = order_of(evaluator, design),
-                           .force = request->load_case->force,
+                           .force = request->load_case->even_force[request->end],
                            .compliance = run->scenario.compliance,
                            .back = end->deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash};
   if (eo_evaluator_law_is_table(evaluator, design, request->parameters))

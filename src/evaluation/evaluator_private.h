@@ -106,6 +106,7 @@ struct eo_evaluator {
   struct eo_flank_spline *spline[2][2][2];       /* [flank side][member][end]; owned; NULL: no grid */
   struct eo_loaded_workspace *loaded[2][2];      /* [thread][half]; of the second thread NULL until asked for, of the
                                                     second half NULL where it is like the first */
+  double axial_rest;      /* what unequal helices part when at rest, m per N: eo_dynamics_model_axial_rest() */
   double axial_stiffness; /* between the ends and one axial position of the pinion, N/m: 0 floating, INFINITY rigid */
   bool bodies_are_elastic;
   struct eo_elastic *elastic_bodies[2];      /* [inwards]; NULL: rigid, or not asked for */
@@ -172,7 +173,7 @@ struct eo_meeting *eo_meeting_of(const struct eo_evaluator *evaluator, const str
 
 /* How the pinion is held in a load case. */
 struct eo_axial_hold eo_meeting_hold(const struct eo_evaluator *evaluator, const struct eo_design *design,
-                                     const struct eo_running *running);
+                                     const struct eo_case_result *load_case);
 
 /* The bodies of a load case; NULL: rigid. */
 struct eo_elastic *eo_meeting_bodies(const struct eo_evaluator *evaluator, const struct eo_running *running);

@@ -85,17 +85,20 @@ void eo_end_summarise(struct eo_evaluator *evaluator, const struct eo_run *run, 
     summarise(evaluator, &evaluator->result.load_case[k], end);
 }
 
-/* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
+/* LTE of the pair: the mean of the ends, the right one behind by the stagger; of unequal helices the rotation that
+   leaves no axial displacement. */
 static void summarise_pair(const struct eo_evaluator *evaluator, const struct eo_run *run,
                            struct eo_case_result *load_case)
 {
   int n = evaluator->result.positions, last = evaluator->result.ends - 1;
   int stagger = eo_evaluator_stagger(evaluator->pair, run->design, &load_case->running);
   const double *left = load_case->end[EO_LEFT].loaded.approach, *right = load_case->end[last].loaded.approach;
-  double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle);
+  const struct eo_double_helix helix = eo_pair_double_helix(evaluator->pair);
+  double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle),
+         of_left = 2 * helix.share[EO_LEFT], of_right = 2 * helix.share[EO_RIGHT] * helix.scale[EO_RIGHT];
   load_case->mean = 0;
   for (int j = 0; j < n; j++) {
-    double z = (left[j] + right[(j + n - stagger) % n]) / 2 / normal; /* theory (Y2) */
+    double z = (of_left * left[j] + of_right * right[(j + n - stagger) % n]) / 2 / normal; /* theory (Y2) */
     load_case->transmission[j] = z;
     load_case->mean += z / n;
     low = fmin(low, z);

@@ -93,9 +93,12 @@ struct eo_meeting *eo_meeting_of(const struct eo_evaluator *evaluator, const str
 }
 
 struct eo_axial_hold eo_meeting_hold(const struct eo_evaluator *evaluator, const struct eo_design *design,
-                                     const struct eo_running *running)
+                                     const struct eo_case_result *load_case)
 {
-  return eo_meeting_axial_hold(evaluator->pair, design, running, evaluator->axial_stiffness);
+  struct eo_axial_hold hold = eo_meeting_axial_hold(evaluator->pair, design, &load_case->running, load_case->force,
+                                                    evaluator->axial_stiffness);
+  hold.rest = load_case->force * evaluator->axial_rest;
+  return hold;
 }
 
 struct eo_elastic *eo_meeting_bodies(const struct eo_evaluator *evaluator, const struct eo_running *running)

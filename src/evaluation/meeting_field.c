@@ -45,16 +45,19 @@ void eo_meeting_field_init(struct eo_gap_field *field, const struct eo_pair *pai
 }
 
 struct eo_axial_hold eo_meeting_axial_hold(const struct eo_pair *pair, const struct eo_design *design,
-                                           const struct eo_running *running, double stiffness)
+                                           const struct eo_running *running, double load, double stiffness)
 {
   const struct eo_alignment *alignment = &design->alignment;
-  double lean = sin(pair->geometry.base_helix_angle);
+  const struct eo_double_helix helix = eo_pair_double_helix(pair);
+  double lean = eo_double_helix_lean(&helix);
   struct eo_axial_hold hold = {.stiffness = stiffness};
   if (design->gear_pair.ends == 1 || lean == 0)
     return hold;
   if (alignment->pinion_axial == EO_AXIAL_STOPS)
-    hold.play = lean * alignment->pinion_axial_clearance;
+    hold.play = lean / 2 * alignment->pinion_axial_clearance;
   if (alignment->pinion_axial != EO_AXIAL_FIXED)
-    hold.shift = outwards(running) * alignment->coupling_thrust / (2 * lean); /* theory (F8) */
+    hold.shift = outwards(running) * alignment->coupling_thrust / lean; /* theory (F8) */
+  if (pair->right)
+    hold.shift += load * (2 * helix.share[EO_LEFT] - 1); /* theory (F11) */
   return hold;
 }

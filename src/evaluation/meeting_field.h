@@ -12,6 +12,6 @@ void eo_meeting_field_init(struct eo_gap_field *field, const struct eo_pair *pai
 
 /* How the pinion is held in a load case, by a support of the given stiffness, N/m. */
 struct eo_axial_hold eo_meeting_axial_hold(const struct eo_pair *pair, const struct eo_design *design,
-                                           const struct eo_running *running, double stiffness);
+                                           const struct eo_running *running, double load, double stiffness);
 
 #endif

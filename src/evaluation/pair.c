@@ -57,9 +57,7 @@ static enum eo_code add_right_half(struct eo_pair *pair, const struct eo_design 
   struct eo_pair_options own = *options;
   const struct eo_geometry *geometry = &pair->geometry;
   int n = pair->grid->positions;
-  double step = geometry->transverse_base_pitch / n,
-         lag = (design->gear_pair.right_face_width - design->gear_pair.face_width) / 2 *
-               tan(geometry->base_helix_angle),
+  double step = geometry->transverse_base_pitch / n, lag = eo_geometry_right_lead(geometry, &design->gear_pair),
          rest = lag - step * round(lag / step);
   struct eo_design *right = malloc(sizeof *right);
   double *phase = malloc(sizeof *phase * (size_t)n);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A gear pair made ready for evaluation: everything that micro-geometry, load and speed do not change. Constant once
-   made; shared by every thread. Halves of unequal width are two of them, with as many positions: helices that meet in
-   the middle of the groove give the right mid face the phase c_R = c_L + (b_R - b_L)/2 tan(beta_b) where eta runs
-   outwards, and minus that where it runs inwards. Whole positions of it are counted apart, as a stagger is; what is
-   left is in the phases of the right grid (eta outwards, the usual sense; inwards it is off by at most half a
-   position). */
+   made; shared by every thread. Halves of unequal width or helix are two of them, with as many positions: helices that
+   meet in the middle of the groove give the right mid face the phase c_R = c_L + (b_R tan(beta_bR) - b_L tan(beta_bL) +
+   groove (tan(beta_bR) - tan(beta_bL)))/2 where eta runs outwards, and minus that where it runs inwards. Whole
+   positions of it are counted apart, as a stagger is; what is left is in the phases of the right grid (eta outwards,
+   the usual sense; inwards it is off by at most half a position). */
 #ifndef EASEOFF_EVALUATION_PAIR_H
 #define EASEOFF_EVALUATION_PAIR_H
 
 #include "design/design.h"
 #include "contact/grid.h"
+#include "contact/loaded.h"
 #include "contact/iso6336.h"
 #include "contact/root.h"
 #include "contact/impact.h"
@@ -53,6 +54,12 @@ void eo_pair_free(struct eo_pair *pair);
 static inline const struct eo_pair *eo_pair_half(const struct eo_pair *pair, int end)
 {
   return end == EO_RIGHT && pair->right ? pair->right : pair;
+}
+
+/* Their helices on one footing. */
+static inline struct eo_double_helix eo_pair_double_helix(const struct eo_pair *pair)
+{
+  return eo_contact_double_helix(pair->grid, eo_pair_half(pair, EO_RIGHT)->grid);
 }
 
 /* 2 where the halves differ. */

@@ -102,7 +102,7 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
       .compliance_factor = 1,
       .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
       .shared_load = load_case->force,
-      .hold = eo_meeting_hold(work->evaluator, work->design, &load_case->running),
+      .hold = eo_meeting_hold(work->evaluator, work->design, load_case),
       .threads = work->threads};
   for (int i = 0; i < 4; i++)
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
@@ -127,8 +127,8 @@ static double swing(int n, const double *value)
 static enum eo_code read_curves(const struct work *work, struct eo_pitch_case *own, struct eo_error *error)
 {
   const struct eo_hunting *hunting = &own->hunting;
-  const struct eo_geometry *geometry = &work->evaluator->pair->geometry;
-  double normal = cos(geometry->base_helix_angle), lean = sin(geometry->base_helix_angle),
+  const struct eo_double_helix helix = eo_pair_double_helix(work->evaluator->pair);
+  double normal = cos(work->evaluator->pair->geometry.base_helix_angle), lean = eo_double_helix_lean(&helix),
          outwards = own->meeting.inwards ? -1 : 1;
   double low = INFINITY, high = -INFINITY;
   own->transmission = malloc(sizeof(double) * (size_t)hunting->instants);
@@ -137,9 +137,10 @@ static enum eo_code read_curves(const struct work *work, struct eo_pitch_case *o
   if (!own->transmission || !own->cycle_mean || !own->cycle_swing)
     return eo_error_memory(error);
   for (int i = 0; i < hunting->instants; i++) {
-    double left = hunting->approach[EO_LEFT][i], right = hunting->approach[hunting->ends - 1][i],
-           shift = hunting->ends == 2 && lean != 0 ? outwards * (left - right) / (2 * lean) : 0;
-    own->transmission[i] = (left + right) / (2 * normal);
+    double left = hunting->approach[EO_LEFT][i],
+           right = hunting->approach[hunting->ends - 1][i] * helix.scale[EO_RIGHT],
+           shift = hunting->ends == 2 && lean != 0 ? outwards * (left - right) / lean : 0;
+    own->transmission[i] = (2 * helix.share[EO_LEFT] * left + 2 * helix.share[EO_RIGHT] * right) / (2 * normal);
     own->float_mean += shift / hunting->instants;
     low = fmin(low, shift);
     high = fmax(high, shift);
@@ -199,7 +200,7 @@ static void order_in_time(const struct eo_pitch_case *own, bool backwards, int e
     int from = backwards ? (hunting->instants - i) % hunting->instants : i;
     double k = hunting->tangent[end][from];
     tangent[i] = k;
-    deflection[i] = hunting->approach[end][from] + (k > 0 ? (own->force - hunting->load[end][from]) / k : 0);
+    deflection[i] = hunting->approach[end][from] + (k > 0 ? (own->force[end] - hunting->load[end][from]) / k : 0);
   }
 }
 
@@ -328,7 +329,7 @@ static enum eo_code run_cases(struct work *work, struct eo_error *error)
     struct eo_case_result *load_case = &work->evaluator->result.load_case[k];
     struct eo_pitch_case *own = &work->result->load_case[k];
     own->load_case = load_case->load_case;
-    own->force = load_case->force;
+    memcpy(own->force, load_case->even_force, sizeof own->force);
     own->meeting = meeting_of(load_case);
     EO_TRY(compose(work, &own->meeting, error));
     arrange(work, load_case, own);

@@ -23,7 +23,7 @@ struct eo_pitch_case {
   struct eo_load_case load_case;
   struct eo_pitch_meeting meeting;
   struct eo_hunting hunting;
-  double force;                     /* P per end, N */
+  double force[2];                  /* [end] P, N */
   double *transmission;             /* [instants] of the pair, transverse, m, by mesh position */
   double mean, peak_to_peak;        /* of it over the period, m */
   double *cycle_mean, *cycle_swing; /* [cycles] of each cycle, m */

@@ -21,7 +21,7 @@ enum {
   STAGE = 21,    /* + end */
   DATA = 31,     /* + 2 end + member */
   FLANK = 41,    /* + 4 member + 2 end + side */
-  TOOL = 51,     /* + member */
+  TOOL = 51,     /* + member; of a right end with a helix of its own + 6 + member */
   SETTINGS = 53, /* + member */
   MATERIAL = 55, /* + member */
   SECTION = 61,  /* + 3 member + place */
@@ -36,6 +36,7 @@ struct writer {
   const struct eo_geometry *geometry;
   json_t *document;
   const json_t *gear_pair, *shafts;
+  json_t *right; /* what gear_pair is for the right half, where its helix is another; NULL: the same */
   int ends;
   double mirror;   /* +1: the pinion turns negatively, its left flanks carry ahead; -1: the mirror image */
   double overhang; /* from the outer face to the end of the shaft, mm */
@@ -58,6 +59,12 @@ static double pair_number(const struct writer *writer, const char *key)
 {
   const json_t *value = json_object_get(writer->gear_pair, key);
   return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* gear_pair as it is for an end. */
+static const json_t *pair_of(const struct writer *writer, int end)
+{
+  return end == EO_RIGHT && writer->right ? writer->right : writer->gear_pair;
 }
 
 /* What a member need not have: NaN where it is 0. */
@@ -215,12 +222,15 @@ static void write_shaft(struct writer *writer, int member)
 static double helix_of(const struct writer *writer, int member, int end)
 {
   double hand = eo_alignment_outwards(&writer->design->alignment) * writer->mirror;
-  return ((member == EO_GEAR) != (end == EO_RIGHT) ? -hand : hand) * pair_number(writer, "helix_angle_deg");
+  return ((member == EO_GEAR) != (end == EO_RIGHT) ? -hand : hand) *
+         json_number_value(json_object_get(pair_of(writer, end), "helix_angle_deg"));
 }
 
 static void write_flank(struct writer *writer, int member, int end, int side, int *modification)
 {
-  int gear = GEAR + 2 * member + end, id = FLANK + 4 * member + 2 * end + side, tool = TOOL + member;
+  int gear = GEAR + 2 * member + end, id = FLANK + 4 * member + 2 * end + side,
+      tool = TOOL + member + (end == EO_RIGHT && writer->right ? 6 : 0);
+  const json_t *pair = pair_of(writer, end);
   const json_t *block = json_object_get(
       json_object_get(json_object_get(writer->document, "modification"), member_name[member]), end_name[end]);
   bool loaded = side == (writer->mirror < 0);
@@ -230,11 +240,11 @@ static void write_flank(struct writer *writer, int member, int end, int side, in
   const struct eo_geometry half = eo_geometry_of_half(writer->geometry, &writer->design->gear_pair, end);
   struct eo_rexs_flank_export flank = {writer->design, &half, member, end, !loaded, leading};
   eo_rexs_build(&writer->builder, id, "cylindrical_gear_flank", "");
-  eo_rexs_build_number(&writer->builder, "normal_pressure_angle", pair_number(writer, "normal_pressure_angle_deg"));
-  eo_rexs_build_number(&writer->builder, "addendum_modification_coefficient",
-                       number_of(writer->gear_pair, member, "profile_shift"));
+  eo_rexs_build_number(&writer->builder, "normal_pressure_angle",
+                       json_number_value(json_object_get(pair, "normal_pressure_angle_deg")));
+  eo_rexs_build_number(&writer->builder, "addendum_modification_coefficient", number_of(pair, member, "profile_shift"));
   eo_rexs_build_number(&writer->builder, "addendum_coefficient_basic_profile",
-                       number_of(writer->gear_pair, member, "addendum_coefficient"));
+                       number_of(pair, member, "addendum_coefficient"));
   eo_rexs_build_number(&writer->builder, "tooth_tip_chamfer", stated(writer, member, "tip_chamfer_mm"));
   eo_rexs_build_number(&writer->builder, "custom_easeoff_lead_offset", offset != 0 ? offset * 1e-3 : NAN);
   eo_rexs_relate(&writer->builder, "manufacturing_step", 1, "workpiece", id, "tool", tool, "manufacturing_settings",
@@ -260,7 +270,8 @@ static void write_gear(struct writer *writer, int member, int end, int *modifica
   snprintf(name, sizeof name, writer->ends == 2 ? "%s %s" : "%s", member_name[member], end_name[end]);
   eo_rexs_build(&writer->builder, id, "cylindrical_gear", name);
   eo_rexs_build_whole(&writer->builder, "number_of_teeth", writer->geometry->teeth[member]);
-  eo_rexs_build_number(&writer->builder, "normal_module", pair_number(writer, "normal_module_mm"));
+  eo_rexs_build_number(&writer->builder, "normal_module",
+                       json_number_value(json_object_get(pair_of(writer, end), "normal_module_mm")));
   eo_rexs_build_number(&writer->builder, "helix_angle_reference_diameter", helix_of(writer, member, end));
   eo_rexs_build_number(&writer->builder, "face_width", own_width(writer, member, end));
   eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft", own_face_at(writer, member, end));
@@ -279,7 +290,7 @@ static void write_gear(struct writer *writer, int member, int end, int *modifica
 static void write_stage(struct writer *writer, int end)
 {
   int id = STAGE + end;
-  double backlash = 1e3 * writer->geometry->normal_backlash;
+  double backlash = 1e3 * eo_geometry_of_half(writer->geometry, &writer->design->gear_pair, end).normal_backlash;
   eo_rexs_build(&writer->builder, id, "cylindrical_stage",
                 writer->ends == 2 ? end ? "mesh right" : "mesh left" : "mesh");
   eo_rexs_build_number(&writer->builder, "center_distance", pair_number(writer, "centre_distance_mm"));
@@ -299,16 +310,24 @@ static void write_stage(struct writer *writer, int end)
   }
 }
 
+static void write_tool(struct writer *writer, int id, int member, int end, const char *name)
+{
+  const json_t *pair = pair_of(writer, end);
+  eo_rexs_build(&writer->builder, id, "rack_shaped_tool", name);
+  eo_rexs_build_number(&writer->builder, "addendum_coefficient_reference_profile",
+                       number_of(pair, member, "dedendum_coefficient"));
+  eo_rexs_build_number(&writer->builder, "tip_corner_radius_factor_reference_profile",
+                       number_of(pair, member, "fillet_radius_coefficient"));
+  eo_rexs_build_number(&writer->builder, "protuberance_amount", stated(writer, member, "protuberance_um") / 1000);
+}
+
 static void write_tools(struct writer *writer)
 {
+  static const char *const name[2][2] = {{"pinion rack", "gear rack"}, {"right pinion rack", "right gear rack"}};
   for (int member = 0; member < 2; member++) {
-    eo_rexs_build(&writer->builder, TOOL + member, "rack_shaped_tool",
-                  member == EO_PINION ? "pinion rack" : "gear rack");
-    eo_rexs_build_number(&writer->builder, "addendum_coefficient_reference_profile",
-                         number_of(writer->gear_pair, member, "dedendum_coefficient"));
-    eo_rexs_build_number(&writer->builder, "tip_corner_radius_factor_reference_profile",
-                         number_of(writer->gear_pair, member, "fillet_radius_coefficient"));
-    eo_rexs_build_number(&writer->builder, "protuberance_amount", stated(writer, member, "protuberance_um") / 1000);
+    write_tool(writer, TOOL + member, member, EO_LEFT, name[0][member]);
+    if (writer->right)
+      write_tool(writer, TOOL + 6 + member, member, EO_RIGHT, name[1][member]);
     eo_rexs_build(&writer->builder, SETTINGS + member, "cylindrical_gear_manufacturing_settings", "");
     eo_rexs_build_number(&writer->builder, "machining_allowance",
                          number_of(writer->gear_pair, member, "grinding_stock_um") / 1000);
@@ -394,6 +413,11 @@ void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *ge
   }
   writer.gear_pair = json_object_get(writer.document, "gear_pair");
   writer.shafts = json_object_get(writer.document, "shafts");
+  if (eo_gear_pair_has_two_helices(&design->gear_pair)) {
+    const struct eo_gear_pair half = eo_gear_pair_half(&design->gear_pair, EO_RIGHT);
+    writer.right = eo_table_encode(&eo_gear_pair_table, &half);
+    model->failed = model->failed || !writer.right;
+  }
   writer.ends = design->gear_pair.ends;
   writer.mirror = -eo_design_rotation(design);
   writer.overhang = overhang(&writer);
@@ -410,5 +434,6 @@ void eo_rexs_export(const struct eo_design *design, const struct eo_geometry *ge
   }
   write_load_cases(&writer);
   eo_rexs_index(model);
+  json_decref(writer.right);
   json_decref(writer.document);
 }

@@ -205,7 +205,8 @@ static void set_up(struct eo_rexs_flank *flank, struct eo_rexs_import *import, i
   flank->member = member;
   flank->end = end;
   flank->coast = coast;
-  flank->amount = import->options->transverse ? cos(import->geometry.base_helix_angle) : 1;
+  flank->half = eo_geometry_of_half(&import->geometry, &import->gear_pair, end);
+  flank->amount = import->options->transverse ? cos(flank->half.base_helix_angle) : 1;
   flank->leading = import->wheel[EO_PINION][end].helix * import->rotation < 0 ? -1 : 1;
   flank->datum = datum && strcmp(datum->text, "positive") == 0 ? wheel->along : -wheel->along;
   flank->width = import->width[end];

@@ -11,11 +11,12 @@ struct eo_rexs_flank {
   const struct eo_rexs_wheel *wheel;
   int member, end;
   bool coast;
-  double amount;  /* factor on amounts: 1, or cos(beta_b) for those of the transverse section */
-  double leading; /* +1, -1: the face that meets first lies towards + x, - x */
-  double datum;   /* the datum face, likewise */
-  double width;   /* common face width */
-  double shift;   /* mid face of the gear from the common mid face, along x */
+  struct eo_geometry half; /* of its end */
+  double amount;           /* factor on amounts: 1, or cos(beta_b) for those of the transverse section */
+  double leading;          /* +1, -1: the face that meets first lies towards + x, - x */
+  double datum;            /* the datum face, likewise */
+  double width;            /* common face width */
+  double shift;            /* mid face of the gear from the common mid face, along x */
   /* what has been read: NaN, not stated */
   double tip_relief, tip_start, root_relief, root_start, crowning, lead_crowning, helix_slope, lead_offset;
   double end_relief[2], end_length[2]; /* [trailing, leading] */

@@ -411,6 +411,16 @@ static void put_finish(struct eo_rexs_import *import, json_t *gear_pair)
   }
 }
 
+/* Angles that differ by the digits of a file are one. */
+static void put_right_helix(struct eo_rexs_import *import, json_t *gear_pair)
+{
+  const struct eo_rexs_wheel *pinion = import->wheel[EO_PINION];
+  const double digits = 1e-6; /* of rexs_train.c */
+  int last = import->pair->ends - 1;
+  if (last && fabs(fabs(pinion[EO_RIGHT].helix) - fabs(pinion[EO_LEFT].helix)) > digits * fabs(pinion->helix))
+    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "right_helix_angle_deg", fabs(pinion[EO_RIGHT].helix));
+}
+
 bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
 {
   struct eo_import *out = import->out;
@@ -428,6 +438,7 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_module_mm", pinion->module);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_pressure_angle_deg", pinion->pressure_angle);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "helix_angle_deg", fabs(pinion->helix));
+  put_right_helix(import, gear_pair);
   put_widths(import, gear_pair);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "groove_width_mm",
               import->pair->ends == 2 ? import->left[EO_RIGHT] - import->right[EO_LEFT] : 0);

@@ -18,19 +18,19 @@ double eo_rexs_roll(const struct eo_rexs_flank *flank, double diameter)
 
 double eo_rexs_profile(const struct eo_rexs_flank *flank, double roll)
 {
-  const struct eo_geometry *geometry = &flank->import->geometry;
+  const struct eo_geometry *geometry = &flank->half;
   return geometry->rack_factor * (roll - 1e3 * geometry->tangent_length[flank->member]);
 }
 
 double eo_rexs_tip_end(const struct eo_rexs_flank *flank)
 {
-  const struct eo_geometry *geometry = &flank->import->geometry;
+  const struct eo_geometry *geometry = &flank->half;
   return 1e3 * (flank->member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom);
 }
 
 double eo_rexs_root_end(const struct eo_rexs_flank *flank)
 {
-  const struct eo_geometry *geometry = &flank->import->geometry;
+  const struct eo_geometry *geometry = &flank->half;
   return 1e3 * (flank->member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top);
 }
 

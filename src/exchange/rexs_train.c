@@ -171,11 +171,26 @@ static bool alike(double a, double b)
   return (isnan(a) && isnan(b)) || fabs(a - b) <= same * fmax(1, fabs(a));
 }
 
-/* Hands opposite, all else equal but the face width: halves may be unequal. */
+/* A number of the wheel's normal section as the transverse one has it. */
+static double transverse(const struct eo_rexs_wheel *wheel, double normal)
+{
+  return normal / cos(wheel->helix * M_PI / 180);
+}
+
+static double transverse_tangent(const struct eo_rexs_wheel *wheel)
+{
+  return transverse(wheel, tan(wheel->pressure_angle * M_PI / 180));
+}
+
+/* Hands opposite, all else equal but the face width and the helix: halves may be unequal, on one transverse section. */
 static bool is_mirrored(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)
 {
-  return alike(a->teeth, b->teeth) && alike(a->module, b->module) && alike(a->helix, -b->helix) && fabs(a->helix) > 0 &&
-         alike(a->pressure_angle, b->pressure_angle) && alike(a->shift, b->shift) && a->along == b->along;
+  bool other_hand = alike(a->teeth, b->teeth) && a->helix * b->helix < 0 && a->along == b->along;
+  if (alike(a->helix, -b->helix))
+    return other_hand && alike(a->module, b->module) && alike(a->pressure_angle, b->pressure_angle) &&
+           alike(a->shift, b->shift);
+  return other_hand && alike(transverse(a, a->module), transverse(b, b->module)) &&
+         alike(transverse_tangent(a), transverse_tangent(b)) && alike(a->shift * a->module, b->shift * b->module);
 }
 
 static double gap_between(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)

@@ -67,7 +67,7 @@ enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *desig
     }
   tooth->shape[EO_COAST_FLANK].mirrored = true; /* flank_point() has it in a frame that runs against y */
   tooth->offset = (end == EO_LEFT ? -1 : 1) * eo_gear_pair_mid_face(&design->gear_pair, end);
-  double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+  double behind = end == EO_RIGHT ? eo_design_right_lag(design, whole) * 2 * M_PI / geometry->teeth[member] : 0;
   tooth->pitch = pitch_angle(geometry, member, 0);
   tooth->behind = member == EO_PINION ? behind : -behind;
   double along = member == EO_PINION ? eta : -eta; /* z of the surface's own frame */

@@ -130,6 +130,25 @@ static enum eo_code settle_widths(struct eo_gear_pair *pair, struct eo_error *er
   return EO_OK;
 }
 
+/* A right helix like the left one is not stated; a half without a helix cannot be balanced by one that has it. */
+static enum eo_code settle_right_helix(struct eo_gear_pair *pair, struct eo_error *error)
+{
+  double right = pair->right_helix_angle;
+  if (!(right > 0) || fabs(right - pair->helix_angle) <= DERIVED * right) {
+    pair->right_helix_angle = NAN;
+    return EO_OK;
+  }
+  if (pair->ends == 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/right_helix_angle_deg",
+                        "A pair with one end has no right half of %.9g deg: leave this key out.", right / DEGREE);
+  if (pair->helix_angle == 0)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/right_helix_angle_deg",
+                        "A left half without a helix has no thrust to balance that of a right one of %.9g deg: give "
+                        "helix_angle_deg the angle of the left half.",
+                        right / DEGREE);
+  return EO_OK;
+}
+
 /* A right half like the left one is not stated. */
 static enum eo_code settle_right_half(struct eo_gear_pair *pair, struct eo_error *error)
 {
@@ -144,6 +163,28 @@ static enum eo_code settle_right_half(struct eo_gear_pair *pair, struct eo_error
   return EO_OK;
 }
 
+/* The same transverse section under another helix: m_n = m_t cos beta, tan alpha_n = tan alpha_t cos beta, and every
+   coefficient such that the length it stands for stays, but for a rounding that the narrower tip of a steeper rack has
+   no room for: that is as large as it can be. */
+static void turn_helix(struct eo_gear_pair *half, const struct eo_gear_pair *pair, double helix_angle)
+{
+  double module = cos(helix_angle) / cos(pair->helix_angle), longer = 1 / module; /* theory (G17) */
+  half->helix_angle = helix_angle;
+  half->normal_module = pair->normal_module * module;
+  half->normal_pressure_angle = atan(tan(pair->normal_pressure_angle) * module);
+  for (int i = 0; i < 2; i++) {
+    struct eo_rack rack = eo_gear_pair_rack(pair, i);
+    double dedendum = rack.dedendum_coefficient * longer;
+    half->rack[i] = (struct eo_rack){rack.addendum_coefficient * longer, dedendum,
+                                     fmin(rack.fillet_radius_coefficient * longer,
+                                          eo_gear_rack_largest_fillet(dedendum, half->normal_pressure_angle))};
+    half->profile_shift[i] = pair->profile_shift[i] * longer;
+    half->generating_offset[i] = pair->generating_offset[i] * longer;
+  }
+  half->tip_alteration = pair->tip_alteration * longer;
+  half->rim_thickness_coefficient = pair->rim_thickness_coefficient * longer;
+}
+
 struct eo_gear_pair eo_gear_pair_half(const struct eo_gear_pair *pair, int end)
 {
   struct eo_gear_pair half = *pair;
@@ -152,6 +193,9 @@ struct eo_gear_pair eo_gear_pair_half(const struct eo_gear_pair *pair, int end)
   for (int i = 0; i < 2; i++)
     if (pair->member_width[i] > 0)
       half.member_width[i] = half.face_width + eo_gear_pair_extra_width(pair, i);
+  half.right_helix_angle = NAN;
+  if (end == EO_RIGHT && eo_gear_pair_has_two_helices(pair))
+    turn_helix(&half, pair, pair->right_helix_angle);
   return half;
 }
 
@@ -345,6 +389,7 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
   EO_TRY(settle_pressure_angle(&settled, error));
   EO_TRY(settle_widths(&settled, error));
   EO_TRY(settle_right_half(&settled, error));
+  EO_TRY(settle_right_helix(&settled, error));
   EO_TRY(settle_shifts(&settled, error));
   if (isnan(eo_gear_pair_tight_distance(&settled)))
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],

@@ -34,6 +34,8 @@ struct eo_gear_pair {
   double face_width;           /* b of one end, common to both members, m; NaN: what their own widths share (settled) */
   double member_width[2];      /* b of one member's own face at one end, m, centred on the mate's; NaN: face_width */
   double right_face_width;     /* b of the right end, m; NaN: face_width, which is that of the left one then */
+  double right_helix_angle;    /* beta of the right half, rad; NaN: helix_angle, which is that of the left one then. The
+                                  halves share the transverse section: m_t, alpha_t and every radial length */
   double groove_width;         /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
   double addendum_coefficient; /* h_aP*; NaN, of all three: profile A of ISO 53 */
   double dedendum_coefficient; /* h_fP* = h_aP* + c* */
@@ -77,10 +79,23 @@ static inline double eo_gear_pair_face_width(const struct eo_gear_pair *pair, in
   return end == EO_RIGHT && pair->right_face_width > 0 ? pair->right_face_width : pair->face_width;
 }
 
-/* The halves of a herringbone pair differ in their faces. */
+/* beta of an end, rad. */
+static inline double eo_gear_pair_helix_angle(const struct eo_gear_pair *pair, int end)
+{
+  return end == EO_RIGHT && pair->right_helix_angle > 0 ? pair->right_helix_angle : pair->helix_angle;
+}
+
+/* The halves of a herringbone pair differ in their helices. */
+static inline bool eo_gear_pair_has_two_helices(const struct eo_gear_pair *pair)
+{
+  return pair->ends == 2 && pair->right_helix_angle > 0 && pair->right_helix_angle != pair->helix_angle;
+}
+
+/* The halves of a herringbone pair differ in their faces or helices. */
 static inline bool eo_gear_pair_is_uneven(const struct eo_gear_pair *pair)
 {
-  return pair->ends == 2 && pair->right_face_width > 0 && pair->right_face_width != pair->face_width;
+  return (pair->ends == 2 && pair->right_face_width > 0 && pair->right_face_width != pair->face_width) ||
+         eo_gear_pair_has_two_helices(pair);
 }
 
 /* Mid face of an end from the middle of the groove, m, outwards; 0 of a pair with one end. */
@@ -89,7 +104,9 @@ static inline double eo_gear_pair_mid_face(const struct eo_gear_pair *pair, int 
   return pair->ends == 2 ? (pair->groove_width + eo_gear_pair_face_width(pair, end)) / 2 : 0;
 }
 
-/* One half as a pair whose halves are both like it; what is beyond the common face is as wide on both halves. */
+/* One half as a pair whose halves are both like it; what is beyond the common face is as wide on both halves. With a
+   helix of its own it has its own m_n and alpha_n, and the coefficients by which every length in the transverse section
+   stays what it is on the other half; of a resolved pair the tips and the backlash stay to the last bit. */
 struct eo_gear_pair eo_gear_pair_half(const struct eo_gear_pair *pair, int end);
 
 /* The groove between the two ends of a member, m. */

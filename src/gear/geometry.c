@@ -58,9 +58,22 @@ struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const
 {
   struct eo_geometry half = *geometry;
   const struct eo_gear_pair own = eo_gear_pair_half(pair, end);
+  if (end == EO_RIGHT && eo_gear_pair_has_two_helices(pair) && !eo_geometry_init(&half, &own, NULL))
+    return half; /* what there is to refuse eo_design_check() has refused */
   set_widths(&half, &own);
   set_overlap(&half);
   return half;
+}
+
+double eo_geometry_right_lead(const struct eo_geometry *left, const struct eo_gear_pair *pair)
+{
+  const struct eo_geometry right = eo_geometry_of_half(left, pair, EO_RIGHT);
+  double lean = tan(left->base_helix_angle), other = tan(right.base_helix_angle);
+  if (!eo_gear_pair_is_uneven(pair))
+    return 0;
+  if (lean == other)
+    return (right.face_width - left->face_width) / 2 * lean;
+  return eo_gear_pair_mid_face(pair, EO_RIGHT) * other - eo_gear_pair_mid_face(pair, EO_LEFT) * lean; /* theory (F12) */
 }
 
 static void set_basics(struct eo_geometry *geometry, const struct eo_gear_pair *pair)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53:1998). One end; both ends share it
-   but for the hand. */
+   but for the hand, and for face and helix where they differ. */
 #ifndef EASEOFF_GEAR_GEOMETRY_H
 #define EASEOFF_GEAR_GEOMETRY_H
 
@@ -53,8 +53,13 @@ struct eo_geometry {
   double normal_backlash;       /* the stated backlash and what the centre distance adds, m */
 };
 
-/* Of one half of a pair whose geometry is that of its left one: faces and overlap are all that may differ. */
+/* Of one half of a pair whose geometry is that of its left one: faces and overlap may differ, and with a helix of its
+   own all that depends on it (pair resolved; then eo_geometry_init() of the half must succeed). */
 struct eo_geometry eo_geometry_of_half(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int end);
+
+/* By how much the phase of the right half's mid face is ahead of the left one's where eta runs outwards, m of roll: the
+   helices meet in the middle of the groove. 0 of equal halves. */
+double eo_geometry_right_lead(const struct eo_geometry *geometry, const struct eo_gear_pair *pair);
 
 /* Computes everything above. pair: settled (eo_gear_pair_settle()). Errors (EO_ERROR_INPUT with the key): pointed tip,
    interference with a fillet or with undercut, no continuous contact (eps_gamma < 1), a centre distance that leaves no

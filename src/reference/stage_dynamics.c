@@ -44,6 +44,8 @@ static const struct eo_field parameters[] = {
     SI(base_radius[0], "Rp", 1e-4, 100, "base radius of the pinion, m"),
     SI(base_radius[1], "Rg", 1e-4, 100, "base radius of the gear, m"),
     SI(base_helix_angle, "beta", 0, 1.2, "base helix angle, rad"),
+    SI_OR(right_base_helix_angle, "beta_right", 0, 1.2, 0,
+          "of the right end where it differs, rad; 0: as the left one"),
     SI(mass[0], "mp", 1e-6, 1e7, "mass of one end of the pinion, kg"),
     SI(mass[1], "mg", 1e-6, 1e7, "of the gear, kg"),
     SI(inertia[0], "Ip", 1e-12, 1e8, "inertia of one end of the pinion, kg m2"),
@@ -260,16 +262,18 @@ static enum eo_code check_source(const struct input *given, struct eo_error *err
   return EO_OK;
 }
 
-static enum eo_code make_laws(struct problem *problem, const struct input *given, double load, double backlash,
+/* load: [end]. */
+static enum eo_code make_laws(struct problem *problem, const struct input *given, const double load[2], double backlash,
                               double stiffness[2], struct eo_error *error)
 {
-  enum eo_code code = eo_stage_law_make(&problem->law[0], &given->law, load, backlash, "/law", error);
-  if (!code && given->has_right_law)
-    code = eo_stage_law_make(&problem->law[1], &given->right_law, load, backlash, "/law_right", error);
+  enum eo_code code = eo_stage_law_make(&problem->law[0], &given->law, load[0], backlash, "/law", error);
+  if (!code && (given->has_right_law || load[1] != load[0]))
+    code = eo_stage_law_make(&problem->law[1], given->has_right_law ? &given->right_law : &given->law, load[1],
+                             backlash, "/law_right", error);
   else if (!code)
     code = eo_law_copy(&problem->law[1], &problem->law[0], error);
   for (int end = 0; end < 2 && !code; end++)
-    stiffness[end] = eo_stage_law_stiffness(&problem->law[end], load);
+    stiffness[end] = eo_stage_law_stiffness(&problem->law[end], load[end]);
   return code;
 }
 
@@ -279,20 +283,27 @@ static enum eo_code make_model(struct problem *problem, const struct input *give
 {
   struct explicit_parameters *explicit_parameters = &found->parameters;
   enum eo_code code = EO_OK;
+  double load[2];
   if (given->has_parameters) {
     *explicit_parameters = given->parameters;
     if (explicit_parameters->fixed)
       explicit_parameters->of.pinion_axial_stiffness = INFINITY;
-    return make_laws(problem, given, eo_dynamics_mesh_load(&explicit_parameters->of, given->torque),
-                     2 * explicit_parameters->half_backlash, found->stiffness, error);
+    for (int end = 0; end < 2; end++)
+      load[end] = eo_dynamics_mesh_load(&explicit_parameters->of, given->torque, end);
+    return make_laws(problem, given, load, 2 * explicit_parameters->half_backlash, found->stiffness, error);
   }
   problem->design = given->design;
   code = eo_design_complete(&problem->design, &problem->geometry, error);
   if (code)
     return code;
   int ends = problem->design.gear_pair.ends;
-  double load = given->torque /
-                (ends * problem->geometry.base_radius[EO_PINION] * cos(problem->geometry.base_helix_angle));
+  const struct eo_dynamics_parameters helices = {
+      .ends = ends,
+      .base_radius = {problem->geometry.base_radius[0], problem->geometry.base_radius[1]},
+      .base_helix_angle = problem->geometry.base_helix_angle,
+      .right_base_helix_angle = problem->design.supports.right_base_helix_angle};
+  for (int end = 0; end < 2; end++)
+    load[end] = eo_dynamics_mesh_load(&helices, given->torque, end);
   explicit_parameters->half_backlash = problem->design.gear_pair.backlash / 2;
   code = make_laws(problem, given, load, problem->design.gear_pair.backlash, found->stiffness, error);
   double mean = ends == 2 ? (found->stiffness[0] + found->stiffness[1]) / 2 : found->stiffness[0];

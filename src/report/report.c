@@ -84,10 +84,19 @@ static void put_geometry(const json_t *result, struct eo_text *text)
 {
   eo_page_heading(text, 2, "Geometry");
   eo_sheet_table(text, &eo_geometry_table, json_object_get(result, "geometry"), "/geometry", NULL);
+  if (json_is_object(json_object_get(result, "right_geometry"))) {
+    eo_page_heading(text, 3, "Right end");
+    eo_sheet_table(text, &eo_geometry_table, json_object_get(result, "right_geometry"), "/right_geometry", NULL);
+  }
   if (json_is_object(json_object_get(result, "dimensions"))) {
     eo_page_heading(text, 3, "Dimensions of the drawing");
     eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "dimensions"), json_object_get(result, "dimensions"), 4,
                      NULL);
+  }
+  if (json_is_object(json_object_get(result, "right_dimensions"))) {
+    eo_page_heading(text, 3, "Dimensions of the drawing, right end");
+    eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "right_dimensions"),
+                     json_object_get(result, "right_dimensions"), 4, NULL);
   }
   eo_page_heading(text, 3, "Flexibility");
   eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "flexibility"), json_object_get(result, "flexibility"), 4,

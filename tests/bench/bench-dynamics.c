@@ -36,7 +36,7 @@ static double three_torques(struct eo_vibration_solver *solver, bool mirror, dou
     for (int torque = 0; torque < 3; torque++) {
       for (int end = 0; end < 2; end++) {
         curves(mirror ? 0 : end, z, k);
-        eo_law_set_tangent(&law[end], 64, z, k, eo_dynamics_mesh_load(&p, 621 + 207 * torque), 10, -1e-4, NULL);
+        eo_law_set_tangent(&law[end], 64, z, k, eo_dynamics_mesh_load(&p, 621 + 207 * torque, 0), 10, -1e-4, NULL);
       }
       struct eo_vibration r;
       struct eo_vibration_case load = paper_case(&law[0], &law[1]);

@@ -27,7 +27,7 @@ static struct stage read_stage(const json_t *s02)
     row_of(json_object_get(stage, "kt_N_um"), end, 1e6, s.k[end]);
   }
   const struct eo_dynamics_parameters p = paper_pair();
-  s.load = eo_dynamics_mesh_load(&p, number_of(s02, "T_Nm"));
+  s.load = eo_dynamics_mesh_load(&p, number_of(s02, "T_Nm"), 0);
   return s;
 }
 

@@ -239,6 +239,7 @@ static void build_stranger(int ends)
   struct eo_gear_pair *pair = &design.gear_pair;
   pair->member_width[EO_PINION] = pair->face_width + 5e-3;
   pair->right_face_width = ends == 2 ? 0.75 * pair->face_width : NAN;
+  pair->right_helix_angle = ends == 2 ? 1.1 * pair->helix_angle : NAN;
   pair->tip_chamfer[EO_GEAR] = 0.1e-3;
   pair->protuberance[EO_PINION] = 60e-6;
   pair->grinding_stock[EO_PINION] = 65e-6;

@@ -8,7 +8,7 @@ import { colour } from '../base/theme.js';
 import { inInches, shownUnit, shownValue } from '../base/units.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { caseLong, endsOf, faceOf, rightPhase, sameCase } from './context.js';
+import { caseLong, endsOf, faceOf, leanOf, rightPhase, sameCase } from './context.js';
 import { placeTip } from './frame.js';
 
 const PIXELS = [132, 76]; // of one end's picture
@@ -193,7 +193,7 @@ export class Contact {
     const [low, high] = [pattern.s_mm[0], pattern.s_mm[pattern.s_mm.length - 1]];
     const half = -faceOf(pattern, end)[0];
     const pitch = geometry.transverse_base_pitch_mm;
-    const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
+    const lean = leanOf(result, end);
     const at = phase.value + (end === 'right' ? rightPhase(result) : 0);
     pen.save();
     pen.beginPath();
@@ -270,7 +270,7 @@ export class Contact {
       this.tip.hidden = false;
       placeTip(this.tip, event.offsetX, this.painting.frame.body.clientWidth);
       const cycle =
-        (s - eta * Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180)) / geometry.transverse_base_pitch_mm;
+        (s - eta * leanOf(context.result, end)) / geometry.transverse_base_pitch_mm;
       phase.set(cycle - Math.floor(cycle));
       return;
     }

@@ -51,14 +51,34 @@ export function faceOf(part, end) {
   return (end === 'right' && part.right_eta_mm) || part.eta_mm;
 }
 
+/** The geometry of an end: halves that differ have each its own. @param {Page.Result} result @param {string} end */
+export function geometryOf(result, end) {
+  return (end === 'right' && result.right_geometry) || result.geometry;
+}
+
+/** tan(beta_b) of an end. @param {Page.Result} result @param {string} end */
+export function leanOf(result, end) {
+  return Math.tan((geometryOf(result, end).base_helix_angle_deg * Math.PI) / 180);
+}
+
 /**
- * By how much of a mesh cycle the right half's phase is ahead: its width, less the stagger.
+ * Places on the profile of a member's end: halves of unequal helix have each its own.
+ * @param {{ u_mm: number[], right_u_mm?: number[] }} member @param {string} end
+ */
+export function profileOf(member, end) {
+  return (end === 'right' && member.right_u_mm) || member.u_mm;
+}
+
+/**
+ * By how much of a mesh cycle the right half's phase is ahead: its width and helix, less the stagger.
  * @param {Page.Result} result
  */
-export function rightPhase({ geometry, design }) {
-  const right = design.gear_pair.right_face_width_mm ?? geometry.face_width_mm;
-  const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
-  const lag = ((right - geometry.face_width_mm) / 2) * lean;
+export function rightPhase(result) {
+  const { geometry, design } = result;
+  const groove = design.gear_pair.groove_width_mm ?? 0;
+  /** @param {string} end */
+  const lead = (end) => ((groove + geometryOf(result, end).face_width_mm) / 2) * leanOf(result, end);
+  const lag = result.right_geometry ? lead('right') - lead('left') : 0;
   return lag / geometry.transverse_base_pitch_mm - (design.alignment?.stagger ?? 0);
 }
 

@@ -6,7 +6,7 @@ import { colour } from '../base/theme.js';
 import { shownUnit, shownValue, unitInstead } from '../base/units.js';
 import { switcher } from '../base/switcher.js';
 import { Painting, SMALL } from './canvas.js';
-import { END_COLOUR, endsOf, faceOf } from './context.js';
+import { END_COLOUR, endsOf, faceOf, profileOf } from './context.js';
 import { tickText } from './ticks.js';
 
 /** Grids over what is taken off, in the unit that is shown: ends at least, whole steps of them, and lines. */
@@ -102,7 +102,7 @@ export class ModificationCharts {
     const member = modification?.[this.#member];
     const flank = member?.[end];
     if (!modification || !flank) return null;
-    return { at: what === 'profile_um' ? member.u_mm : faceOf(modification, end), value: flank[what] };
+    return { at: what === 'profile_um' ? profileOf(member, end) : faceOf(modification, end), value: flank[what] };
   }
 
   /** Largest value of all that is drawn, in steps, as it is shown. @param {'profile_um' | 'lead_um'} what */

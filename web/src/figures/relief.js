@@ -5,7 +5,7 @@ import { colour } from '../base/theme.js';
 import { shownUnit, shownValue } from '../base/units.js';
 import { SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { endsOf, faceOf, rightPhase } from './context.js';
+import { endsOf, faceOf, geometryOf, leanOf, profileOf, rightPhase } from './context.js';
 import { valueAtPlace } from './gear.js';
 import { tickText, ticks } from './ticks.js';
 
@@ -40,12 +40,13 @@ const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
  * @returns {Surface}
  */
 function surfaceOf(result, loadCase, end) {
-  const { geometry: g, modification } = result;
+  const { modification } = result;
+  const g = geometryOf(result, end);
   const faces = modification ? faceOf(modification, end) : [0, g.face_width_mm];
   const { pinion = null, gear = null } = modification ?? {};
   const width = faces[faces.length - 1] - faces[0];
   const pattern = loadCase.contact?.pattern;
-  const lean = Math.tan((g.base_helix_angle_deg * Math.PI) / 180);
+  const lean = leanOf(result, end);
   const ahead = end === 'right' ? rightPhase(result) : 0;
   const count = ROWS * COLUMNS;
   const surface = {
@@ -62,9 +63,9 @@ function surfaceOf(result, loadCase, end) {
       const eta = (across - 0.5) * width;
       const at = i * COLUMNS + j;
       surface.taken[at] =
-        valueAtPlace(pinion?.u_mm, pinion?.[end]?.profile_um, g.rack_factor * s) +
+        valueAtPlace(pinion && profileOf(pinion, end), pinion?.[end]?.profile_um, g.rack_factor * s) +
         valueAtPlace(faces, pinion?.[end]?.lead_um, eta) +
-        valueAtPlace(gear?.u_mm, gear?.[end]?.profile_um, -g.rack_factor * s) +
+        valueAtPlace(gear && profileOf(gear, end), gear?.[end]?.profile_um, -g.rack_factor * s) +
         valueAtPlace(faces, gear?.[end]?.lead_um, eta);
       const grid = pattern?.[end]?.pressure_MPa;
       if (grid) surface.pressure[at] = gridValue(grid, up * (grid.length - 1), across * (grid[0].length - 1));
