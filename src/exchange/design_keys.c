@@ -71,9 +71,37 @@ static const struct eo_field *field_in(const struct eo_table *table, const char 
   return NULL;
 }
 
+/* "FLANK.grid_um.ROW.COLUMN", a number of a flank's grid (0: of all rows, of all columns): the flank's length in path
+   and the two; false: the path is of another kind. */
+static bool grid_number(const char *path, size_t *flank, int knot[2])
+{
+  static const char mark[] = "." EO_GRID_PARAMETER ".";
+  const char *at = strstr(path, mark);
+  int end = 0;
+  if (!at || sscanf(at + strlen(mark), "%4d.%4d%n", &knot[0], &knot[1], &end) < 2 || at[strlen(mark) + (size_t)end] ||
+      knot[0] < 0 || knot[1] < 0)
+    return false;
+  *flank = (size_t)(at - path);
+  return true;
+}
+
+static const struct eo_field *field_at(const char *path);
+
+/* Of a flank that there is: one with a list of numbers in place of its grid's. */
+static const struct eo_field *grid_field(const char *path, size_t flank)
+{
+  char nodes[EO_KEY_PATH + 24];
+  snprintf(nodes, sizeof nodes, "%.*s.grid_nodes.1.delta_um", (int)flank, path);
+  return field_at(nodes) ? &eo_grid_number_field : NULL;
+}
+
 /* The field of a leaf, or NULL. A row of a list is its number from 1. */
 static const struct eo_field *field_at(const char *path)
 {
+  size_t flank;
+  int knot[2];
+  if (grid_number(path, &flank, knot))
+    return grid_field(path, flank);
   const struct eo_table *table = &eo_design_table;
   const struct eo_field *field = NULL;
   for (const char *at = path; *at;) {
@@ -228,8 +256,39 @@ bool eo_design_key_convert(const struct eo_field *field, const char *unit, doubl
   return true;
 }
 
+/* What stands in the list for the same number gives way; what comes later is laid on what was there. */
+static bool set_grid_number(json_t *design, const char *path, size_t flank, const int knot[2], json_t *value)
+{
+  json_t *at = design, *nodes, *node;
+  char part[EO_KEY_PATH];
+  size_t i;
+  for (size_t from = 0; from < flank;) {
+    size_t length = strcspn(path + from, ".");
+    snprintf(part, sizeof part, "%.*s", (int)length, path + from);
+    if (!json_object_get(at, part))
+      json_object_set_new(at, part, json_object());
+    at = json_object_get(at, part);
+    from += length + 1;
+  }
+  if (!json_object_get(at, "grid_nodes"))
+    json_object_set_new(at, "grid_nodes", json_array());
+  nodes = json_object_get(at, "grid_nodes");
+  json_array_foreach(nodes, i, node)
+  {
+    if (json_integer_value(json_object_get(node, "row")) == knot[0] &&
+        json_integer_value(json_object_get(node, "column")) == knot[1])
+      json_array_remove(nodes, i--);
+  }
+  return json_array_append_new(nodes,
+                               json_pack("{s:i, s:i, s:o}", "row", knot[0], "column", knot[1], "delta_um", value)) == 0;
+}
+
 bool eo_design_key_set(json_t *design, const char *path, json_t *value)
 {
+  size_t flank;
+  int knot[2];
+  if (grid_number(path, &flank, knot))
+    return set_grid_number(design, path, flank, knot, value);
   json_t *at = design;
   while (strchr(path, '.')) {
     char part[EO_KEY_PATH];

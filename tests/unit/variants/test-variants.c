@@ -123,6 +123,50 @@ static void test_samples(void)
   }
 }
 
+/* A number of a flank's grid is a key, of one place or of a whole row. */
+static void test_grids(void)
+{
+  static const char text[] = "{" DESIGN ",\"vary\":[{\"key\":\"modification.pinion.*.grid_um.2.3\",\"values\":[1,5]},"
+                             "{\"key\":\"modification.pinion.left.grid_um.4.0\",\"values\":[7]}]}";
+  struct eo_variant_plan plan;
+  struct eo_error error;
+  struct eo_geometry geometry;
+  struct eo_design *design = malloc(sizeof *design);
+  json_t *document = eo_json_parse(text, strlen(text), &error), *flank[2];
+  json_t *member = json_object_get(json_object_get(json_object_get(document, "design"), "modification"), "pinion");
+  json_object_set_new(member, "right", json_object());
+  for (int end = 0; end < 2; end++) {
+    flank[end] = json_object_get(member, end ? "right" : "left");
+    json_object_set_new(flank[end], "grid",
+                        json_pack("{s:[i,i,i,i], s:[i,i,i,i], s:[[i,i,i,i],[i,i,i,i],[i,i,i,i],[i,i,i,i]]}", "u_mm", -4,
+                                  -1, 2, 5, "y_mm", -25, -8, 8, 25, "delta_um", 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0,
+                                  0, 0, 0));
+  }
+  faults.count = 0;
+  bool good = eo_variant_plan_init(&plan, document, &faults);
+  json_t *values = good ? eo_variant_values(&plan, 1) : NULL;
+  good = good && eo_variant_design(plan.base, plan.axis, plan.axes, values, design, &geometry, &error) == EO_OK;
+  ok(good && plan.rows == 2 && plan.axis[0].paths == 2, "a number of the grids of both ends varies: %s",
+     good           ? ""
+     : faults.count ? faults.fault[0].text
+                    : error.text);
+  if (good) {
+    const struct eo_flank_grid left = eo_flank_grid_at(&design->grids, EO_DRIVE_FLANK, EO_PINION, EO_LEFT),
+                               right = eo_flank_grid_at(&design->grids, EO_DRIVE_FLANK, EO_PINION, EO_RIGHT);
+    close_to(1e6 * left.delta[6], 5, 1e-9, "row 2, column 3, um");
+    close_to(1e6 * right.delta[6], 5, 1e-9, "on the other end, um");
+    close_to(1e6 * left.delta[12], 7, 1e-9, "row 4, all columns, um");
+    close_to(1e6 * left.delta[15], 7, 1e-9, "the last one too, um");
+    close_to(1e6 * right.delta[15], 0, 1e-9, "the other grid keeps its own, um");
+  }
+  json_decref(values);
+  json_decref(document);
+  eo_variant_plan_done(&plan);
+  free(design);
+  ok(!read(&plan, "\"vary\":[{\"key\":\"gear_pair.grid_um.1.1\",\"values\":[1]}]"), "a pair has no grid");
+  eo_variant_plan_done(&plan);
+}
+
 static void test_table(void)
 {
   struct eo_variant_plan plan;
@@ -206,6 +250,7 @@ int main(void)
   test_order();
   test_hashes();
   test_samples();
+  test_grids();
   test_table();
   test_refusals();
   test_columns();
