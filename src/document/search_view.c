@@ -26,7 +26,7 @@ static double *see_flanks(const struct eo_search_view *view, const struct eo_fla
       for (int member = 0; member < 2; member++)
         gap += eo_modification_profile(&slice[member], geometry->rack_factor * eo_geometry_own_path(member, s), slope) +
                eo_modification_lead(&slice[member], eta * slice[member].lengthen, slope);
-      *seen++ = gap / (view->depth + fabs(gap)); /* theory (S3) */
+      *seen++ = gap / (view->depth + fabs(gap)); /* theory (H8) */
     }
   }
   return seen;

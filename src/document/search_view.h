@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a search sees a flank: by the gaps that it makes between the teeth (theory (S3)). Two flanks that leave the same
+/* How a search sees a flank: by the gaps that it makes between the teeth (theory (H8)). Two flanks that leave the same
    gaps are the same to the contact, whatever their numbers; gaps far deeper than the teeth bend hardly differ. */
 #ifndef EASEOFF_DOCUMENT_SEARCH_VIEW_H
 #define EASEOFF_DOCUMENT_SEARCH_VIEW_H

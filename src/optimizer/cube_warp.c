@@ -38,7 +38,7 @@ static void walk(const struct eo_cube_warp *warp, int k, double *x, double *seen
 static void share_out(const double *old, double *way, double *knot)
 {
   const double whole = way[PARTS];
-  for (int i = 0; i <= PARTS; i++) /* theory (S4) */
+  for (int i = 0; i <= PARTS; i++) /* theory (H9) */
     way[i] = whole > 0 ? (1 - even) * way[i] / whole + even * old[i] : old[i];
   int part = 0;
   for (int i = 0; i <= PARTS; i++) {

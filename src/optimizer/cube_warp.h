@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The unit cube stretched so that equal steps of a variable change what is seen by equal amounts: where bounds are far
    wider than what matters, most of the cube is the same to the value, and points spread evenly would miss the rest
-   (theory (S4)). */
+   (theory (H9)). */
 #ifndef EASEOFF_OPTIMIZER_CUBE_WARP_H
 #define EASEOFF_OPTIMIZER_CUBE_WARP_H
 

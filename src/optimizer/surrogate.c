@@ -120,7 +120,7 @@ static void measure(const struct eo_surrogate *surrogate, const double *z, int r
     whole[j] = sqrt(whole[j]);
 }
 
-/* The cubes of all of them: theory (S5). */
+/* The cubes of all of them: theory (H10). */
 static void fill_kernel(const struct eo_surrogate *surrogate, int rows, double *kernel)
 {
   const double *d = surrogate->distance;
