@@ -34,6 +34,7 @@ static const char
     plain[] = "{}",
     single[] = "{\"gear_pair\": {\"ends\": 1, \"groove_width_mm\": 0}}",
     uneven[] = "{\"gear_pair\": {\"right_face_width_mm\": 48}, \"shafts\": {\"enabled\": true}}",
+    unlike[] = "{\"gear_pair\": {\"right_helix_angle_deg\": 26}}",
     held[] = "{\"alignment\": {\"pinion_axial\": \"fixed\"}}", shafts[] = "{\"shafts\": {\"enabled\": true}}",
     coast[] = "{\"modification\": {\"pinion\": {\"left\": {\"twist_um\": 3, \"coast\": {\"tip_relief_um\": 9, "
               "\"root_relief_um\": 9, \"twist_um\": 4}}}}}",
@@ -51,6 +52,7 @@ static void test_analyses(void)
              {"analysis with no part", API "/analyze?parts=", plain},
              {"one end", API "/analyze?histories=1&band=1", single},
              {"halves of unequal width", API "/analyze", uneven},
+             {"halves of unequal helix", API "/analyze", unlike},
              {"a pinion that is held", API "/analyze", held},
              {"elastic shafts", API "/analyze", shafts},
              {"coast flanks with twist", API "/analyze", coast},

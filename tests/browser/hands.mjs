@@ -526,8 +526,8 @@ await chapter('a preparation that others wait for', async () => {
   const wanted = `${START}&gear_pair.pinion_teeth=19`;
   const other = await (await browser.newContext()).newPage();
   other.setDefaultTimeout(WAIT);
-  await open(wanted.replaceAll('layers=6', 'layers=32'), page);
-  await open(wanted.replaceAll('layers=6', 'layers=32'), other);
+  await open(wanted.replaceAll('layers=6', 'layers=20'), page);
+  await open(wanted.replaceAll('layers=6', 'layers=20'), other);
   await other.locator('.preparing').waitFor();
   await field('Pinion teeth').fill('17');
   await field('Pinion teeth').press('Enter');

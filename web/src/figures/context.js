@@ -51,9 +51,14 @@ export function faceOf(part, end) {
   return (end === 'right' && part.right_eta_mm) || part.eta_mm;
 }
 
-/** The geometry of an end: halves that differ have each its own. @param {Page.Result} result @param {string} end */
+/**
+ * The geometry of an end: halves that differ have each its own.
+ * @param {Page.Result} result @param {string} end
+ * @returns {Page.Result['geometry']}
+ */
 export function geometryOf(result, end) {
-  return (end === 'right' && result.right_geometry) || result.geometry;
+  const right = /** @type {unknown} */ (result.right_geometry); // one table describes both: what is computed is there
+  return (end === 'right' && /** @type {Page.Result['geometry'] | undefined} */ (right)) || result.geometry;
 }
 
 /** tan(beta_b) of an end. @param {Page.Result} result @param {string} end */

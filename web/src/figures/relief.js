@@ -63,9 +63,9 @@ function surfaceOf(result, loadCase, end) {
       const eta = (across - 0.5) * width;
       const at = i * COLUMNS + j;
       surface.taken[at] =
-        valueAtPlace(pinion && profileOf(pinion, end), pinion?.[end]?.profile_um, g.rack_factor * s) +
+        valueAtPlace(pinion ? profileOf(pinion, end) : undefined, pinion?.[end]?.profile_um, g.rack_factor * s) +
         valueAtPlace(faces, pinion?.[end]?.lead_um, eta) +
-        valueAtPlace(gear && profileOf(gear, end), gear?.[end]?.profile_um, -g.rack_factor * s) +
+        valueAtPlace(gear ? profileOf(gear, end) : undefined, gear?.[end]?.profile_um, -g.rack_factor * s) +
         valueAtPlace(faces, gear?.[end]?.lead_um, eta);
       const grid = pattern?.[end]?.pressure_MPa;
       if (grid) surface.pressure[at] = gridValue(grid, up * (grid.length - 1), across * (grid[0].length - 1));
