@@ -40,16 +40,16 @@ json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geo
   const struct eo_gear_pair *pair = &design->gear_pair, right = eo_gear_pair_half(pair, EO_RIGHT);
   const struct eo_geometry half = eo_geometry_of_half(geometry, pair, EO_RIGHT);
   bool uneven = eo_gear_pair_is_uneven(pair), two_helices = eo_gear_pair_has_two_helices(pair);
-  const struct completion view = {.uneven = uneven,
-                                  .two_helices = two_helices,
-                                  .design = eo_design_encode(design),
-                                  .geometry = {eo_table_encode(&eo_geometry_table, geometry),
-                                               uneven ? eo_table_encode(&eo_geometry_table, &half) : NULL},
-                                  .dimensions = {eo_dimensions_encode(pair, geometry),
-                                                 two_helices ? eo_dimensions_encode(&right, &half) : NULL},
-                                  .assumed = eo_assumptions_encode(design, true),
-                                  .warnings = eo_warnings_encode(warnings),
-                                  .findings = eo_design_findings(warnings)};
+  const struct completion view = {
+      .uneven = uneven,
+      .two_helices = two_helices,
+      .design = eo_design_encode(design),
+      .geometry = {eo_table_encode(&eo_geometry_table, geometry),
+                   uneven ? eo_table_encode(&eo_geometry_table, &half) : NULL},
+      .dimensions = {eo_dimensions_encode(pair, geometry), two_helices ? eo_dimensions_encode(&right, &half) : NULL},
+      .assumed = eo_assumptions_encode(design, true),
+      .warnings = eo_warnings_encode(warnings),
+      .findings = eo_design_findings(warnings)};
   return eo_outline_encode(&eo_outline_completion, &view);
 }
 

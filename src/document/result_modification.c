@@ -219,7 +219,7 @@ const struct eo_outline eo_outline_modification = EO_OUTLINE("ModificationCurves
 
 json_t *eo_result_modification(struct eo_result_source *source)
 {
-  struct places places;
+  struct places places = {0};
   double half = source->pair->geometry.face_width / 2;
   spread(POINTS, -half, half, places.eta);
   spread(MAP_COLUMNS, -half, half, places.map_eta);

@@ -318,7 +318,7 @@ static json_t *encode_end_loads(const struct pitch_case *pitch_case, int member,
 static json_t *encode_member_loads(const struct pitch_case *pitch_case, int member)
 {
   struct eo_pitch_ends view = {.two = pitch_case->own->hunting.ends == 2};
-  for (int end = 0; end <= view.two; end++)
+  for (int end = 0; end < (view.two ? 2 : 1); end++)
     view.end[end] = encode_end_loads(pitch_case, member, end);
   return eo_outline_encode(&of_ends_outline, &view);
 }

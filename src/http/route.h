@@ -56,8 +56,8 @@ struct eo_route {
 
 #define EO_API "/api/v1"
 
-/* The border of units (format/inch.h), a row of `query`: request->reply.inches says whether it is asked for. What is computed
-   and stored keeps mm. */
+/* The border of units (format/inch.h), a row of `query`: request->reply.inches says whether it is asked for. What is
+   computed and stored keeps mm. */
 #define EO_UNITS_QUERY                                                                          \
   {                                                                                             \
     "units", 0, 0, 0, "mm|inch",                                                                \
@@ -88,7 +88,7 @@ void eo_route_run(struct eo_request *request);
 /* The parts of the table, each in the file of its endpoints; each ends with a row without pattern. routes.h has all. */
 extern const struct eo_route eo_routes_service[], eo_routes_session[], eo_routes_examples[], eo_routes_designs[],
     eo_routes_analysis[], eo_routes_jobs[], eo_routes_events[], eo_routes_history[], eo_routes_export[],
-    eo_routes_report[], eo_routes_reproduction[], eo_routes_tolerance[], eo_routes_import[], eo_routes_measurements[], eo_routes_comparison[],
-    eo_routes_studies[];
+    eo_routes_report[], eo_routes_reproduction[], eo_routes_tolerance[], eo_routes_import[], eo_routes_measurements[],
+    eo_routes_comparison[], eo_routes_studies[];
 
 #endif

@@ -88,7 +88,8 @@ enum eo_code eo_cube_warp_init(struct eo_cube_warp *warp, const struct eo_view *
   if (view->numbers == 0)
     return EO_OK;
   const size_t n = (size_t)variables;
-  double(*stretched)[EO_WARP_KNOTS] = malloc(n * sizeof *stretched), *seen[2];
+  double(*stretched)[EO_WARP_KNOTS] = malloc(n * sizeof *stretched);
+  double *seen[2];
   warp->knot = malloc(n * sizeof *warp->knot);
   for (int i = 0; i < 2; i++)
     seen[i] = malloc((size_t)view->numbers * sizeof **seen);

@@ -77,7 +77,8 @@ static void draw(struct eo_global_minima *global, const struct eo_credibility_mo
     double *x = global->sample + (size_t)i * (size_t)n;
     const double *one = i % 3 == 1 ? best : NULL, *other = NULL;
     if (i % 3 == 2 && rows > 0) {
-      one = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 0) * ((rows + 2) / 3))] * (size_t)n;
+      const int third = (rows + 2) / 3;
+      one = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 0) * third)] * (size_t)n;
       other = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 1) * rows)] * (size_t)n;
     }
     for (int k = 0; k < n; k++)

@@ -157,8 +157,8 @@ static void test_rig(void)
 {
   modified = record("{" POINT "}");
   unmodified = record("{" POINT ",\"unmodified\":true,\"torque_column\":true,\"speed_column\":true}");
-  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0,
-     "a synthetic recording: %d", modified.status);
+  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0, "a synthetic recording: %d",
+     modified.status);
   const char *header = header_of(&modified, "Content-Disposition");
   ok(header && strstr(header, "rig-828Nm-2000rpm.csv"), "is a file");
   struct reply again = record("{" POINT "}");

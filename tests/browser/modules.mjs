@@ -44,7 +44,10 @@ for (const [metric, inch] of [
   ['The face, 70 mm, is wide.', 'The face, 2.7559 in, is wide.'],
   ['177800 is outside 0.5 .. 5000 mm.', '7000 is outside 0.019685 .. 196.85 in.'],
   ['From diameter 152.4001 to 177.8 mm, roll 5 to 7 deg.', 'From diameter 6.000004 to 7 in, roll 5 to 7 deg.'],
-  ['The gears 17 and 18 are 254 and 127 mm wide; 18 and more.', 'The gears 17 and 18 are 10 and 5 in wide; 18 and more.'],
+  [
+    'The gears 17 and 18 are 254 and 127 mm wide; 18 and more.',
+    'The gears 17 and 18 are 10 and 5 in wide; 18 and more.',
+  ],
   ['2/3 (0.06 mm + 0.0005 a + 0.03 m_n)', '2/3 (0.0023622 in + 0.0005 a + 0.03 m_n)'],
   ['-25.4 um, 1e-05 mm, 5.08 µm', '-1 thou, 3.937e-7 in, 0.2 thou'],
   ['8 N/um, 3 mm/s, 7 mm2, 7 mm², 5 N mm, 600 N m', '8 N/um, 3 mm/s, 7 mm2, 7 mm², 5 N mm, 600 N m'],

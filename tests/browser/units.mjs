@@ -126,7 +126,8 @@ await chapter('and back', async () => {
 await chapter('sentences', async () => {
   // thirteen teeth are undercut; then a bore that leaves no rim
   await page.goto('about:blank');
-  await page.goto(`${server.address}#design?from=narrow&${PAIR.replace('pinion_teeth=23', 'pinion_teeth=13')}&${LOOSE}`);
+  const few = PAIR.replace('pinion_teeth=23', 'pinion_teeth=13');
+  await page.goto(`${server.address}#design?from=narrow&${few}&${LOOSE}`);
   await page.getByLabel('Lengths in').selectOption('mm');
   const warnings = () => page.locator('.warning-list').evaluate(list => list.textContent);
   await page.waitForFunction(() => /undercut/.test(document.querySelector('.warning-list')?.textContent ?? ''));

@@ -223,8 +223,8 @@ static void test_search(void)
   }
   search(&view, 5, &again);
   ok(memcmp(&run, &again, sizeof run) == 0, "the same seed asks for the same");
-  ok(worst < 0.06 && least_blind > 2 * worst, "of 5 seeds the worst ends at %.4f, the least value is 0.01; without a view the best at %.4f", worst,
-     least_blind);
+  ok(worst < 0.06 && least_blind > 2 * worst,
+     "of 5 seeds the worst ends at %.4f, the least value is 0.01; without a view the best at %.4f", worst, least_blind);
 }
 
 int main(void)

@@ -9,8 +9,8 @@ const PER_INCH = 25.4; // mm in an inch, µm in a thousandth of it
  * @type {Record<string, string>} */
 const INCH = { mm: 'in', um: 'thou', µm: 'thou' };
 /** "from mid face (mm)": the unit of a column at the end of its head. */
-/** "0.5 .. 500 mm", "70 mm": a length in a sentence, or several with the unit behind the last; as format/inch_sentence.h
- * reads it. No mm², mm/s; no number of a name. */
+/** "0.5 .. 500 mm", "70 mm": a length in a sentence, or several with the unit behind the last; as
+ * format/inch_sentence.h reads it. No mm², mm/s; no number of a name. */
 const NUMBER = String.raw`(?<![\w.]|[\w.]-)\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 const LENGTHS = new RegExp(
   String.raw`(${NUMBER}(?:(?: \.\. | to | and | is outside )-?${NUMBER})*) (mm|[uµ]m)(?![\w/^²³])`,
