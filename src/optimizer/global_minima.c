@@ -63,30 +63,21 @@ static int take_sample(struct eo_global_minima *global, const double *points, in
   }
 }
 
-/* A third of the samples are anywhere, a third are near the best row in some variables, a third crosses two rows of the
-   model, one of them among its best. What is drawn lies evenly in the stretched cube, every second time in that of the
-   variables. */
-static void draw(struct eo_global_minima *global, const struct eo_credibility_model *model,
-                 const struct eo_archive *archive, const struct eo_cube_warp *warp, const double *best, int batch)
+/* Half of the samples are anywhere, half are near the best row in some variables. What is drawn lies evenly in the
+   stretched cube, every second time in that of the variables. */
+static void draw(struct eo_global_minima *global, const struct eo_cube_warp *warp, const double *best, uint64_t seed,
+                 int batch)
 {
-  const int n = global->variables, rows = model->fitted ? model->composite.surrogate.rows : 0;
+  const int n = global->variables;
   for (int i = 0; i < SAMPLES; i++) {
-    const struct eo_random random = eo_random_at(model->settings->seed, EO_STREAM_GLOBAL, (uint64_t)batch, (uint64_t)i),
-                           choice = eo_random_at(model->settings->seed, EO_STREAM_GLOBAL_CROSS, (uint64_t)batch,
-                                                 (uint64_t)i);
+    const struct eo_random random = eo_random_at(seed, EO_STREAM_GLOBAL, (uint64_t)batch, (uint64_t)i);
     double *x = global->sample + (size_t)i * (size_t)n;
-    const double *one = i % 3 == 1 ? best : NULL, *other = NULL;
-    if (i % 3 == 2 && rows > 0) {
-      const int third = (rows + 2) / 3;
-      one = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 0) * third)] * (size_t)n;
-      other = archive->x + (size_t)model->rows[(int)(eo_random_unit(random, 1) * rows)] * (size_t)n;
-    }
     for (int k = 0; k < n; k++)
-      x[k] = eo_random_unit(random, (uint64_t)k);
-    if (i % 2 == 1)
+      x[k] = eo_random_unit(random, 2 * (uint64_t)k);
+    if (i % 4 >= 2)
       eo_cube_warp_in(warp, x, x);
-    for (int k = 0; k < n; k++)
-      x[k] = one && eo_random_unit(choice, (uint64_t)k) < 0.5 ? one[k] : other ? other[k] : x[k];
+    for (int k = 0; k < n && i % 2 == 1; k++)
+      x[k] = eo_random_unit(random, 2 * (uint64_t)k + 1) < 0.5 ? best[k] : x[k];
   }
 }
 
@@ -129,7 +120,7 @@ int eo_global_minima_choose(struct eo_global_minima *global, struct eo_credibili
 {
   const int n = global->variables;
   const double *centre = archive->x + (size_t)best * (size_t)n;
-  draw(global, model, archive, bars->distance->warp, centre, batch);
+  draw(global, bars->distance->warp, centre, model->settings->seed, batch);
   for (int i = 0; i < SAMPLES; i++) {
     const double *x = global->sample + (size_t)i * (size_t)n;
     global->score[i] = is_barred(bars, x) ? -INFINITY : eo_credibility_predict(model, x);

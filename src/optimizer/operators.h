@@ -21,7 +21,6 @@ enum eo_stream {
   EO_STREAM_LOCAL = 40,        /* trust region samples */
   EO_STREAM_WARP = 44,         /* lines through the cube, seed 0: individual = line, draw = variable */
   EO_STREAM_PAIRS = 43,        /* pairs of points, seed 0: generation = side, individual = pair, draw = variable */
-  EO_STREAM_GLOBAL_CROSS = 45, /* likewise: draw = variable or block */
   EO_STREAM_GLOBAL = 42,       /* samples of the cube: generation = batch, individual = sample; draws 2 k, 2 k + 1 */
   EO_STREAM_EVOLUTION = 41,    /* evolution strategy: generation = batch, individual = sample, draw = axis */
 };
