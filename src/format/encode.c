@@ -87,15 +87,18 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
 /* An object that is not what its table's defaults give, as far as bytes or else the documents of both can tell; NULL:
    it may be left out. Without memory nobody knows: *failed, since with it or without it the document has another hash.
  */
-static json_t *encode_unless_default(const struct eo_field *field, const void *source, bool *failed)
+static json_t *encode_unless_default(const struct eo_table *owner, const struct eo_field *field, const void *source,
+                                     bool *failed)
 {
   const struct eo_table *table = field->table;
+  /* a table may stand for more than the part at its field, as those of a flank do: not all its bytes are here */
+  bool here = field->offset + table->size <= owner->size;
   void *defaults = calloc(1, table->size);
   json_t *value = NULL, *other = NULL;
   *failed = *failed || !defaults;
   if (defaults)
     eo_table_defaults(table, defaults);
-  if (defaults && memcmp(member(source, field), defaults, table->size) != 0) {
+  if (defaults && !(here && memcmp(member(source, field), defaults, table->size) == 0)) {
     value = encode_field(field, source);
     other = eo_table_encode(table, defaults);
     *failed = *failed || !value || !other;
@@ -110,10 +113,11 @@ static json_t *encode_unless_default(const struct eo_field *field, const void *s
 }
 
 /* The same for a list with nothing in it. */
-static json_t *encode_optional(const struct eo_field *field, const void *source, bool *failed)
+static json_t *encode_optional(const struct eo_table *owner, const struct eo_field *field, const void *source,
+                               bool *failed)
 {
   if (field->kind != EO_FIELD_LIST)
-    return encode_unless_default(field, source, failed);
+    return encode_unless_default(owner, field, source, failed);
   if (!*(const int *)((const char *)source + field->count_offset))
     return NULL;
   json_t *list = encode_field(field, source);
@@ -130,7 +134,7 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
     if (field->flags & (EO_FIELD_ENTRY | EO_FIELD_ELSEWHERE))
       continue;
     bool optional = field->flags & EO_FIELD_OMIT;
-    json_t *value = optional ? encode_optional(field, source, &failed) : encode_field(field, source);
+    json_t *value = optional ? encode_optional(table, field, source, &failed) : encode_field(field, source);
     if (value || !optional)
       eo_json_put(object, field->key, value, &failed);
   }
