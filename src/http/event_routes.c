@@ -36,6 +36,7 @@ static void get_of_job(struct eo_request *request)
 
 #define STREAM \
   "`event: job` with the job (without its design) as data whenever one changes, a comment every ten seconds."
+#define STATE_FIRST " Without Last-Event-ID the first event is the job as it is."
 const struct eo_route eo_routes_events[] = {{.method = EO_GET,
                                              .pattern = "/events",
                                              .handle = get_all,
@@ -47,7 +48,7 @@ const struct eo_route eo_routes_events[] = {{.method = EO_GET,
                                              .pattern = "/jobs/{id}/events",
                                              .handle = get_of_job,
                                              .name = "getJobEvents",
-                                             .summary = "One job: " STREAM,
+                                             .summary = "One job: " STREAM STATE_FIRST,
                                              .gives = "200 text/event-stream",
                                              .headers = "Last-Event-ID"},
                                             {0}};

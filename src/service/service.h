@@ -118,10 +118,11 @@ enum eo_code eo_service_convergence(struct eo_service *service, int64_t id, enum
                                     struct eo_job_convergence *convergence, struct eo_error *error);
 
 /* Calls the listener for every event from now on, of one job or of all (0), one at a time and in the order of their
-   numbers, beginning before this returns with those after the number `after` (0: none; those that are there now). Where
-   they are no longer all kept (the last 1024 are), with the state of every job that has not ended, under the newest
-   number. The listener is called with a lock of the service held: never hold a lock that the listener takes while
-   calling subscribe or unsubscribe. After unsubscribe returns the listener is not called any more. */
+   numbers, beginning before this returns with those after the number `after`. Where there is no such number (0) a job's
+   listener first hears its state, of all jobs nothing; where not all are kept since then (the last 1024 are), the state
+   of the job or of all jobs that have not ended. These states go under the newest number. The listener is called with a
+   lock of the service held: never hold a lock that the listener takes while calling subscribe or unsubscribe. After
+   unsubscribe returns the listener is not called any more. */
 enum eo_code eo_service_subscribe(struct eo_service *service, int64_t job, int64_t after, eo_service_listener *listener,
                                   void *context, int64_t *subscription, struct eo_error *error);
 void eo_service_unsubscribe(struct eo_service *service, int64_t subscription);

@@ -73,6 +73,7 @@ void eo_service_publish(struct eo_service *service, int64_t id)
 
 struct snapshot {
   struct eo_service *service;
+  int64_t only;                   /* 0: whichever comes */
   struct eo_service_event *event; /* owned, its texts too */
   int count, capacity;
 };
@@ -96,6 +97,8 @@ static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *r
   struct eo_text text = {0};
   struct eo_job_view job;
   struct copying copying = {.service = snapshot->service, .job = &job};
+  if (snapshot->only && row->id != snapshot->only)
+    return EO_OK;
   EO_TRY(grow(snapshot, error));
   EO_TRY(copy(&copying, row, error));
   eo_job_view_write(&job, &text);
@@ -108,20 +111,30 @@ static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *r
   return EO_OK;
 }
 
+/* Of one job whatever its state, since it may have ended before its listener came; of all (0) those that have not. */
+static enum eo_code take_snapshot(struct eo_service *service, int64_t job, struct snapshot *snapshot,
+                                  struct eo_error *error)
+{
+  const struct eo_queue_filter one = {.state = -1, .kind = -1, .before = job + 1, .limit = 1};
+  const struct eo_queue_filter active = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
+  snapshot->only = job;
+  lock_jobs(service);
+  enum eo_code code = eo_queue_list(service->store, job ? &one : &active, add_to_snapshot, snapshot, error);
+  unlock_jobs(service);
+  return code;
+}
+
 enum eo_code eo_service_subscribe(struct eo_service *service, int64_t job, int64_t after, eo_service_listener *listener,
                                   void *context, int64_t *subscription, struct eo_error *error)
 {
   struct snapshot snapshot = {.service = service};
-  const struct eo_queue_filter filter = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
   int64_t newest = eo_events_newest(service->events); /* before the snapshot: what happens from now on comes after it */
   enum eo_code code = EO_OK;
-  if (after > 0 && !eo_events_reach(service->events, after)) {
-    lock_jobs(service);
-    code = eo_queue_list(service->store, &filter, add_to_snapshot, &snapshot, error);
-    unlock_jobs(service);
+  if (after <= 0 || !eo_events_reach(service->events, after)) {
+    if (job || after > 0)
+      code = take_snapshot(service, job, &snapshot, error);
     after = newest;
-  } else if (after <= 0)
-    after = newest;
+  }
   if (!code)
     code = eo_events_subscribe(service->events, job, after, snapshot.event, snapshot.count, listener, context,
                                subscription, error);

@@ -10,6 +10,7 @@ import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
 
 globalThis.document ??= { baseURI: 'http://localhost/' };
 globalThis.sessionStorage ??= { getItem: () => null, setItem: () => {} };
+globalThis.window ??= globalThis;
 globalThis.localStorage ??= { getItem: () => null, setItem: () => {} };
 globalThis.CustomEvent ??= class extends Event {
   constructor(name, { detail } = {}) {
@@ -20,6 +21,7 @@ globalThis.CustomEvent ??= class extends Event {
 const { readRows } = await import('../../web/src/base/case_rows.js');
 const { caseLong, caseNames, torqueOf } = await import('../../web/src/figures/context.js');
 const { shownSentence, useInches } = await import('../../web/src/base/units.js');
+const { Jobs } = await import('../../web/src/base/jobs.js');
 const { DesignStore } = await import('../../web/src/base/store.js');
 
 let count = 0;
@@ -55,6 +57,42 @@ for (const [metric, inch] of [
 ])
   is(shownSentence(metric), inch, 'a sentence in inches');
 useInches(false);
+
+// ---- jobs: answers, lists and events in any order ----
+{
+  let answer;
+  const fetched = globalThis.fetch;
+  globalThis.fetch = () => new Promise(resolve => (answer = items => resolve(Response.json({ items }))));
+  const jobs = new Jobs();
+  const job = (id, state, ms) => ({ id, state, updated: `2026-01-01T00:00:00.${ms}Z` });
+  const states = () => [...jobs.all.values()].map(({ id, state }) => `${id} ${state}`);
+  const listed = async (between, items) => {
+    const done = jobs.reload();
+    while (!answer) await null;
+    between();
+    answer(items);
+    await done;
+    answer = null;
+  };
+  jobs.put(job(1, 'done', 200));
+  jobs.put(job(1, 'queued', 100));
+  is(states(), ['1 done'], 'the answer to an order does not undo the end that came before it');
+  jobs.put(job(1, 'running', 200));
+  is(states(), ['1 done'], 'nor within a millisecond');
+  jobs.put(job(1, 'queued', 300));
+  is(states(), ['1 queued'], 'a retry does');
+  jobs.put(job(2, 'done', 100));
+  await listed(
+    () => {
+      jobs.put(job(1, 'done', 500));
+      jobs.put(job(3, 'queued', 500));
+      jobs.remove(4);
+    },
+    [job(1, 'running', 400), job(4, 'done', 100), job(5, 'done', 100)],
+  );
+  is(states(), ['1 done', '3 queued', '5 done'], 'a list is older than what came while it was read');
+  globalThis.fetch = fetched;
+}
 
 // ---- names of rig files ----
 is(guess('mod_828Nm_2000rpm.csv'), { label: 'modified', torque: '828', speed: '2000' }, 'units in the name');

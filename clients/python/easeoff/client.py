@@ -388,12 +388,9 @@ class Client:
         return self.transport.events("/events", last_event_id)
 
     @operation("getJobEvents")
-    def job_events(self, id: int, last_event_id: str | None = None, beats: bool = False) -> Iterator[Event]:
-        """Every change of one job, as it happens; ends with the service, or when you stop reading.
-
-        beats: also an event without data when the stream begins and each time the service says that it is still there.
-        """
-        return self.transport.events(f"/jobs/{id}/events", last_event_id, beats)
+    def job_events(self, id: int, last_event_id: str | None = None) -> Iterator[Event]:
+        """The job as it is (not after `last_event_id`), then every change; ends with the service, or when you stop."""
+        return self.transport.events(f"/jobs/{id}/events", last_event_id)
 
     @operation("getHistory")
     def history(self) -> doc.History:
@@ -410,12 +407,10 @@ class Client:
         last: str | None = None
         while True:
             try:
-                for event in self.job_events(id, last, beats=True):
-                    last = event.id or last
-                    job = self.job(id) if event.data is None else event.data  # it may have ended between two streams
-                    if event.data is not None or job["state"] in ENDED:
-                        yield job
-                    if job["state"] in ENDED:
+                for event in self.job_events(id, last):
+                    last = event.id
+                    yield event.data
+                    if event.data["state"] in ENDED:
                         return
             except OSError:
                 time.sleep(1)

@@ -78,11 +78,9 @@ def encode_form(fields: Mapping[str, Any], files: Sequence[tuple[str, bytes]]) -
     return f"multipart/form-data; boundary={boundary}", b"".join(parts)
 
 
-def read_events(stream: BinaryIO, beats: bool = False) -> Iterator[Event]:
-    """The events of a text/event-stream until it ends; beats: for its begin and each comment one without data."""
+def read_events(stream: BinaryIO) -> Iterator[Event]:
+    """The events of a text/event-stream until it ends."""
     identity, name, data = "", "message", []
-    if beats:
-        yield Event("", "beat", None)
     for raw in stream:
         line = raw.decode("utf-8").rstrip("\r\n")
         if not line:
@@ -91,8 +89,6 @@ def read_events(stream: BinaryIO, beats: bool = False) -> Iterator[Event]:
             name, data = "message", []
             continue
         field, _, value = line.partition(":")
-        if beats and not field:
-            yield Event(identity, "beat", None)
         value = value[1:] if value.startswith(" ") else value
         if field == "id":
             identity = value
@@ -125,10 +121,10 @@ class Transport:
         with self.open(method, path, query, headers, document, form, accept) as reply:
             return Reply(reply.status, reply.headers, reply.read())
 
-    def events(self, path: str, last: str | None, beats: bool = False) -> Iterator[Event]:
+    def events(self, path: str, last: str | None) -> Iterator[Event]:
         """The events of a stream, from the one after `last` on."""
         with self.open("GET", path, None, {"Last-Event-ID": last}, None, None, "text/event-stream") as stream:
-            yield from read_events(stream, beats)
+            yield from read_events(stream)
 
     def open(
         self,

@@ -155,11 +155,11 @@ class ClientTest(unittest.TestCase):
         job = client.add_job({"kind": "prepare", "design": self.design()})
         calls = []
 
-        def broken(identity, last, beats):
+        def broken(identity, last):
             calls.append(last)
             if len(calls) == 1:
                 raise ConnectionResetError
-            return original(identity, last, beats)
+            return original(identity, last)
 
         original, client.job_events = client.job_events, broken
         self.assertEqual(list(client.follow(job["id"]))[-1]["state"], "done")

@@ -314,6 +314,14 @@ static void test_job(void)
   eo_service_subscribe(service, id, heard.last - 2, hear, &later, &subscription, &error);
   ok(later.count == 2 && later.last == heard.last, "who comes back hears what he missed");
   eo_service_unsubscribe(service, subscription);
+  struct heard late = {0};
+  eo_service_subscribe(service, id, 0, hear, &late, &subscription, &error);
+  ok(late.count == 1 && late.last == heard.last, "who comes after the end hears that it has ended");
+  eo_service_unsubscribe(service, subscription);
+  late = (struct heard){0};
+  eo_service_subscribe(service, id, 1, hear, &late, &subscription, &error);
+  ok(late.count == 1, "and who comes back after so long that it is not kept");
+  eo_service_unsubscribe(service, subscription);
   eo_service_free(service);
 }
 

@@ -6,8 +6,19 @@ const CHANNEL = 'easeoff-events';
 
 export const ACTIVE = ['queued', 'preparing', 'running'];
 
+/**
+ * Two changes within a millisecond: a job that has ended does not run again so soon.
+ * @param {Api.Job | Page.JobEvent} job
+ * @param {Api.Job} known
+ */
+const older = (job, known) => {
+  const [then, now] = [job.updated ?? '', known.updated ?? ''];
+  return then < now || (then === now && ACTIVE.includes(job.state ?? '') && !ACTIVE.includes(known.state));
+};
+
 export class Jobs extends EventTarget {
   /** @type {Map<number, Api.Job>} */ all = new Map();
+  /** @type {Set<number>} */ #removed = new Set();
   /** The list has been read. */
   known = false;
   /** @type {EventSource | null} */ #source = null;
@@ -69,9 +80,13 @@ export class Jobs extends EventTarget {
   }
 
   async reload() {
+    const before = new Set(this.all.keys());
     try {
       const items = await list('jobs', 400);
-      this.all = new Map(items.map(job => [job.id, job]));
+      for (const job of items) this.#merge(job);
+      // What has come while the list was on its way is not missing in it.
+      const listed = new Set(items.map(job => job.id));
+      for (const id of before) if (!listed.has(id)) this.all.delete(id);
       this.known = true;
       this.dispatchEvent(new CustomEvent('change', { detail: null }));
     } catch {
@@ -79,12 +94,28 @@ export class Jobs extends EventTarget {
     }
   }
 
+  /**
+   * Answers, lists and events come over connections of their own, in any order: what is known stays where it is newer.
+   * @param {Api.Job | Page.JobEvent} job
+   */
+  #merge(job) {
+    const known = this.all.get(job.id);
+    if (this.#removed.has(job.id) || (known && older(job, known))) return;
+    this.all.set(job.id, /** @type {Api.Job} */ ({ ...known, ...job }));
+  }
+
   /** @param {Page.JobEvent} job */
   #take(job) {
     if (!job?.id) return;
-    if (job.deleted) this.all.delete(job.id);
-    else this.all.set(job.id, /** @type {Api.Job} */ ({ ...this.all.get(job.id), ...job }));
+    if (job.deleted) this.remove(job.id);
+    else this.#merge(job);
     this.dispatchEvent(new CustomEvent('change', { detail: job.id }));
+  }
+
+  /** @param {number} id of a job that the service has deleted; numbers do not come again */
+  remove(id) {
+    this.#removed.add(id);
+    this.all.delete(id);
   }
 
   /** @param {Api.Job} job what an answer said */

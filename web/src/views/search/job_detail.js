@@ -138,7 +138,7 @@ export class JobDetail {
     };
     const remove = async () => {
       await ask('DELETE', `jobs/${job.id}`);
-      app.jobs.all.delete(job.id);
+      app.jobs.remove(job.id);
       app.jobs.dispatchEvent(new CustomEvent('change', { detail: null }));
       app.go('optimize');
     };

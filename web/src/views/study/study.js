@@ -148,7 +148,7 @@ class StudyView {
     const act = verb => async () => this.app.jobs.put(await post(`jobs/${job.id}/${verb}`, {}));
     const remove = async () => {
       await ask('DELETE', `jobs/${job.id}`);
-      this.app.jobs.all.delete(job.id);
+      this.app.jobs.remove(job.id);
       this.#chosen = this.#shown = '';
       this.app.jobs.dispatchEvent(new CustomEvent('change', { detail: null }));
       this.app.go('study');
