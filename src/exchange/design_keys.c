@@ -109,7 +109,7 @@ static const struct eo_field *field_at(const char *path)
     if (field && field->kind == EO_FIELD_LIST) {
       char *end;
       long row = strtol(at, &end, 10);
-      if (end != at + length || row < 1 || row > field->count)
+      if (*at < '1' || *at > '9' || end != at + length || row > field->count) /* one spelling of each row */
         return NULL;
       table = field->table;
       field = NULL;
@@ -120,6 +120,8 @@ static const struct eo_field *field_at(const char *path)
       table = field->kind == EO_FIELD_OBJECT || field->kind == EO_FIELD_LIST ? field->table : NULL;
     }
     at += length + (at[length] == '.');
+    if (!*at && at[-1] == '.')
+      return NULL;
   }
   return field && field->kind != EO_FIELD_OBJECT ? field : NULL;
 }
@@ -256,21 +258,41 @@ bool eo_design_key_convert(const struct eo_field *field, const char *unit, doubl
   return true;
 }
 
+/* What stands below an object's key or in a list's row, made where nothing does; NULL: no memory, or neither an object
+   nor a list stands there. */
+static json_t *step_into(json_t *at, const char *part, bool list_next)
+{
+  if (json_is_array(at)) {
+    size_t row = strtoul(part, NULL, 10);
+    while (row >= 1 && row <= 1000 && json_array_size(at) < row)
+      if (json_array_append_new(at, json_object()) != 0)
+        break;
+    return json_array_get(at, row - 1);
+  }
+  if (!json_object_get(at, part))
+    json_object_set_new(at, part, list_next ? json_array() : json_object());
+  return json_object_get(at, part);
+}
+
+/* Along the parts of path[0 .. length), behind which another one follows. */
+static json_t *walk(json_t *at, const char *path, size_t length)
+{
+  char part[EO_KEY_PATH];
+  for (size_t from = 0; from < length && at;) {
+    size_t size = strcspn(path + from, ".");
+    snprintf(part, sizeof part, "%.*s", (int)size, path + from);
+    from += size + 1;
+    at = step_into(at, part, path[from] >= '1' && path[from] <= '9');
+  }
+  return at;
+}
+
 /* What stands in the list for the same number gives way; what comes later is laid on what was there. */
 static bool set_grid_number(json_t *design, const char *path, size_t flank, const int knot[2], json_t *value)
 {
-  json_t *at = design, *nodes, *node;
-  char part[EO_KEY_PATH];
+  json_t *at = walk(design, path, flank), *nodes, *node;
   size_t i;
-  for (size_t from = 0; from < flank;) {
-    size_t length = strcspn(path + from, ".");
-    snprintf(part, sizeof part, "%.*s", (int)length, path + from);
-    if (!json_object_get(at, part))
-      json_object_set_new(at, part, json_object());
-    at = json_object_get(at, part);
-    from += length + 1;
-  }
-  if (!json_object_get(at, "grid_nodes"))
+  if (json_is_object(at) && !json_object_get(at, "grid_nodes"))
     json_object_set_new(at, "grid_nodes", json_array());
   nodes = json_object_get(at, "grid_nodes");
   json_array_foreach(nodes, i, node)
@@ -283,37 +305,40 @@ static bool set_grid_number(json_t *design, const char *path, size_t flank, cons
                                json_pack("{s:i, s:i, s:o}", "row", knot[0], "column", knot[1], "delta_um", value)) == 0;
 }
 
-bool eo_design_key_set(json_t *design, const char *path, json_t *value)
+/* Something on the way to the value is there already, and nothing can stand below it. */
+static bool is_blocked(const json_t *at, const char *path)
+{
+  char part[EO_KEY_PATH];
+  for (size_t size; path[size = strcspn(path, ".")]; path += size + 1) {
+    snprintf(part, sizeof part, "%.*s", (int)size, path);
+    const json_t *next = json_is_array(at) ? json_array_get(at, strtoul(part, NULL, 10) - 1)
+                                           : json_object_get(at, part);
+    if (!next)
+      return false;
+    if (!json_is_array(next) && !json_is_object(next))
+      return true;
+    at = next;
+  }
+  return !json_is_object(at);
+}
+
+enum eo_code eo_design_key_set(json_t *design, const char *path, json_t *value)
 {
   size_t flank;
   int knot[2];
-  if (grid_number(path, &flank, knot))
-    return set_grid_number(design, path, flank, knot, value);
-  json_t *at = design;
-  while (strchr(path, '.')) {
-    char part[EO_KEY_PATH];
-    size_t length = strcspn(path, ".");
-    snprintf(part, sizeof part, "%.*s", (int)length, path);
-    path += length + 1;
-    bool list_next = *path >= '1' && *path <= '9';
-    json_t *next = NULL;
-    if (json_is_array(at)) {
-      size_t row = strtoul(part, NULL, 10);
-      while (row >= 1 && row <= 1000 && json_array_size(at) < row)
-        if (json_array_append_new(at, json_object()) != 0)
-          break;
-      next = json_array_get(at, row - 1);
-    } else {
-      next = json_object_get(at, part);
-      if (!next)
-        json_object_set_new(at, part, list_next ? json_array() : json_object());
-      next = json_object_get(at, part);
-    }
-    if (!next) {
-      json_decref(value);
-      return false;
-    }
-    at = next;
+  bool set, of_grid = grid_number(path, &flank, knot);
+  char list[EO_KEY_PATH + 16];
+  snprintf(list, sizeof list, "%.*s.grid_nodes.1.row", of_grid ? (int)flank : 0, path);
+  if (is_blocked(design, of_grid ? list : path)) {
+    json_decref(value);
+    return EO_ERROR_INPUT;
   }
-  return json_object_set_new(at, path, value) == 0;
+  if (of_grid)
+    set = set_grid_number(design, path, flank, knot, value);
+  else {
+    const char *last = strrchr(path, '.');
+    json_t *at = walk(design, path, last ? (size_t)(last - path) : 0);
+    set = json_object_set_new(at, last ? last + 1 : path, value) == 0;
+  }
+  return set ? EO_OK : EO_ERROR_MEMORY;
 }

@@ -9,6 +9,7 @@
 
 #include <jansson.h>
 
+#include "base/error.h"
 #include "format/table.h"
 
 enum { EO_KEY_PATH = 200, EO_KEY_PATHS = 2 };
@@ -45,7 +46,8 @@ const char *eo_design_key_unit(const struct eo_field *field);
 /* A number in a stated unit as the field's unit has it; false: the unit is not of its kind. */
 bool eo_design_key_convert(const struct eo_field *field, const char *unit, double *value);
 
-/* Sets the value at a path, taken over; objects and rows of lists are made. false: no memory, or no such place. */
-bool eo_design_key_set(json_t *design, const char *path, json_t *value);
+/* Sets the value at a path, taken over; objects and rows of lists are made. EO_ERROR_INPUT: where one of them should be
+   stands something else; EO_ERROR_MEMORY. */
+enum eo_code eo_design_key_set(json_t *design, const char *path, json_t *value);
 
 #endif

@@ -182,10 +182,15 @@ static json_t *read_value(struct reader *reader, const struct eo_design_key *key
   return whole && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static void put(struct reader *reader, const struct eo_design_key *key, json_t *value)
+static void put(struct reader *reader, const struct eo_design_key *key, int column, json_t *value)
 {
-  for (int i = 0; i < key->paths && value; i++)
-    reader->out->failed = !eo_design_key_set(reader->design, key->path[i], json_incref(value)) || reader->out->failed;
+  for (int i = 0; i < key->paths && value; i++) {
+    enum eo_code code = eo_design_key_set(reader->design, key->path[i], json_incref(value));
+    if (code == EO_ERROR_INPUT)
+      fault(reader, column, "contradiction", "%.150s lies within a key that another cell gives a value as a whole.%s",
+            key->path[i], "");
+    reader->out->failed = code == EO_ERROR_MEMORY || reader->out->failed;
+  }
   json_decref(value);
 }
 
@@ -233,7 +238,7 @@ static void read_row(struct reader *reader, const struct block *block)
   }
   for (int member = 0; member < 2; member++)
     if (*cell[member])
-      put(reader, &key[member],
+      put(reader, &key[member], block->value[member],
           read_value(reader, &key[member], name, cell[member], *stated ? stated : unit, block->value[member]));
 }
 
@@ -330,7 +335,7 @@ static void read_wide_row(struct reader *reader)
       fault(reader, column, "member_needed",
             "\"%.100s\" could be the pinion's or the gear's; write the whole key, as %.150s.", name, key.path[0]);
     else
-      put(reader, &key, read_value(reader, &key, name, cell, unit, column));
+      put(reader, &key, column, read_value(reader, &key, name, cell, unit, column));
   }
 }
 

@@ -347,7 +347,7 @@ json_t *eo_variant_document(const json_t *base, const struct eo_variant_axis *ax
     if (json_is_null(value))
       continue;
     for (int k = 0; k < axis[i].paths; k++)
-      if (!eo_design_key_set(document, axis[i].path[k], in_unit(&axis[i], value))) {
+      if (eo_design_key_set(document, axis[i].path[k], in_unit(&axis[i], value)) != EO_OK) {
         json_decref(document);
         return NULL;
       }

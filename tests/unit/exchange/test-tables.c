@@ -105,6 +105,13 @@ static void check_symbols(void)
 static void check_questions(void)
 {
   ok(is_faulty(HEAD "z;17;44;\nC_a;0.1;;\n", "unit_needed", 3), "a relief of 0.1 could be mm or um");
+  ok(is_faulty(HEAD "load_cases;\"[1, 2]\";;\nload_cases.1.torque_Nm;5;;\n", "contradiction", 3),
+     "a number within a list of numbers");
+  ok(is_faulty(HEAD "load_cases;null;;\nload_cases.1.torque_Nm;5;;\n", "contradiction", 3),
+     "a number within what is null");
+  ok(is_faulty(HEAD "optimization.bounds.root_relief_um.;\"[0, 5]\";;\n", "unknown_key", 2),
+     "a key that ends in a point");
+  ok(is_faulty(HEAD "load_cases.+1.torque_Nm;5;;\n", "unknown_key", 2), "a row with a sign");
   ok(is_faulty(HEAD "C_a;14;;deg\n", "wrong_unit", 2), "a relief in degrees");
   ok(is_faulty(HEAD "x;2;;mm\n", "wrong_unit", 2), "a profile shift in mm");
   ok(is_faulty(HEAD "m_n;4.5;;\nb;40,5;;\n", "two_decimal_signs", 2), "points and commas");
