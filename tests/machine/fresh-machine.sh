@@ -56,8 +56,11 @@ build_machine() {
 # The page's own words when it stands: a line with its URL.
 try_serve() {
   started=$(date +%s)
-  inside sh -c 'cd && cd easeoff && exec ./bootstrap serve --listen 127.0.0.1:0' >"$machine/serve.log" 2>&1 &
-  server=$!
+  rm -f "$root/root/serve.pid"
+  inside sh -c 'cd && echo $$ >serve.pid && cd easeoff && exec ./bootstrap serve --listen 127.0.0.1:0' >"$machine/serve.log" 2>&1 &
+  job=$!
+  until [ -s "$root/root/serve.pid" ]; do sleep 0.1; done
+  server=$(cat "$root/root/serve.pid") # the job is the shell around it, which a signal ends alone
   patience=${FRESH_PATIENCE-1800} url=
   for _ in $(seq "$patience"); do
     url=$(sed -n 's#.*\(http://127\.0\.0\.1:[0-9]*\).*#\1#p' "$machine/serve.log" | head -n 1)
@@ -73,7 +76,7 @@ try_serve() {
   }
   say "./bootstrap serve answered after $(($(date +%s) - started)) s"
   kill "$server"
-  wait "$server" || true
+  wait "$job" || true
   server=
 }
 
@@ -102,7 +105,7 @@ try_tour() {
   started=$(date +%s)
   inside sh -c 'cd /root/tour/README && PATH=/root/easeoff/build:$PATH && export PATH
     easeoff serve --listen 127.0.0.1:0 --quiet >serve.out & server=$!
-    until grep -q http serve.out; do sleep 0.1; done
+    until grep -q http serve.out; do kill -0 $server || exit 1; sleep 0.1; done
     PYTHONPATH=/root/easeoff/clients/python python3 /root/easeoff/clients/python/examples/robust_flank.py own.json "$(sed "s/.* //; s#/\$##" serve.out)"
     status=$?; kill $server; exit $status' >"$machine/robust.log" 2>&1 || { tail -n 20 "$machine/robust.log"; return 1; }
   tail -n 3 "$machine/robust.log"
