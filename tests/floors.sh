@@ -30,6 +30,13 @@ for floor in $floors; do
   result $? "$floor includes nothing from below:$wrong"
 done
 
+# what is not in the list is not in a release, and does not have the page built again
+wrong=$(cd ../web/src && find . -type f | sed 's,^\./,,' | while read -r file; do
+  grep -qE "web/src/$file( |\$)" ../web.am || printf ' %s' "$file"
+done)
+[ -z "$wrong" ]
+result $? "every file of the page is in web/web.am:$wrong"
+
 only() # LIBRARY PATTERN FOLDERS
 {
   wrong=$(grep -lE "# *include <($2)" ./*/*.[ch] | grep -vE "^\./($3)/")

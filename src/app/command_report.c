@@ -12,8 +12,8 @@
 #include "report/report.h"
 
 struct request {
-  const char *file, *path, *data;
-  bool no_cache;
+  const char *file, *path, *data, *units;
+  bool no_cache, inches;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
@@ -127,9 +127,10 @@ static int save(const struct request *request, struct eo_text *page)
   return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
 }
 
-static enum eo_code make(const struct request *request, const struct eo_progress *progress, struct eo_text *page,
+static enum eo_code make(const struct request *request, const struct eo_progress *progress, struct eo_text *text,
                          struct eo_error *error)
 {
+  const struct eo_page page = {text, request->inches};
   struct eo_text directory = {0};
   struct eo_pair *pair = NULL;
   bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
@@ -137,7 +138,7 @@ static enum eo_code make(const struct request *request, const struct eo_progress
   enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
   eo_text_done(&directory);
   if (!code)
-    code = eo_report_make(pair, &request->design, &request->warnings, progress, page, error);
+    code = eo_report_make(pair, &request->design, &request->warnings, progress, &page, error);
   eo_pair_free(pair);
   return code;
 }
@@ -161,26 +162,32 @@ static int run_request(struct request *request)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
+  struct eo_error error;
   int operands, status;
   struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
     return status;
   const struct eo_option options[] = {{.name = "-o", .value = &request->path},
                                       {.name = "--data", .value = &request->data},
+                                      {.name = "--units", .value = &request->units},
                                       {.name = "--no-cache", .flag = &request->no_cache},
                                       {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
-    status = run_request(request);
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status)) {
+    if (eo_app_units(request->units, &request->inches, &error))
+      status = eo_app_fail(NULL, &error);
+    else if (eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+      status = run_request(request);
+  }
   free(request);
   return status;
 }
 
 const struct eo_command eo_command_report = {
-    "report", "DESIGN.json [-o FILE.html|FILE.pdf] [--data DIR] [--no-cache]",
+    "report", "DESIGN.json [-o FILE.html|FILE.pdf] [--units mm|inch] [--data DIR] [--no-cache]",
     "what is signed and sent: inputs, standards, factors, figures, verdict",
     "One HTML file that needs nothing else; without -o it goes to standard output. The same design gives the same "
     "bytes, here and\n"
     "from POST /api/v1/report. A name that ends in .pdf is printed by Chromium, where it is "
-    "installed.\n\n" EO_APP_DATA_HELP,
+    "installed.\n--units inch: lengths in inches and thousandths, in tables, figures and "
+    "sentences.\n\n" EO_APP_DATA_HELP,
     run};

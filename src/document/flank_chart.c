@@ -137,24 +137,34 @@ void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *d
   }
 }
 
+/* What lengths and deviations are shown in. */
+static const struct shown_units {
+  double length, deviation; /* of SI */
+  const char *length_name, *deviation_name, *face, *roll_length, *diameter, *deviation_label;
+  int decimals;
+} shown_units[2] = {
+    {1e3, 1e6, "mm", "um", "face, mm", "roll length, mm", "diameter, mm", "deviation, um", 2},
+    {1e3 / 25.4, 1e6 / 25.4, "in", "thou", "face, in", "roll length, in", "diameter, in", "deviation, thou", 4}};
+
 /* One chart in the units of drawings. */
 struct drawing {
   double x[POINTS], angle[POINTS], diameter[POINTS], nominal[POINTS], upper[POINTS], lower[POINTS];
   char title[200], range[120];
 };
 
-static void fill_drawing(struct drawing *drawing, const struct eo_flank_chart *chart, const struct eo_design *design)
+static void fill_drawing(struct drawing *drawing, const struct eo_flank_chart *chart, const struct eo_design *design,
+                         const struct shown_units *in)
 {
   const struct eo_rating_settings *settings = &design->rating;
-  double tolerance = 1e6 * (chart->helix ? chart->tolerance.helix_total : chart->tolerance.profile_total);
+  double tolerance = in->deviation * (chart->helix ? chart->tolerance.helix_total : chart->tolerance.profile_total);
   bool new = settings->edition == EO_ISO6336_2019;
   for (int i = 0; i < POINTS; i++) {
-    drawing->x[i] = 1e3 * chart->x[i];
+    drawing->x[i] = in->length * chart->x[i];
     drawing->angle[i] = chart->roll_angle[i] * 180 / M_PI;
-    drawing->diameter[i] = 1e3 * chart->diameter[i];
-    drawing->nominal[i] = 1e6 * chart->nominal[i];
-    drawing->upper[i] = 1e6 * chart->band[i][0];
-    drawing->lower[i] = 1e6 * chart->band[i][1];
+    drawing->diameter[i] = in->length * chart->diameter[i];
+    drawing->nominal[i] = in->deviation * chart->nominal[i];
+    drawing->upper[i] = in->deviation * chart->band[i][0];
+    drawing->lower[i] = in->deviation * chart->band[i][1];
   }
   snprintf(drawing->title, sizeof drawing->title, "%s, %s of the %s%s%s", chart->helix ? "Helix" : "Profile",
            chart->helix ? "at the pitch point" : "mid face", member_name[chart->member],
@@ -163,25 +173,27 @@ static void fill_drawing(struct drawing *drawing, const struct eo_flank_chart *c
            : chart->end                ? ", right end"
                                        : ", left end");
   if (isnan(tolerance))
-    snprintf(drawing->range, sizeof drawing->range, "evaluation range %.4g mm",
-             1e3 * (chart->range[1] - chart->range[0]));
+    snprintf(drawing->range, sizeof drawing->range, "evaluation range %.4g %s",
+             in->length * (chart->range[1] - chart->range[0]), in->length_name);
   else
-    snprintf(drawing->range, sizeof drawing->range, "evaluation range %.4g mm, %s %.6g um (ISO 1328-1:%s, %s %d)",
-             1e3 * (chart->range[1] - chart->range[0]), chart->helix ? "F_beta" : "F_alpha", tolerance,
-             new ? "2013" : "1995", new ? "class" : "grade", settings->accuracy_grade);
+    snprintf(drawing->range, sizeof drawing->range, "evaluation range %.4g %s, %s %.6g %s (ISO 1328-1:%s, %s %d)",
+             in->length * (chart->range[1] - chart->range[0]), in->length_name, chart->helix ? "F_beta" : "F_alpha",
+             tolerance, in->deviation_name, new ? "2013" : "1995", new ? "class" : "grade", settings->accuracy_grade);
 }
 
-void eo_flank_chart_svg(const struct eo_flank_chart *flank_chart, const struct eo_design *design, struct eo_text *text)
+void eo_flank_chart_svg(const struct eo_flank_chart *flank_chart, const struct eo_design *design, bool inches,
+                        struct eo_text *text)
 {
+  const struct shown_units *in = &shown_units[inches];
   struct drawing *drawing = malloc(sizeof *drawing);
   if (!drawing) {
     text->failed = true;
     return;
   }
-  fill_drawing(drawing, flank_chart, design);
+  fill_drawing(drawing, flank_chart, design, in);
   struct eo_band_chart chart = {.title = drawing->title,
-                                .x_label = flank_chart->helix ? "face, mm" : "roll length, mm",
-                                .y_label = "deviation, um",
+                                .x_label = flank_chart->helix ? in->face : in->roll_length,
+                                .y_label = in->deviation_label,
                                 .below = "material",
                                 .above = "air",
                                 .count = POINTS,
@@ -189,7 +201,7 @@ void eo_flank_chart_svg(const struct eo_flank_chart *flank_chart, const struct e
                                 .nominal = drawing->nominal,
                                 .upper = drawing->upper,
                                 .lower = drawing->lower,
-                                .range = {1e3 * flank_chart->range[0], 1e3 * flank_chart->range[1]},
+                                .range = {in->length * flank_chart->range[0], in->length * flank_chart->range[1]},
                                 .range_label = drawing->range};
   if (flank_chart->helix) {
     chart.marks = 2;
@@ -202,9 +214,9 @@ void eo_flank_chart_svg(const struct eo_flank_chart *flank_chart, const struct e
     chart.scale[0].label = "roll angle, deg";
     chart.scale[0].value = drawing->angle;
     chart.scale[0].decimals = 2;
-    chart.scale[1].label = "diameter, mm";
+    chart.scale[1].label = in->diameter;
     chart.scale[1].value = drawing->diameter;
-    chart.scale[1].decimals = 2;
+    chart.scale[1].decimals = in->decimals;
     const struct {
       double x;
       const char *label;
@@ -214,7 +226,7 @@ void eo_flank_chart_svg(const struct eo_flank_chart *flank_chart, const struct e
                   {flank_chart->relief[0], "root relief"},
                   {flank_chart->relief[1], "tip relief"}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
-      chart.mark[chart.marks].x = 1e3 * places[i].x;
+      chart.mark[chart.marks].x = in->length * places[i].x;
       chart.mark[chart.marks++].label = places[i].label;
     }
   }
@@ -277,7 +289,7 @@ static void write_on_sheet(const struct eo_flank_chart *chart, const struct eo_d
   enum { WIDTH = 720, HEIGHT = 370 };
   int number = (((int)chart->side * 2 + chart->member) * design->gear_pair.ends + chart->end) * 2 + chart->helix;
   eo_text_print(text, "<svg x=\"0\" y=\"%d\" width=\"%d\" height=\"%d\">\n", number * HEIGHT, WIDTH, HEIGHT);
-  eo_flank_chart_svg(chart, design, text);
+  eo_flank_chart_svg(chart, design, false, text);
   eo_text_add(text, "</svg>\n");
 }
 

@@ -39,8 +39,9 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
 void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *design,
                          const struct eo_geometry *geometry, enum eo_flank_side side, int member, int end, bool helix);
 
-/* One <svg>. */
-void eo_flank_chart_svg(const struct eo_flank_chart *chart, const struct eo_design *design, struct eo_text *text);
+/* One <svg>; lengths in mm and um, or in inches and thousandths of an inch. */
+void eo_flank_chart_svg(const struct eo_flank_chart *chart, const struct eo_design *design, bool inches,
+                        struct eo_text *text);
 
 /* Every chart of a design, of coast flanks where they are shown (flank_grid_document.h): rows of numbers; the drawings
    below each other in one SVG. */

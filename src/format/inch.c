@@ -53,11 +53,29 @@ static double convert(double value, enum way way)
   return strtod(text, NULL);
 }
 
+static json_t *lengths(const json_t *value, enum way way);
+
+/* One length per end or member. */
+static json_t *named_lengths(const json_t *object, enum way way)
+{
+  json_t *made = json_object(), *value;
+  const char *key;
+  bool failed = !made;
+  json_object_foreach((json_t *)object, key, value)
+      failed = failed || json_object_set_new(made, key, lengths(value, way)) != 0;
+  if (!failed)
+    return made;
+  json_decref(made);
+  return NULL;
+}
+
 /* A length, several, or a map of them; all else as it is. */
 static json_t *lengths(const json_t *value, enum way way)
 {
   if (json_is_number(value))
     return json_real(convert(json_number_value(value), way));
+  if (json_is_object(value))
+    return named_lengths(value, way);
   if (!json_is_array(value))
     return json_deep_copy(value);
   json_t *list = json_array(), *element;
@@ -74,7 +92,8 @@ static json_t *respelt(const json_t *value, enum way way, struct eo_faults *faul
 
 static bool is_sentence(const char *key, const json_t *value)
 {
-  static const char *const keys[] = {"warnings", "notes", "text", "detail", "rule", "reason"};
+  static const char *const keys[] = {"warnings", "notes",       "text",        "detail",   "rule",
+                                     "reason",   "span_reason", "ball_reason", "unchecked"};
   const json_t *first = json_is_array(value) ? json_array_get(value, 0) : value;
   for (size_t i = 0; i < sizeof keys / sizeof *keys && json_is_string(first); i++)
     if (strcmp(key, keys[i]) == 0)

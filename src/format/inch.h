@@ -19,7 +19,7 @@ bool eo_inch_is_used(const json_t *document);
 json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults);
 
 /* New: the same in inches and thousandths, to 15 digits; so is the value of a row whose "key" points to a length, and
-   so are the sentences (inch_sentence.h) below "warnings", "notes", "text", "detail", "rule", "reason". NULL without
+   so are the sentences (inch_sentence.h) below "warnings", "notes", "text", "detail", "rule", "unchecked" and reasons. NULL without
    memory. */
 json_t *eo_inch_from_mm(const json_t *document);
 

@@ -41,6 +41,11 @@ static void export(struct eo_request *request)
   }
 }
 
+static json_t *write_inches(const void *format)
+{
+  return json_boolean(eo_export_has_columns(format));
+}
+
 struct listed_exports {
   json_t *items;
 };
@@ -48,6 +53,7 @@ static const struct eo_outline_row export_rows[] = {
     EO_KEY("name", "text", "in its address", EO_AT(struct eo_export, name)),
     EO_KEY("title", "text", "for people", EO_AT(struct eo_export, summary)),
     EO_KEY("type", "text", "media type", EO_AT(struct eo_export, type)),
+    EO_KEY("inches", "flag", "units=inch gives it in inches", .write = write_inches),
 };
 static const struct eo_outline export_outline = EO_OUTLINE("Export", export_rows);
 static const struct eo_outline_row exports_rows[] = {

@@ -12,13 +12,15 @@
 /* Beside the design, which the service copies. */
 struct order {
   struct eo_warnings warnings; /* of reading it */
+  bool inches;
 };
 
 static enum eo_code make(void *data, const struct eo_pair *pair, const struct eo_design *design,
                          const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   const struct order *order = data;
-  return eo_report_make(pair, design, &order->warnings, progress, text, error);
+  const struct eo_page page = {text, order->inches};
+  return eo_report_make(pair, design, &order->warnings, progress, &page, error);
 }
 
 static void put_report(struct eo_request *request, const struct eo_design *design, struct order *order)
@@ -51,6 +53,7 @@ static void report(struct eo_request *request)
   }
   if (!order)
     return;
+  order->inches = request->reply.inches;
   if (eo_request_design(request, body, "", &design, &geometry, &order->warnings))
     put_report(request, &design, order);
   else
@@ -65,6 +68,9 @@ const struct eo_route eo_routes_report[] = {
      .takes = "Design",
      .gives = "200 text/html, 202 Preparing",
      .headers = "Easeoff-Lane, Prefer",
+     .query =
+         {{"units", 0, 0, 0, "mm|inch",
+           "inch: lengths in inches and, where they are in um else, in thousandths, in tables, figures and sentences"}},
      .rate = EO_RATE_START,
      .summary = "One HTML file a reviewer can check: inputs, standards, factors, figures, verdict, as `easeoff report` "
                 "writes it. 202 while the gear pair is being prepared."},

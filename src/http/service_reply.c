@@ -53,7 +53,7 @@ static void take_answer(struct eo_request *request, struct eo_answer *answer)
   case EO_ANSWER_DONE:
     if (request->reply.inches && request->csv)
       eo_inch_table(&answer->text);
-    else if (request->reply.inches)
+    else if (request->reply.inches && !request->answer_type) /* what is not JSON has been written so */
       spell_in_inches(&answer->text);
     eo_reply_text(&request->reply, 200,
                   request->answer_type ? request->answer_type

@@ -47,13 +47,14 @@ struct curves {
   double x[EO_PLOT_SERIES][MOST_POINTS], y[EO_PLOT_SERIES][MOST_POINTS];
 };
 
-static void add_curve(struct curves *curves, const json_t *load_case, const char *x, const char *y, const char *suffix)
+static void add_curve(const struct eo_page *page, struct curves *curves, const json_t *load_case, const char *x,
+                      const char *y, const char *suffix)
 {
   int i = curves->plot.series;
-  const json_t *column = eo_json_find(load_case, y);
+  const json_t *column = eo_page_find(page, load_case, y);
   if (i == EO_PLOT_SERIES || !json_array_size(column))
     return;
-  int points = read_column(eo_json_find(load_case, x), curves->x[i]), values = read_column(column, curves->y[i]);
+  int points = read_column(eo_page_find(page, load_case, x), curves->x[i]), values = read_column(column, curves->y[i]);
   snprintf(curves->name[i], sizeof curves->name[i], "%.5g N m, %.5g rpm%s", eo_json_find_number(load_case, "torque_Nm"),
            eo_json_find_number(load_case, "speed_rpm"), suffix);
   curves->plot.line[i] = (struct eo_plot_series){
@@ -62,51 +63,53 @@ static void add_curve(struct curves *curves, const json_t *load_case, const char
 }
 
 static void draw_cases(const json_t *result, const struct eo_plot *frame, const char *x, const char *const y[2],
-                       struct eo_text *text)
+                       const struct eo_page *page)
 {
   struct curves *curves = calloc(1, sizeof *curves);
   size_t chosen[MOST_CASES];
   int count = choose_cases(result, chosen);
   if (!curves) {
-    text->failed = true;
+    page->text->failed = true;
     return;
   }
   curves->plot = *frame;
   for (int i = 0; i < count; i++) {
     const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), chosen[i]);
-    bool two = y[1] && eo_json_find(load_case, y[1]);
-    add_curve(curves, load_case, x, y[0], two ? ", left" : "");
+    bool two = y[1] && eo_page_find(page, load_case, y[1]);
+    add_curve(page, curves, load_case, x, y[0], two ? ", left" : "");
     if (two)
-      add_curve(curves, load_case, x, y[1], ", right");
+      add_curve(page, curves, load_case, x, y[1], ", right");
   }
   if (curves->plot.series)
-    eo_plot_svg(&curves->plot, text);
+    eo_plot_svg(&curves->plot, page->text);
   free(curves);
 }
 
-void eo_figure_transmission(const json_t *result, struct eo_text *text)
+void eo_figure_transmission(const json_t *result, const struct eo_page *page)
 {
-  const struct eo_plot frame = {
-      .title = "Loaded transmission error of the pair", .x_label = "mesh position", .y_label = "um, transverse"};
-  draw_cases(result, &frame, "position", (const char *const[]){"lte/pair_um", NULL}, text);
+  const struct eo_plot frame = {.title = "Loaded transmission error of the pair",
+                                .x_label = "mesh position",
+                                .y_label = page->inches ? "thou, transverse" : "um, transverse"};
+  draw_cases(result, &frame, "position", (const char *const[]){"lte/pair_um", NULL}, page);
 }
 
-void eo_figure_stiffness(const json_t *result, struct eo_text *text)
+void eo_figure_stiffness(const json_t *result, const struct eo_page *page)
 {
   const struct eo_plot frame = {
       .title = "Mesh stiffness of each end, normal", .x_label = "mesh position", .y_label = "N/um"};
   draw_cases(result, &frame, "position",
-             (const char *const[]){"mesh_stiffness/left_N_per_um", "mesh_stiffness/right_N_per_um"}, text);
+             (const char *const[]){"mesh_stiffness/left_N_per_um", "mesh_stiffness/right_N_per_um"}, page);
 }
 
-void eo_figure_face_load(const json_t *result, struct eo_text *text)
+void eo_figure_face_load(const json_t *result, const struct eo_page *page)
 {
   const struct eo_plot frame = {.title = "Load over the face, mean over the mesh cycle",
-                                .x_label = "from mid face, mm; + on the side that meets first",
+                                .x_label = page->inches ? "from mid face, in; + on the side that meets first"
+                                                        : "from mid face, mm; + on the side that meets first",
                                 .y_label = "N/mm, normal",
                                 .from_zero = true};
   draw_cases(result, &frame, "contact/face_load/eta_mm",
-             (const char *const[]){"contact/face_load/left_N_per_mm", "contact/face_load/right_N_per_mm"}, text);
+             (const char *const[]){"contact/face_load/left_N_per_mm", "contact/face_load/right_N_per_mm"}, page);
 }
 
 /* From white over blue to dark, by how dark it prints. */
@@ -159,26 +162,27 @@ static void draw_cells(const struct map *map, int end, double darkest, double x,
 }
 
 static void label_end(const struct map *map, int end, double x, double y, double width, double height,
-                      struct eo_text *text)
+                      const struct eo_page *page)
 {
   size_t last_eta = json_array_size(map->eta) - 1, last_s = json_array_size(map->s) - 1;
-  eo_text_print(text, "<text x=\"%.1f\" y=\"%.1f\">%s%s%s %.5g %s</text>\n", x, y - 6,
+  const char *unit = eo_page_unit(page, &eo_unit_mm);
+  eo_text_print(page->text, "<text x=\"%.1f\" y=\"%.1f\">%s%s%s %.5g %s</text>\n", x, y - 6,
                 map->end[1] ? end ? "right" : "left" : "", map->end[1] ? " end, " : "", map->thin ? "least" : "largest",
                 extreme(map, end), map->unit);
-  eo_text_print(text,
-                "<text x=\"%.1f\" y=\"%.1f\">%.4g mm</text><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.4g mm, "
+  eo_text_print(page->text,
+                "<text x=\"%.1f\" y=\"%.1f\">%.4g %s</text><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.4g %s, "
                 "meets first</text>\n",
-                x, y + height + 14, json_number_value(json_array_get(map->eta, 0)), x + width, y + height + 14,
-                json_number_value(json_array_get(map->eta, last_eta)));
+                x, y + height + 14, json_number_value(json_array_get(map->eta, 0)), unit, x + width, y + height + 14,
+                json_number_value(json_array_get(map->eta, last_eta)), unit);
   if (end == 0)
-    eo_text_print(text,
-                  "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">s %.4g mm</text><text x=\"%.1f\" y=\"%.1f\" "
-                  "text-anchor=\"end\">s %.4g mm</text>\n",
-                  x - 6, y + 10, json_number_value(json_array_get(map->s, last_s)), x - 6, y + height,
-                  json_number_value(json_array_get(map->s, 0)));
+    eo_text_print(page->text,
+                  "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">s %.4g %s</text><text x=\"%.1f\" y=\"%.1f\" "
+                  "text-anchor=\"end\">s %.4g %s</text>\n",
+                  x - 6, y + 10, json_number_value(json_array_get(map->s, last_s)), unit, x - 6, y + height,
+                  json_number_value(json_array_get(map->s, 0)), unit);
 }
 
-static void draw_map(const struct map *map, struct eo_text *text)
+static void draw_map(const struct map *map, const struct eo_page *page)
 {
   enum { WIDTH = 720, HEIGHT = 236, LEFT = 84, TOP = 46, FLANK = 160, GAP = 24 };
   int ends = json_is_array(map->end[1]) ? 2 : 1;
@@ -187,18 +191,18 @@ static void draw_map(const struct map *map, struct eo_text *text)
     darkest = other;
   if (!(darkest > 0))
     return;
-  eo_text_print(text,
+  eo_text_print(page->text,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
                 "font-family=\"sans-serif\" font-size=\"12\">\n<text x=\"8\" y=\"18\" font-weight=\"bold\">",
                 WIDTH, HEIGHT);
-  eo_plot_escape(text, map->title);
-  eo_text_add(text, "</text>\n");
+  eo_plot_escape(page->text, map->title);
+  eo_text_add(page->text, "</text>\n");
   for (int end = 0; end < ends; end++) {
     double x = LEFT + end * (width + GAP);
-    draw_cells(map, end, darkest, x, TOP, width, FLANK, text);
-    label_end(map, end, x, TOP, width, FLANK, text);
+    draw_cells(map, end, darkest, x, TOP, width, FLANK, page->text);
+    label_end(map, end, x, TOP, width, FLANK, page);
   }
-  eo_text_add(text, "</svg>\n");
+  eo_text_add(page->text, "</svg>\n");
 }
 
 /* Where the torque is largest. */
@@ -212,16 +216,18 @@ static size_t heaviest(const json_t *cases)
   return found;
 }
 
-void eo_figure_maps(const json_t *result, struct eo_text *text)
+void eo_figure_maps(const json_t *result, const struct eo_page *page)
 {
   static const struct {
-    const char *title, *unit, *left, *right;
+    const char *title;
+    const struct eo_unit *unit;
+    const char *left, *right;
     bool thin;
     bool contact; /* of the load case's contact; else of the tribology */
-  } maps[] = {{"Contact pressure", "MPa", "contact/pattern/left/pressure_MPa", "contact/pattern/right/pressure_MPa",
-               false, true},
-              {"Flash temperature", "K", "left/flash_K", "right/flash_K", false, false},
-              {"Film thickness", "um", "left/film_um", "right/film_um", true, false}};
+  } maps[] = {{"Contact pressure", &eo_unit_MPa, "contact/pattern/left/pressure_MPa",
+               "contact/pattern/right/pressure_MPa", false, true},
+              {"Flash temperature", &eo_unit_K, "left/flash_K", "right/flash_K", false, false},
+              {"Film thickness", &eo_unit_um, "left/film_um", "right/film_um", true, false}};
   const json_t *cases = json_object_get(result, "load_cases"), *tribology = json_object_get(result, "tribology");
   size_t k = heaviest(cases);
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
@@ -231,12 +237,12 @@ void eo_figure_maps(const json_t *result, struct eo_text *text)
     snprintf(title, sizeof title, "%s over the flank, %.5g N m, %.5g rpm; up: towards the pinion's tip", maps[i].title,
              eo_json_find_number(contact, "torque_Nm"), eo_json_find_number(contact, "speed_rpm"));
     const struct map map = {.title = title,
-                            .unit = maps[i].unit,
+                            .unit = eo_page_unit(page, maps[i].unit),
                             .thin = maps[i].thin,
-                            .eta = eo_json_find(contact, "contact/pattern/eta_mm"),
-                            .s = eo_json_find(contact, "contact/pattern/s_mm"),
-                            .end = {eo_json_find(from, maps[i].left), eo_json_find(from, maps[i].right)}};
+                            .eta = eo_page_find(page, contact, "contact/pattern/eta_mm"),
+                            .s = eo_page_find(page, contact, "contact/pattern/s_mm"),
+                            .end = {eo_page_find(page, from, maps[i].left), eo_page_find(page, from, maps[i].right)}};
     if (json_is_array(map.end[0]))
-      draw_map(&map, text);
+      draw_map(&map, page);
   }
 }

@@ -5,15 +5,15 @@
 
 #include <jansson.h>
 
-#include "format/text.h"
+#include "report/page.h"
 
 /* Up to six load cases: the heaviest shares, in the order of the design. */
-void eo_figure_transmission(const json_t *result, struct eo_text *text);
-void eo_figure_stiffness(const json_t *result, struct eo_text *text);
-void eo_figure_face_load(const json_t *result, struct eo_text *text);
+void eo_figure_transmission(const json_t *result, const struct eo_page *page);
+void eo_figure_stiffness(const json_t *result, const struct eo_page *page);
+void eo_figure_face_load(const json_t *result, const struct eo_page *page);
 
 /* Pressure, flash temperature and film thickness over the flanks of both ends, at the load case with the largest
    torque. */
-void eo_figure_maps(const json_t *result, struct eo_text *text);
+void eo_figure_maps(const json_t *result, const struct eo_page *page);
 
 #endif

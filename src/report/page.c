@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "report/page.h"
 
+#include <string.h>
+
+#include "format/inch_sentence.h"
+#include "format/json.h"
 #include "format/plot.h"
 
 static const char style[] =
@@ -17,70 +21,105 @@ static const char style[] =
     "@page{margin:15mm}@media print{body{margin:0;max-width:none}h2,h3,h4{break-after:avoid}"
     "svg,tr{break-inside:avoid}}";
 
-void eo_page_begin(struct eo_text *text, const char *title)
+void eo_page_begin(const struct eo_page *page, const char *title)
 {
-  eo_text_add(text, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                    "<meta name=\"viewport\" content=\"width=device-width\"><title>");
-  eo_plot_escape(text, title);
-  eo_text_print(text, "</title><style>%s</style></head><body>\n", style);
+  eo_text_add(page->text, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                          "<meta name=\"viewport\" content=\"width=device-width\"><title>");
+  eo_plot_escape(page->text, title);
+  eo_text_print(page->text, "</title><style>%s</style></head><body>\n", style);
 }
 
-void eo_page_end(struct eo_text *text)
+void eo_page_end(const struct eo_page *page)
 {
-  eo_text_add(text, "</body></html>\n");
+  eo_text_add(page->text, "</body></html>\n");
 }
 
-void eo_page_heading(struct eo_text *text, int level, const char *heading)
+const char *eo_page_key(const struct eo_page *page, const char *key, char spelt[EO_INCH_KEY])
 {
-  eo_text_print(text, "<h%d>", level);
-  eo_plot_escape(text, heading);
-  eo_text_print(text, "</h%d>\n", level);
+  return page->inches && eo_inch_key(key, strlen(key), spelt) ? spelt : key;
 }
 
-void eo_page_paragraph(struct eo_text *text, const char *paragraph)
+const char *eo_page_unit(const struct eo_page *page, const struct eo_unit *unit)
 {
-  eo_text_add(text, "<p>");
-  eo_plot_escape(text, paragraph);
-  eo_text_add(text, "</p>\n");
+  if (page->inches && (unit == &eo_unit_mm || unit == &eo_unit_um))
+    return unit == &eo_unit_mm ? "in" : "thou";
+  return unit ? unit->symbol : "";
 }
 
-void eo_page_list(struct eo_text *text, const json_t *array)
+const json_t *eo_page_member(const struct eo_page *page, const json_t *object, const char *key)
+{
+  char spelt[EO_INCH_KEY];
+  return json_object_get(object, eo_page_key(page, key, spelt));
+}
+
+const json_t *eo_page_find(const struct eo_page *page, const json_t *value, const char *path)
+{
+  char spelt[EO_INCH_KEY];
+  return eo_json_find(value, eo_page_key(page, path, spelt));
+}
+
+void eo_page_say(const struct eo_page *page, const char *sentence)
+{
+  struct eo_text spelt = {0};
+  if (page->inches)
+    eo_inch_sentence(&spelt, sentence);
+  page->text->failed = page->text->failed || spelt.failed;
+  eo_plot_escape(page->text, spelt.data ? spelt.data : sentence);
+  eo_text_done(&spelt);
+}
+
+void eo_page_heading(const struct eo_page *page, int level, const char *heading)
+{
+  eo_text_print(page->text, "<h%d>", level);
+  eo_page_say(page, heading);
+  eo_text_print(page->text, "</h%d>\n", level);
+}
+
+void eo_page_paragraph(const struct eo_page *page, const char *paragraph)
+{
+  eo_text_add(page->text, "<p>");
+  eo_page_say(page, paragraph);
+  eo_text_add(page->text, "</p>\n");
+}
+
+void eo_page_list(const struct eo_page *page, const json_t *array)
 {
   if (!json_array_size(array))
     return;
-  eo_text_add(text, "<ul>");
+  eo_text_add(page->text, "<ul>");
   for (size_t i = 0; i < json_array_size(array); i++) {
-    eo_text_add(text, "<li>");
-    eo_page_value(text, json_array_get(array, i));
-    eo_text_add(text, "</li>");
+    eo_text_add(page->text, "<li>");
+    const char *sentence = json_string_value(json_array_get(array, i));
+    eo_page_say(page, sentence ? sentence : "");
+    eo_text_add(page->text, "</li>");
   }
-  eo_text_add(text, "</ul>\n");
+  eo_text_add(page->text, "</ul>\n");
 }
 
-void eo_page_value(struct eo_text *text, const json_t *value)
+void eo_page_value(const struct eo_page *page, const json_t *value)
 {
   switch (value ? json_typeof(value) : JSON_NULL) {
   case JSON_STRING:
-    eo_plot_escape(text, json_string_value(value));
+    eo_plot_escape(page->text, json_string_value(value));
     break;
   case JSON_INTEGER:
   case JSON_REAL:
-    eo_text_print(text, "%.6g", json_number_value(value));
+    eo_text_print(page->text, "%.6g", json_number_value(value));
     break;
   case JSON_TRUE:
-    eo_text_add(text, "yes");
+    eo_text_add(page->text, "yes");
     break;
   case JSON_FALSE:
-    eo_text_add(text, "no");
+    eo_text_add(page->text, "no");
     break;
   case JSON_ARRAY:
     for (size_t i = 0; i < json_array_size(value); i++) {
-      eo_text_add(text, i ? ", " : "");
-      eo_page_value(text, json_array_get(value, i));
+      eo_text_add(page->text, i ? ", " : "");
+      eo_page_value(page, json_array_get(value, i));
     }
     break;
   default:
-    eo_text_add(text, "&ndash;");
+    eo_text_add(page->text, "&ndash;");
     break;
   }
 }

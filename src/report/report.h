@@ -8,15 +8,17 @@
 
 #include "document/design_document.h"
 #include "evaluation/analysis.h"
+#include "report/page.h"
 
-/* Analyses the design on a pair that serves it, with everything, and appends the report. warnings: of reading the
-   design; NULL: none. progress: cancellation between analysis and writing. Errors: those of eo_analysis_run(). */
+/* Analyses the design on a pair that serves it, with everything, and appends the report to the page's text, in its unit
+   of length. warnings: of reading the design; NULL: none. progress: cancellation between analysis and writing. Errors:
+   those of eo_analysis_run(). */
 enum eo_code eo_report_make(const struct eo_pair *pair, const struct eo_design *design,
                             const struct eo_warnings *warnings, const struct eo_progress *progress,
-                            struct eo_text *text, struct eo_error *error);
+                            const struct eo_page *page, struct eo_error *error);
 
-/* From a result document of that design (with rating); the result is read alone. */
+/* From a result document of that design (with rating), which is in mm; the result is read alone. */
 void eo_report_write(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
-                     struct eo_text *text);
+                     const struct eo_page *page);
 
 #endif

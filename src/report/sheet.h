@@ -10,11 +10,11 @@
 #include "document/assumption.h"
 #include "format/outline.h"
 #include "format/table.h"
-#include "format/text.h"
+#include "report/page.h"
 
 /* An object that the outline writes, with all below it; level: of headings for parts. skip: keys that are left out
    here, ends with NULL; may be NULL. */
-void eo_sheet_outline(struct eo_text *text, const struct eo_outline *outline, const json_t *object, int level,
+void eo_sheet_outline(const struct eo_page *page, const struct eo_outline *outline, const json_t *object, int level,
                       const char *const *skip);
 
 /* Which keys the user stated. */
@@ -25,11 +25,11 @@ struct eo_sheet_source {
 
 /* An object that the field table encodes. source: NULL: what is stated is not said. path: of the object, "" at the top.
  */
-void eo_sheet_table(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
+void eo_sheet_table(const struct eo_page *page, const struct eo_table *table, const json_t *object, const char *path,
                     const struct eo_sheet_source *source);
 
 /* The same with a heading and a table for each group of keys. */
-void eo_sheet_groups(struct eo_text *text, const struct eo_table *table, const json_t *object,
+void eo_sheet_groups(const struct eo_page *page, const struct eo_table *table, const json_t *object,
                      const struct eo_sheet_source *source);
 
 /* The outline behind a key of an outline; NULL: there is none. */

@@ -230,6 +230,7 @@ static const struct command analyses[] = {
      .text = "{\"design\":{},\"speed\":{\"from\":1,\"to\":2},\"speed_rpm\":{\"from\":1,\"to\":2}}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/speed_rpm"},
     {"formats", "GET", API "/export", .status = 200, .pointer = "items/0/name", .value = "flank-points"},
+    {"which of them are in inches", "GET", API "/export", .status = 200, .pointer = "items/0/inches", .value = "true"},
     {"flank points", "POST", API "/export/flank-points", .body = &coarse, .status = 200,
      .header = "Content-Disposition", .holds = "filename=\"paper-pair-flank-points.csv\""},
     {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type",
@@ -247,6 +248,9 @@ static const struct command analyses[] = {
     {"K-charts", "POST", API "/export/k-chart-drawing", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "image/svg+xml"},
     {"report", "POST", API "/report", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/html"},
+    {"report in inches", "POST", API "/report?units=inch", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "text/html", .says = "<code>/geometry/normal_module_in</code>"},
+    {"a report in ells", "POST", API "/report?units=ell", .body = &coarse, .status = 400},
     {"a report of nothing", "POST", API "/report", .text = "{}", .status = 422},
     {"no rating", "POST", API "/analyze?maps=0&rating=0", .body = &coarse, .status = 200, .pointer = "rating",
      .value = "null"},
@@ -623,6 +627,7 @@ static void check_export(void)
   fclose(stream);
   check_same("export --format flank-points", API "/export/flank-points");
   check_same("report --no-cache", API "/report");
+  check_same("report --no-cache --units inch", API "/report?units=inch");
 }
 
 static void check_token(void)

@@ -116,6 +116,24 @@ await chapter('what is saved', async () => {
   ok(JSON.stringify(inch.stiffness) === JSON.stringify(metric.stiffness), 'N/µm is no length');
 });
 
+/** A file that the design's menu saves. */
+async function fromMenu(name) {
+  await page.locator('.design-button').click();
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.locator('.design-menu button', { hasText: name }).first().click(),
+  ]);
+  return readFile(await download.path(), 'utf8');
+}
+
+await chapter('files of the service', async () => {
+  const points = await fromMenu('Export flank points');
+  ok(/x_in,/.test(points) && !/_mm|_um/.test(points.slice(0, 400)), 'flank points');
+  const report = await fromMenu('Save the report to sign');
+  ok(/<code>\/gear_pair\/face_width_in<\/code>/.test(report) && !/>mm</.test(report), 'the report to sign');
+  ok(/roll length, in/.test(report) && /deviation, thou/.test(report), 'its charts');
+});
+
 await chapter('and back', async () => {
   await page.getByLabel('Lengths in').selectOption('mm');
   await page.waitForFunction(() => /µm/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));

@@ -104,10 +104,17 @@ int main(void)
   json_decref(document);
   json_decref(other);
 
-  document = parse("{\"warnings\":[\"At 25.4 mm.\"],\"findings\":[{\"text\":\"5.08 um\"}],\"name\":\"25.4 mm\"}");
+  document = parse("{\"warnings\":[\"At 25.4 mm.\"],\"findings\":[{\"text\":\"5.08 um\"}],\"name\":\"25.4 mm\","
+                   "\"span_reason\":\"A face of 50.8 mm.\",\"unchecked\":[\"above 25.4 um\"]}");
   other = eo_inch_from_mm(document);
-  ok(is(other, "{\"warnings\":[\"At 1 in.\"],\"findings\":[{\"text\":\"0.2 thou\"}],\"name\":\"25.4 mm\"}"),
+  ok(is(other, "{\"warnings\":[\"At 1 in.\"],\"findings\":[{\"text\":\"0.2 thou\"}],\"name\":\"25.4 mm\","
+               "\"span_reason\":\"A face of 2 in.\",\"unchecked\":[\"above 1 thou\"]}"),
      "so are the sentences, and no name");
+  json_decref(document);
+  json_decref(other);
+  document = parse("{\"least_film_um\":{\"left\":25.4,\"right\":[2.54,null]}}");
+  other = eo_inch_from_mm(document);
+  ok(is(other, "{\"least_film_thou\":{\"left\":1.0,\"right\":[0.1,null]}}"), "one per end");
   json_decref(document);
   json_decref(other);
   test_sentences();

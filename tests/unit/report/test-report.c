@@ -7,6 +7,7 @@
 #include "document/examples.h"
 #include "document/result.h"
 #include "flexibility/closed_form.h"
+#include "format/inch.h"
 #include "format/json.h"
 #include "format/plot.h"
 #include "report/report.h"
@@ -42,13 +43,19 @@ static void end(struct subject *s)
   free(s);
 }
 
-static struct eo_text report_of(const struct subject *s, const struct eo_warnings *warnings)
+static struct eo_text report_in(const struct subject *s, const struct eo_warnings *warnings, bool inches)
 {
   struct eo_text text = {0};
   struct eo_error error;
-  if (eo_report_make(s->pair, &s->design, warnings, NULL, &text, &error))
+  const struct eo_page page = {&text, inches};
+  if (eo_report_make(s->pair, &s->design, warnings, NULL, &page, &error))
     printf("# %s\n", error.text);
   return text;
+}
+
+static struct eo_text report_of(const struct subject *s, const struct eo_warnings *warnings)
+{
+  return report_in(s, warnings, false);
 }
 
 static json_t *result_of(const struct subject *s)
@@ -106,19 +113,20 @@ static void read_value(struct reading *reading, const char *key, const json_t *v
     printf("# %s = %.6g is not in the report\n", key, json_number_value(value));
 }
 
-static void test_lines(const char *example, int least)
+static void test_lines(const char *example, int least, bool inches)
 {
   static const char *const parts[] = {"rating", "tribology", "load_cases"};
   struct subject *s = start(example);
-  struct eo_text page = report_of(s, NULL);
-  json_t *result = result_of(s);
+  struct eo_text page = report_in(s, NULL, inches);
+  json_t *metric = result_of(s), *result = inches ? eo_inch_from_mm(metric) : json_incref(metric);
   struct reading reading = {.page = page.data};
   json_object_del(json_object_get(result, "rating"), "settings"); /* its keys have a path */
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
     read_value(&reading, parts[i], json_object_get(result, parts[i]));
-  ok(reading.numbers > least && !reading.missing, "%s: each of %d numbers of the result stands in the report", example,
-     reading.numbers);
+  ok(reading.numbers > least && !reading.missing, "%s%s: each of %d numbers of the result stands in the report",
+     example, inches ? " in inches" : "", reading.numbers);
   json_decref(result);
+  json_decref(metric);
   eo_text_done(&page);
   end(s);
 }
@@ -165,10 +173,53 @@ static void test_words(void)
   end(s);
 }
 
+/* A unit alone: "mm/s", "N/(mm um)", "um mm/N" and "14mm" of the style are none. */
+static bool is_alone(const char *page, const char *at, size_t length)
+{
+  static const char joined[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_/()";
+  return !strchr(joined, at[length]) && (at == page || !strchr(joined, at[-1])) && strncmp(at, "um mm", 5) != 0;
+}
+
+static int count_word(const char *page, const char *word)
+{
+  int count = 0;
+  for (const char *at = strstr(page, word); at; at = strstr(at + 1, word))
+    count += is_alone(page, at, strlen(word));
+  return count;
+}
+
+/* Of a pair with warnings, an assumed backlash, charts and maps nothing is left that has a length in mm or um. */
+static void test_inches(void)
+{
+  struct subject *s = start("narrow");
+  struct eo_warnings warnings = {0};
+  eo_warnings_add(&warnings, "The tip of the pinion is taken as 50.8 mm, 25.4 um less than its rack makes it.");
+  struct eo_text metric = report_of(s, &warnings), inch = report_in(s, &warnings, true);
+  json_t *result = result_of(s);
+  double module = eo_json_find_number(result, "geometry/normal_module_mm") / 25.4;
+  ok(count_word(metric.data, "mm") > 100 && count_word(metric.data, "um") > 60, "in mm by itself");
+  ok(count_word(inch.data, "mm") == 0 && count_word(inch.data, "um") == 0 && count_word(inch.data, "in") > 100 &&
+         count_word(inch.data, "thou") > 60,
+     "in inches: %d mm and %d um are left", count_word(inch.data, "mm"), count_word(inch.data, "um"));
+  ok(has_line(inch.data, "/geometry/normal_module_in", module), "the module: %.6g in", module);
+  ok(strstr(inch.data, "taken as 2 in, 1 thou less") != NULL, "a warning");
+  ok(strstr(inch.data, ">roll length, in<") && strstr(inch.data, ">deviation, thou<") &&
+         strstr(inch.data, ">thou, transverse<"),
+     "axes of charts and figures");
+  ok(!strstr(inch.data, "<svg></svg>") && count_word(inch.data, "path") == count_word(metric.data, "path"),
+     "with every curve of the one in mm");
+  json_decref(result);
+  eo_text_done(&metric);
+  eo_text_done(&inch);
+  end(s);
+}
+
 int main(void)
 {
-  test_lines("narrow", 300);
-  test_lines("single", 150);
+  test_lines("narrow", 300, false);
+  test_lines("single", 150, false);
+  test_lines("narrow", 300, true);
+  test_inches();
   test_words();
   return tap_done();
 }

@@ -9,6 +9,7 @@ import { Conflict } from '../base/library.js';
 import { notice } from '../base/notice.js';
 import { leaves, same } from '../base/pointer.js';
 import { openPopover } from '../base/popover.js';
+import { inInches } from '../base/units.js';
 import { openOwnGear } from '../welcome/open.js';
 
 const KINDS = /** @type {Record<string, string>} */ ({
@@ -137,8 +138,8 @@ export class DesignMenu {
         item('Export JSON', () => this.#export()),
         this.#exports
           .filter(({ name }) => name !== 'design')
-          .map(({ name, title, type }) =>
-            item(`Export ${exportName(name, type)}`, () => this.#exportAs(name), title),
+          .map(format =>
+            item(`Export ${exportName(format.name, format.type)}`, () => this.#exportAs(format), format.title),
           ),
         item('Copy a link to it', () => this.#copyLink()),
         item('Print a report…', () => app.go('report')),
@@ -316,9 +317,10 @@ export class DesignMenu {
     );
   }
 
-  /** Byte for byte what the service answers, under the name that it gives. @param {string} format */
-  async #exportAs(format) {
-    const answer = await ask('POST', `export/${format}`, { body: this.app.store.design, whole: true });
+  /** Byte for byte what the service answers, under the name that it gives. @param {Api.Export} format */
+  async #exportAs({ name: format, inches }) {
+    const units = inches && inInches() ? '?units=inch' : '';
+    const answer = await ask('POST', `export/${format}${units}`, { body: this.app.store.design, whole: true });
     const name = /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '');
     download(name ? name[1] : format, answer.data);
   }
@@ -327,7 +329,8 @@ export class DesignMenu {
   #saveReport() {
     const { design } = this.app.store;
     notice.say('The report is being written…');
-    this.reports.submit({ path: 'report', body: design, note: `${fileName(design.name || 'design')}-report.html` });
+    const path = inInches() ? 'report?units=inch' : 'report';
+    this.reports.submit({ path, body: design, note: `${fileName(design.name || 'design')}-report.html` });
   }
 
   async #copyLink() {
