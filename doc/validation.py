@@ -68,6 +68,11 @@ def shown(value, form):
     return "-" if value is None else format(value, form)
 
 
+def shown_deviation(value, form):
+    """In per cent; what is below this differs from machine to machine."""
+    return "rounding" if value is not None and 0 < abs(value) < 1e-10 else shown(value, form)
+
+
 def blocks_of(name, report):
     rows = []
     for block in report["blocks"]:
@@ -77,7 +82,7 @@ def blocks_of(name, report):
         median = statistics.median(deviations) if deviations else None
         largest = f"{max(shares):.2f}" if shares else "exact"
         out = sum(not c["pass"] for c in checks)
-        rows.append([name, block, str(len(checks)), str(out), shown(median, ".2g"), largest])
+        rows.append([name, block, str(len(checks)), str(out), shown_deviation(median, ".2g"), largest])
     return rows
 
 
@@ -88,7 +93,7 @@ def disagreements(reports):
             taken = share(check)
             if not check["pass"] or (taken or 0) > NEAR:
                 cells = [f"{name}: {check['case'].split(': ', 1)[-1]}", check["quantity"].replace("|", "/")]
-                cells += [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+                cells += [number(check["expected"]), number(check["value"]), shown_deviation(relative(check), "+.2g")]
                 cells += [shown(taken, ".2f"), "" if check["pass"] else "**out**"]
                 rows.append((-(taken or 99), cells))
     rows.sort(key=lambda row: (row[1][-1] == "", row[0]))
@@ -107,11 +112,11 @@ def published(reports, cases):
                 continue
             entry = entries[int(place[2])]
             quantity = check["quantity"].removeprefix("expected.").removesuffix(".printed")
-            values = [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+            values = [number(check["expected"]), number(check["value"]), shown_deviation(relative(check), "+.2g")]
             sources.setdefault(entry["source"], []).append([entry["id"], quantity, *values])
     for check in reports["standards.json"]["checks"]:
         block, row = check["case"].split(": ", 1)[0], check["case"].split(": ", 1)[-1]
-        values = [number(check["expected"]), number(check["value"]), shown(relative(check), "+.2g")]
+        values = [number(check["expected"]), number(check["value"]), shown_deviation(relative(check), "+.2g")]
         sources.setdefault(f"standards.json: {block}", []).append([row, check["quantity"], *values])
     parts = []
     for source in sorted(sources):
