@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "design/check.h"
+#include "design/design_grids.h"
 #include "gear/entry.h"
 #include "gear/geometry.h"
 #include "rating/gear_rating.h"
@@ -434,37 +435,6 @@ static void resolve_material(struct eo_material *material)
   material->gear_density = gear.density;
 }
 
-/* Numbers that stand in place of a grid's go into it; what a search varies of a grid is stated, as the grid has it. */
-static void resolve_grids(struct eo_design *design)
-{
-  struct eo_modification *modification = &design->modification;
-  eo_modification_lay_nodes(modification, &design->grids);
-  for (int i = 0; i < 8; i++) {
-    struct eo_flank_modification *flank = i < 4 ? &modification->flank[i / 2][i % 2]
-                                                : &modification->coast[i / 2 % 2][i % 2];
-    const struct eo_grid_place *grid = &design->grids.place[i / 4][i / 2 % 2][i % 2];
-    for (int k = flank->nodes; k-- > 0;) { /* what the grid does not have stays, for the check to name */
-      struct eo_grid_node node = flank->node[k];
-      if (grid->u_knots > 0 && node.row <= grid->u_knots && node.column <= grid->y_knots)
-        eo_modification_drop_node(flank, node.row, node.column);
-    }
-  }
-  for (int k = 0; k < design->optimization.listed; k++) {
-    const struct eo_listed_variable *variable = &design->optimization.list[k];
-    for (int i = 0; i < 4 && variable->of_grid; i++) {
-      int side = i / 2, end = i % 2;
-      const struct eo_flank_grid grid = eo_flank_grid_at(&design->grids, (enum eo_flank_side)side, variable->member,
-                                                         end);
-      double number = eo_flank_grid_number(&grid, variable->row, variable->column);
-      if ((variable->flank == side || variable->flank == EO_BOTH_FLANKS) &&
-          (variable->end == end || variable->end == EO_BOTH_ENDS) && !isnan(number))
-        eo_modification_set_node(side == EO_DRIVE_FLANK ? &modification->flank[variable->member][end]
-                                                        : &modification->coast[variable->member][end],
-                                 variable->row, variable->column, number);
-    }
-  }
-}
-
 void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry)
 {
   resolve_alignment(design, geometry->face_width);
@@ -488,5 +458,5 @@ void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geome
   resolve_first_pairs(design);
   design->optimization.search.objectives = count_axes(design);
   resolve_optimization(&design->optimization, &design->gear_pair, geometry);
-  resolve_grids(design);
+  eo_design_resolve_grids(design);
 }

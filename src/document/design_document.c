@@ -386,6 +386,18 @@ static json_t *encode_wants(const struct eo_design *design)
   return NULL;
 }
 
+/* What a grid is called says which row the others relate to, not what a row is. */
+static void drop_kinds(json_t *grids)
+{
+  const char *member, *end;
+  json_t *ends, *flank;
+  json_object_foreach(grids, member, ends) json_object_foreach(ends, end, flank)
+  {
+    json_object_del(json_object_get(flank, "grid"), "kind");
+    json_object_del(json_object_get(json_object_get(flank, "coast"), "grid"), "kind");
+  }
+}
+
 static json_t *encode_problem(const struct eo_design *design)
 {
   static const char *const without[] = {"version", "name",      "modification", "rating",
@@ -404,6 +416,7 @@ static json_t *encode_problem(const struct eo_design *design)
   if (design->grids.used > 0 && !failed) { /* what no row varies */
     json_t *grids = json_object();
     eo_flank_grids_encode(&design->grids, design->gear_pair.ends, grids, &failed);
+    drop_kinds(grids);
     eo_json_put(document, "grids", grids, &failed);
   }
   if (!failed)

@@ -284,7 +284,7 @@ static void write_flank_grid(const struct eo_design *design, const struct eo_geo
     for (int j = 0; j < size[1]; j++)
       delta[i * size[1] + j] = eo_modification_at(&shape, u[i], y[j]);
   }
-  struct eo_flank_grid grid = {size[0], size[1], u, y, delta};
+  struct eo_flank_grid grid = {.u_knots = size[0], .y_knots = size[1], .u = u, .y = y, .delta = delta};
   eo_text_print(text, "# %s, %s, %s\n", member_name[member], end_name[end],
                 side == EO_DRIVE_FLANK ? "drive flank" : "coast flank");
   if (!text->failed)

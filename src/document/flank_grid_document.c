@@ -13,7 +13,10 @@ enum { MOST_TEXT = 1 << 20 };
 struct grid_document {
   struct eo_numbers u, y;
   struct eo_matrix delta;
+  char kind[12];
 };
+
+static const char *const kinds[] = {"measured", "designed", NULL};
 
 static const struct eo_field grid_fields[] = {
     EO_SERIES(struct grid_document, u, "u_mm", &eo_unit_mm, EO_GRID_KNOTS, -200, 200, EO_FIELD_ASCENDING,
@@ -28,8 +31,12 @@ static const struct eo_field grid_fields[] = {
      .kind = EO_FIELD_TEXT,
      .flags = EO_FIELD_ELSEWHERE,
      .count = MOST_TEXT,
-     .help = "in place of the three: a table as text, y in mm in the first row behind a corner cell, then rows of u in "
-             "mm and delta in um"},
+     .help = "in place of u_mm, y_mm and delta_um: a table as text, y in mm in the first row behind a corner cell, then "
+             "rows of u in mm and delta in um"},
+    EO_WORD_DERIVED(struct grid_document, kind, "kind", kinds, 0, NULL,
+                    "measured; designed where numbers of it vary: variables of a search, axes of a study, grid_nodes",
+                    "measured: how the flank is, of the unmodified pair too; designed: what a designer or a search takes "
+                    "off, which the unmodified pair goes without"),
 };
 const struct eo_table eo_flank_grid_table = EO_TABLE("a flank's grid", struct grid_document, grid_fields);
 
@@ -203,18 +210,22 @@ static void decode_grid(const json_t *object, const struct eo_path *path, struct
                         struct eo_faults *faults)
 {
   const json_t *text = json_object_get(object, "csv");
+  json_t *kind = json_object_get(object, "kind");
   struct eo_path place = {path, "csv", 0};
   struct eo_error error;
   if (!text) {
     eo_table_decode(&eo_flank_grid_table, object, path, document, faults);
     return;
   }
-  if (!json_is_string(text) || json_object_size(object) > 1) {
-    eo_faults_at(faults, &place, "A table is a text and stands alone, without u_mm, y_mm and delta_um.");
+  if (!json_is_string(text) || json_object_size(object) > 1 + (kind != NULL)) {
+    eo_faults_at(faults, &place,
+                 "A table is a text and stands alone, without u_mm, y_mm and delta_um; kind may stand beside it.");
     return;
   }
   eo_error_set(&error, EO_ERROR_MEMORY, NULL, "Not enough memory.");
   json_t *read = json_string_length(text) < MOST_TEXT ? eo_flank_grid_from_text(json_string_value(text), &error) : NULL;
+  if (read && kind)
+    json_object_set(read, "kind", kind);
   if (read)
     eo_table_decode(&eo_flank_grid_table, read, path, document, faults);
   else if (json_string_length(text) >= MOST_TEXT)
@@ -238,8 +249,14 @@ static void add_grid(const json_t *flank, const struct eo_path *path, enum eo_fl
   decode_grid(object, &place, &document, faults);
   if (faults->count == before && fits(&document, &place, faults)) {
     eo_table_round_to_document(&eo_flank_grid_table, &document);
-    struct eo_flank_grid grid = {document.u.count, document.y.count, document.u.value, document.y.value,
-                                 document.delta.value};
+    struct eo_flank_grid grid = {.u_knots = document.u.count,
+                                 .y_knots = document.y.count,
+                                 .u = document.u.value,
+                                 .y = document.y.value,
+                                 .delta = document.delta.value,
+                                 .kind = strcmp(document.kind, kinds[EO_GRID_DESIGNED]) == 0 ? EO_GRID_DESIGNED
+                                                                                             : EO_GRID_MEASURED,
+                                 .kind_stated = *document.kind != 0};
     if (eo_flank_grids_put(grids, side, member, end, &grid, &error))
       eo_faults_at(faults, &place, "%s", error.text);
   }
@@ -272,13 +289,21 @@ static json_t *reach(json_t *object, const char *key, bool *failed)
   return json_object_get(object, key);
 }
 
+/* The kind where it is stated, or is not what an absent one means. */
 static json_t *encode_grid(const struct eo_flank_grid *grid)
 {
+  bool says_kind = grid->kind_stated || grid->kind != EO_GRID_MEASURED;
   /* encoding reads alone */
   struct grid_document document = {{grid->u_knots, (double *)grid->u},
                                    {grid->y_knots, (double *)grid->y},
-                                   {grid->u_knots, grid->y_knots, (double *)grid->delta}};
-  return eo_table_encode(&eo_flank_grid_table, &document);
+                                   {grid->u_knots, grid->y_knots, (double *)grid->delta},
+                                   ""};
+  if (says_kind)
+    snprintf(document.kind, sizeof document.kind, "%s", kinds[grid->kind]);
+  json_t *object = eo_table_encode(&eo_flank_grid_table, &document);
+  if (object && !says_kind)
+    json_object_del(object, "kind");
+  return object;
 }
 
 void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t *modification, bool *failed)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/design_grids.h"
 #include "document/result_private.h"
 
 #define EACH "objectives.load_cases.*."
@@ -244,7 +245,7 @@ enum eo_code eo_scalars_of_raw(const struct eo_scalars *scalars, const struct eo
     return eo_error_memory(error);
   }
   *bare = *design;
-  memset(&bare->modification, 0, sizeof bare->modification);
+  bare->modification = eo_design_unmodified(design);
   memcpy(copy, unmodified, sizeof *copy * cases);
   memcpy(copy + cases, raw, sizeof *copy * cases);
   struct eo_analysis analysis = {.cases = design->load_cases, .scenarios = 1, .unmodified = copy};

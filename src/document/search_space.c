@@ -120,7 +120,7 @@ static bool has_grids(const struct eo_study_variable *variable, const struct eo_
   return has;
 }
 
-/* Every grid that it covers has such knots. */
+/* Every grid that it covers has such knots, and may vary. */
 static enum eo_code check_knots(const struct eo_study_variable *variable, const struct eo_design *design, int i,
                                 struct eo_error *error)
 {
@@ -128,6 +128,11 @@ static enum eo_code check_knots(const struct eo_study_variable *variable, const 
     const struct eo_grid_place *place = &design->grids.place[at / 2][variable->member][at % 2];
     if (!covers(variable, at / 2, at % 2) || !is_node(variable) || place->u_knots == 0)
       continue;
+    if (place->kind == EO_GRID_MEASURED)
+      return fault("/optimization/variable_list/%d/parameter", i, error,
+                   "The grid is stated as measured, and what is measured does not vary: its kind is \"designed\" where "
+                   "the search may change it.",
+                   0, 0);
     if (variable->row > place->u_knots)
       return fault("/optimization/variable_list/%d/row", i, error, "Row %.0f: the grid has %.0f rows (places u).",
                    variable->row, place->u_knots);

@@ -2,6 +2,7 @@
 #include "evaluation/analysis.h"
 
 #include "base/clock.h"
+#include "design/design_grids.h"
 #include "evaluation/objective_terms.h"
 #include "evaluation/scalar.h"
 #include "gear/modification.h"
@@ -69,8 +70,20 @@ static enum eo_code fit(struct eo_analysis *analysis, int cases, int scenarios, 
   return eo_evaluator_new(&analysis->evaluator, analysis->pair, cases, error);
 }
 
-/* The same design without the terms of its modification (grids, which state how flanks are, stay); what the evaluation
- * does not look at is blank, so that it can be compared. */
+/* Numbers of designed grids, of which the pair without modification has nothing: those of another design are no other
+   reference. */
+static void blank_designed(struct eo_flank_grids *grids)
+{
+  for (int i = 0; i < 8; i++) {
+    const struct eo_grid_place *place = &grids->place[i / 4][i / 2 % 2][i % 2];
+    size_t size = (size_t)place->u_knots * (size_t)place->y_knots;
+    if (size && place->kind == EO_GRID_DESIGNED)
+      memset(grids->number + place->first + place->u_knots + place->y_knots, 0, sizeof(double) * size);
+  }
+}
+
+/* The same design without its modification; what the evaluation does not look at is blank, so that it can be compared.
+ */
 static void strip(struct eo_design *bare, const struct eo_design *design)
 {
   memcpy(bare, design, sizeof *bare);
@@ -81,17 +94,8 @@ static void strip(struct eo_design *bare, const struct eo_design *design)
   memset(&bare->rating, 0, sizeof bare->rating);
   memset(&bare->pitch, 0, sizeof bare->pitch);
   memset(&bare->tolerance, 0, sizeof bare->tolerance);
-  memset(&bare->modification, 0, sizeof bare->modification);
-}
-
-static bool is_unmodified(const struct eo_design *design)
-{
-  for (int member = 0; member < 2; member++)
-    for (int end = 0; end < design->gear_pair.ends; end++)
-      if (!eo_modification_is_none(&design->modification.flank[member][end]) ||
-          !eo_modification_is_none(&design->modification.coast[member][end]))
-        return false;
-  return true;
+  bare->modification = eo_design_unmodified(design);
+  blank_designed(&bare->grids);
 }
 
 static bool is_robust(const struct eo_design *design)
@@ -163,7 +167,7 @@ static void forget_root(struct eo_analysis *analysis)
 static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_design *design, const struct eo_design *bare,
                              int want, struct eo_error *error)
 {
-  bool own_reference = is_unmodified(design);
+  bool own_reference = eo_design_is_unmodified(design);
   bool known = analysis->known_root >= analysis->root && memcmp(analysis->known, bare, sizeof *bare) == 0;
   analysis->unmodified_ms = analysis->design_ms = analysis->rating_ms = 0;
   if (known && analysis->known_root && !analysis->root)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "design/design_grids.h"
 #include "dynamics/speed_sweep.h"
 
 /* What the speeds of one torque share. */
@@ -205,7 +206,7 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   worker->design->load_case[0].share = 1;
   worker->design->modification = job->design->modification;
   if (variant == EO_SWEEP_UNMODIFIED)
-    worker->design->modification = (struct eo_modification){0};
+    worker->design->modification = eo_design_unmodified(job->design);
   code = eo_evaluator_run(worker->evaluator, worker->design, NULL, 0, &evaluation, error);
   if (!code)
     code = keep_problem(&job->problem[item], worker->evaluator, evaluation, error);

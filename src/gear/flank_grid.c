@@ -15,8 +15,13 @@ static struct eo_flank_grid grid_of(const struct eo_flank_grids *grids, const st
   const double *number = grids->number + place->first;
   if (place->u_knots == 0)
     return (struct eo_flank_grid){0};
-  return (struct eo_flank_grid){place->u_knots, place->y_knots, number, number + place->u_knots,
-                                number + place->u_knots + place->y_knots};
+  return (struct eo_flank_grid){.u_knots = place->u_knots,
+                                .y_knots = place->y_knots,
+                                .u = number,
+                                .y = number + place->u_knots,
+                                .delta = number + place->u_knots + place->y_knots,
+                                .kind = place->kind,
+                                .kind_stated = place->kind_stated};
 }
 
 struct eo_flank_grid eo_flank_grid_at(const struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end)
@@ -78,7 +83,7 @@ enum eo_code eo_flank_grids_put(struct eo_flank_grids *grids, enum eo_flank_side
   if (size == 0)
     return EO_OK;
   double *number = grids->number + grids->used;
-  *place = (struct eo_grid_place){grid->u_knots, grid->y_knots, grids->used};
+  *place = (struct eo_grid_place){grid->u_knots, grid->y_knots, grids->used, grid->kind, grid->kind_stated};
   memcpy(number, grid->u, sizeof(double) * (size_t)grid->u_knots);
   memcpy(number + grid->u_knots, grid->y, sizeof(double) * (size_t)grid->y_knots);
   memcpy(number + grid->u_knots + grid->y_knots, grid->delta,

@@ -15,10 +15,16 @@ enum eo_flank_side { EO_DRIVE_FLANK, EO_COAST_FLANK };
    working pitch point, + towards the member's own tip; y: axial from mid face, + towards the face end that meets first
    on the drive flank. */
 enum { EO_GRID_NUMBERS = 16384, EO_GRID_KNOTS = 1024 };
+
+/* What a grid says: how the flank is, also where nobody modifies it, or what a designer or a search takes off. */
+enum eo_grid_kind { EO_GRID_MEASURED, EO_GRID_DESIGNED };
+
 struct eo_flank_grids {
   struct eo_grid_place {
     int u_knots, y_knots; /* 0: no grid */
     int first;
+    enum eo_grid_kind kind;
+    bool kind_stated; /* by the document */
   } place[2][2][2]; /* [flank side][member][end] */
   int used;
   double number[EO_GRID_NUMBERS];
@@ -29,6 +35,8 @@ struct eo_flank_grid {
   int u_knots, y_knots; /* 0: none */
   const double *u, *y;
   const double *delta; /* [u_knots][y_knots] */
+  enum eo_grid_kind kind;
+  bool kind_stated;
 };
 
 struct eo_flank_grid eo_flank_grid_at(const struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end);
@@ -48,9 +56,10 @@ void eo_grid_nodes_lay(int nodes, const struct eo_grid_node *node, int u_knots, 
 /* The number that every knot of a node has; NaN where they differ or the grid has no such knot. */
 double eo_flank_grid_number(const struct eo_flank_grid *grid, int row, int column);
 
+/* The same surface, of whichever kind. */
 bool eo_flank_grid_equal(const struct eo_flank_grid *a, const struct eo_flank_grid *b);
 
-/* The same grids everywhere. */
+/* The same surfaces everywhere. */
 bool eo_flank_grids_equal(const struct eo_flank_grids *a, const struct eo_flank_grids *b);
 
 /* Natural bicubic spline: natural cubic splines (second derivative 0 at both border knots) along u and along y, tensor

@@ -117,7 +117,7 @@ bool eo_modification_is_none(const struct eo_flank_modification *modification)
               modification->lead_crowning == 0 && modification->helix_slope == 0 && modification->lead_offset == 0 &&
               modification->end_relief[0] == 0 && modification->end_relief[1] == 0 &&
               modification->profile_slope == 0 && modification->profile_barrel == 0 && modification->twist == 0;
-  none = none && modification->nodes == 0;
+  none = none && modification->nodes == 0 && modification->grid_gain == 0;
   for (int i = 0; i < 4 && none; i++)
     none = modification->triangular[i / 2][i % 2].amount == 0;
   return none;

@@ -175,7 +175,7 @@ void eo_active_profile(const struct eo_geometry *geometry, int member, double en
 /* True when both take off the same. */
 bool eo_modification_equal(const struct eo_flank_modification *a, const struct eo_flank_modification *b);
 
-/* True when nothing is taken off. */
+/* True when nothing is taken off beside the grid as it stands. */
 bool eo_modification_is_none(const struct eo_flank_modification *flank);
 
 #endif

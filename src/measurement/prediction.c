@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/design_grids.h"
+
 double eo_prediction_pinion_share(const struct eo_supports *supports, const struct eo_geometry *geometry)
 {
   double mass[2];
@@ -49,7 +51,7 @@ enum eo_code eo_prediction_run(struct eo_rig_prediction *prediction, struct eo_e
   one->load_case[0].speed = speed;
   one->load_case[0].share = 1;
   if (unmodified)
-    memset(&one->modification, 0, sizeof one->modification);
+    one->modification = eo_design_unmodified(design);
   enum eo_code code = eo_evaluator_run(evaluator, one, NULL, EO_WANT_CURVES, &evaluation, error);
   if (!code) {
     const struct eo_case_result *result = &evaluation->load_case[0];

@@ -91,7 +91,7 @@ static void read_grid(struct eo_case *block, enum eo_flank_side side, int member
     scale(u_knots, number, MM);
     scale(y_knots, y, MM);
     scale(u_knots * y_knots, delta, UM);
-    struct eo_flank_grid grid = {u_knots, y_knots, number, y, delta};
+    struct eo_flank_grid grid = {.u_knots = u_knots, .y_knots = y_knots, .u = number, .y = y, .delta = delta};
     if (eo_flank_grids_put(grids, side, member, end, &grid, &error))
       eo_case_fault(block, "%s", error.text);
   }

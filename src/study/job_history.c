@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "format/list_page.h"
+#include "design/design_grids.h"
 #include "document/design_document.h"
 #include "format/json.h"
 #include "document/result_private.h"
@@ -53,11 +54,38 @@ static enum eo_code reserve(struct history *history, struct eo_error *error)
   return history->unmodified && history->raw && history->items ? EO_OK : eo_error_memory(error);
 }
 
+/* A search over grids that no document called designed, as jobs of 0.1 have it, related to the grid that it began with.
+ */
+static bool is_older(const struct eo_design *design)
+{
+  bool older = false;
+  for (int i = 0; i < 8; i++) {
+    const struct eo_grid_place *grid = &design->grids.place[i / 4][i / 2 % 2][i % 2];
+    older = older || (grid->kind == EO_GRID_DESIGNED && !grid->kind_stated);
+  }
+  return older;
+}
+
+static enum eo_code find_row(struct history *history, const struct eo_modification *modification,
+                             struct eo_stored_evaluation *row, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  enum eo_code code = eo_modification_write(modification, history->design.gear_pair.ends, &text, error);
+  if (!code)
+    code = eo_store_find_evaluation(history->store, history->problem, text.data, row, error);
+  eo_text_done(&text);
+  return code;
+}
+
 static enum eo_code find_unmodified(struct history *history, struct eo_error *error)
 {
+  static const struct eo_modification nothing;
+  const struct eo_modification none = eo_design_unmodified(&history->design);
   struct eo_stored_evaluation row = {
       .scenarios = history->scenarios, .cases = history->cases, .raw = history->unmodified};
-  enum eo_code code = eo_store_find_evaluation(history->store, history->problem, "{}", &row, error);
+  enum eo_code code = find_row(history, &none, &row, error);
+  if (!code && !row.id && is_older(&history->design))
+    code = find_row(history, &nothing, &row, error);
   for (int i = 0; !code && !row.id && i < history->scenarios * history->cases; i++)
     history->unmodified[i].failed = true;
   return code;

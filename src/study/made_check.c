@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "design/design_grids.h"
 #include "document/scatter_document.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/objective_terms.h"
@@ -20,12 +21,11 @@ struct bench {
 struct work {
   struct eo_made_check *check;
   const struct eo_made_plan *plan;
+  struct eo_modification unmodified;
   struct eo_design *nominal; /* the plan's, its objective of one state; the pairs at hand in its `drawn` */
   int first;                 /* of these */
   struct bench bench[EO_MAX_THREADS];
 };
-
-static const struct eo_modification unmodified;
 
 static enum eo_code prepare_bench(struct work *work, struct bench *bench, struct eo_error *error)
 {
@@ -83,7 +83,7 @@ static enum eo_code run_pair(void *context, int thread, int item, struct eo_erro
 {
   struct work *work = context;
   struct bench *bench = &work->bench[thread];
-  EO_TRY(evaluate(work, bench, item, &unmodified, bench->raw + work->nominal->load_cases, error));
+  EO_TRY(evaluate(work, bench, item, &work->unmodified, bench->raw + work->nominal->load_cases, error));
   note(work, bench, 0, work->first + item);
   for (int i = 1; i < work->check->designs; i++) {
     EO_TRY(evaluate(work, bench, item, work->plan->modification[i - 1], bench->raw, error));
@@ -105,6 +105,7 @@ static enum eo_code prepare_nominal(struct work *work, struct eo_error *error)
   for (int i = 0; i < nominal->objective.limits; i++)
     nominal->objective.limit[i].percent = NAN;
   nominal->drawn.first = 0;
+  work->unmodified = eo_design_unmodified(nominal);
   return EO_OK;
 }
 

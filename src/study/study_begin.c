@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/design_grids.h"
 #include "format/json.h"
 #include "store/evaluations.h"
 #include "store/lock.h"
@@ -95,8 +96,7 @@ static enum eo_code find_unmodified(struct study *study, struct eo_error *error)
 {
   struct eo_rows rows = {.values = study->result->scenarios * study->result->cases};
   struct eo_row_data *row;
-  struct eo_modification none;
-  memset(&none, 0, sizeof none);
+  const struct eo_modification none = eo_design_unmodified(study->plan->design);
   enum eo_code code = eo_rows_add(&rows, &none, study->plan->design->gear_pair.ends, &row, error);
   if (!code)
     code = eo_study_look_up(study, row, error);

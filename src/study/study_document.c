@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "format/json.h"
+#include "design/design_grids.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
 #include "store/jobs.h"
@@ -31,16 +32,6 @@ static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_de
   return code;
 }
 
-static bool is_modified(const struct eo_design *design)
-{
-  bool modified = false;
-  for (int member = 0; member < 2; member++)
-    for (int end = 0; end < design->gear_pair.ends; end++)
-      modified = modified || !eo_modification_is_none(&design->modification.flank[member][end]) ||
-                 !eo_modification_is_none(&design->modification.coast[member][end]);
-  return modified;
-}
-
 /* What a search over pairs as made found, and the flank it began with where there is one, on other pairs. */
 static enum eo_code check(const struct eo_study_plan *plan, struct eo_study_result *result, struct eo_error *error)
 {
@@ -52,7 +43,7 @@ static enum eo_code check(const struct eo_study_plan *plan, struct eo_study_resu
                               .name = {"found", "as designed"},
                               .pairs = design->objective.check_pairs,
                               .threads = plan->threads};
-  made.designs += is_modified(design);
+  made.designs += !eo_design_is_unmodified(design);
   result->check = (struct eo_made_check){0};
   if (!result->best.there || result->stopped == EO_STOP_CANCELLED || design->drawn.pairs == 0 || made.pairs == 0)
     return EO_OK;

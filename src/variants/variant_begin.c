@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/design_grids.h"
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "format/json.h"
@@ -163,13 +164,19 @@ static struct eo_stored_evaluation evaluation_of(const struct variant_study *stu
 /* Whether there is a row that all others relate to: without it no objective is known. */
 static enum eo_code find_unmodified(struct variant_study *study, bool *there, struct eo_error *error)
 {
+  const struct eo_design *design = study->run->plan->design;
+  const struct eo_modification none = eo_design_unmodified(design);
   struct eo_stored_evaluation row = evaluation_of(study, study->unmodified);
+  struct eo_text text = {0};
   *there = false;
   if (!study->shared || !study->scalars.objectives || study->scalars.want)
     return EO_OK;
-  EO_TRY(eo_store_find_evaluation(study->run->store, study->problem, "{}", &row, error));
+  enum eo_code code = eo_modification_write(&none, design->gear_pair.ends, &text, error);
+  if (!code)
+    code = eo_store_find_evaluation(study->run->store, study->problem, text.data, &row, error);
+  eo_text_done(&text);
   *there = row.id != 0;
-  return EO_OK;
+  return code;
 }
 
 /* A row of a search as a row of this study. */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "document/design_document.h"
 #include "exchange/cells.h"
 #include "format/json.h"
 #include "variants/variant_axis.h"
@@ -115,16 +116,49 @@ static bool hash_document(const json_t *document, const char *kind, char hash[EO
   return good;
 }
 
+/* Of the numbers and the kind of a grid, which belong to the problem of a search, not to a row of it. */
+static bool is_of_grid(const char *path)
+{
+  return strstr(path, ".grid.") || strstr(path, ".grid_nodes.") || strstr(path, "." EO_GRID_PARAMETER ".");
+}
+
+static bool varies_grids(const struct eo_variant_plan *plan)
+{
+  bool varies = false;
+  for (int i = 0; i < plan->axes; i++)
+    for (int k = 0; k < plan->axis[i].paths; k++)
+      varies = varies || is_of_grid(plan->axis[i].path[k]);
+  return varies;
+}
+
+/* What a hash is of: which grids are designed, which the variables of a search may say, counts too. Where grids vary, the
+   hash is not what it was while rows of the history without these grids were taken for them. */
+static void name_hash(const struct eo_variant_plan *plan, const char *what, char name[32])
+{
+  const struct eo_grid_place *grid = &plan->design->grids.place[0][0][0];
+  int designed = 0;
+  for (int i = 0; i < 8; i++)
+    designed |= (grid[i].u_knots > 0 && grid[i].kind == EO_GRID_DESIGNED) << i;
+  snprintf(name, 32, "%s", what);
+  if (designed)
+    snprintf(name + strlen(what), 32 - strlen(what), ", designed %d", designed);
+  if (varies_grids(plan))
+    snprintf(name + strlen(name), 32 - strlen(name), ", grids");
+}
+
 /* Names and what a search is told change no number. */
 static bool find_hashes(struct eo_variant_plan *plan, const json_t *document)
 {
   json_t *study = json_copy((json_t *)document), *base = json_copy(plan->base);
+  char of_design[32], of_study[32];
   json_object_del(base, "name");
   json_object_del(base, "optimization");
   json_object_del(study, "name");
   json_object_set(study, "design", base);
   json_object_set_new(study, "columns", json_string(plan->columns));
-  bool good = hash_document(base, "design", plan->design_hash) && hash_document(study, "study", plan->study_hash);
+  name_hash(plan, "design", of_design);
+  name_hash(plan, "study", of_study);
+  bool good = hash_document(base, of_design, plan->design_hash) && hash_document(study, of_study, plan->study_hash);
   json_decref(study);
   json_decref(base);
   return good;
@@ -132,7 +166,7 @@ static bool find_hashes(struct eo_variant_plan *plan, const json_t *document)
 
 static void note_kind(struct eo_variant_plan *plan)
 {
-  plan->of_modification = true;
+  plan->of_modification = !varies_grids(plan);
   for (int i = 0; i < plan->axes; i++)
     for (int k = 0; k < plan->axis[i].paths; k++)
       if (strncmp(plan->axis[i].path[k], "modification.", 13) != 0)

@@ -50,7 +50,7 @@ static bool draw_grid(int side, int member, int end, int index, int first)
     y[i] = geometry.face_width / 2 * share * (2. * i / (count[1] - 1) - 1);
   for (int i = 0; i < count[0] * count[1]; i++)
     delta[i] = size * sin(i % count[1] * 0.7 + draw(index, first + 4, 0, 6)) * cos(i / count[1] * 0.9);
-  const struct eo_flank_grid grid = {count[0], count[1], u, y, delta};
+  const struct eo_flank_grid grid = {.u_knots = count[0], .y_knots = count[1], .u = u, .y = y, .delta = delta};
   return !eo_flank_grids_put(&design.grids, (enum eo_flank_side)side, member, end, &grid, &error);
 }
 

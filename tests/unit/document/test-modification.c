@@ -143,7 +143,9 @@ static void test_gain(void)
   gained.grid_gain = 0.5;
   for (int i = 0; i < 6; i++)
     larger[i] = 1.5 * delta[i];
-  const struct eo_flank_grid grid[2] = {{2, 3, u, y, larger}, {2, 3, u, y, delta}};
+  const struct eo_flank_grid grid[2] = {
+      {.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = larger},
+      {.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = delta}};
   for (int i = 0; i < 2; i++) {
     eo_flank_spline_new(&spline[i], &grid[i], &error);
     eo_modification_init(&shape[i], &geometry, EO_PINION, i ? &gained : &plain);
@@ -248,7 +250,7 @@ static void test_spline(void)
   for (int i = 0; i < U; i++)
     for (int j = 0; j < Y; j++)
       delta[i * Y + j] = 1e-6 * sin(i * 1.7 + j * 0.9);
-  struct eo_flank_grid grid = {U, Y, u, y, delta};
+  struct eo_flank_grid grid = {.u_knots = U, .y_knots = Y, .u = u, .y = y, .delta = delta};
   ok(eo_flank_spline_new(&spline, &grid, &error) == EO_OK, "a spline");
   for (int i = 0; i < U; i++)
     for (int j = 0; j < Y; j++)

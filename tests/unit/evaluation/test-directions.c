@@ -87,7 +87,7 @@ static void put_grid(struct eo_design *design, enum eo_flank_side side, int memb
       int from = over ? 3 - j : j;
       delta[i * 4 + j] = 1e-6 * (((3 * i + 7 * from + 5 * member + 2 * end) % 11) - 5) / 3;
     }
-  struct eo_flank_grid grid = {5, 4, knot_u, y, delta};
+  struct eo_flank_grid grid = {.u_knots = 5, .y_knots = 4, .u = knot_u, .y = y, .delta = delta};
   if (eo_flank_grids_put(&design->grids, side, member, end, &grid, &error))
     stop(&error);
 }
@@ -348,7 +348,7 @@ static void test_sampled_grid(void)
   for (int i = 0; i < U; i++)
     for (int j = 0; j < Y; j++)
       delta[i * Y + j] = eo_modification_at(&shape, u[i], y[j]);
-  struct eo_flank_grid grid = {U, Y, u, y, delta};
+  struct eo_flank_grid grid = {.u_knots = U, .y_knots = Y, .u = u, .y = y, .delta = delta};
   if (eo_flank_grids_put(&sampled.grids, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, &grid, &error))
     stop(&error);
   struct answer a = solve(&named), b = solve(&sampled);

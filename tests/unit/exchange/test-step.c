@@ -370,7 +370,7 @@ static void check_kinks(const char *name)
       }
       if (kind == 2)
         flank->triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){8e-6, 1.5e-3, 5e-3, 1};
-      const struct eo_flank_grid grid = {3, 3, u, y, delta};
+      const struct eo_flank_grid grid = {.u_knots = 3, .y_knots = 3, .u = u, .y = y, .delta = delta};
       if (kind == 3 && eo_flank_grids_put(&design.grids, (enum eo_flank_side)(i / 4), i / 2 % 2, i % 2, &grid, &error))
         printf("Bail out! %s\n", error.text);
       flank->twist = kind == 2 ? 3e-6 : 0;

@@ -450,7 +450,7 @@ static bool with_knots(int count, const struct eo_listed_variable *list)
 {
   static const double u[3] = {-5e-3, 0, 5e-3}, y[4] = {-27e-3, -9e-3, 9e-3, 27e-3},
                       delta[12] = {0, 0, 0, 0, 1e-6, 1e-6, 1e-6, 1e-6};
-  const struct eo_flank_grid grid = {3, 4, u, y, delta};
+  const struct eo_flank_grid grid = {.u_knots = 3, .y_knots = 4, .u = u, .y = y, .delta = delta};
   coarse_design(&design, "ga", 40);
   design.optimization.variables = EO_VARIABLES_LISTED;
   design.optimization.listed = count;
@@ -459,6 +459,35 @@ static bool with_knots(int count, const struct eo_listed_variable *list)
     eo_flank_grids_put(&design.grids, EO_DRIVE_FLANK, EO_PINION, end, &grid, &error);
   memset(&error, 0, sizeof error);
   return complete(&design);
+}
+
+/* J of a document as whoever opens it has it. */
+static double opened_value(const json_t *document)
+{
+  static struct eo_design opened;
+  static struct eo_faults found;
+  struct eo_geometry geometry;
+  struct eo_analysis *analysis = NULL;
+  double value = NAN;
+  memset(&found, 0, sizeof found);
+  if (eo_design_decode(document, &opened, NULL, &found) && !eo_design_complete(&opened, &geometry, &error) &&
+      !eo_analysis_new(&analysis, pair, &error) && !eo_analysis_run(analysis, &opened, 0, &error))
+    value = analysis->value.objective;
+  eo_analysis_free(analysis);
+  return value;
+}
+
+/* What a search over grid numbers found, without the search. */
+static void test_opened(json_t *document)
+{
+  json_object_del(document, "optimization");
+  near(opened_value(document), result.best.value.objective, 1e-12, "which opens with the J that the search reported");
+  for (int end = 0; end < 2; end++) {
+    static const char *const name[2] = {"left", "right"};
+    json_t *flank = json_object_get(eo_json_find(document, "modification/pinion"), name[end]);
+    json_object_set_new(json_object_get(flank, "grid"), "kind", json_string("measured"));
+  }
+  near(opened_value(document), 1, 1e-12, "and with 1 as a pair that is measured so");
 }
 
 static void test_grid_search(void)
@@ -500,8 +529,30 @@ static void test_grid_search(void)
          eo_modification_equal(&read.flank[EO_PINION][EO_LEFT], &best.modification.flank[EO_PINION][EO_LEFT]),
      "as text and back: %.120s", text.data ? text.data : "");
   eo_text_done(&text);
+  test_opened(document);
   json_decref(document);
   eo_study_result_done(&result);
+}
+
+/* A search may change what is designed, and what nobody called anything. */
+static void test_grid_kinds(void)
+{
+  const struct eo_listed_variable row = knots_of(1, 0, 0, 30);
+  struct eo_study_space space;
+  ok(with_knots(1, &row) && design.grids.place[EO_DRIVE_FLANK][EO_PINION][0].kind == EO_GRID_DESIGNED,
+     "a grid whose numbers vary is designed");
+  for (int kind = EO_GRID_MEASURED; kind <= EO_GRID_DESIGNED; kind++) {
+    struct eo_design stated = design;
+    for (int end = 0; end < 2; end++) {
+      struct eo_grid_place *place = &stated.grids.place[EO_DRIVE_FLANK][EO_PINION][end];
+      place->kind = (enum eo_grid_kind)kind;
+      place->kind_stated = true;
+    }
+    memset(&error, 0, sizeof error);
+    bool good = complete(&stated) && !eo_study_space_init(&space, &stated, &pair->geometry, &error);
+    ok(good == (kind == EO_GRID_DESIGNED) && (good || strcmp(error.pointer, "/optimization/variable_list/0/parameter") == 0),
+       "%s: %s", kind ? "stated as designed" : "stated as measured, it does not vary", error.text);
+  }
 }
 
 static void refuse_knots(const char *what, const char *pointer, int count, const struct eo_listed_variable *list)
@@ -583,7 +634,7 @@ static void test_variables(void)
   struct eo_listed_variable gain = {EO_PINION, EO_BOTH_ENDS, parameter("grid_gain"), {-1, 1}, 0, 0, 0, false};
   refuse("the gain of a grid that is not there", "/optimization/variable_list/0/parameter", 1, &gain);
   static const double knots[2] = {-2e-3, 2e-3}, delta[4] = {1e-6, 2e-6, 0, 1e-6};
-  const struct eo_flank_grid grid = {2, 2, knots, knots, delta};
+  const struct eo_flank_grid grid = {.u_knots = 2, .y_knots = 2, .u = knots, .y = knots, .delta = delta};
   struct eo_design with_grid = design;
   struct eo_study_space gains;
   with_grid.optimization.variables = EO_VARIABLES_LISTED;
@@ -639,6 +690,7 @@ int main(void)
   test_failures();
   test_constraints();
   test_grid_search();
+  test_grid_kinds();
   test_grid_refusals();
   test_variables();
   empty_folder();

@@ -158,6 +158,10 @@ static void test_grids(void)
     close_to(1e6 * left.delta[12], 7, 1e-9, "row 4, all columns, um");
     close_to(1e6 * left.delta[15], 7, 1e-9, "the last one too, um");
     close_to(1e6 * right.delta[15], 0, 1e-9, "the other grid keeps its own, um");
+    ok(!plan.of_modification, "rows of a search that know nothing of these numbers are none of its rows");
+    ok(left.kind == EO_GRID_DESIGNED && right.kind == EO_GRID_DESIGNED &&
+           plan.design->grids.place[EO_DRIVE_FLANK][EO_PINION][EO_LEFT].kind == EO_GRID_MEASURED,
+       "what varies is designed, the base is as it was");
   }
   json_decref(values);
   json_decref(document);
