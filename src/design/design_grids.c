@@ -47,8 +47,7 @@ void eo_design_resolve_grids(struct eo_design *design)
 {
   eo_modification_lay_nodes(&design->modification, &design->grids);
   for (int i = 0; i < 8; i++)
-    drop_laid(flank_at(&design->modification, i / 4, i / 2 % 2, i % 2),
-              &design->grids.place[i / 4][i / 2 % 2][i % 2]);
+    drop_laid(flank_at(&design->modification, i / 4, i / 2 % 2, i % 2), &design->grids.place[i / 4][i / 2 % 2][i % 2]);
   for (int k = 0; k < design->optimization.listed; k++) {
     const struct eo_listed_variable *variable = &design->optimization.list[k];
     for (int i = 0; i < 4 && variable->of_grid; i++)

@@ -5,8 +5,8 @@
 
 #include "design/design.h"
 
-/* Numbers that stand in place of a grid's go into it; what a search varies of a grid is stated, as the grid has it. Both
-   make it designed unless its document says what it is. Part of eo_design_resolve(). */
+/* Numbers that stand in place of a grid's go into it; what a search varies of a grid is stated, as the grid has it.
+   Both make it designed unless its document says what it is. Part of eo_design_resolve(). */
 void eo_design_resolve_grids(struct eo_design *design);
 
 /* The modification of the pair that all objectives relate to: none. Measured grids are as the flanks are, so it keeps

@@ -31,12 +31,14 @@ static const struct eo_field grid_fields[] = {
      .kind = EO_FIELD_TEXT,
      .flags = EO_FIELD_ELSEWHERE,
      .count = MOST_TEXT,
-     .help = "in place of u_mm, y_mm and delta_um: a table as text, y in mm in the first row behind a corner cell, then "
-             "rows of u in mm and delta in um"},
-    EO_WORD_DERIVED(struct grid_document, kind, "kind", kinds, 0, NULL,
-                    "measured; designed where numbers of it vary: variables of a search, axes of a study, grid_nodes",
-                    "measured: how the flank is, of the unmodified pair too; designed: what a designer or a search takes "
-                    "off, which the unmodified pair goes without"),
+     .help =
+         "in place of u_mm, y_mm and delta_um: a table as text, y in mm in the first row behind a corner cell, then "
+         "rows of u in mm and delta in um"},
+    EO_WORD_DERIVED(
+        struct grid_document, kind, "kind", kinds, 0, NULL,
+        "measured; designed where numbers of it vary: variables of a search, axes of a study, grid_nodes",
+        "measured: how the flank is, of the unmodified pair too; designed: what a designer or a search takes "
+        "off, which the unmodified pair goes without"),
 };
 const struct eo_table eo_flank_grid_table = EO_TABLE("a flank's grid", struct grid_document, grid_fields);
 

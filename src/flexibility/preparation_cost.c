@@ -75,12 +75,11 @@ static enum eo_code add_member(const struct eo_member_settings *settings, const 
   return EO_OK;
 }
 
-enum eo_code eo_preparation_cost_find(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
-                                      const struct eo_flexibility_settings *settings, struct eo_preparation_cost *cost,
-                                      struct eo_error *error)
+static enum eo_code add_half(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
+                             const struct eo_flexibility_settings *settings, struct eo_preparation_cost *cost,
+                             struct eo_error *error)
 {
   double memory[2];
-  *cost = (struct eo_preparation_cost){0};
   for (int member = 0; member < 2; member++) {
     struct eo_member_settings own = eo_flexibility_member_settings(settings, geometry, pair, member);
     enum eo_code code = add_member(&own, geometry, member, memory, &cost->seconds, error);
@@ -88,6 +87,20 @@ enum eo_code eo_preparation_cost_find(const struct eo_geometry *geometry, const 
       return code;
   }
   bool together = settings->body == EO_BODY_SECTOR || geometry->teeth[0] + geometry->teeth[1] <= MANY_TEETH;
-  cost->memory = ALONE + (together ? memory[0] + memory[1] : fmax(memory[0], memory[1]));
+  cost->memory = fmax(cost->memory, ALONE + (together ? memory[0] + memory[1] : fmax(memory[0], memory[1])));
+  return EO_OK;
+}
+
+enum eo_code eo_preparation_cost_find(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
+                                      const struct eo_flexibility_settings *settings, struct eo_preparation_cost *cost,
+                                      struct eo_error *error)
+{
+  int halves = eo_gear_pair_is_uneven(pair) ? 2 : 1;
+  *cost = (struct eo_preparation_cost){0};
+  for (int end = 0; end < halves; end++) {
+    const struct eo_geometry half = eo_geometry_of_half(geometry, pair, end);
+    const struct eo_gear_pair own = eo_gear_pair_half(pair, end);
+    EO_TRY(add_half(&half, &own, settings, cost, error));
+  }
   return EO_OK;
 }

@@ -131,8 +131,8 @@ static bool varies_grids(const struct eo_variant_plan *plan)
   return varies;
 }
 
-/* What a hash is of: which grids are designed, which the variables of a search may say, counts too. Where grids vary, the
-   hash is not what it was while rows of the history without these grids were taken for them. */
+/* What a hash is of: which grids are designed, which the variables of a search may say, counts too. Where grids vary,
+   the hash is not what it was while rows of the history without these grids were taken for them. */
 static void name_hash(const struct eo_variant_plan *plan, const char *what, char name[32])
 {
   const struct eo_grid_place *grid = &plan->design->grids.place[0][0][0];

@@ -143,9 +143,8 @@ static void test_gain(void)
   gained.grid_gain = 0.5;
   for (int i = 0; i < 6; i++)
     larger[i] = 1.5 * delta[i];
-  const struct eo_flank_grid grid[2] = {
-      {.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = larger},
-      {.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = delta}};
+  const struct eo_flank_grid grid[2] = {{.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = larger},
+                                        {.u_knots = 2, .y_knots = 3, .u = u, .y = y, .delta = delta}};
   for (int i = 0; i < 2; i++) {
     eo_flank_spline_new(&spline[i], &grid[i], &error);
     eo_modification_init(&shape[i], &geometry, EO_PINION, i ? &gained : &plain);

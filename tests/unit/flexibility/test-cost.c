@@ -51,6 +51,33 @@ static double memory_of(int layers, int rows, int fillet)
   return cost.memory;
 }
 
+static struct eo_preparation_cost cost_of(double right_helix, double right_width)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_preparation_cost cost = {0};
+  make(&design, EO_BODY_RING, 12, 7, 10);
+  design.gear_pair.right_helix_angle = right_helix * M_PI / 180;
+  design.gear_pair.right_face_width = right_width;
+  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
+  ok(!eo_geometry_init(&geometry, &design.gear_pair, &error) &&
+         !eo_preparation_cost_find(&geometry, &design.gear_pair, &settings, &cost, &error),
+     "a cost %s", error.text);
+  return cost;
+}
+
+/* Halves that differ are prepared one after the other. */
+static void test_halves(void)
+{
+  struct eo_preparation_cost even = cost_of(NAN, NAN), helix = cost_of(30, NAN), width = cost_of(NAN, 40e-3);
+  ok(helix.seconds > 1.6 * even.seconds && helix.seconds < 2.4 * even.seconds,
+     "of two helices the time of both halves: %.3g s, not %.3g", helix.seconds, even.seconds);
+  ok(width.seconds > 1.6 * even.seconds && width.seconds < 2.4 * even.seconds, "of two widths too: %.3g s",
+     width.seconds);
+  ok(helix.memory > 0.7 * even.memory && helix.memory < 1.4 * even.memory, "and the memory of one: %.0f MB, %.0f alike",
+     helix.memory / 1e6, even.memory / 1e6);
+}
+
 int main(void)
 {
   struct eo_design design;
@@ -62,5 +89,6 @@ int main(void)
   ok(memory_of(28, 10, 18) < 1.3e9 && memory_of(40, 16, 24) > 2.2e9 && memory_of(60, 30, 40) > 7.6e9,
      "a finer mesh costs more: %.0f, %.0f, %.0f MB", memory_of(28, 10, 18) / 1e6, memory_of(40, 16, 24) / 1e6,
      memory_of(60, 30, 40) / 1e6);
+  test_halves();
   return tap_done();
 }

@@ -550,7 +550,8 @@ static void test_grid_kinds(void)
     }
     memset(&error, 0, sizeof error);
     bool good = complete(&stated) && !eo_study_space_init(&space, &stated, &pair->geometry, &error);
-    ok(good == (kind == EO_GRID_DESIGNED) && (good || strcmp(error.pointer, "/optimization/variable_list/0/parameter") == 0),
+    ok(good == (kind == EO_GRID_DESIGNED) &&
+           (good || strcmp(error.pointer, "/optimization/variable_list/0/parameter") == 0),
        "%s: %s", kind ? "stated as designed" : "stated as measured, it does not vary", error.text);
   }
 }

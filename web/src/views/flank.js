@@ -57,8 +57,14 @@ export class Flank {
     const file = event.dataTransfer?.files[0];
     if (!file || !/\.(csv|tsv|txt)$/i.test(file.name)) return; // files of other programs are the page's
     event.preventDefault();
-    this.store.set(this.#pointer('/grid'), { csv: await file.text() });
+    this.#take(this.#pointer('/grid'), await file.text());
     notice.say(`${file.name} is the grid of this flank now; undo takes it back.`);
+  }
+
+  /** A table in place of the numbers that are there; it is what they were, measured or designed. @param {string} pointer @param {string} csv */
+  #take(pointer, csv) {
+    const kind = this.store.get(pointer)?.kind;
+    this.store.set(pointer, kind ? { csv, kind } : { csv });
   }
 
   /** Of what is on show. @param {string} key */
@@ -147,7 +153,8 @@ export class Flank {
       'aria-label': 'Grid of the flank as CSV',
       placeholder: 'u\\y, -20, 0, 20\n-5, 3, 0, 3\n5, 8, 0, 8',
     });
-    const take = () => this.store.set(pointer, text.value.trim() === '' ? null : { csv: text.value });
+    const take = () =>
+      text.value.trim() === '' ? this.store.set(pointer, null) : this.#take(pointer, text.value);
     return more('Points from a table', [
       h('p.figure-note', null, field.help ?? ''),
       h(
@@ -156,6 +163,7 @@ export class Flank {
         'First row: places along the face in mm; each further row: its place on the profile, then µm.',
       ),
       h('p.figure-note', null, now ? 'This flank has a grid.' : 'This flank has no grid.'),
+      now ? this.fields.field(`${pointer}/kind`) : null,
       text,
       h(
         '.switches',
