@@ -234,9 +234,11 @@ class Client:
         return self.transport.request("POST", path, document=design, query=query, accept="*/*").body
 
     @operation("reportDesign")
-    def report(self, design: Design, *, easeoff_lane: str | None = None) -> str:
-        """One HTML file a reviewer can check, as `easeoff report` writes it; waits while the pair is prepared."""
-        return self._computed("POST", "/report", document=design, lane=easeoff_lane, accept="text/html").text
+    def report(self, design: Design, *, units: str | None = None, easeoff_lane: str | None = None) -> str:
+        """One HTML file a reviewer can check, as `easeoff report` writes it; waits while the pair is prepared. units:
+        "inch" for lengths in inches."""
+        query = {"units": units}
+        return self._computed("POST", "/report", document=design, query=query, lane=easeoff_lane, accept="text/html").text
 
     @operation("importDesign")
     def import_design(
