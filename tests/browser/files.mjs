@@ -114,6 +114,54 @@ await chapter('a grid on a flank', async () => {
   ok(true, 'undo takes it back');
 });
 
+/** What a figure saves as CSV: rows of cells. */
+async function tableOf(title) {
+  const figure = page.locator('.figure', { has: page.locator('h3', { hasText: title }) }).first();
+  await figure.scrollIntoViewIfNeeded();
+  await figure.getByRole('button', { name: /: menu$/ }).click();
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('menuitem', { name: 'Save as CSV' }).click(),
+  ]);
+  const text = await readFile(await download.path(), 'utf8');
+  return text
+    .trim()
+    .split('\n')
+    .filter(line => !line.startsWith('#'))
+    .map(line => line.split(','));
+}
+
+await chapter('a grid is seen in charts and in space', async () => {
+  const pair =
+    'gear_pair.pinion_teeth=23&gear_pair.gear_teeth=61&gear_pair.normal_module_mm=5&gear_pair.helix_angle_deg=30&' +
+    'gear_pair.face_width_mm=60';
+  await open(`#design?from=narrow&${pair}&${LOOSE}`);
+  await settled(page);
+  await page.getByLabel('left = right').uncheck();
+  await page.locator('.flank').getByText('gear', { exact: true }).first().click();
+  const before = await tableOf('Ease-off');
+  // nothing at mid face, nothing at the pitch point: profile and lead say nothing of it
+  const csv = 'u\\y, -30, 0, 30\n-9, 0, 0, 0\n0, 0, 0, 0\n9, 0, 0, 40\n';
+  await drop(page, '.flank', [{ name: 'corner.csv', text: csv }]);
+  await page.waitForFunction(() => /corner|"csv"|grid/.test(decodeURIComponent(location.hash)));
+  await page.locator('.figure', { hasText: 'thin: at both face ends' }).first().waitFor();
+  const profile = page.locator('.figure', { has: page.locator('h3', { hasText: 'Profile modification' }) }).first();
+  ok(await profile.getByLabel('gear', { exact: true }).isChecked(), 'the charts turn to the flank that is worked on');
+  const after = await tableOf('Ease-off');
+  const rows = after.slice(1).map(([end, s, eta, taken], i) => {
+    return [end, Number(s), Number(eta), Number(taken) - Number(before[i + 1][3])];
+  });
+  const left = rows.filter(([end]) => end === 'left');
+  const most = left.reduce((best, row) => (row[3] > best[3] ? row : best));
+  const other = rows.filter(([end]) => end === 'right').reduce((best, row) => Math.max(best, Math.abs(row[3])), 0);
+  ok(most[3] > 15 && most[2] > 29, `deepest where the grid is, ${most[3]} µm at eta ${most[2]} mm`);
+  const middle = left.filter(([, , eta]) => Math.abs(eta) < 1e-6);
+  ok(middle.every(row => Math.abs(row[3]) < 0.05), 'nothing in mid face');
+  const sOf = left.filter(([, , eta]) => eta > 29);
+  ok(sOf[0][3] > sOf[sOf.length - 1][3] + 10, 'at the tip of the gear, which is the root of the pinion');
+  ok(other < 1e-9, `and nothing on the other end: ${other}`);
+});
+
 await chapter('recordings on the rig', async () => {
   const plain = await (await fetch(`${server.address}api/v1/examples/paper-case-a`)).json();
   const design = { ...plain, resolution: { ...plain.resolution, ...COARSE } };

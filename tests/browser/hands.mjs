@@ -153,6 +153,11 @@ await chapter('every kind of field', async () => {
     'what can be read in two ways is asked about',
   );
   await page.keyboard.press('Control+z');
+  await field('Pinion teeth').fill('0');
+  await field('Pinion teeth').blur();
+  await banner.waitFor();
+  await page.keyboard.press('Control+z');
+  ok((await field('Pinion teeth').inputValue()) === '17', 'undo gives it up from elsewhere too');
   await page.locator('summary', { hasText: 'More of the pair' }).click();
   const name = field('Name');
   await name.fill('歯車 <b>HTML</b>');
@@ -220,6 +225,24 @@ await chapter('a fault of the service is shown and led to', async () => {
     .first()
     .evaluate(each => getComputedStyle(each).fontWeight);
   ok(Number(weight) < 600, 'old numbers are not as bold as those that hold');
+});
+
+await chapter('a fault is said where the edit was', async () => {
+  await open();
+  await settled();
+  await page.locator('summary', { hasText: 'Supports' }).click();
+  await field('Load stiffness').fill('5e5');
+  await field('Load stiffness').press('Enter');
+  await banner.waitFor();
+  const row = page.locator('.field', { has: field('Load stiffness') });
+  ok(/inertia/.test(await row.locator('.fault').innerText()), 'what it does not go with stands at it');
+  await field('Load stiffness').blur();
+  await banner.getByRole('button', { name: 'Load stiffness' }).click();
+  ok(await field('Load stiffness').evaluate(input => input === document.activeElement), 'the banner leads to it');
+  await banner.getByRole('button', { name: 'Load inertia' }).click();
+  ok(await field('Load inertia').evaluate(input => input === document.activeElement), 'and to the one that is missing');
+  await page.keyboard.press('Control+z');
+  await banner.waitFor({ state: 'hidden' });
 });
 
 await chapter('load cases are pasted', async () => {

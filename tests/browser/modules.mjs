@@ -3,7 +3,7 @@
 import { readPlace, writePlace, putDifference, takeDifference } from '../../web/src/base/address.js';
 import { change, changeText, duration, labelOf, plain, sig } from '../../web/src/base/format.js';
 import { halfAngle, halfTooth } from '../../web/src/base/involute.js';
-import { leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
+import { differences, leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
 import { guess } from '../../web/src/base/recording.js';
 import { parseNumber, readQuantity } from '../../web/src/base/quantity.js';
 import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
@@ -57,6 +57,42 @@ for (const [metric, inch] of [
 ])
   is(shownSentence(metric), inch, 'a sentence in inches');
 useInches(false);
+
+// ---- where two documents differ ----
+is(
+  differences(
+    { a: 1, b: { c: 2, d: [1, 2] }, e: [{ f: 1 }, { f: 2 }], g: 'x' },
+    { a: 1, b: { c: 3, d: [1, 5] }, e: [{ f: 1 }, { f: 4 }], h: { i: 5 } },
+  ),
+  ['/b/c', '/b/d/1', '/e/1/f', '/g', '/h/i'],
+  'numbers, elements, what is there in one alone',
+);
+is(differences({ e: [1] }, { e: [1, 2] }), ['/e'], 'a list of another length as a whole');
+is(differences({ a: { b: null } }, { a: { b: 3 } }), ['/a/b'], 'a number in place of none');
+is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind');
+
+// ---- what is taken off a flank, at any place ----
+{
+  const { runsLeft, faceRunsLeft, takenOff } = await import('../../web/src/figures/flanks.js');
+  const flank = { profile_um: [4, 0, 6], lead_um: [1, 0, 3], surface_um: null, coast: null };
+  const surface = [
+    [0, 10],
+    [20, 50],
+  ];
+  const member = { u_mm: [-2, 0, 2], surface_u_mm: [-2, 2], left: flank, right: { ...flank, surface_um: surface } };
+  const result = { modification: { eta_mm: [-10, 0, 10], surface_eta_mm: [-10, 10], pinion: member, gear: member } };
+  const at = (end, side, ...place) => takenOff(result, 'pinion', end, side, [-10, 0, 10])(...place);
+  near(at('left', 'drive', 1, -5), 3.5, 1e-12, 'profile and lead where they add up');
+  near(at('right', 'drive', 0, 0), 20, 1e-12, 'the surface where profiles vary over the face');
+  near(at('right', 'drive', 2, 10), 50, 1e-12, 'its corner');
+  near(at('left', 'coast', 1, -5), 0, 0, 'a coast flank that is not modified');
+  const outer = { flank: 'drive', axial: { meets_first: 'outer' } };
+  const inner = { flank: 'coast', axial: { meets_first: 'inner' } };
+  is([runsLeft(outer, 'left', true), runsLeft(outer, 'right', true)], [true, false], 'eta outwards');
+  is([runsLeft(inner, 'left', true), runsLeft(inner, 'right', true)], [false, true], 'eta inwards');
+  is([faceRunsLeft(outer, 'left', true), faceRunsLeft(inner, 'left', true)], [true, true], 'y belongs to the body');
+  is(runsLeft({ axial: { meets_first: 'left' } }, 'left', false), true, 'of one end');
+}
 
 // ---- jobs: answers, lists and events in any order ----
 {

@@ -24,6 +24,7 @@ function loadKey(design) {
 
 export class Analyst extends EventTarget {
   /** @type {Page.Result | null} */ result = null;
+  /** The last design that had a result. @type {Api.Design | null} */ possible = null;
   /** @type {Page.Result | null} */ plain = null;
   /** @type {Page.Result | null} */ pinned = null;
   /** "", "busy", "preparing", "refused" */ state = '';
@@ -48,10 +49,11 @@ export class Analyst extends EventTarget {
     this.own = new Lane({
       result: (task, data, ms) => {
         this.result = data;
+        this.possible = /** @type {Api.Design} */ (task.body);
         this.partial = task.note === 'stroke';
         this.ms = ms;
         this.refusal = null;
-        this.#state('');
+        this.#state(this.store.faults.size ? 'refused' : ''); // of the design before what is typed now
         this.#tell('result');
         clearTimeout(this.#rest);
         if (this.partial) return;

@@ -37,6 +37,23 @@ export function same(a, b) {
 }
 
 /**
+ * Where two documents differ: pointers to numbers, words and flags, or to lists of unlike length.
+ * @param {any} a
+ * @param {any} b
+ * @param {string} [pointer]
+ * @returns {string[]}
+ */
+export function differences(a, b, pointer = '') {
+  if (same(a, b)) return [];
+  const parts = [a, b].filter(each => each !== null && typeof each === 'object');
+  const alike = new Set(parts.map(part => (Array.isArray(part) ? part.length : -1))).size === 1;
+  const absent = [a, b].every(each => each === undefined || each === null || parts.includes(each));
+  if (!alike || !absent) return [pointer];
+  const keys = new Set(parts.flatMap(part => Object.keys(part)));
+  return [...keys].flatMap(key => differences(a?.[key], b?.[key], `${pointer}/${key}`));
+}
+
+/**
  * Leaves of a document as "a.b.c" -> value; lists are leaves.
  * @param {any} document
  * @param {string} [prefix]

@@ -9,6 +9,7 @@ import { inInches, shownUnit, shownValue } from '../base/units.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
 import { caseLong, endsOf, faceOf, leanOf, rightPhase, sameCase } from './context.js';
+import { runsLeft } from './flanks.js';
 import { placeTip } from './frame.js';
 
 const PIXELS = [132, 76]; // of one end's picture
@@ -90,14 +91,14 @@ export class Contact {
         top: frame.top,
         width: panelWidth,
         height: panelHeight,
-        mirrored: end === 'left' && ends.length === 2,
+        mirrored: runsLeft(context.result.load_cases[context.loadCase], end, ends.length === 2),
       };
       this.#panels[end] = panel;
       this.#paintEnd(pen, end, panel);
       pen.fillStyle = colour('muted');
       pen.font = SMALL;
       pen.textAlign = 'center';
-      pen.fillText(ends.length === 2 ? `${end} end` : 'face', panel.left + panel.width / 2, height - 6);
+      pen.fillText(ends.length === 2 ? `${end} end` : 'left … face … right', panel.left + panel.width / 2, height - 6);
       const most = context.result.load_cases[context.loadCase].contact.max_pressure_MPa[end];
       pen.fillText(`max ${sig(most, 4)}`, panel.left + panel.width / 2, 11);
     });

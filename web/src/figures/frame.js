@@ -27,6 +27,7 @@ import { csvOf, joinRows } from './table.js';
 export class Frame {
   /** @type {string | undefined} */ #unit;
   /** @type {string} load case or cases, and what else is chosen */ about = '';
+  /** What that is. */ aboutWhat = 'Load case';
 
   /** @param {FrameOptions} options */
   constructor({ title, unit, name, help, good, wide, drawing, controls = [] }) {
@@ -105,7 +106,7 @@ export class Frame {
           panel,
           h('h4', null, this.unit ? `${name}, ${this.unit}` : name),
           sentences.map(text => h('p', null, text)),
-          this.about ? h('p', null, `Load case: ${this.about}.`) : null,
+          this.about ? h('p', null, `${this.aboutWhat}: ${this.about}.`) : null,
           h('p', null, h('a', { href: '#glossary' }, 'All words explained')),
         ),
       ),

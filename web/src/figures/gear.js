@@ -5,6 +5,7 @@ import { halfAngle, halfTooth } from '../base/involute.js';
 import { phase } from '../base/phase.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
+import { flankOf, sideOf, valueAtPlace } from './flanks.js';
 
 const AROUND = 3; // teeth drawn on either side
 const SCALES = [200, 100, 50, 20];
@@ -16,14 +17,15 @@ export class GearDrawing {
   /** @type {Page.Result | null} */ #result = null;
   /** @type {Teeth | null} */ #teeth = null;
   #scale = 100;
+  /** The flanks that carry. @type {import('./flanks.js').Side} */ #side = 'drive';
 
   constructor() {
     this.painting = new Painting(
       {
         title: 'Teeth in mesh',
         help:
-          'Transverse section at mid face; the pinion above drives. The line of action with the points of ' +
-          'contact; in colour what the modification takes off, drawn larger.',
+          'Transverse section at mid face, the pinion above. The line of action with the points of contact; in colour ' +
+          'what the modification takes off the flanks that carry, drawn larger.',
       },
       (pen, width, height) => this.#paint(pen, width, height),
       { label: 'Transverse section of the teeth in mesh', empty: () => this.#result === null },
@@ -33,8 +35,9 @@ export class GearDrawing {
   }
 
   /** @param {import('./context.js').Context} context */
-  set({ result }) {
+  set({ result, loadCase }) {
     this.#result = result;
+    this.#side = sideOf(result.load_cases[loadCase]);
     this.#teeth = null;
     this.painting.repaint();
   }
@@ -43,24 +46,26 @@ export class GearDrawing {
   #profiles() {
     if (this.#teeth) return this.#teeth;
     if (!this.#result) return null;
-    const { geometry: g, design, modification } = this.#result;
-    const largest = Math.max(
-      1,
-      ...[modification?.pinion, modification?.gear].flatMap(member => (member?.left ? member.left.profile_um : [])),
-    );
+    const result = this.#result;
+    const { geometry: g, design, modification } = result;
+    /** @param {Page.Member} member */
+    const profileOf = member => flankOf(result, member, 'left', this.#side)?.profile_um;
+    const largest = Math.max(1, ...(profileOf('pinion') ?? []), ...(profileOf('gear') ?? []));
     this.#scale = SCALES.find(scale => (scale * largest) / 1000 < 0.2 * g.normal_module_mm) ?? 10;
-    /** @param {0 | 1} member @param {Api.MemberCurves | undefined} trace */
-    const modified = (member, trace) =>
-      halfTooth(
+    /** @param {0 | 1} index @param {Page.Member} member */
+    const modified = (index, member) => {
+      const [places, profile] = [modification?.[member]?.u_mm, profileOf(member)];
+      return halfTooth(
         g,
         design.gear_pair,
-        member,
-        sigma => (this.#scale / 1000) * valueAtPlace(trace?.u_mm, trace?.left?.profile_um, g.rack_factor * sigma),
+        index,
+        sigma => (this.#scale / 1000) * valueAtPlace(places, profile, g.rack_factor * sigma),
       );
+    };
     this.#teeth = {
       plain: [halfTooth(g, design.gear_pair, 0), halfTooth(g, design.gear_pair, 1)],
       active: [halfTooth(g, design.gear_pair, 0, () => 0), halfTooth(g, design.gear_pair, 1, () => 0)],
-      modified: [modified(0, modification?.pinion), modified(1, modification?.gear)],
+      modified: [modified(0, 'pinion'), modified(1, 'gear')],
     };
     return this.#teeth;
   }
@@ -185,18 +190,4 @@ export class GearDrawing {
       pen.fill();
     }
   }
-}
-
-/**
- * Linear interpolation, 0 without a curve, its end values outside.
- * @param {number[] | undefined} x
- * @param {number[] | undefined} y
- * @param {number} at
- */
-export function valueAtPlace(x, y, at) {
-  if (!x || !y) return 0;
-  const place = ((at - x[0]) / (x[x.length - 1] - x[0])) * (x.length - 1);
-  const below = Math.min(Math.max(Math.floor(place), 0), x.length - 2);
-  const t = Math.min(Math.max(place - below, 0), 1);
-  return y[below] + t * (y[below + 1] - y[below]);
 }

@@ -4,9 +4,12 @@
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { shownUnit, shownValue, unitInstead } from '../base/units.js';
+import { fill, h } from '../base/dom.js';
+import { flankShown } from '../base/flank_shown.js';
 import { switcher } from '../base/switcher.js';
 import { Painting, SMALL } from './canvas.js';
 import { END_COLOUR, endsOf, faceOf, profileOf } from './context.js';
+import { faceRunsLeft, flankOf, hasCoast, sideOf, surfacePlaces } from './flanks.js';
 import { tickText } from './ticks.js';
 
 /** Grids over what is taken off, in the unit that is shown: ends at least, whole steps of them, and lines. */
@@ -20,26 +23,19 @@ const LINES = { dashed: [5, 4], dotted: [1.5, 3] };
 /** @typedef {{ at: number[], value: number[] }} Trace */
 
 export class ModificationCharts {
-  #member = /** @type {'pinion' | 'gear'} */ ('pinion');
+  #member = /** @type {Page.Member} */ ('pinion');
+  /** Chosen here or worked on in the form; else the flanks that carry. @type {import('./flanks.js').Side | null} */
+  #chosen = null;
+  #controls = h('span.switches');
+  #drawn = '';
   /** @type {import('./context.js').Context | null} */ #context = null;
 
   constructor() {
-    /** @param {string} value */
-    const choose = value => {
-      this.#member = /** @type {'pinion' | 'gear'} */ (value);
+    flankShown.addEventListener('change', () => {
+      this.#member = flankShown.member;
+      this.#chosen = flankShown.side;
       this.#repaint();
-    };
-    const controls = () => [
-      switcher(
-        'Member',
-        [
-          ['pinion', 'pinion'],
-          ['gear', 'gear'],
-        ],
-        this.#member,
-        choose,
-      ),
-    ];
+    });
     this.profile = new Painting(
       {
         title: 'Profile modification',
@@ -47,12 +43,12 @@ export class ModificationCharts {
         help:
           'Material taken off along the profile, to the right, as on an inspection sheet (K-chart): root below, ' +
           'tip above.',
-        controls: controls(),
+        controls: [this.#controls],
       },
       (pen, width, height) => this.#paintProfile(pen, width, height),
       {
         table: () => this.#table('profile_um', 'from the pitch point (mm)'),
-        keys: () => this.#keys(),
+        keys: () => this.#keys('profile_um'),
         empty: () => this.#context === null,
       },
     );
@@ -65,7 +61,7 @@ export class ModificationCharts {
       (pen, width, height) => this.#paintLead(pen, width, height),
       {
         table: () => this.#table('lead_um', 'from mid face (mm)'),
-        keys: () => this.#keys(),
+        keys: () => this.#keys('lead_um'),
         empty: () => this.#context === null,
       },
     );
@@ -78,18 +74,77 @@ export class ModificationCharts {
     this.#repaint();
   }
 
-  /** @returns {import('./sheet.js').Key[]} */
-  #keys() {
+  /** @param {'profile_um' | 'lead_um'} what @returns {import('./sheet.js').Key[]} */
+  #keys(what) {
     const context = this.#context;
     if (!context) return [];
+    const varies = this.#varies(what);
+    const edges = what === 'profile_um' ? 'thin: at both face ends' : 'thin: at root and tip';
     return [
       ...endsOf(context.result).map(end => ({ label: `${end} end`, colour: END_COLOUR[end] })),
+      ...(varies ? [{ label: edges, colour: 'muted' }] : []),
       ...context.references.map(({ label, line }) => ({ label, line, colour: 'reference' })),
     ];
   }
 
+  /** @returns {import('./flanks.js').Side} */
+  get #side() {
+    return this.#chosen ?? sideOf(this.#context?.result.load_cases[this.#context.loadCase]);
+  }
+
+  /**
+   * Said where there are several traces of a flank.
+   * @param {Painting} painting @param {'profile_um' | 'lead_um'} what @param {string} text
+   */
+  #note({ frame }, what, text) {
+    frame.aboutWhat = 'Flank';
+    frame.note.textContent = text;
+    frame.note.hidden = !this.#varies(what);
+  }
+
+  /** @param {'profile_um' | 'lead_um'} what */
+  #varies(what) {
+    return endsOf(/** @type {import('./context.js').Context} */ (this.#context).result).some(
+      end => this.#edges(end, what).length,
+    );
+  }
+
+  #drawControls() {
+    const both = Boolean(this.#context && hasCoast(this.#context.result));
+    const shape = [this.#member, this.#side, both].join();
+    if (shape === this.#drawn) return;
+    this.#drawn = shape;
+    const members = /** @type {[Page.Member, string][]} */ ([
+      ['pinion', 'pinion'],
+      ['gear', 'gear'],
+    ]);
+    const sides = /** @type {['drive' | 'coast', string][]} */ ([
+      ['drive', 'drive'],
+      ['coast', 'coast'],
+    ]);
+    fill(
+      this.#controls,
+      switcher('Member', members, this.#member, value => {
+        this.#member = value;
+        this.#repaint();
+      }),
+      both
+        ? switcher('Flank', sides, this.#side, value => {
+            this.#chosen = value;
+            this.#repaint();
+          })
+        : null,
+    );
+  }
+
   #repaint() {
-    for (const { frame } of [this.profile, this.lead]) frame.about = this.#member;
+    this.#drawControls();
+    if (!this.#context) return;
+    const about = this.#side === 'coast' ? `${this.#member}, coast flank` : this.#member;
+    this.profile.frame.about = about;
+    this.lead.frame.setCase(about);
+    this.#note(this.profile, 'profile_um', 'Thick: in mid face; thin: at both face ends.');
+    this.#note(this.lead, 'lead_um', 'Thick: at the pitch point; thin: at root and tip.');
     this.profile.repaint();
     this.lead.repaint();
   }
@@ -100,9 +155,28 @@ export class ModificationCharts {
   #trace(result, end, what) {
     const modification = result?.modification;
     const member = modification?.[this.#member];
-    const flank = member?.[end];
-    if (!modification || !flank) return null;
+    const flank = flankOf(result, this.#member, end, this.#side);
+    if (!modification || !member) return null;
+    if (!flank) {
+      const at = what === 'profile_um' ? profileOf(member, end) : faceOf(modification, end);
+      return { at, value: at.map(() => 0) };
+    }
     return { at: what === 'profile_um' ? profileOf(member, end) : faceOf(modification, end), value: flank[what] };
+  }
+
+  /**
+   * Where profiles vary over the face: those of both face ends; leads at root and tip.
+   * @param {Page.End} end @param {'profile_um' | 'lead_um'} what @returns {Trace[]}
+   */
+  #edges(end, what) {
+    const { result } = /** @type {import('./context.js').Context} */ (this.#context);
+    const surface = flankOf(result, this.#member, end, this.#side)?.surface_um;
+    if (!surface) return [];
+    const { u, y } = surfacePlaces(result, this.#member, end);
+    const [rows, columns] = [surface.length - 1, surface[0].length - 1];
+    return what === 'profile_um'
+      ? [0, columns].map(j => ({ at: u, value: surface.map(row => row[j]) }))
+      : [0, rows].map(i => ({ at: y, value: surface[i] }));
   }
 
   /** Largest value of all that is drawn, in steps, as it is shown. @param {'profile_um' | 'lead_um'} what */
@@ -113,7 +187,8 @@ export class ModificationCharts {
     let high = least;
     for (const result of [context.result, ...context.references.map(reference => reference.result)]) {
       for (const end of endsOf(context.result)) {
-        for (const taken of this.#trace(result, end, what)?.value ?? []) {
+        const edges = result === context.result ? this.#edges(end, what) : [];
+        for (const taken of [this.#trace(result, end, what), ...edges].flatMap(trace => trace?.value ?? [])) {
           const value = shownValue(taken, 'µm');
           low = Math.min(low, value);
           high = Math.max(high, value);
@@ -170,7 +245,8 @@ export class ModificationCharts {
   #starts(pen, end, left, width, box) {
     const { result } = /** @type {import('./context.js').Context} */ (this.#context);
     const trace = this.#trace(result, end, 'profile_um');
-    const flank = result.design.modification?.[this.#member]?.[end];
+    const drive = result.design.modification?.[this.#member]?.[end];
+    const flank = this.#side === 'coast' ? drive?.coast : drive;
     if (!trace || !flank) return;
     const [bottom, top] = [trace.at[0], trace.at[trace.at.length - 1]];
     pen.strokeStyle = colour('line');
@@ -197,6 +273,7 @@ export class ModificationCharts {
   #paintLead(pen, width, height) {
     if (!this.#context?.result.modification) return;
     const ends = endsOf(this.#context.result);
+    const row = this.#context.result.load_cases[this.#context.loadCase];
     const range = this.#range('lead_um');
     const box = { left: 34, top: 10, height: height - 34 };
     const gap = 22;
@@ -214,14 +291,14 @@ export class ModificationCharts {
         ],
         i === 0 ? value => [box.left - 5, down(value) + 3, 'right'] : undefined,
       );
-      const mirrored = end === 'left' && ends.length === 2;
+      const mirrored = faceRunsLeft(row, end, ends.length === 2);
       this.#traces(pen, end, 'lead_um', (at, value, trace) => {
         const part = (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0]);
         return [left + panelWidth * (mirrored ? 1 - part : part), down(value)];
       });
       pen.fillStyle = colour('muted');
       pen.textAlign = 'center';
-      pen.fillText(ends.length === 2 ? `${end} end` : 'face', left + panelWidth / 2, height - 5);
+      pen.fillText(ends.length === 2 ? `${end} end` : 'left … face … right', left + panelWidth / 2, height - 5);
     });
   }
 
@@ -259,9 +336,8 @@ export class ModificationCharts {
    */
   #traces(pen, end, what, place) {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
-    /** @param {Page.Result} result @param {number[]} dash @param {number} width */
-    const draw = (result, dash, width) => {
-      const trace = this.#trace(result, end, what);
+    /** @param {Trace | null} trace @param {number[]} dash @param {number} width */
+    const draw = (trace, dash, width) => {
       if (!trace) return;
       pen.setLineDash(dash);
       pen.lineWidth = width;
@@ -275,8 +351,10 @@ export class ModificationCharts {
       pen.stroke();
       pen.setLineDash([]);
     };
-    for (const reference of context.references) draw(reference.result, LINES[reference.line], 1.25);
-    draw(context.result, [], 2);
+    for (const reference of context.references)
+      draw(this.#trace(reference.result, end, what), LINES[reference.line], 1.25);
+    for (const edge of this.#edges(end, what)) draw(edge, [], 0.75);
+    draw(this.#trace(context.result, end, what), [], 2);
   }
 
   /** @param {'profile_um' | 'lead_um'} what @param {string} place @returns {(string | number | null)[][]} */

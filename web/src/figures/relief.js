@@ -5,8 +5,8 @@ import { colour } from '../base/theme.js';
 import { shownUnit, shownValue } from '../base/units.js';
 import { SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { endsOf, faceOf, geometryOf, leanOf, profileOf, rightPhase } from './context.js';
-import { valueAtPlace } from './gear.js';
+import { endsOf, faceOf, geometryOf, leanOf, rightPhase } from './context.js';
+import { runsLeft, sideOf, takenOff } from './flanks.js';
 import { tickText, ticks } from './ticks.js';
 
 export const ROWS = 25; // root to tip
@@ -25,15 +25,14 @@ const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
 /**
  * @typedef {object} Surface
  * @property {'left' | 'right'} end
+ * @property {number} width of its face, mm @property {[number, number]} path mm
+ * @property {boolean} outwards eta runs from the groove to the outer face, of one end to the right
  * @property {Float32Array} taken um @property {Float32Array} pressure MPa @property {Float32Array} cycle of touching
  */
-/**
- * @typedef {{ surfaces: Surface[], most: number, depth: number, two: boolean, face: number, path: [number, number] }}
- *   Relief
- */
+/** @typedef {{ surfaces: Surface[], most: number, depth: number, two: boolean, face: number }} Relief */
 
 /**
- * Of all flanks of an end together.
+ * Of the flanks of both members that carry at an end, together.
  * @param {Page.Result} result
  * @param {Page.LoadCase} loadCase
  * @param {'left' | 'right'} end
@@ -43,14 +42,21 @@ function surfaceOf(result, loadCase, end) {
   const { modification } = result;
   const g = geometryOf(result, end);
   const faces = modification ? faceOf(modification, end) : [0, g.face_width_mm];
-  const { pinion = null, gear = null } = modification ?? {};
   const width = faces[faces.length - 1] - faces[0];
+  const side = sideOf(loadCase);
+  const pinion = takenOff(result, 'pinion', end, side, faces);
+  const gear = takenOff(result, 'gear', end, side, faces);
+  const two = endsOf(result).length === 2;
   const pattern = loadCase.contact?.pattern;
   const lean = leanOf(result, end);
   const ahead = end === 'right' ? rightPhase(result) : 0;
   const count = ROWS * COLUMNS;
+  /** @type {Surface} */
   const surface = {
     end,
+    width,
+    path: [g.path_start_mm, g.path_end_mm],
+    outwards: runsLeft(loadCase, end, two) === (two && end === 'left'),
     taken: new Float32Array(count),
     pressure: new Float32Array(count),
     cycle: new Float32Array(count),
@@ -62,11 +68,8 @@ function surfaceOf(result, loadCase, end) {
       const across = j / (COLUMNS - 1);
       const eta = (across - 0.5) * width;
       const at = i * COLUMNS + j;
-      surface.taken[at] =
-        valueAtPlace(pinion ? profileOf(pinion, end) : undefined, pinion?.[end]?.profile_um, g.rack_factor * s) +
-        valueAtPlace(faces, pinion?.[end]?.lead_um, eta) +
-        valueAtPlace(gear ? profileOf(gear, end) : undefined, gear?.[end]?.profile_um, -g.rack_factor * s) +
-        valueAtPlace(faces, gear?.[end]?.lead_um, eta);
+      const y = side === 'coast' ? -eta : eta;
+      surface.taken[at] = pinion(g.rack_factor * s, y) + gear(-g.rack_factor * s, y);
       const grid = pattern?.[end]?.pressure_MPa;
       if (grid) surface.pressure[at] = gridValue(grid, up * (grid.length - 1), across * (grid[0].length - 1));
       surface.cycle[at] = (s - eta * lean) / g.transverse_base_pitch_mm - ahead;
@@ -88,7 +91,6 @@ export function reliefOf({ result, loadCase }) {
     depth: Math.max(LEAST, largest),
     two: ends.length === 2,
     face: g.face_width_mm,
-    path: [g.path_start_mm, g.path_end_mm],
   };
 }
 
@@ -137,7 +139,8 @@ class Projection {
 
 /** @param {Relief} relief @param {Surface} surface @param {number} i @param {number} j @returns {Place} */
 function placeOf(relief, surface, i, j) {
-  const part = j / (COLUMNS - 1);
+  const along = j / (COLUMNS - 1);
+  const part = surface.outwards ? along : 1 - along;
   const out = relief.two ? GAP / 2 + part * FACE : (part - 0.5) * FACE;
   const across = relief.two && surface.end === 'left' ? -out : out;
   return [across, (-TALL * surface.taken[i * COLUMNS + j]) / relief.depth, 0.5 - i / (ROWS - 1)];

@@ -138,13 +138,13 @@ export class Topography {
     if (!relief) return [];
     /** @type {import('./table.js').Rows} */
     const rows = [['end', 's (mm)', 'eta (mm)', 'taken off (µm)', 'pressure (MPa)']];
-    for (const { end, taken, pressure } of relief.surfaces)
+    for (const { end, taken, pressure, path, width } of relief.surfaces)
       taken.forEach((depth, at) => {
         const [i, j] = [Math.floor(at / COLUMNS), at % COLUMNS];
         rows.push([
           end,
-          relief.path[0] + (i / (ROWS - 1)) * (relief.path[1] - relief.path[0]),
-          (j / (COLUMNS - 1) - 0.5) * relief.face,
+          path[0] + (i / (ROWS - 1)) * (path[1] - path[0]),
+          (j / (COLUMNS - 1) - 0.5) * width,
           depth,
           pressure[at],
         ]);

@@ -74,6 +74,7 @@ export class FieldSet {
   /** @param {import('./form.js').Control} control */
   #add(control) {
     this.#controls.push(control);
+    control.element.dataset.pointer = control.pointer; // whose row it is, for whoever looks at the page from outside
     this.form.add(control);
     return control.element;
   }

@@ -16,7 +16,16 @@ import { unfold } from './group.js';
  * @property {() => void} refresh
  * @property {Entry} [entry] of what is typed
  */
-/** @typedef {{ pointer: string, detail: string, name: string, lead: (() => void) | null }} Trouble */
+/** @typedef {{ name: string, lead: () => void }} Place a field and the way to it */
+/**
+ * @typedef {{ pointer: string, detail: string, name: string, lead: (() => void) | null, after: Place[] }} Trouble
+ *   after: what was changed, where that is not the field of the fault
+ */
+
+const MOST_CHANGES = 4; // fields, of the design that was possible, that a fault is said at: one edit, of both ends
+
+/** Whether one lies in the other, or they are the same. @param {string} a @param {string} b */
+const related = (a, b) => `${a}/`.startsWith(`${b}/`) || `${b}/`.startsWith(`${a}/`);
 
 export class Form {
   /** @type {Set<Control>} */ #controls = new Set();
@@ -68,38 +77,60 @@ export class Form {
     for (const control of this.#controls) control.entry?.flush();
   }
 
-  /** What is typed in this field and not yet a value is given up. @param {EventTarget | null} target */
+  /**
+   * What is typed and not yet a value is given up: in this field, else where the last fault is.
+   * @param {EventTarget | null} target
+   */
   giveUp(target) {
-    for (const { entry, pointer } of this.#controls) {
-      const here = entry?.host.inputs.some(input => input === target);
-      if (!entry || !here || !(entry.waiting || this.store.faults.has(pointer))) continue;
-      entry.forget();
-      return true;
-    }
-    return false;
+    const { faults } = this.store;
+    const open = [...this.#controls].filter(({ entry, pointer }) => entry && (entry.waiting || faults.has(pointer)));
+    const last = [...faults.keys()].pop();
+    const chosen =
+      open.find(({ entry }) => entry?.host.inputs.some(input => input === target)) ??
+      open.find(({ pointer }) => pointer === last);
+    chosen?.entry?.forget();
+    return Boolean(chosen);
   }
 
   /**
-   * Faults of typed texts and of the service at their fields.
+   * Faults of typed texts and of the service at their fields; and at what was changed last, where the service has them
+   * at another field that the change does not go with.
    * @param {import('../base/api.js').Fault[]} faults of the service
+   * @param {string[]} [changed] in which the design differs from the last one that was possible
    * @returns {Trouble[]} all of them, with the way to their field
    */
-  showFaults(faults) {
+  showFaults(faults, changed = []) {
     const texts = new Map([
       ...faults.map(fault => /** @type {[string, string]} */ ([fault.pointer, fault.detail])),
       ...this.store.faults,
     ]);
+    const after = changed.length > MOST_CHANGES ? [] : this.#elsewhere(texts, changed);
+    const said = [...texts].map(([pointer, detail]) => ({ pointer, detail, name: this.#nameOf(pointer) }));
+    const whole = said.map(({ name, detail }) => `${name}: ${detail}`).join(' ');
+    for (const { pointer } of after) texts.set(pointer, whole);
     for (const { pointer, fault, input } of this.#controls) {
       const text = texts.get(pointer) ?? '';
       if (fault.textContent !== text) fault.textContent = text;
       input.setAttribute('aria-invalid', String(text !== ''));
     }
-    return [...texts].map(([pointer, detail]) => ({
-      pointer,
-      detail,
-      name: this.#find(pointer)?.name ?? labelOf(pointer.split('/').pop() ?? ''),
-      lead: pointer && this.finders.length ? () => this.lead(pointer) : null,
+    return said.map(trouble => ({
+      ...trouble,
+      lead: trouble.pointer && this.finders.length ? () => this.lead(trouble.pointer) : null,
+      after: after.map(({ name, pointer }) => ({ name, lead: () => this.lead(pointer) })),
     }));
+  }
+
+  /** @param {string} pointer */
+  #nameOf(pointer) {
+    return this.#find(pointer)?.name ?? labelOf(pointer.split('/').pop() ?? '');
+  }
+
+  /** Fields that were changed while every fault is at others. @param {Map<string, string>} texts @param {string[]} changed */
+  #elsewhere(texts, changed) {
+    const places = [...texts.keys()].map(pointer => pointer.replace('/right/', '/left/'));
+    const fields = [...this.#controls].filter(({ pointer }) => changed.some(each => related(each, pointer)));
+    const met = fields.some(({ pointer }) => places.some(place => related(place, pointer.replace('/right/', '/left/'))));
+    return met || !texts.size ? [] : fields;
   }
 
   /** What the service remarks about a value, at its field. @param {{ key: string, text: string }[]} findings */

@@ -32,7 +32,7 @@ export class Shell {
     this.app = app;
     this.menu = new DesignMenu(app);
     this.pins = new Pins(app);
-    this.undo = this.#icon('↶', 'Undo', 'Ctrl+Z', () => app.store.undo());
+    this.undo = this.#icon('↶', 'Undo', 'Ctrl+Z', () => this.#takeBack(null));
     this.redo = this.#icon('↷', 'Redo', 'Ctrl+Shift+Z', () => app.store.redo());
     this.tabs = h(
       'nav.tabs',
@@ -149,7 +149,7 @@ export class Shell {
     this.menu.refresh();
     this.pins.refresh();
     document.title = `${store.design.name || 'unnamed'} – Easeoff`;
-    this.undo.disabled = !store.canUndo;
+    this.undo.disabled = !store.canUndo && !store.faults.size;
     this.redo.disabled = !store.canRedo;
     for (const tab of /** @type {HTMLCollectionOf<HTMLElement>} */ (this.tabs.children)) {
       const here = tab.dataset.view === current;
@@ -203,7 +203,7 @@ export class Shell {
   #key(event) {
     if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
     const key = event.key.toLowerCase();
-    const { store, form } = this.app;
+    const { store } = this.app;
     if (key === 's') {
       event.preventDefault();
       this.app.attempt(() => this.menu.save());
@@ -212,6 +212,12 @@ export class Shell {
     if (key !== 'z' && key !== 'y') return;
     event.preventDefault();
     if (key === 'y' || event.shiftKey) store.redo();
-    else if (!form.giveUp(event.target)) store.undo(); // what is typed and no value yet is taken back first
+    else this.#takeBack(event.target);
+  }
+
+  /** What is typed and no value yet is taken back first. @param {EventTarget | null} target */
+  #takeBack(target) {
+    const { store, form } = this.app;
+    if (!form.giveUp(target)) store.undo();
   }
 }

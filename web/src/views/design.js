@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Design view: parameters left, numbers above, figures right; on a narrow screen one below the other.
 import { fill, h } from '../base/dom.js';
+import { differences } from '../base/pointer.js';
 import { units } from '../base/units.js';
 import { caseLong, mainCase } from '../figures/context.js';
 import { subject } from '../figures/subject.js';
@@ -13,6 +14,9 @@ const AGAIN = 2000; // ms after which figures that could not be fetched are aske
 
 /** @typedef {import('./results.js').Results} Results */
 
+/** @param {import('../form/form.js').Place} place */
+const link = ({ name, lead }) => h('button.link', { type: 'button', onclick: lead }, name);
+
 /** What is not possible, each with the way to its field. */
 class TroubleLine {
   constructor() {
@@ -24,8 +28,14 @@ class TroubleLine {
     this.element.hidden = troubles.length === 0 && message === '';
     fill(
       this.element,
-      troubles.map(({ name, detail, lead }) =>
-        h('p', null, lead ? h('button.link', { type: 'button', onclick: lead }, name) : name, `: ${detail}`),
+      troubles.map(({ name, detail, lead, after }) =>
+        h('p', null, [
+          lead ? link({ name, lead }) : name,
+          `: ${detail}`,
+          after.length ? ' It was possible before a change of ' : null,
+          after.map((place, i) => [i ? ', ' : '', link(place)]),
+          after.length ? '.' : null,
+        ]),
       ),
       troubles.length ? null : message,
       this.element.hidden ? null : h('small', null, 'The figures show the last design that was possible.'),
@@ -154,7 +164,8 @@ class DesignView {
     const { analyst, form } = this.app;
     const refused = analyst.state === 'refused';
     const preparing = analyst.state === 'preparing';
-    const troubles = form.showFaults(refused ? analyst.faults : []);
+    const changed = refused && analyst.possible ? differences(analyst.possible, this.app.store.design) : [];
+    const troubles = form.showFaults(refused ? analyst.faults : [], changed);
     this.trouble.show(troubles, refused && !troubles.length ? analyst.message : '');
     this.element.classList.toggle('refused', refused);
     this.element.classList.toggle('preparing', preparing);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The modification of the flanks: which member, which end, sliders for what is moved most.
 import { fill, h } from '../base/dom.js';
+import { flankShown } from '../base/flank_shown.js';
 import { notice } from '../base/notice.js';
 import { valueAt } from '../base/pointer.js';
 import { fieldAt } from '../base/schema.js';
@@ -90,7 +91,8 @@ export class Flank {
     this.tieLabel.hidden = !two;
     const split = two && !this.store.tied;
     const end = split ? this.#end : 'left';
-    const grid = Boolean(this.store.get(`/modification/${this.#member}/${end}/grid`));
+    const grid = Boolean(this.store.get(this.#pointer('/grid')));
+    flankShown.set(/** @type {Page.Member} */ (this.#member), this.#side === COAST ? COAST : 'drive');
     const shape = JSON.stringify([this.#member, split, end, this.#side, grid]);
     if (shape === this.#shape) return;
     this.#shape = shape;
