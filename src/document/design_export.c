@@ -266,7 +266,8 @@ static void write_topography(const struct eo_design *design, const struct eo_geo
 }
 
 /* Everything that is taken off a flank as a table that the key grid of a flank takes as csv: u over rows, y over
-   columns. */
+   columns. Somewhat beyond the active profile, where flanks that do not fit each other still touch: a grid goes on with
+   its border value. */
 static void write_flank_grid(const struct eo_design *design, const struct eo_geometry *geometry,
                              enum eo_flank_side side, int member, int end, const int size[2], struct eo_text *text)
 {
@@ -276,7 +277,9 @@ static void write_flank_grid(const struct eo_design *design, const struct eo_geo
   struct eo_flank_spline *spline = NULL;
   double *delta = malloc(sizeof *delta * (size_t)size[0] * (size_t)size[1]);
   text->failed = text->failed || !delta || eo_flank_shape(design, &half, side, member, end, &shape, &spline);
-  eo_active_profile(geometry, member, ends);
+  eo_active_profile(&half, member, ends);
+  ends[EO_ROOT_SIDE] -= half.normal_module / 10;
+  ends[EO_TIP_SIDE] += half.normal_module / 10;
   for (int j = 0; j < size[1]; j++)
     y[j] = half.member_width[member] * ((double)j / (size[1] - 1) - 0.5);
   for (int i = 0; i < size[0] && !text->failed; i++) {

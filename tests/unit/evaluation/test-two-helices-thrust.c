@@ -3,6 +3,8 @@
    is held: what a mirrored design does, and the balance of forces by hand. A pair that nobody published; closed-form
    compliance. */
 #include "document/design_document.h"
+#include "document/design_export.h"
+#include "document/flank_grid_document.h"
 #include "evaluation/evaluator.h"
 #include "flexibility/closed_form.h"
 #include "format/json.h"
@@ -293,6 +295,58 @@ static void test_between(void)
   eo_pair_free(pair);
 }
 
+/* The table of one flank in an export of all. */
+static json_t *find_table(const char *text, int member, int end)
+{
+  struct eo_error error;
+  char heading[60];
+  snprintf(heading, sizeof heading, "# %s, %s, drive flank\n", member ? "gear" : "pinion", end ? "right" : "left");
+  const char *at = strstr(text, heading);
+  const char *next = at ? strstr(at + 1, "#") : NULL;
+  char *own = at ? strndup(at, next ? (size_t)(next - at) : strlen(at)) : NULL;
+  json_t *table = own ? eo_flank_grid_from_text(own, &error) : NULL;
+  free(own);
+  return table;
+}
+
+/* Flanks without a kink, exported as tables and read as grids, are the same flanks. */
+static void test_sampled(void)
+{
+  static struct eo_faults faults;
+  struct eo_design named = plain_design(EO_AXIAL_FLOATING), sampled = named;
+  struct eo_text text = {0};
+  struct eo_geometry geometry;
+  struct eo_error error;
+  const struct eo_flank_modification flank = {
+      .twist = 12e-6, .profile_slope = 5e-6, .helix_slope = -7e-6, .profile_barrel = 6e-6, .lead_crowning = 8e-6};
+  for (int end = 0; end < 2; end++) {
+    named.modification.flank[EO_PINION][end] = flank;
+    named.modification.flank[EO_GEAR][end].profile_barrel = 4e-6;
+    named.modification.flank[EO_GEAR][end].helix_slope = 3e-6;
+  }
+  named.load_case[0].torque = sampled.load_case[0].torque = 1500; /* enough for tip edges */
+  struct eo_pair *pair = prepare(&named);
+  if (eo_design_complete(&named, &geometry, &error) ||
+      eo_export_write(eo_export_find("flank-grids"), &named, &geometry, 25, 31, &text, &error))
+    stop(&error);
+  json_t *modification = json_object();
+  for (int k = 0; k < 4; k++) {
+    const char *member = k / 2 ? "gear" : "pinion", *end = k % 2 ? "right" : "left";
+    if (!json_object_get(modification, member))
+      json_object_set_new(modification, member, json_object());
+    json_object_set_new(json_object_get(modification, member), end,
+                        json_pack("{s:o}", "grid", find_table(text.data, k / 2, k % 2)));
+  }
+  eo_flank_grids_decode(modification, 2, &sampled.grids, &faults);
+  json_decref(modification);
+  eo_text_done(&text);
+  struct answer a = solve(pair, &named), b = solve(pair, &sampled);
+  close_to(1e9 * worst(a.approach[0], b.approach[0]), 0, 2, "flanks exported and read as grids, left, nm");
+  close_to(1e9 * worst(a.approach[1], b.approach[1]), 0, 2, "right, nm");
+  close_to(1e9 * worst(a.transmission, b.transmission), 0, 2, "their transmission error, nm");
+  eo_pair_free(pair);
+}
+
 static void test_too_much(void)
 {
   struct eo_design design = plain_design(EO_AXIAL_FLOATING);
@@ -330,6 +384,7 @@ int main(void)
   test_balance(EO_AXIAL_SPRING, "sprung");
   test_held();
   test_between();
+  test_sampled();
   test_too_much();
   return tap_done();
 }
