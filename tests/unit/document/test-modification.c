@@ -340,6 +340,8 @@ static void test_export(void)
   eo_modification_init(&shape, &geometry, EO_GEAR, &design.modification.coast[EO_GEAR][EO_LEFT]);
   eo_flank_shape(&back, &geometry, EO_COAST_FLANK, EO_GEAR, EO_LEFT, &again, &spline);
   eo_active_profile(&geometry, EO_GEAR, end);
+  end[0] -= geometry.normal_module / 10;
+  end[1] += geometry.normal_module / 10;
   for (int i = 0; i < 15; i++)
     for (int j = 0; j < 9; j++) {
       double u = end[0] + (end[1] - end[0]) * i / 14, y = geometry.face_width * (j / 8. - 0.5);
