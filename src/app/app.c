@@ -111,6 +111,8 @@ void *eo_app_request(size_t size, int *status)
 int eo_app_fail_all(const char *file, const struct eo_faults *faults)
 {
   int shown = faults->count < EO_MAX_FAULTS ? faults->count : EO_MAX_FAULTS;
+  if (faults->fault[0].code == EO_ERROR_MEMORY)
+    return eo_app_fail(file, &faults->fault[0]);
   for (int i = 0; i < shown; i++)
     eo_app_fail(file, &faults->fault[i]);
   if (shown < faults->count)

@@ -166,7 +166,7 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   json_t *metric = eo_inch_is_used(document) ? eo_inch_to_mm(document, faults) : json_incref((json_t *)document);
   if (faults->count || !metric) {
     if (!metric)
-      eo_faults_add(faults, "", "There is not enough memory for the document.");
+      eo_faults_memory(faults);
     json_decref(metric);
     return false;
   }
@@ -174,7 +174,7 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   json_decref(metric);
   bool good = current && decode_current(current, design, warnings, faults);
   if (!current)
-    eo_faults_add(faults, "", "There is not enough memory for the document.");
+    eo_faults_memory(faults);
   json_decref(current);
   for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
     eo_inch_place(document, &faults->fault[i]);

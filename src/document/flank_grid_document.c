@@ -233,6 +233,8 @@ static void decode_grid(const json_t *object, const struct eo_path *path, struct
   else if (json_string_length(text) >= MOST_TEXT)
     eo_faults_at(faults, &place, "A table of %zu bytes is longer than the %d allowed.", json_string_length(text),
                  MOST_TEXT - 1);
+  else if (error.code == EO_ERROR_MEMORY)
+    eo_faults_memory(faults);
   else
     eo_faults_at(faults, &place, "%s", error.text);
   json_decref(read);

@@ -239,7 +239,7 @@ static void decode_series(const struct eo_field *field, const json_t *value, con
   int count = (int)json_array_size(value);
   double *number = calloc(count ? (size_t)count : 1, sizeof *number);
   if (!number) {
-    eo_faults_at(faults, path, "Not enough memory for %d numbers.", count);
+    eo_faults_memory(faults);
     return;
   }
   read_numbers(value, field, field->series_low, field->series_high, path, count, number, faults);
@@ -254,7 +254,7 @@ static void decode_matrix(const struct eo_field *field, const json_t *value, con
   size_t rows = json_array_size(value), columns = json_array_size(json_array_get(value, 0));
   double *number = calloc(rows * columns + 1, sizeof *number);
   if (!number) {
-    eo_faults_at(faults, path, "Not enough memory for %zu numbers.", rows * columns);
+    eo_faults_memory(faults);
     return;
   }
   for (size_t i = 0; i < rows; i++) {
@@ -415,7 +415,7 @@ static void decode_scaled(const struct eo_field *field, const json_t *value, con
   if (scaled)
     decode_field(field, scaled, path, target, faults);
   else
-    eo_faults_at(faults, path, "Not enough memory.");
+    eo_faults_memory(faults);
   json_decref(scaled);
 }
 

@@ -28,6 +28,12 @@ void eo_faults_add(struct eo_faults *faults, const char *pointer, const char *fo
   va_end(arguments);
 }
 
+void eo_faults_memory(struct eo_faults *faults)
+{
+  eo_error_memory(&faults->fault[0]);
+  faults->count = faults->count ? faults->count : 1;
+}
+
 enum eo_code eo_faults_first(const struct eo_faults *faults, struct eo_error *error)
 {
   if (!faults->count)

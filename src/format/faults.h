@@ -16,6 +16,9 @@ struct eo_faults {
 void eo_faults_add(struct eo_faults *faults, const char *pointer, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* There was no memory to look at all: that is the first fault then, and no fault of the input. */
+void eo_faults_memory(struct eo_faults *faults);
+
 /* EO_OK without faults; else copies the first into *error and returns its code. */
 enum eo_code eo_faults_first(const struct eo_faults *faults, struct eo_error *error);
 

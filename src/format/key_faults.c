@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/key_faults.h"
 
+#include <stdio.h>
 #include <string.h>
-
-#include "format/text.h"
 
 /* Levenshtein's distance between two keys, at most 63 bytes of each. */
 static int key_distance(const char *a, const char *b)
@@ -47,9 +46,10 @@ void eo_key_unknown(const struct eo_table *table, const char *key, const struct 
 
 void eo_key_missing(const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults)
 {
-  struct eo_text keys = {0};
-  for (int i = 0; field->instead && field->instead[i]; i++)
-    eo_text_print(&keys, "%s%s", i ? ", " : " In its place: ", field->instead[i]);
-  eo_faults_at(faults, path, "This key is required.%s%s", keys.data ? keys.data : "", keys.data ? "." : "");
-  eo_text_done(&keys);
+  char keys[400] = "";
+  size_t length = 0;
+  for (int i = 0; field->instead && field->instead[i] && length < sizeof keys; i++)
+    length += (size_t)snprintf(keys + length, sizeof keys - length, "%s%s",
+                               i ? ", " : " In its place: ", field->instead[i]);
+  eo_faults_at(faults, path, "This key is required.%s%s", keys, *keys ? "." : "");
 }

@@ -112,6 +112,11 @@ void eo_reply_problem(struct eo_reply *reply, unsigned status, const char *name,
 
 void eo_reply_faults(struct eo_reply *reply, const char *path, const struct eo_faults *faults)
 {
+  struct eo_error first;
+  if (eo_faults_first(faults, &first) == EO_ERROR_MEMORY) {
+    eo_reply_error(reply, "", &first);
+    return;
+  }
   char detail[80];
   json_t *errors = json_array();
   int kept = faults->count < EO_MAX_FAULTS ? faults->count : EO_MAX_FAULTS;

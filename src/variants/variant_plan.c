@@ -18,7 +18,7 @@ static void read_base(struct eo_variant_plan *plan, const json_t *design, struct
   plan->base = json_deep_copy(design);
   plan->design = calloc(1, sizeof *plan->design);
   if (!plan->base || !plan->design)
-    eo_faults_add(faults, "", "There is not enough memory.");
+    eo_faults_memory(faults);
   else if (eo_design_decode(design, plan->design, NULL, faults) &&
            eo_design_complete(plan->design, &plan->geometry, &error))
     eo_faults_add(faults, error.pointer, "%s", error.text);
@@ -179,7 +179,7 @@ bool eo_variant_plan_init(struct eo_variant_plan *plan, const json_t *document, 
   const char *table = NULL;
   memset(plan, 0, sizeof *plan);
   if (!order) {
-    eo_faults_add(faults, "", "There is not enough memory.");
+    eo_faults_memory(faults);
     return false;
   }
   if (eo_study_order_decode(document, order, &table, faults)) {
@@ -196,7 +196,7 @@ bool eo_variant_plan_init(struct eo_variant_plan *plan, const json_t *document, 
     if (!faults->count)
       count_rows(plan, faults);
     if (!faults->count && !find_hashes(plan, document))
-      eo_faults_add(faults, "", "There is not enough memory.");
+      eo_faults_memory(faults);
     note_kind(plan);
   }
   eo_study_order_done(order);
