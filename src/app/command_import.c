@@ -37,35 +37,24 @@ static void tell_unused(const json_t *list)
 
 static void tell_pairs(const struct eo_import *import)
 {
-  const json_t *pair;
-  size_t i;
-  json_array_foreach(import->pairs, i, pair)
-  {
-    const char *remark = json_string_value(json_object_get(pair, "remark"));
-    fprintf(stderr, "%s %lld: %s%s%s%s\n", (int)i + 1 == import->pair ? "read" : "pair",
-            (long long)json_integer_value(json_object_get(pair, "number")),
-            json_string_value(json_object_get(pair, "label")),
-            json_integer_value(json_object_get(pair, "ends")) == 2 ? ", double helical" : "", remark ? "; " : "",
-            remark ? remark : "");
+  for (int i = 0; i < import->pairs; i++) {
+    const struct eo_import_pair *pair = &import->pair[i];
+    fprintf(stderr, "%s %d: %s%s%s%s\n", pair->number == import->taken ? "read" : "pair", pair->number, pair->label,
+            pair->ends == 2 ? ", double helical" : "", *pair->remark ? "; " : "", pair->remark);
   }
 }
 
 /* "FILE: line 4, column 2: what is wrong". */
 static void tell_faults(const char *file, const struct eo_import *import)
 {
-  const json_t *fault;
-  size_t i;
-  json_array_foreach(import->faults, i, fault)
-  {
-    long long line = json_integer_value(json_object_get(fault, "line")),
-              column = json_integer_value(json_object_get(fault, "column"));
-    const char *pointer = json_string_value(json_object_get(fault, "pointer"));
+  for (int i = 0; i < import->faults; i++) {
+    const struct eo_import_fault *fault = &import->fault[i];
     fprintf(stderr, "easeoff: %s: ", file);
-    if (line)
-      fprintf(stderr, "line %lld, column %lld: ", line, column);
-    else if (pointer)
-      fprintf(stderr, "%s: ", pointer);
-    fprintf(stderr, "%s\n", json_string_value(json_object_get(fault, "text")));
+    if (fault->line)
+      fprintf(stderr, "line %d, column %d: ", fault->line, fault->column);
+    else if (fault->pointer)
+      fprintf(stderr, "%s: ", fault->pointer);
+    fprintf(stderr, "%s\n", fault->text);
   }
 }
 
@@ -83,7 +72,7 @@ static int save_design(const struct eo_import *import, const char *path)
 
 static int answer(const char *file, const struct eo_import *import, bool json, const char *path)
 {
-  int status = json_array_size(import->faults) ? EO_EXIT_INPUT : EO_EXIT_DONE;
+  int status = import->faults ? EO_EXIT_INPUT : EO_EXIT_DONE;
   if (json) {
     int printed = eo_app_print_json(eo_import_encode(import), false);
     return printed ? printed : status;

@@ -9,6 +9,7 @@
 
 #include "document/design_document.h"
 #include "exchange/table_import.h"
+#include "format/object.h"
 
 static const char *const flanks[] = {"stated", "left", "right", NULL};
 
@@ -24,30 +25,68 @@ static const struct eo_field options[] = {
 };
 const struct eo_table eo_import_options_table = EO_TABLE("import", struct eo_import_options, options);
 
-static const struct eo_outline_row pair_rows[] = {
-    EO_KEY("number", "integer", "by which it is chosen"),
-    EO_KEY("label", "text", "for people"),
-    EO_KEY("ends", "integer", "2: double helical", .when = "of a gear pair"),
-    EO_KEY("pinion", "[integer]", "ids of the driving gears, left end first", .when = "of REXS"),
-    EO_KEY("gear", "[integer]", "ids of the driven gears", .when = "of REXS"),
-    EO_KEY("stages", "[integer]", "ids of the stages", .when = "of REXS"),
-    EO_KEY("importable", "flag", "it can be chosen"),
-    EO_KEY("remark", "text", "what is special about it, or why it cannot be chosen", .when = "where there is one"),
-};
-static const struct eo_outline pair_outline = EO_OUTLINE("ImportPair", pair_rows);
+static json_t *list_ids(int count, const int *id)
+{
+  struct eo_object list = eo_list_open();
+  for (int i = 0; i < count; i++)
+    eo_list_add(&list, json_integer(id[i]));
+  return eo_object_close(&list);
+}
 
-static const struct eo_outline_row fault_rows[] = {
-    EO_KEY("kind", "text", "a word for each kind of fault"),
-    EO_KEY("text", "text", "what is wrong and how it is mended, for people"),
-    EO_KEY("component", "integer", "id", .when = "of a component"),
-    EO_KEY("component_type", "text", "of it", .when = "of a component"),
-    EO_KEY("attribute", "text", "name", .when = "of an attribute"),
-    EO_KEY("relation", "text", "type and first component", .when = "of a relation"),
-    EO_KEY("line", "integer", "of the file", .when = "where it is known"),
-    EO_KEY("column", "integer", "of the file", .when = "where it is known"),
-    EO_KEY("pointer", "text", "JSON pointer in the file", .when = "of JSON"),
+static json_t *write_pinion(const void *source)
+{
+  const struct eo_import_pair *pair = source;
+  return list_ids(pair->ends, pair->pinion);
+}
+
+static json_t *write_gear(const void *source)
+{
+  const struct eo_import_pair *pair = source;
+  return list_ids(pair->ends, pair->gear);
+}
+
+static json_t *write_stages(const void *source)
+{
+  const struct eo_import_pair *pair = source;
+  return list_ids(pair->stages, pair->stage);
+}
+
+static bool is_of_rexs(const void *source)
+{
+  return ((const struct eo_import_pair *)source)->ends != 0;
+}
+
+#define OF_PAIR(member) EO_AT(struct eo_import_pair, member)
+static const struct eo_outline_row pair_rows[] = {
+    EO_KEY("number", "integer", "by which it is chosen", OF_PAIR(number)),
+    EO_KEY("label", "text", "for people", OF_PAIR(label)),
+    EO_KEY("ends", "integer", "2: double helical", .when = "of a gear pair", OF_PAIR(ends), EO_FILLED),
+    EO_KEY("pinion", "[integer]", "ids of the driving gears, left end first", .when = "of REXS", .there = is_of_rexs,
+           .write = write_pinion),
+    EO_KEY("gear", "[integer]", "ids of the driven gears", .when = "of REXS", .there = is_of_rexs, .write = write_gear),
+    EO_KEY("stages", "[integer]", "ids of the stages", .when = "of REXS", .there = is_of_rexs, .write = write_stages),
+    EO_KEY("importable", "flag", "it can be chosen", OF_PAIR(importable)),
+    EO_KEY("remark", "text", "what is special about it, or why it cannot be chosen", .when = "where there is one",
+           OF_PAIR(remark), EO_FILLED),
 };
-static const struct eo_outline fault_outline = EO_OUTLINE("ImportFault", fault_rows);
+const struct eo_outline eo_import_pair_outline = EO_OUTLINE("ImportPair", pair_rows);
+
+#define OF_FAULT(member) EO_AT(struct eo_import_fault, member)
+static const struct eo_outline_row fault_rows[] = {
+    EO_KEY("kind", "text", "a word for each kind of fault", OF_FAULT(kind)),
+    EO_KEY("text", "text", "what is wrong and how it is mended, for people", OF_FAULT(text)),
+    EO_KEY("relation", "text", "type and first component", .when = "of a relation", OF_FAULT(relation), EO_FILLED),
+    EO_KEY("component", "integer", "id; of a relation the one that is not there",
+           .when = "of a component or a relation", OF_FAULT(component), EO_IF(struct eo_import_fault, of_component)),
+    EO_KEY("component_type", "text", "of it", .when = "of a component", OF_FAULT(component_type), EO_FILLED),
+    EO_KEY("attribute", "text", "name", .when = "of an attribute", OF_FAULT(attribute), EO_FILLED),
+    EO_KEY("line", "integer", "of the file", .when = "where it is known", OF_FAULT(line), EO_FILLED),
+    EO_KEY("column", "integer", "of the file", .when = "where it is known", OF_FAULT(column), EO_FILLED),
+    EO_KEY("pointer", "text", "JSON pointer in the file", .when = "of JSON", OF_FAULT(pointer), EO_FILLED),
+    EO_KEY("key", "text", "JSON pointer in the design", .when = "of a pair that cannot be made", OF_FAULT(key),
+           EO_FILLED),
+};
+const struct eo_outline eo_import_fault_outline = EO_OUTLINE("ImportFault", fault_rows);
 
 /* A list or document that the answer shares. */
 #define SHARED(name)                                              \
@@ -55,12 +94,10 @@ static const struct eo_outline fault_outline = EO_OUTLINE("ImportFault", fault_r
   {                                                               \
     return json_incref(((const struct eo_import *)source)->name); \
   }
-SHARED(pairs)
 SHARED(not_used)
 SHARED(refused)
 SHARED(assumed)
 SHARED(notes)
-SHARED(faults)
 
 static json_t *write_design(const void *source)
 {
@@ -71,12 +108,13 @@ static json_t *write_design(const void *source)
 static json_t *write_pair(const void *source)
 {
   const struct eo_import *import = source;
-  return import->pair ? json_integer(import->pair) : json_null();
+  return import->taken ? json_integer(import->taken) : json_null();
 }
 
 static const struct eo_outline_row import_rows[] = {
     EO_KEY("format", "text", "of the file, with its version", EO_AT(struct eo_import, format)),
-    EO_KEY("pairs", "[object]", "what can be chosen", .outline = &pair_outline, .write = write_pairs),
+    EO_KEY("pairs", "[object]", "what can be chosen", .outline = &eo_import_pair_outline,
+           EO_ROWS_AT(struct eo_import, pair, pairs)),
     EO_KEY("pair", "integer?", "number of the one that was read", .write = write_pair),
     EO_KEY("design", "object?", "what the file states of a design; null: see faults", .name = "Design",
            .write = write_design),
@@ -84,8 +122,8 @@ static const struct eo_outline_row import_rows[] = {
     EO_KEY("refused", "[text]", "modifications that a design cannot say; the rest was read", .write = write_refused),
     EO_KEY("not_used", "[text]", "what the file states besides", .write = write_not_used),
     EO_KEY("notes", "[text]", "what was found in reading", .write = write_notes),
-    EO_KEY("faults", "[object]", "what is wrong; nothing was read then", .outline = &fault_outline,
-           .write = write_faults),
+    EO_KEY("faults", "[object]", "what is wrong; nothing was read then", .outline = &eo_import_fault_outline,
+           EO_ROWS_AT(struct eo_import, fault, faults)),
 };
 const struct eo_outline eo_import_outline = EO_OUTLINE("Import", import_rows);
 
@@ -108,17 +146,50 @@ void eo_import_say(struct eo_import *import, json_t *list, const char *format, .
   import->failed = json_array_append_new(list, json_string(clean)) != 0 || import->failed;
 }
 
-json_t *eo_import_fault(struct eo_import *import, const char *kind, const char *format, ...)
+const char *eo_import_text(struct eo_import *import, const char *text)
 {
-  char text[400], clean[400];
+  char clean[400];
+  eo_text_clean(clean, sizeof clean, text);
+  const char *kept = strdup(clean);
+  import->failed = import->failed || !kept;
+  return kept;
+}
+
+/* Room for one more than `count`: doubled where it is full, at every power of two. NULL: none, and all stays. */
+static void *grow(void *rows, int count, size_t size)
+{
+  return count & (count - 1) ? rows : realloc(rows, (count ? 2 * (size_t)count : 1) * size);
+}
+
+struct eo_import_pair *eo_import_list(struct eo_import *import)
+{
+  struct eo_import_pair *pair = grow(import->pair, import->pairs, sizeof *pair);
+  if (!pair) {
+    import->failed = true;
+    return NULL;
+  }
+  import->pair = pair;
+  pair += import->pairs++;
+  *pair = (struct eo_import_pair){.number = import->pairs};
+  return pair;
+}
+
+struct eo_import_fault *eo_import_fault(struct eo_import *import, const char *kind, const char *format, ...)
+{
+  char text[400];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  eo_text_clean(clean, sizeof clean, text);
-  json_t *fault = json_pack("{s:s, s:s}", "kind", kind, "text", clean);
-  import->failed = json_array_append_new(import->faults, fault) != 0 || import->failed;
-  return import->failed ? NULL : fault;
+  struct eo_import_fault *fault = grow(import->fault, import->faults, sizeof *fault);
+  if (!fault) {
+    import->failed = true;
+    return NULL;
+  }
+  import->fault = fault;
+  fault += import->faults++;
+  *fault = (struct eo_import_fault){.kind = kind, .text = eo_import_text(import, text)};
+  return fault;
 }
 
 bool eo_import_has_key(const struct eo_table *table, const char *key)
@@ -137,6 +208,7 @@ static void tell_what_is_left(struct eo_import *import)
   import->failed = import->failed || !faults || !design;
   if (!import->failed)
     eo_design_decode(import->design, design, NULL, faults);
+  import->failed = import->failed || eo_faults_first(faults, NULL) == EO_ERROR_MEMORY;
   for (int i = 0; !import->failed && i < faults->count && i < EO_MAX_FAULTS; i++)
     eo_import_say(import, import->notes, "To be stated or mended before an analysis: %s: %s", faults->fault[i].pointer,
                   faults->fault[i].text);
@@ -144,10 +216,24 @@ static void tell_what_is_left(struct eo_import *import)
   free(design);
 }
 
+static void release(struct eo_import_fault *fault)
+{
+  const char *const text[] = {fault->text,      fault->relation, fault->component_type,
+                              fault->attribute, fault->pointer,  fault->key};
+  for (size_t i = 0; i < sizeof text / sizeof *text; i++)
+    free((char *)text[i]);
+}
+
 void eo_import_done(struct eo_import *import)
 {
-  json_t **const list[] = {&import->pairs,   &import->design, &import->not_used, &import->refused,
-                           &import->assumed, &import->notes,  &import->faults};
+  json_t **const list[] = {&import->design, &import->not_used, &import->refused, &import->assumed, &import->notes};
+  for (int i = 0; i < import->faults; i++)
+    release(&import->fault[i]);
+  free(import->fault);
+  free(import->pair);
+  import->fault = NULL;
+  import->pair = NULL;
+  import->faults = import->pairs = 0;
   for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
     json_decref(*list[i]);
     *list[i] = NULL;
@@ -157,8 +243,7 @@ void eo_import_done(struct eo_import *import)
 bool eo_import_begin(struct eo_import *import)
 {
   memset(import, 0, sizeof *import);
-  json_t **const list[] = {&import->pairs,   &import->not_used, &import->refused,
-                           &import->assumed, &import->notes,    &import->faults};
+  json_t **const list[] = {&import->not_used, &import->refused, &import->assumed, &import->notes};
   for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
     *list[i] = json_array();
     import->failed = import->failed || !*list[i];
@@ -191,7 +276,7 @@ enum eo_code eo_import_read(struct eo_import *import, const char *bytes, size_t 
   eo_import_begin(import);
   if (!import->failed)
     read_any(import, bytes, size, options_);
-  if (json_array_size(import->faults) > 0) {
+  if (import->faults > 0) {
     json_decref(import->design);
     import->design = NULL;
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of other programs read into a design: REXS and tables. The answer is a document: what the file holds, the
-   design, and by name everything that was not used, refused or assumed. */
+   design, and by name everything that was not used, refused or assumed; or what is wrong with it, and where. */
 #ifndef EASEOFF_EXCHANGE_IMPORT_H
 #define EASEOFF_EXCHANGE_IMPORT_H
 
@@ -22,13 +22,38 @@ struct eo_import_options {
 };
 extern const struct eo_table eo_import_options_table;
 
+/* What can be chosen: a gear pair of a model, or a design of a table. */
+struct eo_import_pair {
+  int number; /* from 1 */
+  char label[160], remark[160];
+  bool importable;
+  int ends;                         /* 2: double helical; 0: of a table, and so are the next */
+  int pinion[2], gear[2], stage[2]; /* ids; gears: [ends] */
+  int stages;
+};
+
+/* What is wrong. The texts are owned. */
+struct eo_import_fault {
+  const char *kind;     /* a word for each; literal */
+  const char *text;     /* a sentence */
+  const char *relation; /* this and the next texts: NULL where there is none */
+  bool of_component;    /* the next is one */
+  int component;        /* id */
+  const char *component_type, *attribute;
+  int line, column;    /* from 1; 0: not known */
+  const char *pointer; /* of a file in JSON: where it stands */
+  const char *key;     /* of the design: where it would stand */
+};
+extern const struct eo_outline eo_import_pair_outline, eo_import_fault_outline;
+
 struct eo_import {
-  char format[60];                              /* "REXS 1.7 (XML)", "" when it is not known */
-  int pair;                                     /* the one that was read, from 1; 0: none */
-  json_t *pairs;                                /* what can be chosen */
+  char format[60]; /* "REXS 1.7 (XML)", "" when it is not known */
+  int taken;       /* number of the pair that was read; 0: none */
+  int pairs, faults;
+  struct eo_import_pair *pair;                  /* [pairs], owned */
+  struct eo_import_fault *fault;                /* [faults], owned; with one of them there is no design */
   json_t *design;                               /* what the file states of a design, as a document; NULL: none */
   json_t *not_used, *refused, *assumed, *notes; /* texts */
-  json_t *faults;                               /* objects; with one of them there is no design */
   bool failed;                                  /* an allocation failed */
 };
 extern const struct eo_outline eo_import_outline;
@@ -48,9 +73,13 @@ bool eo_import_begin(struct eo_import *import);
 /* An entry of a list of texts. */
 void eo_import_say(struct eo_import *import, json_t *list, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* A fault; returns it for more members, borrowed, NULL without memory. */
-json_t *eo_import_fault(struct eo_import *import, const char *kind, const char *format, ...)
+/* A fault, with its place when that is known; the next one moves it. NULL without memory. kind: a literal. */
+struct eo_import_fault *eo_import_fault(struct eo_import *import, const char *kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* A text for it, fit for people; NULL without memory, and then the import has failed. */
+const char *eo_import_text(struct eo_import *import, const char *text);
+/* A pair or design that can be chosen, with its number; the next one moves it. NULL without memory. */
+struct eo_import_pair *eo_import_list(struct eo_import *import);
 /* True when the table has the key. */
 bool eo_import_has_key(const struct eo_table *table, const char *key);
 

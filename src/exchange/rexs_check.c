@@ -173,12 +173,12 @@ static void check_relation(const struct check *check, const struct eo_rexs_relat
            relation->type, relation->reference[i].id, relation->reference[i].role);
 }
 
-void eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *context)
+bool eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *context)
 {
   struct check check = {model, eo_rexs_version(model->version), teller_, context, NULL};
   check.id = malloc((size_t)(model->components + 1) * sizeof *check.id);
   if (!check.id)
-    return;
+    return false;
   for (int i = 0; i < model->components; i++)
     check.id[i] = model->component[i].id;
   qsort(check.id, (size_t)model->components, sizeof *check.id, compare);
@@ -194,4 +194,5 @@ void eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *con
     for (int k = 0; k < model->load_case[i].count; k++)
       check_component(&check, &model->load_case[i].component[k]);
   free(check.id);
+  return true;
 }

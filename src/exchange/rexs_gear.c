@@ -429,7 +429,7 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   const struct eo_rexs_mesh *mesh = &import->train->mesh[import->pair->mesh[0]];
   json_t *gear_pair = eo_rexs_part(import, design, "gear_pair");
   demand_match(import);
-  if (!gear_pair || json_array_size(out->faults))
+  if (!gear_pair || out->faults)
     return false;
   find_face(import);
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "ends", import->pair->ends);
@@ -449,9 +449,10 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   put_rack(import, gear_pair);
   name_width(import);
   if (!make_geometry(import, gear_pair, &error)) {
-    json_t *fault = eo_import_fault(out, "not_a_pair", "The pair cannot be made as the file states it: %s", error.text);
+    struct eo_import_fault *fault = eo_import_fault(out, "not_a_pair",
+                                                    "The pair cannot be made as the file states it: %s", error.text);
     if (fault)
-      json_object_set_new(fault, "key", json_string(error.pointer));
+      fault->key = eo_import_text(out, error.pointer);
     return false;
   }
   put_finish(import, gear_pair);

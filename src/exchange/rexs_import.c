@@ -52,15 +52,16 @@ const char *eo_rexs_name(const struct eo_rexs_component *component, char name[80
 
 /* Faults of the model: */
 
-static void put_place(json_t *fault, const struct eo_rexs_model *model, const struct eo_rexs_fault *found)
+static void put_place(struct eo_import *out, struct eo_import_fault *fault, const struct eo_rexs_model *model,
+                      const struct eo_rexs_fault *found)
 {
   char pointer[100];
   const struct eo_rexs_place *place = found->attribute   ? &found->attribute->place
                                       : found->component ? &found->component->place
                                                          : &found->relation->place;
   if (!model->json) {
-    json_object_set_new(fault, "line", json_integer(place->line));
-    json_object_set_new(fault, "column", json_integer(place->column));
+    fault->line = place->line;
+    fault->column = place->column;
     return;
   }
   if (found->attribute)
@@ -68,7 +69,7 @@ static void put_place(json_t *fault, const struct eo_rexs_model *model, const st
              place->index);
   else
     snprintf(pointer, sizeof pointer, "/model/%s/%d", found->component ? "components" : "relations", place->index);
-  json_object_set_new(fault, "pointer", json_string(pointer));
+  fault->pointer = eo_import_text(out, pointer);
 }
 
 /* The first component of a relation, which is what it is about: the gear of a flank relation, the stage of a stage. */
@@ -86,6 +87,24 @@ static const struct eo_rexs_component *subject_of(const struct eo_rexs_model *mo
   return subject;
 }
 
+static void put_component(struct eo_import *out, struct eo_import_fault *fault,
+                          const struct eo_rexs_component *component)
+{
+  fault->of_component = true;
+  fault->component = component->id;
+  fault->component_type = eo_import_text(out, component->type);
+}
+
+static void put_relation(struct eo_import *out, struct eo_import_fault *fault, const struct eo_rexs_model *model,
+                         const struct eo_rexs_relation *relation)
+{
+  char name[80], of[120];
+  fault->of_component = true;
+  const struct eo_rexs_component *subject = subject_of(model, relation, &fault->component);
+  snprintf(of, sizeof of, "%.30s of %.80s", relation->type, subject ? eo_rexs_name(subject, name) : "nothing");
+  fault->relation = eo_import_text(out, of);
+}
+
 struct telling {
   struct eo_import *out;
   const struct eo_rexs_model *model;
@@ -94,31 +113,25 @@ struct telling {
 static void tell(void *context, const struct eo_rexs_fault *found)
 {
   const struct telling *telling = context;
-  char name[80], of[120];
+  struct eo_import *out = telling->out;
+  char name[80];
   if (!found->severe) {
-    eo_import_say(telling->out, telling->out->notes, "%s: %s: %s", found->kind,
+    eo_import_say(out, out->notes, "%s: %s: %s", found->kind,
                   found->component ? eo_rexs_name(found->component, name) : found->relation->type, found->text);
     return;
   }
-  json_t *fault = eo_import_fault(telling->out, found->kind, "%s%s%s",
-                                  found->component ? eo_rexs_name(found->component, name) : "",
-                                  found->component ? ": " : "", found->text);
+  struct eo_import_fault *fault = eo_import_fault(out, found->kind, "%s%s%s",
+                                                  found->component ? eo_rexs_name(found->component, name) : "",
+                                                  found->component ? ": " : "", found->text);
   if (!fault)
     return;
-  if (found->component) {
-    json_object_set_new(fault, "component", json_integer(found->component->id));
-    json_object_set_new(fault, "component_type", json_string(found->component->type));
-  }
+  if (found->component)
+    put_component(out, fault, found->component);
   if (found->attribute)
-    json_object_set_new(fault, "attribute", json_string(found->attribute->id));
-  if (found->relation) {
-    int missing = 0;
-    const struct eo_rexs_component *subject = subject_of(telling->model, found->relation, &missing);
-    snprintf(of, sizeof of, "%.30s of %.80s", found->relation->type, subject ? eo_rexs_name(subject, name) : "nothing");
-    json_object_set_new(fault, "relation", json_string(of));
-    json_object_set_new(fault, "component", json_integer(missing));
-  }
-  put_place(fault, telling->model, found);
+    fault->attribute = eo_import_text(out, found->attribute->id);
+  if (found->relation)
+    put_relation(out, fault, telling->model, found->relation);
+  put_place(out, fault, telling->model, found);
 }
 
 /* What might be a misspelt name of an attribute that is missing. */
@@ -143,38 +156,30 @@ static void demand_attributes(struct eo_import *out, const struct eo_rexs_model 
   for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
     bool there = eo_rexs_attribute(gear, needed[i]) ||
                  (strcmp(needed[i], "normal_module") == 0 && eo_rexs_attribute(gear, "transverse_module"));
-    json_t *fault = there ? NULL
-                          : eo_import_fault(out, "missing_attribute", "%s has no %s, and a design needs it.",
-                                            eo_rexs_name(gear, name), needed[i]);
+    struct eo_import_fault *fault = there ? NULL
+                                          : eo_import_fault(out, "missing_attribute",
+                                                            "%s has no %s, and a design needs it.",
+                                                            eo_rexs_name(gear, name), needed[i]);
     if (!fault)
       continue;
-    json_object_set_new(fault, "component", json_integer(gear->id));
-    json_object_set_new(fault, "component_type", json_string(gear->type));
-    json_object_set_new(fault, "attribute", json_string(needed[i]));
-    put_place(fault, model, &(struct eo_rexs_fault){.component = gear});
+    put_component(out, fault, gear);
+    fault->attribute = eo_import_text(out, needed[i]);
+    put_place(out, fault, model, &(struct eo_rexs_fault){.component = gear});
     name_unknown(out, gear);
   }
 }
 
 /* What can be chosen: */
 
-static json_t *wheel_ids(const struct eo_rexs_train *train, const struct eo_rexs_pair *pair, bool driver)
+static void put_ids(struct eo_import_pair *listed, const struct eo_rexs_train *train, const struct eo_rexs_pair *pair)
 {
-  json_t *list = json_array();
-  for (int end = 0; end < pair->ends; end++)
-    json_array_append_new(
-        list, json_integer(train->mesh[pair->mesh[end]].wheel[driver ? pair->driver : !pair->driver].gear->id));
-  return list;
-}
-
-static json_t *stage_ids(const struct eo_rexs_train *train, const struct eo_rexs_pair *pair)
-{
-  json_t *list = json_array();
-  int first = train->mesh[pair->mesh[0]].stage->id, last = train->mesh[pair->mesh[pair->ends - 1]].stage->id;
-  json_array_append_new(list, json_integer(first));
-  if (pair->ends == 2)
-    json_array_append_new(list, json_integer(last));
-  return list;
+  listed->ends = listed->stages = pair->ends;
+  for (int end = 0; end < pair->ends; end++) {
+    const struct eo_rexs_mesh *mesh = &train->mesh[pair->mesh[end]];
+    listed->pinion[end] = mesh->wheel[pair->driver].gear->id;
+    listed->gear[end] = mesh->wheel[!pair->driver].gear->id;
+    listed->stage[end] = mesh->stage->id;
+  }
 }
 
 static void list_pairs(struct eo_import *out, const struct eo_rexs_train *train)
@@ -182,18 +187,20 @@ static void list_pairs(struct eo_import *out, const struct eo_rexs_train *train)
   for (int i = 0; i < train->pairs; i++) {
     const struct eo_rexs_pair *pair = &train->pair[i];
     const struct eo_rexs_mesh *mesh = &train->mesh[pair->mesh[0]];
-    char label[160];
+    struct eo_import_pair *listed = eo_import_list(out);
+    if (!listed)
+      return;
+    char label[sizeof listed->label], name[61];
+    eo_text_clean(name, sizeof name, mesh->stage->name);
     int n = snprintf(label, sizeof label, pair->ends == 2 ? "stages %d and %d" : "stage %d", mesh->stage->id,
                      train->mesh[pair->mesh[pair->ends - 1]].stage->id);
-    snprintf(label + n, sizeof label - (size_t)n, ": %.0f and %.0f teeth, module %.6g mm%s%.60s",
+    snprintf(label + n, sizeof label - (size_t)n, ": %.0f and %.0f teeth, module %.6g mm%s%s",
              fmax(0, mesh->wheel[pair->driver].teeth), fmax(0, mesh->wheel[!pair->driver].teeth), mesh->wheel[0].module,
-             *mesh->stage->name ? ", " : "", mesh->stage->name);
-    json_t *row = json_pack("{s:i, s:s, s:i, s:o, s:o, s:o, s:b}", "number", i + 1, "label", label, "ends", pair->ends,
-                            "pinion", wheel_ids(train, pair, true), "gear", wheel_ids(train, pair, false), "stages",
-                            stage_ids(train, pair), "importable", !*pair->why);
-    if (*pair->why || *pair->remark)
-      json_object_set_new(row, "remark", json_string(*pair->why ? pair->why : pair->remark));
-    out->failed = json_array_append_new(out->pairs, row) != 0 || out->failed;
+             *name ? ", " : "", name);
+    eo_text_clean(listed->label, sizeof listed->label, label);
+    put_ids(listed, train, pair);
+    listed->importable = !*pair->why;
+    eo_text_clean(listed->remark, sizeof listed->remark, *pair->why ? pair->why : pair->remark);
   }
 }
 
@@ -216,7 +223,7 @@ static const struct eo_rexs_pair *choose(struct eo_import *out, const struct eo_
     eo_import_fault(out, "not_importable", "The pair cannot be read: %s.", pair->why);
     return NULL;
   }
-  out->pair = (int)(pair - train->pair) + 1;
+  out->taken = (int)(pair - train->pair) + 1;
   return pair;
 }
 
@@ -255,7 +262,7 @@ static void read_pair(struct eo_rexs_import *import)
   for (int end = 0; end < import->pair->ends; end++)
     for (int member = 0; member < 2; member++)
       demand_attributes(out, import->model, import->train->mesh[import->pair->mesh[end]].wheel[member].gear);
-  if (json_array_size(out->faults))
+  if (out->faults)
     return;
   gather_wheels(import);
   if (!import->pair->driver_stated)
@@ -324,9 +331,12 @@ static bool read_again(const json_t *carried, struct eo_import *again)
               !eo_design_complete(design, &geometry, &error);
   if (good) {
     eo_rexs_export(design, &geometry, EO_REXS_EXPORT_VERSION, false, model);
-    read_model(again, model, &options);
-    good = !model->failed && !again->failed && again->design && !json_array_size(again->faults);
+    again->failed = again->failed || model->failed;
+    if (!again->failed)
+      read_model(again, model, &options);
+    good = !again->failed && again->design && !again->faults;
   }
+  again->failed = again->failed || !design || !faults || !model;
   if (model)
     eo_rexs_done(model);
   free(model);
@@ -337,7 +347,7 @@ static bool read_again(const json_t *carried, struct eo_import *again)
 
 static void take_carried_design(struct eo_import *out, const struct eo_rexs_model *model)
 {
-  json_t *carried = out->design && !json_array_size(out->faults) ? carried_design(model) : NULL;
+  json_t *carried = out->design && !out->faults ? carried_design(model) : NULL;
   struct eo_import again = {0};
   if (!carried)
     return;
@@ -349,10 +359,11 @@ static void take_carried_design(struct eo_import *out, const struct eo_rexs_mode
     eo_import_say(out, out->notes,
                   "The file carries the design that it was made of and still says the same: that design "
                   "was taken, whole.");
-  } else
+  } else if (!again.failed)
     eo_import_say(out, out->notes,
                   "The file carries an Easeoff design, but its model says something else by now: the "
                   "model was read.");
+  out->failed = out->failed || again.failed;
   eo_import_done(&again);
   json_decref(carried);
 }
@@ -368,11 +379,10 @@ static void read_model(struct eo_import *out, const struct eo_rexs_model *model,
   if (!eo_rexs_version(model->version))
     eo_import_say(out, out->notes, "The version \"%.20s\" of REXS is not known; the file is read as 1.7.",
                   model->version);
-  eo_rexs_check(model, tell, &telling);
-  out->failed = out->failed || !train || !import;
+  out->failed = !eo_rexs_check(model, tell, &telling) || out->failed || !train || !import;
   if (!out->failed && !eo_rexs_train_find(train, model, &error))
     eo_import_fault(out, "too_large", "%s", error.text);
-  else if (!out->failed && json_array_size(out->faults)) {
+  else if (!out->failed && out->faults) {
     for (int i = 0; i < train->meshes; i++)
       for (int k = 0; k < 2; k++)
         demand_attributes(out, model, train->mesh[i].wheel[k].gear);
@@ -403,10 +413,10 @@ void eo_import_rexs(struct eo_import *out, const char *bytes, size_t size, const
     out->failed = true;
   else {
     snprintf(out->format, sizeof out->format, "REXS");
-    json_t *fault = eo_import_fault(out, problem.kind, "%s", problem.error.text);
-    if (fault && problem.line) {
-      json_object_set_new(fault, "line", json_integer(problem.line));
-      json_object_set_new(fault, "column", json_integer(problem.column));
+    struct eo_import_fault *fault = eo_import_fault(out, problem.kind, "%s", problem.error.text);
+    if (fault) {
+      fault->line = problem.line;
+      fault->column = problem.column;
     }
   }
   if (model)

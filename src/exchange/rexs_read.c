@@ -87,6 +87,7 @@ int eo_rexs_decode_numbers(struct eo_rexs_model *model, const char *text, const 
   bool whole = strcmp(code, "int32") == 0;
   size_t size = whole || strcmp(code, "float32") == 0 ? 4 : strcmp(code, "float64") == 0 ? 8 : 0;
   unsigned char *bytes = size ? malloc(strlen(text) + 1) : NULL;
+  model->failed = model->failed || (size && !bytes);
   if (!bytes)
     return -1;
   long count = decode_base64(text, bytes);

@@ -67,8 +67,8 @@ struct eo_rexs_fault {
   bool severe; /* false: an import goes on */
 };
 
-/* Every fault of the model, in its order. */
-void eo_rexs_check(const struct eo_rexs_model *model, void (*tell)(void *context, const struct eo_rexs_fault *fault),
+/* Every fault of the model, in its order; false: no memory. */
+bool eo_rexs_check(const struct eo_rexs_model *model, void (*tell)(void *context, const struct eo_rexs_fault *fault),
                    void *context);
 
 #endif

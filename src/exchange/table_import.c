@@ -33,13 +33,13 @@ struct block {
 
 static void fault(struct reader *reader, int column, const char *kind, const char *format, const char *a, const char *b)
 {
-  char text[300];
+  char text[400];
   snprintf(text, sizeof text, format, a, b);
-  json_t *object = eo_import_fault(reader->out, kind, "%s", text);
-  if (!object)
+  struct eo_import_fault *told = eo_import_fault(reader->out, kind, "%s", text);
+  if (!told)
     return;
-  json_object_set_new(object, "line", json_integer(reader->row + 1));
-  json_object_set_new(object, "column", json_integer(column + 1));
+  told->line = reader->row + 1;
+  told->column = column + 1;
 }
 
 /* Numbers: */
@@ -275,10 +275,12 @@ static bool read_header(struct reader *reader, int row, struct block *block)
 
 static void list_design(struct eo_import *out, const char *name)
 {
-  int number = (int)json_array_size(out->pairs) + 1;
-  char label[120];
-  eo_text_clean(label, sizeof label, *name ? name : "without a name");
-  json_array_append_new(out->pairs, json_pack("{s:i, s:s, s:b}", "number", number, "label", label, "importable", 1));
+  enum { LABEL = 120 };
+  struct eo_import_pair *listed = eo_import_list(out);
+  if (!listed)
+    return;
+  eo_text_clean(listed->label, LABEL, *name ? name : "without a name");
+  listed->importable = true;
 }
 
 static const char *name_in(const struct eo_cells *cells, const struct block *block)
@@ -376,7 +378,7 @@ static void read_designs(struct reader *reader, const struct eo_import_options *
     eo_import_fault(reader->out, "no_such_pair", "There is no design %d; the table has 1 to %d.", options->pair,
                     designs);
   else
-    reader->out->pair = options->pair ? options->pair : 1;
+    reader->out->taken = options->pair ? options->pair : 1;
 }
 
 void eo_import_table(struct eo_import *out, const char *bytes, size_t size, bool workbook,
@@ -395,7 +397,7 @@ void eo_import_table(struct eo_import *out, const char *bytes, size_t size, bool
   else if (find_decimal_sign(&reader))
     read_designs(&reader, options);
   eo_cells_done(&cells);
-  if (out->pair)
+  if (out->taken)
     out->design = reader.design;
   else
     json_decref(reader.design);

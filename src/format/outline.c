@@ -125,8 +125,28 @@ static json_t *encode(const struct eo_outline_row *row, const void *source)
   return row->column ? encode_column(row, source) : encode_at(row, source, (const char *)source + row->offset);
 }
 
+/* Whether the member says something; EO_FILLED names what that is. */
+static bool is_filled(const struct eo_outline_row *row, const void *source)
+{
+  const void *place = (const char *)source + row->offset;
+  switch (row->member) {
+  case EO_MEMBER_INTEGER:
+    return *(const int *)place != 0;
+  case EO_MEMBER_TEXT:
+    return *(const char *)place != '\0';
+  case EO_MEMBER_STRING:
+    return *(const char *const *)place && **(const char *const *)place;
+  case EO_MEMBER_ROWS:
+    return *(const int *)((const char *)source + row->count_offset) != 0;
+  default:
+    return true;
+  }
+}
+
 static bool is_there(const struct eo_outline_row *row, const void *source)
 {
+  if (row->filled && !is_filled(row, source))
+    return false;
   if (row->optional && !*(const bool *)((const char *)source + row->option_offset))
     return false;
   return !row->there || row->there(source);

@@ -56,6 +56,7 @@ struct eo_outline_row {
   bool (*there)(const void *source);    /* NULL: always; see `when` */
   bool optional;                        /* there only where the bool at option_offset is true; see `when` */
   size_t option_offset;
+  bool filled;                       /* there only where its member says something; see `when` and EO_FILLED */
   bool (*known)(const void *source); /* number: false: it means nothing and is null; NULL: always known */
 };
 
@@ -78,6 +79,9 @@ struct eo_outline {
 #define EO_AT(type, member_) .offset = offsetof(type, member_), .member = EO_KIND_OF(type, member_)
 /* ... that is there where a flag of the struct says so. */
 #define EO_IF(type, flag_) .optional = true, .option_offset = offsetof(type, flag_)
+/* ... that is there where it says something: a text that is neither NULL nor empty, an integer that is not 0, an array
+   with a row. */
+#define EO_FILLED .filled = true
 /* ... of an array that the struct points to. */
 #define EO_ROWS_AT(type, member_, count)                                                              \
   .offset = offsetof(type, member_), .count_offset = offsetof(type, count), .member = EO_MEMBER_ROWS, \

@@ -16,17 +16,13 @@ static int flank_of(const char *word)
 static void refuse(struct eo_request *request, const struct eo_import *import)
 {
   json_t *errors = json_array();
-  const json_t *fault;
-  size_t i;
-  json_array_foreach(import->faults, i, fault)
-  {
-    const char *pointer = json_string_value(json_object_get(fault, "pointer"));
-    json_array_append_new(
-        errors, json_pack("{s:s, s:O}", "pointer", pointer ? pointer : "", "detail", json_object_get(fault, "text")));
+  for (int i = 0; i < import->faults; i++) {
+    const char *pointer = import->fault[i].pointer;
+    json_array_append_new(errors,
+                          json_pack("{s:s, s:s}", "pointer", pointer ? pointer : "", "detail", import->fault[i].text));
   }
   json_t *more = json_pack("{s:o, s:o}", "errors", errors, "imported", eo_import_encode(import));
-  eo_reply_problem_with(&request->reply, 422, "import", more,
-                        json_string_value(json_object_get(json_array_get(import->faults, 0), "text")));
+  eo_reply_problem_with(&request->reply, 422, "import", more, import->fault[0].text);
 }
 
 static void import(struct eo_request *request)
@@ -41,7 +37,7 @@ static void import(struct eo_request *request)
   struct eo_error error;
   if (eo_import_read(&answer, request->body.size ? request->body.data : "", request->body.size, &options, &error))
     eo_reply_error(&request->reply, "", &error);
-  else if (json_array_size(answer.faults))
+  else if (answer.faults)
     refuse(request, &answer);
   else
     eo_reply_json(&request->reply, 200, eo_import_encode(&answer));

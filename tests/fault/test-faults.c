@@ -9,6 +9,8 @@
 #include "document/measure_file.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
+#include "exchange/exports.h"
+#include "exchange/import.h"
 #include "format/json.h"
 #include "store/backup.h"
 #include "store/designs.h"
@@ -278,6 +280,67 @@ static enum eo_code analyse(struct eo_error *error)
   return code;
 }
 
+static struct eo_text foreign; /* a file of another program */
+static int foreign_pair;       /* that is chosen of it; 0: the only one */
+
+/* The whole answer or an error: what is read without a check would be another answer. */
+static enum eo_code import_file(struct eo_error *error)
+{
+  const struct eo_import_options options = {.pair = foreign_pair, .flank = 1};
+  struct eo_import import;
+  struct eo_text text = {0};
+  enum eo_code code = eo_import_read(&import, foreign.data, foreign.size, &options, error);
+  json_t *answer = code ? NULL : eo_import_encode(&import);
+  if (!code && !answer)
+    code = eo_error_memory(error);
+  if (answer)
+    eo_json_write(&text, answer, EO_JSON_COMPACT);
+  if (!code && text.failed)
+    code = eo_error_memory(error);
+  if (!code)
+    compare(&text);
+  json_decref(answer);
+  eo_text_done(&text);
+  eo_import_done(&import);
+  return code;
+}
+
+static void try_foreign(const char *what, int pair)
+{
+  foreign_pair = pair;
+  free(expected);
+  expected = NULL;
+  different = 0;
+  struct eo_error error;
+  import_file(&error);
+  try_all(what, import_file, false);
+  ok(expected && !different, "what was read of it all the same is the same");
+  eo_text_done(&foreign);
+}
+
+static void try_imports(void)
+{
+  static const struct {
+    const char *name;
+    int pair;
+  } file[] = {{"errors-1.6.rexs", 0},        {"two-stage-1.5.rexsj", 0},   {"two-stage-1.5.rexs", 2},
+              {"paper-case-b-1.4.rexsz", 0}, {"paper-case-b-1.7.rexs", 0}, {"paper-case-b-2.0.0.rexsj", 0},
+              {"single-crowned-1.7.rexs", 0}};
+  struct eo_error error;
+  char path[500];
+  for (int i = 0; i < (int)(sizeof file / sizeof *file) && getenv("CASES"); i++) {
+    snprintf(path, sizeof path, "%s/exchange/%s", getenv("CASES"), file[i].name);
+    if (ok(eo_text_read(&foreign, path, (size_t)1 << 20, &error) == EO_OK, "%s", file[i].name))
+      try_foreign(file[i].name, file[i].pair);
+  }
+  eo_text_add(&foreign, "key;pinion;gear;unit\nname;one;;\nz;17;44;\nzz;1;;\nkey;pinion;gear;unit\nz;1;2;\n");
+  try_foreign("a table of two designs", 2);
+  eo_text_add(&foreign, "name,gear_pair.pinion_teeth,zz\none,17,1\n");
+  try_foreign("a table with a key that is none", 0);
+  eo_exports_find("rexs")->write(&design, &geometry, &foreign);
+  try_foreign("a file of our own", 0);
+}
+
 static const char hash[] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
 
 static enum eo_code add_recording(struct eo_store *store, struct eo_error *error)
@@ -405,6 +468,7 @@ int main(void)
   analyse(&error);
   try_all("an analysis and its document", analyse, false);
   ok(expected && !different, "an analysis that does without something gives the same numbers");
+  try_imports();
   if (record()) {
     try_all("measuring a recording", measure, false);
     try_all("spooling a recording", measure, true);

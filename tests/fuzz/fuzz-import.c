@@ -19,15 +19,12 @@ static void demand(bool good, const char *what)
 
 static void look(const struct eo_import *import)
 {
-  const json_t *fault;
-  size_t i;
-  json_array_foreach(import->faults, i, fault)
-  {
-    const char *text = json_string_value(json_object_get(fault, "text"));
+  for (int i = 0; i < import->faults; i++) {
+    const char *text = import->fault[i].text;
     demand(text && *text && !strchr(text, '\n'), "a fault without a sentence");
   }
-  demand(!import->design || json_array_size(import->faults) == 0, "a design beside faults");
-  demand(import->design || json_array_size(import->faults) > 0, "neither a design nor a fault");
+  demand(!import->design || import->faults == 0, "a design beside faults");
+  demand(import->design || import->faults > 0, "neither a design nor a fault");
   json_t *answer = eo_import_encode(import);
   demand(answer != NULL, "no answer");
   json_decref(answer);

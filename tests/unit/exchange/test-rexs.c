@@ -126,7 +126,7 @@ static void check_round_trip(const char *name, int version, enum eo_rexs_form fo
   struct eo_import import = read_file(&text);
   json_t *expected = eo_design_encode(&design), *found = complete(import.design);
   ok(found && json_equal(expected, found), "%s, %d, %s: the same design", name, version, forms[form]);
-  ok(json_array_size(import.faults) == 0 && json_array_size(import.refused) == 0, "%s: nothing is refused", name);
+  ok(import.faults == 0 && json_array_size(import.refused) == 0, "%s: nothing is refused", name);
   json_decref(expected);
   json_decref(found);
   eo_import_done(&import);
@@ -269,9 +269,58 @@ static void check_empty(void)
   memmove(value + 1, end, strlen(end) + 1);
   text.size -= (size_t)(end - value - 1);
   struct eo_import import = read_file(&text);
-  ok(import.design && json_array_size(import.faults) == 0, "an attribute without a value is not stated");
+  ok(import.design && import.faults == 0, "an attribute without a value is not stated");
   ok(says(import.notes, "minimum_normal_backlash has no value"), "... and named");
   eo_import_done(&import);
+  eo_text_done(&text);
+}
+
+/* The file of a design with one text of it replaced; false: it is not there. */
+static bool replace(struct eo_text *text, const char *old, const char *new)
+{
+  char *at = strstr(text->data, old);
+  if (!ok(at != NULL, "the file says %s", old))
+    return false;
+  struct eo_text made = {0};
+  eo_text_print(&made, "%.*s%s%s", (int)(at - text->data), text->data, new, at + strlen(old));
+  eo_text_done(text);
+  *text = made;
+  return true;
+}
+
+/* A name of any length stands in the list of pairs, cut between its characters. */
+static void check_name(void)
+{
+  char name[200] = "cylindrical_stage\" name=\"x";
+  build("single");
+  struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+  for (int i = 0; i < 40; i++)
+    strcat(name, "\xC3\xA4");
+  if (replace(&text, "cylindrical_stage\" name=\"mesh", name)) {
+    struct eo_import import = read_file(&text);
+    json_t *answer = eo_import_encode(&import);
+    ok(import.pairs == 1 && answer && strstr(import.pair[0].label, "\xC3\xA4..."), "the stage's name, shortened: %s",
+       import.pairs ? import.pair[0].label : "no pair");
+    json_decref(answer);
+    eo_import_done(&import);
+  }
+  eo_text_done(&text);
+}
+
+/* Where the pair cannot be made the fault says which key of a design is to blame, and nothing of a place. */
+static void check_impossible(void)
+{
+  build("single");
+  struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+  if (replace(&text, "\"center_distance\" unit=\"mm\">1", "\"center_distance\" unit=\"mm\">9")) {
+    struct eo_import import = read_file(&text);
+    json_t *answer = eo_import_encode(&import), *fault = json_array_get(json_object_get(answer, "faults"), 0);
+    ok(import.faults == 1 && strcmp(import.fault[0].kind, "not_a_pair") == 0 && json_object_size(fault) == 3 &&
+           json_is_string(json_object_get(fault, "key")),
+       "a pair that cannot be made: %s", import.faults ? import.fault[0].text : "no fault");
+    json_decref(answer);
+    eo_import_done(&import);
+  }
   eo_text_done(&text);
 }
 
@@ -383,6 +432,8 @@ int main(void)
   build_stranger(2);
   check_design("a stranger's herringbone pair with unequal halves");
   check_empty();
+  check_name();
+  check_impossible();
   check_hands();
   check_edited();
   check_topography();
