@@ -112,27 +112,21 @@ static void find_bands(struct eo_flank_pieces *pieces)
 
 /* What is generated: */
 
-/* How far from a line slopes are to be taken, along u. */
-static double clear_of(const struct eo_flank_pieces *pieces, int line)
-{
-  return beside + 4 * EO_SURFACE_STEP * fabs(pieces->line[line].rate);
-}
-
 /* The nearest place of a piece at which its slopes are those of its own side; where it narrows to a point, as far from
    that as it needs to be wide enough. */
 static void keep_within(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double *u, double *y)
 {
-  const double *ends = pieces->y + piece->band, step = shape_of(pieces)->varies ? 2 * EO_SURFACE_STEP : beside;
-  double clear[2] = {clear_of(pieces, piece->line[0]), clear_of(pieces, piece->line[1])}, width[2];
+  const double *ends = pieces->y + piece->band;
+  double width[2];
   for (int k = 0; k < 2; k++)
     width[k] = line_at(pieces, piece->line[1], ends[k]) - line_at(pieces, piece->line[0], ends[k]);
-  double most = fmax(width[0], width[1]), wanted = fmin(2 * (clear[0] + clear[1]), most / 2),
+  double most = fmax(width[0], width[1]), wanted = fmin(4 * beside, most / 2),
          per_width = most > 0 ? (ends[1] - ends[0]) / fabs(width[1] - width[0]) : 0,
-         low = ends[0] + fmax(step, width[0] < wanted ? (wanted - width[0]) * per_width : 0),
-         high = ends[1] - fmax(step, width[1] < wanted ? (wanted - width[1]) * per_width : 0);
+         low = ends[0] + fmax(beside, width[0] < wanted ? (wanted - width[0]) * per_width : 0),
+         high = ends[1] - fmax(beside, width[1] < wanted ? (wanted - width[1]) * per_width : 0);
   *y = low < high ? fmin(fmax(*y, low), high) : (low + high) / 2;
-  low = line_at(pieces, piece->line[0], *y) + clear[0];
-  high = line_at(pieces, piece->line[1], *y) - clear[1];
+  low = line_at(pieces, piece->line[0], *y) + beside;
+  high = line_at(pieces, piece->line[1], *y) - beside;
   *u = low < high ? fmin(fmax(*u, low), high) : (low + high) / 2;
 }
 

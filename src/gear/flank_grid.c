@@ -219,27 +219,67 @@ static double clamp(double x, double low, double high)
   return x < low ? low : x > high ? high : x;
 }
 
-double eo_flank_spline_at(const struct eo_flank_spline *spline, double u, double y, double slope[2])
+/* The cell that holds a place, or the nearest one, and the part of it below the place. */
+struct cell {
+  int i, j;
+  double size[2], part[2]; /* along u and y */
+};
+
+static struct cell cell_at(const struct eo_flank_spline *spline, double u, double y)
 {
   const double *us = spline->u, *ys = spline->y;
-  int last_u = spline->u_knots - 1, last_y = spline->y_knots - 1;
-  double inside = clamp(u, us[0], us[last_u]), across = clamp(y, ys[0], ys[last_y]), by_y[4], by_u[4];
-  int i = piece_of(spline->u_knots, us, inside), j = piece_of(spline->y_knots, ys, across);
-  double h = us[i + 1] - us[i], t = (inside - us[i]) / h, width = ys[j + 1] - ys[j];
-  weigh(width, (across - ys[j]) / width, by_y);
-  double row[4]; /* delta and its second derivative by u at both knots: [delta below, above, second below, above] */
+  double inside = clamp(u, us[0], us[spline->u_knots - 1]), across = clamp(y, ys[0], ys[spline->y_knots - 1]);
+  struct cell cell = {.i = piece_of(spline->u_knots, us, inside), .j = piece_of(spline->y_knots, ys, across)};
+  cell.size[0] = us[cell.i + 1] - us[cell.i];
+  cell.size[1] = ys[cell.j + 1] - ys[cell.j];
+  cell.part[0] = (inside - us[cell.i]) / cell.size[0];
+  cell.part[1] = (across - ys[cell.j]) / cell.size[1];
+  return cell;
+}
+
+/* What by_y makes of the cell at both its knots of u: [delta below, above, its second derivative by u below, above]. */
+static void weigh_rows(const struct eo_flank_spline *spline, const struct cell *cell, const double by_y[4],
+                       double row[4])
+{
   for (int k = 0; k < 2; k++) {
-    const double *c = spline->coefficient + ((size_t)(i + k) * (size_t)spline->y_knots + (size_t)j) * PARTS;
+    const double *c = spline->coefficient + ((size_t)(cell->i + k) * (size_t)spline->y_knots + (size_t)cell->j) * PARTS;
     row[k] = by_y[0] * c[VALUE] + by_y[1] * c[PARTS + VALUE] + by_y[2] * c[BY_Y] + by_y[3] * c[PARTS + BY_Y];
     row[2 + k] = by_y[0] * c[BY_U] + by_y[1] * c[PARTS + BY_U] + by_y[2] * c[BY_BOTH] + by_y[3] * c[PARTS + BY_BOTH];
   }
-  weigh(h, t, by_u);
+}
+
+static double sum(const double weight[4], const double row[4])
+{
+  return weight[0] * row[0] + weight[1] * row[1] + weight[2] * row[2] + weight[3] * row[3];
+}
+
+double eo_flank_spline_at(const struct eo_flank_spline *spline, double u, double y, double slope[2])
+{
+  const double *us = spline->u;
+  int last = spline->u_knots - 1;
+  struct cell cell = cell_at(spline, u, y);
+  double by_y[4], by_u[4], row[4];
+  weigh(cell.size[1], cell.part[1], by_y);
+  weigh_rows(spline, &cell, by_y, row);
+  weigh(cell.size[0], cell.part[0], by_u);
   if (slope) {
     double rate[4];
-    weigh_slope(h, t, rate);
-    double inner = rate[0] * row[0] + rate[1] * row[1] + rate[2] * row[2] + rate[3] * row[3];
-    slope[0] = u <= us[0] || u > us[last_u] ? 0 : inner;
-    slope[1] = u < us[0] || u >= us[last_u] ? 0 : inner;
+    weigh_slope(cell.size[0], cell.part[0], rate);
+    double inner = sum(rate, row);
+    slope[0] = u <= us[0] || u > us[last] ? 0 : inner;
+    slope[1] = u < us[0] || u >= us[last] ? 0 : inner;
   }
-  return by_u[0] * row[0] + by_u[1] * row[1] + by_u[2] * row[2] + by_u[3] * row[3];
+  return sum(by_u, row);
+}
+
+double eo_flank_spline_across(const struct eo_flank_spline *spline, double u, double y)
+{
+  double low = spline->y[0], high = spline->y[spline->y_knots - 1], by_y[4], by_u[4], row[4];
+  struct cell cell = cell_at(spline, u, y);
+  if (y < low || y > high)
+    return 0;
+  weigh_slope(cell.size[1], cell.part[1], by_y);
+  weigh_rows(spline, &cell, by_y, row);
+  weigh(cell.size[0], cell.part[0], by_u);
+  return (y > low && y < high ? 1 : 0.5) * sum(by_u, row);
 }

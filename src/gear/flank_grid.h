@@ -79,4 +79,7 @@ void eo_flank_spline_free(struct eo_flank_spline *spline);
 /* delta, m; slope (may be NULL): its derivative by u just below and just above u, which differ at the borders. */
 double eo_flank_spline_at(const struct eo_flank_spline *spline, double u, double y, double slope[2]);
 
+/* Its derivative by y; at the borders the mean of both sides. */
+double eo_flank_spline_across(const struct eo_flank_spline *spline, double u, double y);
+
 #endif

@@ -254,15 +254,16 @@ static void cut_triangles(struct eo_modification_shape *slice, double y)
   for (int side = 0; side < 2; side++)
     for (int face = 0; face < 2; face++) {
       const struct eo_triangular_relief *triangular_relief = &slice->triangular[side][face];
-      double left = 1 - (half_face - (face == EO_LEADING_SIDE ? y : -y)) / triangular_relief->face_length;
-      int outwards = side == EO_TIP_SIDE ? 1 : -1;
+      int outwards = side == EO_TIP_SIDE ? 1 : -1, towards = face == EO_LEADING_SIDE ? 1 : -1;
+      double left = 1 - (half_face - towards * y) / triangular_relief->face_length;
       double end = outwards * slice->middle + slice->half_profile;
       if (triangular_relief->amount != 0)
         slice->wedge[slice->wedges++] =
             (struct eo_wedge){.start = end - triangular_relief->profile_length * left,
                               .length = outwards * triangular_relief->profile_length,
                               .amount = triangular_relief->amount,
-                              .exponent = triangular_relief->exponent > 0 ? triangular_relief->exponent : 1};
+                              .exponent = triangular_relief->exponent > 0 ? triangular_relief->exponent : 1,
+                              .rate = -towards * triangular_relief->profile_length / triangular_relief->face_length};
     }
 }
 
@@ -368,6 +369,23 @@ double eo_modification_profile(const struct eo_modification_shape *shape, double
     slope[1] += shape->grid_share * by_u[1];
   }
   return value;
+}
+
+static double wedge_across(const struct eo_wedge *wedge, double u)
+{
+  double length = fabs(wedge->length), beyond = (wedge->length > 0 ? u : -u) - wedge->start,
+         rate = -wedge->rate * wedge->amount / length * wedge->exponent;
+  if (beyond == 0)
+    return wedge->exponent == 1 ? rate / 2 : 0;
+  return beyond > 0 ? rate * pow(beyond / length, wedge->exponent - 1) : 0;
+}
+
+double eo_modification_across(const struct eo_modification_shape *slice, double u)
+{
+  double rate = slice->twist * (u - slice->middle);
+  for (int i = 0; i < slice->wedges; i++)
+    rate += wedge_across(&slice->wedge[i], u);
+  return slice->grid ? rate + slice->grid_share * eo_flank_spline_across(slice->grid, u, slice->y) : rate;
 }
 
 bool eo_modification_has_profile(const struct eo_modification_shape *slice)

@@ -99,6 +99,7 @@ struct eo_modification_shape {
     double start, length; /* along u away from the middle, m */
     double amount;        /* per exponent-th power of (distance from start / length), m */
     double exponent;
+    double rate; /* of start, along y */
   } wedge[4];
   int wedges;
   double y; /* the slice */
@@ -134,6 +135,9 @@ void eo_modification_slice(const struct eo_modification_shape *shape, double eta
 /* Profile part d(u), m, of a slice (of mid face when none was taken); slope[0], slope[1]: derivative just below and
    just above u (they differ at kinks). */
 double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2]);
+
+/* Derivative of a slice's profile part at u by y; at a kink the mean of both sides. */
+double eo_modification_across(const struct eo_modification_shape *slice, double u);
 
 /* Places of a slice's profile where curvature or slope jump, increasing; returns how many. */
 enum { EO_MOST_VERTICES = 8 };

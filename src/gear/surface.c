@@ -4,26 +4,18 @@
 #include <math.h>
 #include <stddef.h>
 
-/* The profile at x = eta / cos(beta). */
-static double profile_at(const struct eo_modification_shape *shape, double u, double x, double slope[2])
-{
-  struct eo_modification_shape slice;
-  if (!shape->varies)
-    return eo_modification_profile(shape, u, slope);
-  eo_modification_slice(shape, x / shape->lengthen, &slice);
-  return eo_modification_profile(&slice, u, slope);
-}
-
 double eo_surface_relief(const struct eo_modification_shape *shape, double u, double x, double slope[2])
 {
-  double sides[2], unused[2];
-  double delta = profile_at(shape, u, x, sides) + eo_modification_lead(shape, x, &slope[1]);
-  slope[0] = (sides[0] + sides[1]) / 2;
+  double sides[2], lead = eo_modification_lead(shape, x, &slope[1]), profile;
   if (shape->varies) {
-    const double step = EO_SURFACE_STEP;
-    slope[1] += (profile_at(shape, u, x + step, unused) - profile_at(shape, u, x - step, unused)) / (2 * step);
-  }
-  return delta;
+    struct eo_modification_shape slice;
+    eo_modification_slice(shape, x / shape->lengthen, &slice);
+    profile = eo_modification_profile(&slice, u, sides);
+    slope[1] += (shape->mirrored ? -1 : 1) * eo_modification_across(&slice, u) / shape->lengthen;
+  } else
+    profile = eo_modification_profile(shape, u, sides);
+  slope[0] = (sides[0] + sides[1]) / 2;
+  return profile + lead;
 }
 
 /* Where the rack's point is over the face: x of the modification; against v on the gear. */

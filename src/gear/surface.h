@@ -20,9 +20,8 @@ struct eo_surface_point {
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                          double u, double v, struct eo_surface_point *point);
 
-/* delta (m) at u and x = eta / cos(beta), and its slopes by u and by x; at a kink the mean of both sides. By x from
-   EO_SURFACE_STEP to both sides (m) where the profile varies over the face. */
-#define EO_SURFACE_STEP 1e-6
+/* delta (m) at u and x = eta / cos(beta), and its slopes by u and by x; at a kink of the profile the mean of both
+   sides. */
 double eo_surface_relief(const struct eo_modification_shape *shape, double u, double x, double slope[2]);
 
 /* The point that the rack generates with any delta and slopes: along a kink every slope between those of both sides. */
