@@ -46,7 +46,8 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
 /* The piece's ends at one y, kept from point to point. */
 struct eo_flank_row {
   double b; /* less than 0: none yet */
-  double place[2];
+  double own[2];   /* the piece's u, m */
+  double place[2]; /* the places on the unmodified flank on whose normals these points lie, as u, m */
 };
 
 /* Point (m) and unit normal (may be NULL), out of the tooth, of piece k of tooth 0 in the frame of eo_tooth_point(); a:
