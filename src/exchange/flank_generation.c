@@ -169,12 +169,9 @@ bool eo_flank_stands_still(const struct eo_flank_pieces *pieces, const struct eo
 void eo_flank_swept_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double a, double y,
                        struct eo_surface_point *point)
 {
-  struct eo_flank_piece side[2] = {*piece, *piece};
   double u = eo_flank_line_at(pieces, piece->line[0], y), slope[2][2], delta = 0;
-  side[0].line[0] = piece->beyond[0];
-  side[1].line[1] = piece->beyond[1];
   for (int k = 0; k < 2; k++)
-    delta = piece_relief(pieces, &side[k], u, y, slope[k]);
+    delta = piece_relief(pieces, piece + (k ? 1 : -1), u, y, slope[k]);
   const double mixed[2] = {slope[0][0] + a * (slope[1][0] - slope[0][0]),
                            slope[0][1] + a * (slope[1][1] - slope[0][1])};
   generate(pieces, u, y, delta, mixed, point);

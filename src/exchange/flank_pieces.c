@@ -58,12 +58,25 @@ static double crossing_of(const struct eo_flank_pieces *pieces, const struct eo_
   return a->rate != b->rate && u >= pieces->u[0] && u <= pieces->u[1] ? y : NAN;
 }
 
-/* Bands end where end reliefs start, where a grid ends, and where lines cross. */
-static void find_bands(struct eo_flank_pieces *pieces)
+enum { MOST_ENDS = 8 + EO_FLANK_LINES * (EO_FLANK_LINES + 1) };
+
+/* Bands between these, which are put in order, and the faces. */
+static void set_bands(struct eo_flank_pieces *pieces, int count, double at[MOST_ENDS])
 {
-  enum { MOST = 8 + EO_FLANK_LINES * (EO_FLANK_LINES + 1) };
+  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = 2e-6 * half;
+  qsort(at, (size_t)count, sizeof *at, compare_numbers);
+  pieces->bands = 0;
+  pieces->y[0] = -half;
+  for (int i = 0; i < count && pieces->bands < EO_FLANK_BANDS - 1; i++)
+    if (at[i] > pieces->y[pieces->bands] + least && at[i] < half - least)
+      pieces->y[++pieces->bands] = at[i];
+  pieces->y[++pieces->bands] = half;
+}
+
+/* Bands end where end reliefs start, where a grid ends, and where lines cross. */
+static int list_ends(const struct eo_flank_pieces *pieces, double at[MOST_ENDS])
+{
   const struct eo_modification_shape *shape = eo_flank_shape_of(pieces);
-  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = 2e-6 * half, at[MOST];
   int count = 0;
   for (int i = 0; i < 2; i++)
     if (shape->end[i].amount != 0)
@@ -77,13 +90,7 @@ static void find_bands(struct eo_flank_pieces *pieces)
         at[count++] = y;
     }
   }
-  qsort(at, (size_t)count, sizeof *at, compare_numbers);
-  pieces->bands = 0;
-  pieces->y[0] = -half;
-  for (int i = 0; i < count && pieces->bands < EO_FLANK_BANDS - 1; i++)
-    if (at[i] > pieces->y[pieces->bands] + least && at[i] < half - least)
-      pieces->y[++pieces->bands] = at[i];
-  pieces->y[++pieces->bands] = half;
+  return count;
 }
 
 /* Pieces: */
@@ -117,27 +124,61 @@ static int sort_lines(const struct eo_flank_pieces *pieces, double y, int order[
   return count;
 }
 
-static void cut_band(struct eo_flank_pieces *pieces, int band)
+/* The pieces of a band but for swept corners, from root to tip; returns how many. */
+static int list_pieces(const struct eo_flank_pieces *pieces, int band, struct eo_flank_piece piece[EO_FLANK_LINES])
 {
   int order[EO_FLANK_LINES];
-  int count = sort_lines(pieces, (pieces->y[band] + pieces->y[band + 1]) / 2, order);
-  enum eo_flank_seam before = EO_SEAM_SMOOTH;
-  for (int i = 0; i + 1 < count; i++) {
-    struct eo_flank_piece piece = {band, {order[i], order[i + 1]}, {-1, -1}, {before, EO_SEAM_SMOOTH}, false};
-    if (i > 0)
-      piece.beyond[0] = order[i - 1];
-    if (i + 2 < count) {
-      piece.beyond[1] = order[i + 2];
-      piece.seam[1] = eo_flank_seam_at(pieces, &piece, 1);
+  int count = sort_lines(pieces, (pieces->y[band] + pieces->y[band + 1]) / 2, order) - 1;
+  for (int i = 0; i < count; i++)
+    piece[i] = (struct eo_flank_piece){.band = band, .line = {order[i], order[i + 1]}};
+  return count;
+}
+
+/* Where pieces that overlap begin to lie apart, between two rows. */
+static double find_turn(const struct eo_flank_pieces *pieces, const struct eo_flank_piece side[2], double low,
+                        double high)
+{
+  enum { HALVINGS = 40 };
+  double sag, first = eo_flank_step_at(pieces, &side[0], &side[1], low, &sag);
+  for (int i = 0; i < HALVINGS; i++) {
+    double middle = (low + high) / 2, step = eo_flank_step_at(pieces, &side[0], &side[1], middle, &sag);
+    *((step > 0) == (first > 0) ? &low : &high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/* Adds where that is within a band, for lines where a corner sweeps more than nothing; returns how many there are now.
+ */
+static int add_turns(const struct eo_flank_pieces *pieces, int band, int most, double *at, int count)
+{
+  struct eo_flank_piece piece[EO_FLANK_LINES];
+  int own = list_pieces(pieces, band, piece);
+  double from = pieces->y[band], row = (pieces->y[band + 1] - from) / EO_FLANK_ROWS, sag;
+  for (int i = 0; i + 1 < own; i++) {
+    double before = eo_flank_step_at(pieces, &piece[i], &piece[i + 1], from, &sag);
+    for (int r = 1; r <= EO_FLANK_ROWS && eo_flank_is_swept(pieces, &piece[i], &piece[i + 1]); r++) {
+      double step = eo_flank_step_at(pieces, &piece[i], &piece[i + 1], from + r * row, &sag);
+      if ((step > 0) != (before > 0) && count < most)
+        at[count++] = find_turn(pieces, &piece[i], from + (r - 1) * row, from + r * row);
+      before = step;
     }
-    before = piece.seam[1];
-    piece.direct = eo_flank_stands_still(pieces, &piece);
-    add_piece(pieces, &piece);
-    if (before == EO_SEAM_SWEPT)
-      add_piece(
-          pieces,
-          &(struct eo_flank_piece){
-              band, {order[i + 1], order[i + 1]}, {order[i], order[i + 2]}, {EO_SEAM_SWEPT, EO_SEAM_SWEPT}, true});
+  }
+  return count;
+}
+
+static void cut_band(struct eo_flank_pieces *pieces, int band)
+{
+  struct eo_flank_piece piece[EO_FLANK_LINES];
+  int count = list_pieces(pieces, band, piece);
+  for (int i = 0; i < count; i++) {
+    bool last = i + 1 == count;
+    piece[i].direct = eo_flank_stands_still(pieces, &piece[i]);
+    piece[i].swept[1] = !last && eo_flank_is_swept(pieces, &piece[i], &piece[i + 1]);
+    add_piece(pieces, &piece[i]);
+    if (!piece[i].swept[1])
+      continue;
+    piece[i + 1].swept[0] = true;
+    add_piece(pieces, &(struct eo_flank_piece){band, {piece[i].line[1], piece[i].line[1]}, {false, false}, true});
   }
 }
 
@@ -153,7 +194,12 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
                         tip = eo_flank_frame_at(pieces, pieces->u[1], 0);
   pieces->sense = eo_flank_ahead(&root, tip.origin.position) > 0 ? 1 : -1;
   find_lines(pieces);
-  find_bands(pieces);
+  double at[MOST_ENDS];
+  int ends = list_ends(pieces, at);
+  set_bands(pieces, ends, at);
+  for (int band = 0; band < pieces->bands; band++)
+    ends = add_turns(pieces, band, MOST_ENDS, at, ends);
+  set_bands(pieces, ends, at);
   for (int band = 0; band < pieces->bands; band++)
     cut_band(pieces, band);
 }

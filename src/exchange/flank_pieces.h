@@ -2,7 +2,8 @@
 /* A flank as the rack generates it, cut into smooth pieces. Where the slope of the modification jumps (a linear
    relief's start, the border of a grid or of a corner relief) the rack has a corner, and either both sides generate
    beyond each other: their pieces end where they cross; or neither reaches the other: between them lies what the corner
-   itself sweeps, a narrow piece of its own, tangent to both. Bands of y, lines of u across them. */
+   itself sweeps, a narrow piece of its own, tangent to both. A band ends where one turns into the other. Bands of y,
+   lines of u across them. */
 #ifndef EASEOFF_EXCHANGE_FLANK_PIECES_H
 #define EASEOFF_EXCHANGE_FLANK_PIECES_H
 
@@ -15,14 +16,10 @@ struct eo_flank_line {
   double at, rate;
 };
 
-/* Apart: near the base circle the sides can overlap further than the shorter one reaches; each ends on its own. */
-enum eo_flank_seam { EO_SEAM_SMOOTH, EO_SEAM_CROSSING, EO_SEAM_SWEPT, EO_SEAM_APART };
-
 /* Between two lines of a band; a swept corner: both are the same. */
 struct eo_flank_piece {
   int band, line[2];
-  int beyond[2];              /* the line beyond each, -1: none */
-  enum eo_flank_seam seam[2]; /* at each line */
+  bool swept[2]; /* what lies beyond each end is a swept corner */
   bool direct; /* u goes evenly from end to end: near the base circle the flank stands still; else the place on it does
                 */
 };
@@ -45,7 +42,7 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
 
 /* The piece's ends at one y, kept from point to point. */
 struct eo_flank_row {
-  double b; /* less than 0: none yet */
+  double b;        /* less than 0: none yet */
   double own[2];   /* the piece's u, m */
   double place[2]; /* the places on the unmodified flank on whose normals these points lie, as u, m */
 };

@@ -8,7 +8,8 @@
 
 #define EO_FLANK_NEAR 1e-12 /* m: what is no distance */
 #define EO_FLANK_STEP 1e-7  /* m: of differences */
-enum { EO_FLANK_STEPS = 20 };
+#define EO_FLANK_SAG 2e-10  /* m, normal: less is no step */
+enum { EO_FLANK_STEPS = 20, EO_FLANK_ROWS = 16 };
 
 /* The unmodified flank at (u, y): origin, normal, and the tangent that is at right angles to the helix. */
 struct eo_flank_frame {
@@ -25,7 +26,8 @@ double eo_flank_line_at(const struct eo_flank_pieces *pieces, int k, double y);
 void eo_flank_piece_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double u, double y,
                        struct eo_surface_point *point);
 
-/* What a corner of the rack sweeps: a from 0 to 1: slopes from those of one side to those of the other. */
+/* What a corner of the rack sweeps between the pieces before and after it; a from 0 to 1: slopes from those of one to
+   those of the other. */
 void eo_flank_swept_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double a, double y,
                        struct eo_surface_point *point);
 
@@ -48,14 +50,16 @@ double eo_flank_find_place(const struct eo_flank_pieces *pieces, const double po
 /* Whether points of a piece are too near each other for their place to tell u: less than this share of the rack's. */
 bool eo_flank_stands_still(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece);
 
-/* What both sides of a line generate decides what lies between them. which: the piece's own end. */
-enum eo_flank_seam eo_flank_seam_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
-                                    int which);
+/* How far the piece above begins beyond where the piece below ends, towards the tip; less than 0: they overlap. *sag:
+   how far what lies between bends off a straight way, normal. */
+double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                        const struct eo_flank_piece *above, double y, double *sag);
 
-/* How far the side above a line begins beyond where the side below ends, towards the tip; less than 0: they overlap. */
-double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y);
+/* Whether what the rack's corner sweeps between two pieces of a band is a piece of its own. */
+bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                       const struct eo_flank_piece *above);
 
-/* A piece's ends at y. Both are the same where nothing of it is left: its neighbours cross beyond one of its ends. */
+/* The ends at y of a piece that no corner sweeps. Both are the same where nothing of it is left. */
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
                       struct eo_flank_row *row);
 

@@ -25,20 +25,26 @@ static struct spot spot_at(const struct side *side, double u)
   return (struct spot){eo_flank_ahead(&side->frame, point.position), eo_flank_above(&side->frame, point.position)};
 }
 
-/* Both sides of a line of the piece's band: [below, above]. which: the piece's own end. */
-static void look_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y,
-                    struct side side[2])
+/* The end of a piece at a line, or where pieces between are lost, at its own; below: it lies below the line. */
+static struct side side_of(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, bool below,
+                           const struct eo_flank_frame *frame, double y)
 {
-  int own = which ? 0 : 1;
-  double line = eo_flank_line_at(pieces, piece->line[which], y);
-  for (int k = 0; k < 2; k++) {
-    side[k] = (struct side){pieces, *piece, eo_flank_frame_at(pieces, line, y), y, line, 0, k ? 1 : -1};
-    if (k != own) {
-      side[k].piece.line[1 - which] = piece->line[which];
-      side[k].piece.line[which] = piece->beyond[which];
-    }
-    side[k].far = eo_flank_line_at(pieces, side[k].piece.line[k], y);
-  }
+  int which = below ? 1 : 0;
+  return (struct side){pieces,
+                       *piece,
+                       *frame,
+                       y,
+                       eo_flank_line_at(pieces, piece->line[which], y),
+                       eo_flank_line_at(pieces, piece->line[1 - which], y),
+                       below ? -1 : 1};
+}
+
+static void look_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                    const struct eo_flank_piece *above, double y, struct side side[2])
+{
+  struct eo_flank_frame frame = eo_flank_frame_at(pieces, eo_flank_line_at(pieces, above->line[0], y), y);
+  side[0] = side_of(pieces, below, true, &frame, y);
+  side[1] = side_of(pieces, above, false, &frame, y);
 }
 
 /* How much of a step along u the flank goes on towards the tip; below 0 it folds. */
@@ -115,75 +121,109 @@ static bool find_crossing(const struct side side[2], double own[2])
   return true;
 }
 
-double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y)
+double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                        const struct eo_flank_piece *above, double y, double *sag)
 {
   struct side side[2];
-  look_at(pieces, piece, which, y, side);
-  return spot_at(&side[1], side[1].line).ahead - spot_at(&side[0], side[0].line).ahead;
+  struct eo_surface_point at[2];
+  look_at(pieces, below, above, y, side);
+  for (int k = 0; k < 2; k++)
+    eo_flank_piece_at(pieces, &side[k].piece, side[k].line, y, &at[k]);
+  double step = eo_flank_ahead(&side[0].frame, at[1].position) - eo_flank_ahead(&side[0].frame, at[0].position);
+  *sag = fabs(step) * eo_flank_turn(at[0].normal, at[1].normal) / 8;
+  return step;
 }
 
-enum eo_flank_seam eo_flank_seam_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which)
+bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                       const struct eo_flank_piece *above)
 {
-  enum { PLACES = 5 };
-  const double least = 2e-10; /* m, normal: less is no step */
-  double from = pieces->y[piece->band], width = pieces->y[piece->band + 1] - from, largest = 0;
-  int apart = 0, crossings = 0;
-  bool fold = false;
-  for (int i = 0; i < PLACES; i++) {
-    double y = from + width * (i + 0.5) / PLACES, step = eo_flank_step_at(pieces, piece, which, y), own[2];
-    struct side side[2];
-    struct eo_surface_point at[2];
-    look_at(pieces, piece, which, y, side);
-    for (int k = 0; k < 2; k++) {
-      eo_flank_piece_at(pieces, &side[k].piece, side[k].line, y, &at[k]);
-      fold = fold || beyond_fold(&side[k]) != side[k].line;
-    }
-    largest = fmax(largest, fabs(step) * eo_flank_turn(at[0].normal, at[1].normal) / 8);
-    apart += step > 0 ? 1 : -1;
-    crossings += find_crossing(side, own);
-  }
-  if (largest < least && !fold)
-    return EO_SEAM_SMOOTH;
-  if (crossings == PLACES)
-    return EO_SEAM_CROSSING;
-  return apart == PLACES ? EO_SEAM_SWEPT : EO_SEAM_APART;
+  double from = pieces->y[below->band], width = pieces->y[below->band + 1] - from, sag, largest = 0;
+  for (int i = 0; i <= EO_FLANK_ROWS; i++)
+    if (eo_flank_step_at(pieces, below, above, from + width * i / EO_FLANK_ROWS, &sag) > 0)
+      largest = fmax(largest, sag);
+  return largest > EO_FLANK_SAG;
 }
 
-/* A piece's end at y. */
-static void find_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which,
-                     struct eo_flank_row *row, double y)
+/* Where two pieces meet at y: u on each, and the place on the unmodified flank. */
+struct meeting {
+  double own[2], place[2];
+};
+
+/* Where they cross. Else each ends at its line; where what lies between is no more than nothing, in the middle of it.
+ */
+static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                           const struct eo_flank_piece *above, double y)
 {
-  double u = eo_flank_line_at(pieces, piece->line[which], y), own[2];
-  struct eo_surface_point point;
-  struct side side[2];
-  int mine = which ? 0 : 1;
-  bool kink = piece->beyond[which] >= 0;
-  row->own[which] = u;
-  if (kink)
-    look_at(pieces, piece, which, y, side);
-  if (kink && piece->seam[which] == EO_SEAM_CROSSING && find_crossing(side, own))
-    row->own[which] = own[mine];
-  eo_flank_piece_at(pieces, piece, row->own[which], y, &point);
-  row->place[which] = eo_flank_find_place(pieces, point.position, u, y);
-  if (!kink || piece->seam[which] != EO_SEAM_SMOOTH || piece->direct)
-    return;
-  eo_flank_piece_at(pieces, &side[1 - mine].piece, u, y, &point);
-  row->place[which] = (row->place[which] + eo_flank_find_place(pieces, point.position, u, y)) / 2;
   const double anywhere[2] = {-INFINITY, INFINITY};
-  row->own[which] = eo_flank_find_u(pieces, piece, row->place[which], y, u, anywhere);
+  struct meeting meeting;
+  struct side side[2];
+  look_at(pieces, below, above, y, side);
+  bool crossing = !below->swept[1] && find_crossing(side, meeting.own);
+  for (int k = 0; k < 2; k++) {
+    struct eo_surface_point point;
+    if (!crossing)
+      meeting.own[k] = side[k].line;
+    eo_flank_piece_at(pieces, &side[k].piece, meeting.own[k], y, &point);
+    meeting.place[k] = eo_flank_find_place(pieces, point.position, side[k].line, y);
+  }
+  if (crossing || below->swept[1])
+    return meeting;
+  meeting.place[0] = meeting.place[1] = (meeting.place[0] + meeting.place[1]) / 2;
+  for (int k = 0; k < 2; k++)
+    if (!side[k].piece.direct)
+      meeting.own[k] = eo_flank_find_u(pieces, &side[k].piece, meeting.place[k], y, side[k].line, anywhere);
+  return meeting;
+}
+
+/* The piece of the band before (-1) or after (+1) one, NULL: none. */
+static const struct eo_flank_piece *next_to(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                                            int direction)
+{
+  const struct eo_flank_piece *next = piece + direction;
+  while (next >= pieces->piece && next < pieces->piece + pieces->count && next->line[0] == next->line[1])
+    next += direction;
+  bool there = next >= pieces->piece && next < pieces->piece + pieces->count && next->band == piece->band;
+  return there ? next : NULL;
+}
+
+/* An end of a piece: where it meets its neighbour, or the one behind it where nothing is left of the neighbour. */
+static void find_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y,
+                     struct eo_flank_row *row)
+{
+  int direction = which ? 1 : -1, mine = which ? 0 : 1;
+  const struct eo_flank_piece *next = next_to(pieces, piece, direction), *behind;
+  struct eo_surface_point point;
+  if (!next) {
+    row->own[which] = eo_flank_line_at(pieces, piece->line[which], y);
+    eo_flank_piece_at(pieces, piece, row->own[which], y, &point);
+    row->place[which] = eo_flank_find_place(pieces, point.position, row->own[which], y);
+    return;
+  }
+  struct meeting here = which ? meet(pieces, piece, next, y) : meet(pieces, next, piece, y);
+  behind = next_to(pieces, next, direction);
+  if (behind) {
+    struct meeting there = which ? meet(pieces, next, behind, y) : meet(pieces, behind, next, y);
+    if (direction * (there.own[mine] - here.own[1 - mine]) < 0)
+      here = which ? meet(pieces, piece, behind, y) : meet(pieces, behind, piece, y);
+  }
+  row->own[which] = here.own[mine];
+  row->place[which] = here.place[mine];
 }
 
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
                       struct eo_flank_row *row)
 {
-  bool crossing[2];
-  for (int which = 0; which < 2; which++) {
-    find_end(pieces, piece, which, row, y);
-    crossing[which] = piece->seam[which] == EO_SEAM_CROSSING && piece->beyond[which] >= 0;
-  }
-  if (piece->direct ? row->own[1] > row->own[0] : row->place[1] > row->place[0])
+  const double anywhere[2] = {-INFINITY, INFINITY};
+  const struct eo_flank_piece *before = next_to(pieces, piece, -1), *after = next_to(pieces, piece, 1);
+  for (int which = 0; which < 2; which++)
+    find_end(pieces, piece, which, y, row);
+  if (row->own[1] > row->own[0])
     return;
-  double share = crossing[0] == crossing[1] ? 0.5 : crossing[1]; /* the crossing lies beyond the piece's other end */
-  row->place[0] = row->place[1] = (1 - share) * row->place[0] + share * row->place[1];
-  row->own[0] = row->own[1] = (1 - share) * row->own[0] + share * row->own[1];
+  if (before && after) {
+    row->place[0] = row->place[1] = meet(pieces, before, after, y).place[0];
+    row->own[0] = row->own[1] = eo_flank_find_u(pieces, piece, row->place[0], y, row->own[0], anywhere);
+  } else { /* the crossing lies beyond the flank's end */
+    row->place[0] = row->place[1] = row->place[before ? 0 : 1];
+    row->own[0] = row->own[1] = row->own[before ? 0 : 1];
+  }
 }
