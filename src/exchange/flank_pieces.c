@@ -218,9 +218,9 @@ void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo
     row->b = b;
     double u = row->own[0] + a * (row->own[1] - row->own[0]),
            place = row->place[0] + a * (row->place[1] - row->place[0]);
-    if (!piece->direct)
+    if (!piece->direct && row->own[1] > row->own[0])
       u = eo_flank_find_u(pieces, piece, place, y, u, row->own);
-    eo_flank_piece_at(pieces, piece, u, y, &generated);
+    eo_flank_piece_at(pieces, row->maker, u, y, &generated);
   }
   eo_tooth_place(pieces->tooth, pieces->coast, &generated, point, normal);
 }

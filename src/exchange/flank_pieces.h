@@ -42,8 +42,9 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
 
 /* The piece's ends at one y, kept from point to point. */
 struct eo_flank_row {
-  double b;        /* less than 0: none yet */
-  double own[2];   /* the piece's u, m */
+  double b;                           /* less than 0: none yet */
+  const struct eo_flank_piece *maker; /* the piece, or where nothing of it is left its neighbour */
+  double own[2];                      /* the piece's u, m */
   double place[2]; /* the places on the unmodified flank on whose normals these points lie, as u, m */
 };
 

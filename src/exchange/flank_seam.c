@@ -25,26 +25,15 @@ static struct spot spot_at(const struct side *side, double u)
   return (struct spot){eo_flank_ahead(&side->frame, point.position), eo_flank_above(&side->frame, point.position)};
 }
 
-/* The end of a piece at a line, or where pieces between are lost, at its own; below: it lies below the line. */
-static struct side side_of(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, bool below,
-                           const struct eo_flank_frame *frame, double y)
-{
-  int which = below ? 1 : 0;
-  return (struct side){pieces,
-                       *piece,
-                       *frame,
-                       y,
-                       eo_flank_line_at(pieces, piece->line[which], y),
-                       eo_flank_line_at(pieces, piece->line[1 - which], y),
-                       below ? -1 : 1};
-}
-
+/* Two pieces where they meet. Where what lies between them is lost each is taken to go on as far as the other's line.
+ */
 static void look_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
                     const struct eo_flank_piece *above, double y, struct side side[2])
 {
-  struct eo_flank_frame frame = eo_flank_frame_at(pieces, eo_flank_line_at(pieces, above->line[0], y), y);
-  side[0] = side_of(pieces, below, true, &frame, y);
-  side[1] = side_of(pieces, above, false, &frame, y);
+  double end = eo_flank_line_at(pieces, below->line[1], y), start = eo_flank_line_at(pieces, above->line[0], y);
+  struct eo_flank_frame frame = eo_flank_frame_at(pieces, start, y);
+  side[0] = (struct side){pieces, *below, frame, y, start, eo_flank_line_at(pieces, below->line[0], y), -1};
+  side[1] = (struct side){pieces, *above, frame, y, end, eo_flank_line_at(pieces, above->line[1], y), 1};
 }
 
 /* How much of a step along u the flank goes on towards the tip; below 0 it folds. */
@@ -104,6 +93,7 @@ static bool find_crossing(const struct side side[2], double own[2])
   off[1] = end.above - spot_at(&side[1], find_ahead(&side[1], start[1], end.ahead)).above;
   if (off[0] * off[1] > 0)
     return false;
+  own[0] = start[0];
   own[1] = start[1];
   for (int i = 0; i < ROUNDS && fabs(at[1] - at[0]) > EO_FLANK_NEAR; i++) { /* false position (Illinois), and halves */
     double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]);
@@ -213,15 +203,17 @@ static void find_end(const struct eo_flank_pieces *pieces, const struct eo_flank
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
                       struct eo_flank_row *row)
 {
-  const double anywhere[2] = {-INFINITY, INFINITY};
   const struct eo_flank_piece *before = next_to(pieces, piece, -1), *after = next_to(pieces, piece, 1);
+  row->maker = piece;
   for (int which = 0; which < 2; which++)
     find_end(pieces, piece, which, y, row);
-  if (row->own[1] > row->own[0])
+  if (row->own[1] > row->own[0] && (piece->direct || row->place[1] > row->place[0]))
     return;
   if (before && after) {
-    row->place[0] = row->place[1] = meet(pieces, before, after, y).place[0];
-    row->own[0] = row->own[1] = eo_flank_find_u(pieces, piece, row->place[0], y, row->own[0], anywhere);
+    struct meeting meeting = meet(pieces, before, after, y);
+    row->maker = before;
+    row->place[0] = row->place[1] = meeting.place[0];
+    row->own[0] = row->own[1] = meeting.own[0];
   } else { /* the crossing lies beyond the flank's end */
     row->place[0] = row->place[1] = row->place[before ? 0 : 1];
     row->own[0] = row->own[1] = row->own[before ? 0 : 1];
