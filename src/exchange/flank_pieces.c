@@ -204,18 +204,29 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
     cut_band(pieces, band);
 }
 
+/* What a corner of the rack sweeps, as far as neither side of it is lost: else the point where its neighbours meet. */
+static void swept_point(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                        const struct eo_flank_row *row, double a, double y, struct eo_surface_point *point)
+{
+  if (row->own[1] == eo_flank_line_at(pieces, piece->line[0], y))
+    eo_flank_swept_at(pieces, piece, a, y, point);
+  else
+    eo_flank_piece_at(pieces, row->maker, row->own[1], y, point);
+}
+
 void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo_flank_row *row, double a, double b,
                           double point[3], double normal[3])
 {
   const struct eo_flank_piece *piece = &pieces->piece[k];
+  bool corner = piece->line[0] == piece->line[1];
   double from = pieces->y[piece->band], y = from + b * (pieces->y[piece->band + 1] - from);
   struct eo_surface_point generated;
-  if (piece->line[0] == piece->line[1])
-    eo_flank_swept_at(pieces, piece, a, y, &generated);
+  if (row->b != b)
+    eo_flank_ends_at(pieces, corner ? piece - 1 : piece, y, row);
+  row->b = b;
+  if (corner)
+    swept_point(pieces, piece, row, a, y, &generated);
   else {
-    if (row->b != b)
-      eo_flank_ends_at(pieces, piece, y, row);
-    row->b = b;
     double u = row->own[0] + a * (row->own[1] - row->own[0]),
            place = row->place[0] + a * (row->place[1] - row->place[0]);
     if (!piece->direct && row->own[1] > row->own[0])

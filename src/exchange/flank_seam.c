@@ -9,8 +9,8 @@ struct side {
   const struct eo_flank_pieces *pieces;
   struct eo_flank_piece piece;
   struct eo_flank_frame frame;
-  double y, line, far; /* u of the line and of the side's other end */
-  int outwards;        /* from the line: below it -1, above it +1 */
+  double y, line, own, far; /* u of the line, of the side's own end there, and of its other end */
+  int outwards;             /* from the line: below it -1, above it +1 */
 };
 
 /* Where a side's point at u lies: towards the tip, and out of the tooth. */
@@ -32,8 +32,8 @@ static void look_at(const struct eo_flank_pieces *pieces, const struct eo_flank_
 {
   double end = eo_flank_line_at(pieces, below->line[1], y), start = eo_flank_line_at(pieces, above->line[0], y);
   struct eo_flank_frame frame = eo_flank_frame_at(pieces, start, y);
-  side[0] = (struct side){pieces, *below, frame, y, start, eo_flank_line_at(pieces, below->line[0], y), -1};
-  side[1] = (struct side){pieces, *above, frame, y, end, eo_flank_line_at(pieces, above->line[1], y), 1};
+  side[0] = (struct side){pieces, *below, frame, y, start, end, eo_flank_line_at(pieces, below->line[0], y), -1};
+  side[1] = (struct side){pieces, *above, frame, y, end, start, eo_flank_line_at(pieces, above->line[1], y), 1};
 }
 
 /* How much of a step along u the flank goes on towards the tip; below 0 it folds. */
@@ -50,18 +50,20 @@ static double beyond_fold(const struct side *side)
   enum { HALVINGS = 40 };
   const double least = 0.02;
   double from = 0, to = 0;
-  while (progress_at(side, side->line + side->outwards * to) < least) {
+  if (progress_at(side, side->own) >= least)
+    return side->line;
+  while (progress_at(side, side->own + side->outwards * to) < least) {
     from = to;
     to = fmax(2 * to, 4 * EO_FLANK_STEP);
-    if (to > fabs(side->far - side->line))
+    if (to > fabs(side->far - side->own))
       return side->far;
   }
-  for (int i = 0; i < HALVINGS && from < to; i++) {
+  for (int i = 0; i < HALVINGS; i++) {
     double middle = (from + to) / 2;
-    bool on = progress_at(side, side->line + side->outwards * middle) >= least;
+    bool on = progress_at(side, side->own + side->outwards * middle) >= least;
     *(on ? &to : &from) = middle;
   }
-  return side->line + side->outwards * to;
+  return side->own + side->outwards * to;
 }
 
 /* The u of a side, from `start` on outwards, whose point lies that far ahead. */
@@ -134,6 +136,17 @@ bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_fla
   return largest > EO_FLANK_SAG;
 }
 
+/* The piece of the band before (-1) or after (+1) one, NULL: none. */
+static const struct eo_flank_piece *next_to(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                                            int direction)
+{
+  const struct eo_flank_piece *next = piece + direction;
+  while (next >= pieces->piece && next < pieces->piece + pieces->count && next->line[0] == next->line[1])
+    next += direction;
+  bool there = next >= pieces->piece && next < pieces->piece + pieces->count && next->band == piece->band;
+  return there ? next : NULL;
+}
+
 /* Where two pieces meet at y: u on each, and the place on the unmodified flank. */
 struct meeting {
   double own[2], place[2];
@@ -148,7 +161,8 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
   struct meeting meeting;
   struct side side[2];
   look_at(pieces, below, above, y, side);
-  bool crossing = !below->swept[1] && find_crossing(side, meeting.own);
+  bool corner = below->swept[1] && next_to(pieces, below, 1) == above,
+       crossing = !corner && find_crossing(side, meeting.own);
   for (int k = 0; k < 2; k++) {
     struct eo_surface_point point;
     if (!crossing)
@@ -156,24 +170,13 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
     eo_flank_piece_at(pieces, &side[k].piece, meeting.own[k], y, &point);
     meeting.place[k] = eo_flank_find_place(pieces, point.position, side[k].line, y);
   }
-  if (crossing || below->swept[1])
+  if (crossing || corner)
     return meeting;
   meeting.place[0] = meeting.place[1] = (meeting.place[0] + meeting.place[1]) / 2;
   for (int k = 0; k < 2; k++)
     if (!side[k].piece.direct)
       meeting.own[k] = eo_flank_find_u(pieces, &side[k].piece, meeting.place[k], y, side[k].line, anywhere);
   return meeting;
-}
-
-/* The piece of the band before (-1) or after (+1) one, NULL: none. */
-static const struct eo_flank_piece *next_to(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
-                                            int direction)
-{
-  const struct eo_flank_piece *next = piece + direction;
-  while (next >= pieces->piece && next < pieces->piece + pieces->count && next->line[0] == next->line[1])
-    next += direction;
-  bool there = next >= pieces->piece && next < pieces->piece + pieces->count && next->band == piece->band;
-  return there ? next : NULL;
 }
 
 /* An end of a piece: where it meets its neighbour, or the one behind it where nothing is left of the neighbour. */

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "exchange/flank_pieces.h"
+#include "exchange/flank_rest.h"
 #include "exchange/patch.h"
 #include "exchange/tooth.h"
 
@@ -467,15 +468,26 @@ static int write_product(struct writer *writer, const char *name, int *context)
   return shape;
 }
 
+/* What of a part the file cannot promise, as comments. */
+static void tell_errors(const struct part *part, struct eo_text *text)
+{
+  const char *name = eo_tooth_part_names[part->part];
+  double folded = part->flank ? eo_flank_rest_error(&part->pieces) : 0;
+  if (part->error > tolerance)
+    eo_text_print(text, "/* %s: up to %.3g nm off the exact surface */\n", name, 1e9 * part->error);
+  if (folded > tolerance)
+    eo_text_print(text, "/* %s, where reliefs fold it: up to %.3g nm off what the rack leaves */\n", name,
+                  1e9 * folded);
+}
+
 static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bool whole, int *shell, int *shells)
 {
   int teeth = whole ? tooth->geometry->teeth[tooth->member] : 1;
   struct part part;
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
-    if (good && part.error > tolerance)
-      eo_text_print(writer->text, "/* %s: up to %.3g nm off the exact surface */\n", eo_tooth_part_names[kind],
-                    1e9 * part.error);
+    if (good)
+      tell_errors(&part, writer->text);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(writer, &part, number);
     free(part.face);

@@ -79,8 +79,16 @@ __attribute__((unused)) static double distance_from(const struct eo_tooth *tooth
     p = to[0];
     q = to[1];
   }
-  for (int round = 0; round < 6; round++)
-    refine(tooth, part, node, &p, &q);
+  for (int round = 0; round < 6; round++) { /* not over a kink, from where the way leads on */
+    double to[2] = {p, q};
+    refine(tooth, part, node, &to[0], &to[1]);
+    eo_tooth_point(tooth, part, 0, to[0], to[1], other, NULL);
+    if (!(apart(node, other) < best))
+      break;
+    best = apart(node, other);
+    p = to[0];
+    q = to[1];
+  }
   eo_tooth_point(tooth, part, 0, p, q, point, normal);
   double along_normal = 0, whole = apart(node, point);
   for (int c = 0; c < 3; c++)

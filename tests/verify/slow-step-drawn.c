@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Teeth of pairs drawn at random as STEP, with reliefs of every shape, corner reliefs, twist and grids: how far the
-   splines are from the exact surface, by the file's own words and, where gmsh is installed, by the nodes that
-   OpenCASCADE makes of some of them. slow-step-drawn [FIRST [COUNT [EVERY]]]: pairs; of every EVERY-th a member is
-   loaded (0: none). With DRAWN=FOLDER each design is left there. */
+   splines are from what the rack leaves, by the file's own words and, where gmsh is installed, by the nodes that
+   OpenCASCADE makes of some of them. slow-step-drawn [FIRST [COUNT [EVERY]]]: pairs; of every EVERY-th both
+   members are loaded (0: none). With DRAWN=FOLDER each design is left there. */
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "exchange/flank_pieces.h"
@@ -107,10 +107,12 @@ static bool draw_design(int index)
   return code == EO_OK;
 }
 
-/* What the file says of itself: the largest deviation, nm; 0: none is above 5 nm. */
-static double stated_deviation(const char *text)
+/* What the file says of itself: the largest deviation, nm; 0: none is above 5 nm. A flank that a relief folds is named
+   and counts as one that the file does not promise. */
+static double stated_deviation(const char *text, bool *folded)
 {
   double largest = 0;
+  *folded = strstr(text, "where reliefs fold it") != NULL;
   for (const char *at = strstr(text, "/* "); at; at = strstr(at + 1, "/* ")) {
     const char *number = strstr(at, "up to ");
     largest = fmax(largest, number ? strtod(number + 6, NULL) : INFINITY);
@@ -119,8 +121,9 @@ static double stated_deviation(const char *text)
   return largest;
 }
 
-/* From what a corner of the rack sweeps between the sides of a kink. */
-static double distance_from_swept(const struct eo_tooth *tooth, bool coast, const double node[3])
+/* From the pieces of a flank, which the file measures against what the rack leaves: at kinks, where eo_tooth_point()
+   has what each side generates, and neither what the rack's corner sweeps between them nor where they cross. */
+static double distance_from_pieces(const struct eo_tooth *tooth, bool coast, const double node[3])
 {
   static struct eo_flank_pieces flank;
   double nearest = INFINITY, point[3];
@@ -128,8 +131,6 @@ static double distance_from_swept(const struct eo_tooth *tooth, bool coast, cons
   for (int k = 0; k < flank.count; k++) {
     struct eo_flank_row row = {.b = -1};
     double at[2] = {0.5, 0.5}, best = INFINITY;
-    if (flank.piece[k].line[0] != flank.piece[k].line[1])
-      continue;
     for (double step = 0.25; step > 1e-7;) {
       double to[2] = {at[0], at[1]}, before = best;
       for (int i = 0; i < 9; i++) {
@@ -177,7 +178,7 @@ static void check_loaded(int index, int member)
     for (int part = 0; part < EO_TOOTH_PARTS && nearest > allowed; part++)
       nearest = fmin(nearest, distance_from(own, (enum eo_tooth_part)part, node));
     for (int coast = 0; coast < 2 && nearest > allowed; coast++)
-      nearest = fmin(nearest, distance_from_swept(own, coast, node));
+      nearest = fmin(nearest, distance_from_pieces(own, coast, node));
     if (nearest > allowed && off++ < 5)
       printf("# node %.9g %.9g %.9g mm is %.3g nm off\n", 1e3 * node[0], 1e3 * node[1], 1e3 * node[2], 1e9 * nearest);
     largest = fmax(largest, nearest);
@@ -220,14 +221,15 @@ int main(int argc, char **argv)
     for (int member = 0; member < 2; member++) {
       struct eo_text text = {0};
       eo_step_write(&design, &geometry, member, false, &text);
-      double stated = text.failed ? INFINITY : stated_deviation(text.data);
-      ok(stated <= 1e9 * allowed, "pair %d, %s: %zu kB, at most %.3g nm off", index, member ? "gear" : "pinion",
-         text.size / 1000, fmax(5, stated));
+      bool folded = false;
+      double stated = text.failed ? INFINITY : stated_deviation(text.data, &folded);
+      ok(stated <= 1e9 * allowed || folded, "pair %d, %s: %zu kB, at most %.3g nm off%s", index,
+         member ? "gear" : "pinion", text.size / 1000, fmax(5, stated), folded ? ", folded by a relief" : "");
       eo_text_done(&text);
       fflush(stdout);
     }
-    if (meshes && index % every == 0)
-      check_loaded(index, index / every % 2);
+    for (int member = 0; member < 2 && meshes && index % every == 0; member++)
+      check_loaded(index, member);
   }
   return tap_done();
 }

@@ -8,6 +8,8 @@
 #include "document/flank_grid_document.h"
 #include "document/search_space.h"
 #include "format/json.h"
+#include "gear/surface.h"
+#include "support/paper-pair.h"
 #include "support/tap.h"
 
 #include <stdlib.h>
@@ -271,7 +273,41 @@ static void test_spline(void)
   ok(fabs(after[0] - slope[1]) < 1e-3 * fabs(before[0] - slope[1]), "straight at the border");
   close_to(eo_flank_spline_at(spline, u[0] - 1e-3, y[2], slope), delta[2], 1e-18, "constant beyond it");
   ok(slope[0] == 0 && slope[1] == 0, "with no slope");
+  double across = 0;
+  for (int i = 0; i < 20; i++) {
+    double place = y[0] + (y[Y - 1] - y[0]) * (i + 0.5) / 20;
+    across = fmax(across, fabs(eo_flank_spline_across(spline, u[2] * 1.1, place) -
+                               (eo_flank_spline_at(spline, u[2] * 1.1, place + h, NULL) -
+                                eo_flank_spline_at(spline, u[2] * 1.1, place - h, NULL)) /
+                                   (2 * h)));
+  }
+  close_to(across, 0, 1e-9, "its derivative over the face");
+  ok(eo_flank_spline_across(spline, u[2], y[0] - 1e-9) == 0, "which is none beyond the border");
   eo_flank_spline_free(spline);
+}
+
+/* One side of a kink has its own slope as near to it as one likes: a corner relief of 10 um over 2 x 5 mm takes off 5
+   um per mm of u and 2 um per mm of y behind its border, and nothing before it. */
+static void test_slopes_at_border(void)
+{
+  struct eo_flank_modification flank = {0};
+  struct eo_modification_shape shape;
+  struct eo_geometry g;
+  double end[2], slope[2], y, cosine;
+  struct eo_error error;
+  struct eo_gear_pair pair = paper_pair();
+  if (eo_geometry_init(&g, &pair, &error))
+    printf("Bail out! %s\n", error.text);
+  cosine = cos(g.helix_angle);
+  flank.triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){10e-6, 2e-3, 5e-3, 1};
+  eo_modification_init(&shape, &g, EO_PINION, &flank);
+  eo_active_profile(&g, EO_PINION, end);
+  y = g.face_width / 2 - 2.5e-3; /* there the border is 1 mm below the tip */
+  for (int side = -1; side <= 1; side += 2) {
+    eo_surface_relief(&shape, end[1] - 1e-3 + side * 1e-8, y / cosine, slope);
+    close_to(slope[0], side > 0 ? 5e-3 : 0, 1e-15, "slope along the profile 10 nm from a border");
+    close_to(slope[1], side > 0 ? 2e-3 * cosine : 0, 1e-15, "and over the face");
+  }
 }
 
 static void test_grid_document(void)
@@ -448,6 +484,7 @@ int main(void)
   test_terms();
   test_fold();
   test_spline();
+  test_slopes_at_border();
   test_grid_document();
   test_export();
   test_migration();

@@ -10,6 +10,7 @@
 #include "document/examples.h"
 #include "exchange/exports.h"
 #include "exchange/flank_pieces.h"
+#include "exchange/flank_rest.h"
 #include "exchange/patch.h"
 #include "exchange/step.h"
 #include "exchange/tooth.h"
@@ -299,9 +300,9 @@ static void check_loaded(const char *name, int member)
 
 /* Pieces of a flank with kinks lie on the surface that eo_tooth_point() has, what corners of the rack sweep between
    its sides; the file says of no part that it is further off than allowed. */
-static void check_pieces(const char *what)
+static void check_pieces(const char *what, bool folds)
 {
-  double largest = 0, gap = 0, point[3], next[3], normal[3];
+  double largest = 0, gap = 0, rest = 0, point[3], next[3], normal[3];
   int swept = 0, pieces = 0;
   for (int member = 0; member < 2; member++)
     for (int coast = 0; coast < 2; coast++) {
@@ -309,13 +310,14 @@ static void check_pieces(const char *what)
       struct eo_tooth tooth;
       init(&tooth, member, EO_LEFT);
       eo_flank_pieces_init(&flank, &tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE);
+      rest = fmax(rest, eo_flank_rest_error(&flank));
       for (int k = 0; k < flank.count; k++) {
         const struct eo_flank_piece *piece = &flank.piece[k];
         struct eo_flank_row row = {.b = -1}, other = {.b = -1};
         bool corner = piece->line[0] == piece->line[1];
         swept += corner;
         pieces++;
-        for (int i = 0; i < 9 && !corner; i++) {
+        for (int i = 0; i < 9 && !corner && !folds; i++) { /* a way to the nearest point does not lead over a fold */
           eo_flank_piece_point(&flank, k, &row, 0.1 + 0.4 * (i % 3), 0.1 + 0.4 * (i / 3), point, NULL);
           largest = fmax(largest, distance_from(&tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, point));
         }
@@ -330,6 +332,7 @@ static void check_pieces(const char *what)
     }
   ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, within %.2g nm of the exact flank", what, pieces, swept,
      1e9 * largest);
+  ok(rest < 2e-9, "%s: pieces are what the rack leaves, within %.2g nm", what, 1e9 * rest);
   ok(gap < allowed / 2, "%s: pieces meet within %.2g nm, normal", what, 1e9 * gap);
   for (int member = 0; member < 2; member++) {
     struct eo_text text = {0};
@@ -344,12 +347,14 @@ static void check_pieces(const char *what)
 /* Kinks of every kind. */
 static void check_kinks(const char *name)
 {
-  for (int kind = 0; kind < 4; kind++) {
+  for (int kind = 0; kind < 6; kind++) {
     char what[100];
     struct eo_error error;
-    static const char *const kinds[4] = {"linear reliefs", "linear reliefs and end reliefs", "corner relief", "grid"};
+    static const char *const kinds[6] = {"linear reliefs", "linear reliefs and end reliefs", "corner relief", "grid",
+                                         "corner reliefs", "grid whose border turns"};
     static const double u[3] = {-0.6e-3, 0, 0.9e-3}, y[3] = {-4e-3, 0, 5e-3},
-                        delta[9] = {1e-6, 2e-6, 3e-6, 0, 1e-6, 2e-6, 3e-6, 4e-6, 5e-6};
+                        delta[9] = {1e-6, 2e-6, 3e-6, 0, 1e-6, 2e-6, 3e-6, 4e-6, 5e-6},
+                        border[9] = {4e-6, 0, -4e-6, 0, 0, 0, -5e-6, 1e-6, 5e-6};
     build(name);
     for (int i = 0; i < 8; i++) {
       struct eo_flank_modification *flank = i < 4 ? &design.modification.flank[i / 2][i % 2]
@@ -371,12 +376,21 @@ static void check_kinks(const char *name)
       if (kind == 2)
         flank->triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){8e-6, 1.5e-3, 5e-3, 1};
       const struct eo_flank_grid grid = {.u_knots = 3, .y_knots = 3, .u = u, .y = y, .delta = delta};
+      if (kind == 4) { /* one starts with an infinite curvature, and its border crosses that of the other */
+        flank->triangular[EO_ROOT_SIDE][EO_TRAILING_SIDE] = (struct eo_triangular_relief){9e-6, 2.5e-3, 12e-3, 1.4};
+        flank->triangular[EO_ROOT_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){8e-6, 2e-3, 11e-3, 1};
+        flank->triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){9e-6, 5e-3, 9e-3, 1};
+      }
+      const struct eo_flank_grid turning = {.u_knots = 3, .y_knots = 3, .u = u, .y = y, .delta = border};
+      if (kind == 5 &&
+          eo_flank_grids_put(&design.grids, (enum eo_flank_side)(i / 4), i / 2 % 2, i % 2, &turning, &error))
+        printf("Bail out! %s\n", error.text);
       if (kind == 3 && eo_flank_grids_put(&design.grids, (enum eo_flank_side)(i / 4), i / 2 % 2, i % 2, &grid, &error))
         printf("Bail out! %s\n", error.text);
       flank->twist = kind == 2 ? 3e-6 : 0;
     }
     snprintf(what, sizeof what, "%s, %s", name, kinds[kind]);
-    check_pieces(what);
+    check_pieces(what, kind == 4);
   }
 }
 
