@@ -32,7 +32,7 @@ struct eo_contact_position {
   double *length;    /* of the point's piece of contact line, m */
   double *law;       /* L of the local law: delta = K q (L - ln q), q in N/m */
   double *per_depth; /* 1/(K e^L), 1/m: with u = delta times it ... */
-  double *strength;  /* ... the point carries length e^L w(u), N; w: contact/local_inverse.h */
+  double *strength;  /* ... the point carries length e^L w(u), N; w: numerics/local_inverse.h */
   double *radius;    /* relative curvature radius rho_n, m */
   int rank, stride;  /* of the factor; stride: see numerics/gram.h */
   float *factor;     /* [points][stride]: bulk compliance = factor factor' + remainder, m/N */

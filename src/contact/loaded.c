@@ -7,21 +7,8 @@
 void eo_loaded_carry(struct eo_loaded_workspace *ws, const struct eo_contact_position *position, const double *mode,
                      double force)
 {
-  double sum = 0;
-  for (int i = 0; i < position->points; i++) {
-    double local = ws->local[i], spread = ws->spread[i], share = 1;
-    ws->load[i] = ws->rate[i] = 0;
-    if (local <= -spread)
-      continue;
-    if (local < spread) {
-      share = (local + spread) / (2 * spread); /* theory (C5) */
-      local = share * share * spread;
-    }
-    double slope, carried = eo_local_inverse_at(&ws->inverse, local * position->per_depth[i], &slope);
-    ws->load[i] = position->strength[i] * carried;
-    ws->rate[i] = share * slope * position->strength[i] * position->per_depth[i];
-    sum += ws->load[i];
-  }
+  const struct eo_line_law law = {(const double(*)[2])ws->inverse.node, position->per_depth, position->strength};
+  double sum = ws->gram->carry(position->points, &law, ws->local, ws->spread, ws->load, ws->rate);
   memcpy(ws->residual, mode, sizeof *mode * (size_t)position->rank);
   ws->gram->gather(position->points, position->rank, position->stride, position->factor, ws->load, ws->residual);
   ws->residual[position->rank] = sum - force;

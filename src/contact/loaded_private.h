@@ -4,8 +4,8 @@
 #define EASEOFF_CONTACT_LOADED_PRIVATE_H
 
 #include "contact/loaded.h"
-#include "contact/local_inverse.h"
 #include "numerics/gram.h"
+#include "numerics/local_inverse.h"
 
 #include <stdbool.h>
 

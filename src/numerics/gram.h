@@ -23,6 +23,12 @@ static inline int eo_gram_width(int columns)
   return (columns + EO_GRAM_LANE) / EO_GRAM_LANE * EO_GRAM_LANE;
 }
 
+/* Of a point: strength w(per_depth g), w by the table of numerics/local_inverse.h. */
+struct eo_line_law {
+  const double (*node)[2]; /* eo_local_inverse's */
+  const double *per_depth, *strength;
+};
+
 /* All arrays aligned to EO_GRAM_ALIGN, row-major. F: f[rows][stride], stride a multiple of EO_GRAM_LANE, zero behind
    its columns. */
 struct eo_gram {
@@ -49,6 +55,11 @@ struct eo_gram {
      alone, to the last bit, whatever the number of rows. */
   void (*multiply)(int rows, int inner, int columns, const float *a, int a_stride, const float *b, int b_stride,
                    bool add, float *c, int c_stride);
+  /* The loads of a line contact and their rates, load[points] and rate[points], from the local approach and half its
+     change over each cell, local[points] and spread[points], which lie in aligned arrays; law as eo_line_law says.
+     Returns the sum of the loads, in the order of the points. Every version gives the same bytes. */
+  double (*carry)(int points, const struct eo_line_law *law, const double *local, const double *spread, double *load,
+                  double *rate);
 };
 
 /* The fastest version for this processor. */

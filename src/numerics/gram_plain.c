@@ -15,6 +15,7 @@
 #define SPLAT_FLOAT(a) ((float_lane){0} + (a))
 #define MADD(a, b, c) ((a) * (b) + (c))
 #define MADD_FLOAT(a, b, c) ((a) * (b) + (c))
+#define ANY(mask) (((mask)[0] | (mask)[1]) != 0)
 #define APPLY_ROWS 2
 #define GATHER_UNITS 3
 #define TILE_ROWS 4

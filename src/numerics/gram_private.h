@@ -4,6 +4,7 @@
 #define EASEOFF_NUMERICS_GRAM_PRIVATE_H
 
 #include "numerics/gram.h"
+#include "numerics/local_inverse.h"
 
 extern const struct eo_gram eo_gram_plain;
 #if defined(__x86_64__)

@@ -2,8 +2,10 @@
 /* The small dense kernel, in every version this processor has, against plain loops in long double. */
 #include "base/random.h"
 #include "numerics/gram.h"
+#include "numerics/local_inverse.h"
 #include "support/tap.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -240,6 +242,51 @@ static void test_multiply(const struct eo_gram *gram, int rows, int inner, int c
   free(alone);
 }
 
+/* Loads of a line contact beside the law read point by point; cells without contact, in part and whole, from gaps below
+   the table to loads beyond the law, and what is not a number. */
+static void test_carry(const struct eo_gram *gram, int points)
+{
+  struct eo_local_inverse inverse;
+  struct eo_error error;
+  double *vector[6];
+  for (int i = 0; i < 6; i++)
+    vector[i] = eo_gram_allocate(points);
+  double *local = vector[0], *spread = vector[1], *load = vector[2], *rate = vector[3], *per_depth = vector[4],
+         *strength = vector[5], sum = 0;
+  int different = 0, in_part = 0;
+  if (eo_local_inverse_init(&inverse, &error))
+    return;
+  for (int i = 0; i < points; i++) {
+    local[i] = i % 17 == 3 ? 1e-30 : draw(20, i) * pow(10, 3 * draw(21, i) - 3);
+    spread[i] = i % 5 == 1 ? 0 : fabs(local[i]) * (1 + draw(22, i));
+    per_depth[i] = 1 + 0.5 * draw(23, i);
+    strength[i] = 10 + draw(24, i);
+  }
+  if (points > 20)
+    local[20] = NAN;
+  struct eo_line_law law = {(const double(*)[2])inverse.node, per_depth, strength};
+  double whole = gram->carry(points, &law, local, spread, load, rate);
+  for (int i = 0; i < points; i++) {
+    double share = 1, g = local[i], p = 0, slope = 0;
+    if (g < spread[i] && g > -spread[i]) {
+      share = (g + spread[i]) / (2 * spread[i]);
+      g = share * share * spread[i];
+      in_part++;
+    }
+    if (!(local[i] <= -spread[i]))
+      p = strength[i] * eo_local_inverse_at(law.node, g * per_depth[i], &slope);
+    double its_rate = share * slope * strength[i] * per_depth[i];
+    sum += p;
+    different += memcmp(&p, &load[i], sizeof p) != 0 && !(isnan(p) && isnan(load[i]));
+    different += memcmp(&its_rate, &rate[i], sizeof p) != 0 && !(isnan(its_rate) && isnan(rate[i]));
+  }
+  ok(different == 0 && (isnan(sum) ? isnan(whole) : sum == whole),
+     "%s: loads of %d points, %d in part, to the last bit", gram->name, points, in_part);
+  for (int i = 0; i < 6; i++)
+    free(vector[i]);
+  eo_local_inverse_done(&inverse);
+}
+
 /* Matrices that are not positive definite. */
 static void test_refusals(void)
 {
@@ -278,6 +325,9 @@ int main(void)
   for (int version = 0; eo_gram_version(version); version++) {
     test_multiply(eo_gram_version(version), 13, 31, 7 * EO_GRAM_COLUMNS);
     test_multiply(eo_gram_version(version), 7, 5, EO_GRAM_COLUMNS);
+    test_carry(eo_gram_version(version), 131);
+    test_carry(eo_gram_version(version), 19);
+    test_carry(eo_gram_version(version), 3);
   }
   test_refusals();
   double *memory = eo_gram_allocate(3);

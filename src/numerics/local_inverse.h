@@ -4,8 +4,8 @@
    point) and dw/du = 1/(x - 1). w(u) is one universal function, tabulated over octaves of u with its slope, so that a
    load and its rate take neither a logarithm nor a division. From x = 2 on, where the contact is as wide as the tooth
    is thick and the law has lost its meaning, q goes on in a straight line, so that every load has its solution. */
-#ifndef EASEOFF_CONTACT_LOCAL_INVERSE_H
-#define EASEOFF_CONTACT_LOCAL_INVERSE_H
+#ifndef EASEOFF_NUMERICS_LOCAL_INVERSE_H
+#define EASEOFF_NUMERICS_LOCAL_INVERSE_H
 
 #include "base/error.h"
 
@@ -29,14 +29,14 @@ void eo_local_inverse_done(struct eo_local_inverse *inverse);
 
 /* w(u) and dw/du for u > 0: the cubic of the cell with its own slope. Below the table, at gaps of a thousandth of an
    atom, the line through zero. */
-static inline double eo_local_inverse_at(const struct eo_local_inverse *inverse, double u, double *slope)
+static inline double eo_local_inverse_at(const double (*node)[2], double u, double *slope)
 {
   if (!(u < EO_LOCAL_INVERSE_STRAIGHT)) { /* NaN too: it is not to become an index */
     *slope = 1;
     return u - EO_LOCAL_INVERSE_OFFSET;
   }
   if (u < EO_LOCAL_INVERSE_LEAST) {
-    *slope = inverse->node[0][0] / EO_LOCAL_INVERSE_LEAST;
+    *slope = node[0][0] / EO_LOCAL_INVERSE_LEAST;
     return u * *slope;
   }
   /* the exponent of u tells the octave, the first six bits of its mantissa the cell, the others the place in it */
@@ -51,7 +51,7 @@ static inline double eo_local_inverse_at(const struct eo_local_inverse *inverse,
   memcpy(&r, &place, sizeof r);
   memcpy(&per_width, &bits, sizeof per_width);
   r -= 1;
-  const double *low = inverse->node[cell], *high = inverse->node[cell + 1];
+  const double *low = node[cell], *high = node[cell + 1];
   double rise = high[0] - low[0], bow = 3 * rise - 2 * low[1] - high[1], turn = low[1] + high[1] - 2 * rise;
   *slope = (low[1] + r * (2 * bow + 3 * r * turn)) * per_width;
   return low[0] + r * (low[1] + r * (bow + r * turn));

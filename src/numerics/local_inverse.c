@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "contact/local_inverse.h"
+#include "numerics/local_inverse.h"
 
 #include <math.h>
 #include <stdlib.h>
