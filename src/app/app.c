@@ -145,7 +145,7 @@ int eo_app_print_json(json_t *document, bool compact)
   return eo_app_print(&text);
 }
 
-bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
+bool eo_app_load_stated(const char *path, json_t **stated, struct eo_design *design, struct eo_geometry *geometry,
                         struct eo_warnings *warnings, int *status)
 {
   struct eo_error error;
@@ -168,9 +168,18 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
   } else if (warnings)
     eo_design_note_findings(design, geometry, warnings);
 out:
-  json_decref(document);
   free(faults);
+  *stated = document;
   return *status == EO_EXIT_DONE;
+}
+
+bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
+                        struct eo_warnings *warnings, int *status)
+{
+  json_t *stated;
+  bool good = eo_app_load_stated(path, &stated, design, geometry, warnings, status);
+  json_decref(stated);
+  return good;
 }
 
 enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error)

@@ -87,6 +87,9 @@ int eo_app_print_json(json_t *document, bool compact);
 /* Reads, decodes and completes a design ("-": standard input), warnings collected. False with *status set and told. */
 bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
                         struct eo_warnings *warnings, int *status);
+/* The same; *stated: the document as it was stated, owned, NULL where there is none. */
+bool eo_app_load_stated(const char *path, json_t **stated, struct eo_design *design, struct eo_geometry *geometry,
+                        struct eo_warnings *warnings, int *status);
 
 /* --units mm|inch, before a design is read: what is told of it from then on, faults too, is told so. EO_ERROR_INPUT for
    another word. */

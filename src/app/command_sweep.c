@@ -9,9 +9,10 @@
 #include "app/watch.h"
 #include "base/parallel.h"
 #include "document/sweep_document.h"
+#include "variants/sweep_steps.h"
 
 struct request {
-  const char *file, *torque, *speed, *csv, *data, *threads;
+  const char *file, *torque, *speed, *vary, *csv, *data, *threads;
   bool json, no_cache;
   int thread_count;
   struct eo_design design;
@@ -58,6 +59,19 @@ static enum eo_code add_range(json_t *document, const char *option, const char *
   return json_object_set_new(document, key, range) ? eo_error_memory(error) : EO_OK;
 }
 
+/* KEY=A:B:N, as `study` takes it. */
+static enum eo_code add_vary(json_t *document, const char *text, struct eo_error *error)
+{
+  size_t length = text ? strcspn(text, "=") : 0;
+  if (!text)
+    return EO_OK;
+  json_t *vary = text[length] && length ? read_range(text + length + 1) : NULL;
+  if (!vary)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--vary %.100s is not KEY=FIRST:LAST:POINTS.", text);
+  json_object_set_new(vary, "key", json_stringn(text, length));
+  return json_object_set_new(document, "vary", vary) ? eo_error_memory(error) : EO_OK;
+}
+
 /* The options are checked as the document a script would post. */
 static bool decode_axes(const json_t *document, struct eo_sweep_axes *axes, int *status)
 {
@@ -86,6 +100,8 @@ static bool read_axes(struct request *request, int *status)
   enum eo_code code = add_range(document, "--torque", "torque_Nm", request->torque, &error);
   if (!code)
     code = add_range(document, "--speed", "speed_rpm", request->speed, &error);
+  if (!code)
+    code = add_vary(document, request->vary, &error);
   if (code)
     *status = eo_app_fail(NULL, &error);
   else
@@ -145,8 +161,16 @@ static int run_request(struct request *request)
   struct eo_error error;
   struct eo_pair *pair = NULL;
   struct eo_sweep sweep = {0};
-  const struct eo_sweep_plan plan = {request->axes.torques, request->axes.speeds, request->axes.torque,
-                                     request->axes.speed, request->thread_count};
+  const struct eo_sweep_axes *axes = &request->axes;
+  const struct eo_sweep_plan plan = {.torques = axes->torques,
+                                     .speeds = axes->speeds,
+                                     .torque = axes->torque,
+                                     .speed = axes->speed,
+                                     .threads = request->thread_count,
+                                     .steps = axes->steps,
+                                     .key = axes->key,
+                                     .value = axes->value,
+                                     .step = axes->step};
   eo_watch_start(&watch);
   enum eo_code code = prepare(request, &watch.progress, &pair, &error);
   if (!code)
@@ -163,20 +187,39 @@ static int run_request(struct request *request)
   return status;
 }
 
+/* The design, and that of each step. */
+static bool load(struct request *request, int *status)
+{
+  json_t *stated;
+  struct eo_error error;
+  bool good = eo_app_load_stated(request->file, &stated, &request->design, &request->geometry, &request->warnings,
+                                 status);
+  if (good && (eo_sweep_steps_take(&request->axes, stated, &error) ||
+               eo_sweep_steps_init(&request->axes, &request->design, &error))) {
+    *status = eo_app_fail(NULL, &error);
+    good = false;
+  }
+  json_decref(stated);
+  return good;
+}
+
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   int operands, status;
   struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
     return status;
-  const struct eo_option options[] = {
-      {.name = "--torque", .value = &request->torque},   {.name = "--speed", .value = &request->speed},
-      {.name = "--json", .flag = &request->json},        {.name = "--csv", .value = &request->csv},
-      {.name = "--data", .value = &request->data},       {.name = "--no-cache", .flag = &request->no_cache},
-      {.name = "--threads", .value = &request->threads}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--torque", .value = &request->torque},
+                                      {.name = "--speed", .value = &request->speed},
+                                      {.name = "--vary", .value = &request->vary},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = "--threads", .value = &request->threads},
+                                      {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      read_threads(request, &status) && read_axes(request, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+      read_threads(request, &status) && read_axes(request, &status) && load(request, &status))
     status = run_request(request);
   eo_sweep_axes_done(&request->axes);
   free(request);
@@ -184,11 +227,17 @@ static int run(const struct eo_command *command, int argc, char **argv)
 }
 
 const struct eo_command eo_command_sweep = {
-    "sweep", "DESIGN.json --torque A:B:N | --speed A:B:N [--json] [--csv FILE] [--threads N] [--data DIR] [--no-cache]",
-    "a design over torque, speed or both, compared with the unmodified pair",
+    "sweep",
+    "DESIGN.json [--torque A:B:N | --vary KEY=A:B:N] [--speed A:B:N] [--json] [--csv FILE] [--threads N] [--data DIR] "
+    "[--no-cache]",
+    "a design over torque or another of its numbers, over speed or both, compared with the unmodified pair",
     "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. The axis "
     "that is not given\n"
-    "stands at the load case with the largest share. A alone is one value. Loaded contact is solved once per torque; "
+    "stands at the load case with the largest share. --vary takes another number of the design in place of the torque, "
+    "by the name that\n"
+    "a study has for it (modification.pinion.*.tip_relief_um, modification.pinion.left.grid_um.3.4), as long as the "
+    "gear pair stays as\n"
+    "it is. A alone is one value. Loaded contact is solved once per torque; "
     "every speed is\n"
     "solved upwards and downwards, and both are shown where they differ (contact loss). --json prints everything as "
     "columns, --csv\n"

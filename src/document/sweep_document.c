@@ -224,11 +224,28 @@ static const struct eo_outline_row crossing_rows[] = {
 };
 static const struct eo_outline crossing_outline = EO_OUTLINE("SweepCrossings", crossing_rows);
 
+struct vary {
+  const char *key;
+  struct eo_series value;
+};
+
+static const struct eo_outline_row vary_rows[] = {
+    EO_KEY("key", "text", "of the design", EO_AT(struct vary, key)),
+    EO_KEY("values", "[number]", "as the design states it, a step for each", EO_AT(struct vary, value)),
+};
+static const struct eo_outline vary_outline = EO_OUTLINE("SweepVary", vary_rows);
+
+static json_t *encode_vary(const struct eo_sweep *sweep)
+{
+  const struct vary view = {sweep->key, eo_series_of(sweep->torques, sweep->value, EO_DIGITS_NUMBER)};
+  return sweep->value ? eo_outline_encode(&vary_outline, &view) : json_null();
+}
+
 struct sweep {
   const char *program;
   char hash[EO_HASH_LENGTH + 1];
   struct eo_series torque, speed;
-  json_t *design, *variant[EO_SWEEP_VARIANTS], *modes, *crossings, *warnings;
+  json_t *design, *vary, *variant[EO_SWEEP_VARIANTS], *modes, *crossings, *warnings;
 };
 
 static const struct eo_outline_row sweep_rows[] = {
@@ -236,7 +253,10 @@ static const struct eo_outline_row sweep_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
            EO_AT(struct sweep, design)),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design", EO_AT(struct sweep, hash)),
-    EO_KEY("torque_Nm", "[number]", "axis of torques", .unit = &eo_unit_Nm, EO_AT(struct sweep, torque)),
+    EO_KEY("vary", "object?", "the number that varies in place of the torque, whose steps stand where torques do",
+           .outline = &vary_outline, EO_AT(struct sweep, vary)),
+    EO_KEY("torque_Nm", "[number]", "axis of torques; where another number varies the torque of each step",
+           .unit = &eo_unit_Nm, EO_AT(struct sweep, torque)),
     EO_KEY("speed_rpm", "[number]", "axis of speeds", .unit = &eo_unit_rpm, EO_AT(struct sweep, speed)),
     EO_KEY("modified", "object", "the design", .outline = &variant_outline,
            EO_AT(struct sweep, variant[EO_SWEEP_DESIGN])),
@@ -318,6 +338,7 @@ json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *de
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
     view.variant[v] = encode_variant(sweep, v);
   view.design = eo_design_encode(design);
+  view.vary = encode_vary(sweep);
   view.modes = encode_modes(sweep);
   view.crossings = encode_crossings(sweep);
   view.warnings = eo_warnings_encode(warnings);
@@ -350,6 +371,8 @@ static void add_all_headings(const struct eo_sweep *sweep, struct eo_text_table 
   static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"},
                                                                              {"unmodified_", "unmodified_down_"}};
   static const struct column outcome = {.heading = "outcome", .end = -1};
+  if (sweep->value)
+    eo_text_table_string(sheet, sweep->key);
   eo_text_table_string(sheet, "torque_Nm");
   eo_text_table_string(sheet, "speed_rpm");
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
@@ -376,6 +399,8 @@ void eo_sweep_csv(const struct eo_sweep *sweep, struct eo_text *text)
   eo_text_table_init(&sheet, 0, NULL);
   add_all_headings(sweep, &sheet);
   for (int i = 0; i < sweep->torques * sweep->speeds; i++) {
+    if (sweep->value)
+      eo_text_table_number(&sheet, sweep->value[i / sweep->speeds], NULL, EO_DIGITS_NUMBER);
     eo_text_table_number(&sheet, sweep->torque[i / sweep->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
     eo_text_table_number(&sheet, sweep->speed[i % sweep->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
     for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {

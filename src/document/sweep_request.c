@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define POINTS                                                                                                  \
   EO_INTEGER_DERIVED(struct eo_sweep_range, points, "points", 1, EO_SWEEP_MOST_STEPS, "both ends of the range", \
@@ -25,11 +26,25 @@ static const struct eo_field speed[] = {
 };
 const struct eo_table eo_sweep_speed_table = EO_TABLE("a range of speeds", struct eo_sweep_range, speed);
 
+static const struct eo_field vary_fields[] = {
+    EO_TEXT_DERIVED(struct eo_sweep_vary, key, "key", 1, "none",
+                    "of a design, as a study names it: modification.pinion.*.tip_relief_um, "
+                    "modification.pinion.left.grid_um.3.4, alignment.coupling_thrust_N, ..."),
+    EO_NUMBER_DERIVED(struct eo_sweep_vary, range.from, "from", NULL, -1e9, 1e9, "none",
+                      "first value, in the key's unit"),
+    EO_NUMBER_DERIVED(struct eo_sweep_vary, range.to, "to", NULL, -1e9, 1e9, "from", "last value"),
+    EO_INTEGER_DERIVED(struct eo_sweep_vary, range.points, "points", 1, EO_SWEEP_MOST_VALUES, "both ends of the range",
+                       "how many, equally spaced, ends included"),
+};
+const struct eo_table eo_sweep_vary_table = EO_TABLE("a number that varies", struct eo_sweep_vary, vary_fields);
+
 static const struct eo_field request[] = {
     EO_OBJECT(struct eo_sweep_request, torque, "torque_Nm", &eo_sweep_torque_table,
               "torques; without them that of the load case with the largest share"),
     EO_OBJECT(struct eo_sweep_request, speed, "speed_rpm", &eo_sweep_speed_table,
               "speeds; without them that of the load case with the largest share"),
+    EO_OBJECT(struct eo_sweep_request, vary, "vary", &eo_sweep_vary_table,
+              "a number of the design in place of the torque; any that leaves the gear pair as it is"),
 };
 const struct eo_table eo_sweep_request_table = EO_TABLE("a sweep", struct eo_sweep_request, request);
 
@@ -67,6 +82,20 @@ static enum eo_code make_axis(const struct eo_sweep_range *range, const struct e
   return EO_OK;
 }
 
+static enum eo_code make_steps(struct eo_sweep_axes *axes, const struct eo_sweep_vary *vary, struct eo_error *error)
+{
+  EO_TRY(make_axis(&vary->range, NULL, "/vary", &axes->steps, &axes->value, error));
+  if (axes->steps && !*vary->key)
+    return eo_error_set(error, EO_ERROR_INPUT, "/vary/key", "A range of which number? The key is missing.");
+  if (!axes->steps && *vary->key)
+    return eo_error_set(error, EO_ERROR_INPUT, "/vary/from", "The range of %.100s is missing.", vary->key);
+  if (axes->steps && axes->torques)
+    return eo_error_set(error, EO_ERROR_INPUT, "/torque_Nm",
+                        "A sweep varies the torque or another number, not both at once: a study does.");
+  memcpy(axes->key, vary->key, sizeof axes->key);
+  return EO_OK;
+}
+
 enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *asked,
                                 struct eo_error *error)
 {
@@ -74,12 +103,17 @@ enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_swee
   enum eo_code code = make_axis(&asked->torque, &eo_unit_Nm, "/torque_Nm", &axes->torques, &axes->torque, error);
   if (!code)
     code = make_axis(&asked->speed, &eo_unit_rpm, "/speed_rpm", &axes->speeds, &axes->speed, error);
-  if (!code && !axes->torques && !axes->speeds)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs a range of torques, of speeds, or both.");
-  if (!code && axes->torques > 0 && axes->speeds > EO_SWEEP_MOST_POINTS / axes->torques)
+  if (!code)
+    code = make_steps(axes, &asked->vary, error);
+  int first = axes->torques > 0 ? axes->torques : axes->steps;
+  if (!code && !first && !axes->speeds)
+    code =
+        eo_error_set(error, EO_ERROR_INPUT, "",
+                     "A sweep needs a range of torques, of another number, of speeds, or of speeds and one of them.");
+  if (!code && first > 0 && axes->speeds > EO_SWEEP_MOST_POINTS / first)
     code = eo_error_set(error, EO_ERROR_INPUT, "",
-                        "%d torques at %d speeds are more than the %d points that a sweep may have.", axes->torques,
-                        axes->speeds, EO_SWEEP_MOST_POINTS);
+                        "%d %s at %d speeds are more than the %d points that a sweep may have.", first,
+                        axes->torques > 0 ? "torques" : "values", axes->speeds, EO_SWEEP_MOST_POINTS);
   if (code)
     eo_sweep_axes_done(axes);
   return code;
@@ -89,5 +123,10 @@ void eo_sweep_axes_done(struct eo_sweep_axes *axes)
 {
   free(axes->torque);
   free(axes->speed);
+  free(axes->value);
+  free(axes->base);
+  for (int k = 0; axes->step && k < axes->steps; k++)
+    free(axes->step[k]);
+  free(axes->step);
   *axes = (struct eo_sweep_axes){0};
 }

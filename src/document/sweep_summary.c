@@ -17,6 +17,8 @@ static void add_headings(const struct eo_sweep *sweep, struct eo_text_table *she
   static const char *const first[] = {"N m",      "rpm",    "TE um",   "unmod.", "impact N", "unmod.",
                                       "RMS m/s2", "unmod.", "transv.", "rotat.", "factor",   "loss %"};
   eo_text_table_init(sheet, 0, NULL);
+  if (sweep->value)
+    eo_text_table_string(sheet, sweep->key);
   for (size_t i = 0; i < sizeof first / sizeof *first; i++)
     eo_text_table_string(sheet, first[i]);
   if (sweep->branches[EO_SWEEP_DESIGN])
@@ -33,6 +35,8 @@ static void add_point(const struct eo_sweep *sweep, int i, struct eo_text_table 
   const struct eo_sweep_torque *torque[2] = {&sweep->at_torque[0][i / sweep->speeds],
                                              &sweep->at_torque[1][i / sweep->speeds]};
   const struct eo_sweep_point *sweep_point[2] = {&sweep->point[0][EO_SWEEP_UP][i], &sweep->point[1][EO_SWEEP_UP][i]};
+  if (sweep->value)
+    eo_text_table_number(sheet, sweep->value[i / sweep->speeds], NULL, 6);
   eo_text_table_number(sheet, sweep->torque[i / sweep->speeds], &eo_unit_Nm, 6);
   eo_text_table_number(sheet, sweep->speed[i % sweep->speeds], &eo_unit_rpm, 6);
   for (int v = 0; v < 2; v++)

@@ -3,6 +3,7 @@
 
 #include "numerics/periodic.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,6 +32,7 @@ struct job {
   struct eo_sweep *sweep;
   const struct eo_pair *pair;
   const struct eo_design *design;
+  struct eo_design *const *step; /* [torques], where a number of the design varies; NULL: none does */
   int threads;
   struct worker *worker;      /* [threads] */
   struct problem *problem;    /* [variant][torque] */
@@ -54,7 +56,7 @@ static enum eo_code check_plan(const struct eo_sweep_plan *plan, struct eo_error
   enum eo_code code = check_axis(plan->torques, plan->torque, "torque", error);
   if (!code)
     code = check_axis(plan->speeds, plan->speed, "speed", error);
-  double points = fmax(plan->torques, 1) * fmax(plan->speeds, 1);
+  double points = fmax(fmax(plan->torques, plan->steps), 1) * fmax(plan->speeds, 1);
   if (!code && points > EO_SWEEP_MOST_POINTS)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "%.0f points are more than a sweep may have (%d).", points,
                         EO_SWEEP_MOST_POINTS);
@@ -78,17 +80,29 @@ static double *copy_axis(int count, const double *value, const double *otherwise
   return copy;
 }
 
+static double *torques_of(const struct eo_sweep_plan *plan)
+{
+  double *torque = malloc((size_t)plan->steps * sizeof *torque);
+  for (int k = 0; torque && k < plan->steps; k++)
+    torque[k] = heaviest(plan->step[k])->torque;
+  return torque;
+}
+
 static enum eo_code make_sweep(struct eo_sweep *sweep, const struct eo_design *design, const struct eo_sweep_plan *plan,
                                struct eo_error *error)
 {
   const struct eo_load_case *standard = heaviest(design);
   *sweep = (struct eo_sweep){.ends = design->gear_pair.ends,
-                             .torques = plan->torques ? plan->torques : 1,
+                             .torques = plan->steps     ? plan->steps
+                                        : plan->torques ? plan->torques
+                                                        : 1,
                              .speeds = plan->speeds ? plan->speeds : 1};
   size_t torques = (size_t)sweep->torques, points = torques * (size_t)sweep->speeds;
-  sweep->torque = copy_axis(plan->torques, plan->torque, &standard->torque);
+  sweep->torque = plan->steps ? torques_of(plan) : copy_axis(plan->torques, plan->torque, &standard->torque);
   sweep->speed = copy_axis(plan->speeds, plan->speed, &standard->speed);
-  bool made = sweep->torque && sweep->speed;
+  sweep->value = plan->steps ? copy_axis(plan->steps, plan->value, NULL) : NULL;
+  snprintf(sweep->key, sizeof sweep->key, "%s", plan->steps ? plan->key : "");
+  bool made = sweep->torque && sweep->speed && (sweep->value || !plan->steps);
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
     sweep->at_torque[v] = calloc(torques, sizeof *sweep->at_torque[v]);
     made = made && sweep->at_torque[v];
@@ -106,6 +120,7 @@ void eo_sweep_done(struct eo_sweep *sweep)
     return;
   free(sweep->torque);
   free(sweep->speed);
+  free(sweep->value);
   free(sweep->crossing);
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
     free(sweep->at_torque[v]);
@@ -197,16 +212,19 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   struct worker *worker = &job->worker[thread];
   const struct eo_evaluation *evaluation;
   int variant = item / sweep->torques, k = item % sweep->torques;
+  const struct eo_design *design = job->step ? job->step[k] : job->design;
   enum eo_code code = make_worker(job, worker, error);
   if (code)
     return code;
-  worker->design->load_case[0] = job->design->load_case[0]; /* its direction, driver and alignment */
+  if (job->step) {
+    *worker->design = *design;
+    worker->design->load_cases = 1;
+  }
+  worker->design->load_case[0] = *heaviest(design); /* its direction, driver and alignment */
   worker->design->load_case[0].torque = sweep->torque[k];
   worker->design->load_case[0].speed = sweep->speed[0];
   worker->design->load_case[0].share = 1;
-  worker->design->modification = job->design->modification;
-  if (variant == EO_SWEEP_UNMODIFIED)
-    worker->design->modification = eo_design_unmodified(job->design);
+  worker->design->modification = variant == EO_SWEEP_UNMODIFIED ? eo_design_unmodified(design) : design->modification;
   code = eo_evaluator_run(worker->evaluator, worker->design, NULL, 0, &evaluation, error);
   if (!code)
     code = keep_problem(&job->problem[item], worker->evaluator, evaluation, error);
@@ -397,7 +415,7 @@ static enum eo_code find_crossings(struct eo_sweep *sweep, int teeth, int orders
 enum eo_code eo_sweep_run(struct eo_sweep *sweep, const struct eo_pair *pair, const struct eo_design *design,
                           const struct eo_sweep_plan *plan, const struct eo_progress *progress, struct eo_error *error)
 {
-  struct job job = {.sweep = sweep, .pair = pair, .design = design};
+  struct job job = {.sweep = sweep, .pair = pair, .design = design, .step = plan->steps ? plan->step : NULL};
   *sweep = (struct eo_sweep){0};
   enum eo_code code = check_plan(plan, error);
   if (code)

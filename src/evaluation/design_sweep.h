@@ -8,7 +8,7 @@
 
 enum { EO_SWEEP_DESIGN, EO_SWEEP_UNMODIFIED, EO_SWEEP_VARIANTS };
 enum { EO_SWEEP_UP, EO_SWEEP_DOWN, EO_SWEEP_DIRECTIONS };
-enum { EO_SWEEP_MOST_POINTS = 20000 }; /* torques times speeds */
+enum { EO_SWEEP_MOST_POINTS = 20000, EO_SWEEP_KEY = 200 }; /* torques times speeds; bytes of a key */
 
 struct eo_sweep_plan {
   int torques, speeds;
@@ -16,6 +16,13 @@ struct eo_sweep_plan {
                            largest share */
   const double *speed;  /* [speeds], of the pinion, rad/s, ascending; 0 speeds: likewise */
   int threads;          /* 0: eo_parallel_cores() */
+
+  /* In place of torques (0 of them) a number of the design: at each step the design's own torque, that of its load case
+     with the largest share. */
+  int steps;                     /* 0: none */
+  const char *key;               /* the number's name */
+  const double *value;           /* [steps], as the document has it */
+  struct eo_design *const *step; /* [steps], resolved, served by the pair */
 };
 
 /* Static: at one torque. NaN, and no modes, where the loaded contact did not converge. */
@@ -47,9 +54,11 @@ struct eo_sweep_crossing {
 };
 
 struct eo_sweep {
-  int ends, torques, speeds;
-  double *torque, *speed;                                               /* [torques], [speeds] */
-  struct eo_sweep_torque *at_torque[EO_SWEEP_VARIANTS];                 /* [torques] */
+  int ends, torques, speeds;                            /* a step of another number counts as a torque */
+  double *torque, *speed;                               /* [torques], [speeds] */
+  double *value;                                        /* [torques], of that number; NULL: none */
+  char key[EO_SWEEP_KEY];                               /* its name */
+  struct eo_sweep_torque *at_torque[EO_SWEEP_VARIANTS]; /* [torques] */
   struct eo_sweep_point *point[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS]; /* [torques][speeds] */
   bool branches[EO_SWEEP_VARIANTS];                                     /* up and down differ somewhere */
   int crossings;

@@ -141,7 +141,8 @@ const char *eo_rexs_topography(struct eo_rexs_flank *flank, const struct eo_rexs
     json_array_append_new(table, row);
   }
   json_decref(flank->grid);
-  flank->grid = json_pack("{s:o, s:o, s:o, s:s}", "u_mm", u_list, "y_mm", y_list, "delta_um", table, "kind", "designed");
+  flank->grid = json_pack("{s:o, s:o, s:o, s:s}", "u_mm", u_list, "y_mm", y_list, "delta_um", table, "kind",
+                          "designed");
   eo_import_say(flank->import->out, flank->import->out->assumed,
                 "amounts of a topographical modification stand diameter by diameter, and are designed, not measured");
   return "";

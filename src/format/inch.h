@@ -19,8 +19,8 @@ bool eo_inch_is_used(const json_t *document);
 json_t *eo_inch_to_mm(const json_t *document, struct eo_faults *faults);
 
 /* New: the same in inches and thousandths, to 15 digits; so is the value of a row whose "key" points to a length, and
-   so are the sentences (inch_sentence.h) below "warnings", "notes", "text", "detail", "rule", "unchecked" and reasons. NULL without
-   memory. */
+   so are the sentences (inch_sentence.h) below "warnings", "notes", "text", "detail", "rule", "unchecked" and reasons.
+   NULL without memory. */
 json_t *eo_inch_from_mm(const json_t *document);
 
 /* Gives a key that the document has in inches back that spelling in the pointer of a fault that was found in mm, and

@@ -25,7 +25,7 @@ struct eo_flank_grids {
     int first;
     enum eo_grid_kind kind;
     bool kind_stated; /* by the document */
-  } place[2][2][2]; /* [flank side][member][end] */
+  } place[2][2][2];   /* [flank side][member][end] */
   int used;
   double number[EO_GRID_NUMBERS];
 };

@@ -16,6 +16,7 @@
 #include "http/route.h"
 #include "http/http_private.h"
 #include "service/preparation.h"
+#include "variants/sweep_steps.h"
 
 static const struct eo_outline_row cost_rows[] = {
     EO_KEY("memory_MB", "number", "estimated, at the most crowded moment", EO_AT(struct eo_preparation_cost, memory)),
@@ -121,7 +122,7 @@ static void analyze(struct eo_request *request)
 struct sweep_order {
   const json_t *design;
   struct eo_sweep_request range;
-  int has_torque, has_speed;
+  int has_torque, has_speed, has_vary;
 };
 static const struct eo_field sweep_fields[] = {
     EO_DOCUMENT(struct sweep_order, design, "design", "Design", EO_FIELD_REQUIRED, "what is swept"),
@@ -143,6 +144,8 @@ static const struct eo_field sweep_fields[] = {
      .table = &eo_sweep_speed_table,
      .derived = "that of the load case with the largest share",
      .help = "speeds"},
+    EO_OPTIONAL(struct sweep_order, range.vary, has_vary, "vary", &eo_sweep_vary_table, "none",
+                "a number of the design in place of the torque: any that leaves the gear pair as it is"),
 };
 static const struct eo_table sweep_table = EO_TABLE("a sweep", struct sweep_order, sweep_fields);
 
@@ -150,7 +153,10 @@ enum { MOST_SWEEP_POINTS = 20000 };
 
 static bool is_small(struct eo_request *request, const struct eo_sweep_axes *axes)
 {
-  long points = (long)(axes->torques ? axes->torques : 1) * (axes->speeds ? axes->speeds : 1);
+  long points = (long)(axes->torques ? axes->torques
+                       : axes->steps ? axes->steps
+                                     : 1) *
+                (axes->speeds ? axes->speeds : 1);
   if (points <= MOST_SWEEP_POINTS)
     return true;
   eo_reply_problem(&request->reply, 422, "too-large", "A sweep may have %d points here, not %ld.", MOST_SWEEP_POINTS,
@@ -159,7 +165,7 @@ static bool is_small(struct eo_request *request, const struct eo_sweep_axes *axe
 }
 
 static void put_sweep(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings,
-                      const struct eo_sweep_axes *axes)
+                      struct eo_sweep_axes *axes)
 {
   enum eo_admission admission;
   struct eo_error error;
@@ -184,8 +190,12 @@ static void sweep(struct eo_request *request)
     return;
   if (eo_sweep_axes_init(&axes, &order.range, &error))
     eo_reply_error(&request->reply, "", &error);
-  else if (eo_request_design(request, order.design, "/design", &design, &geometry, &warnings))
-    put_sweep(request, &design, &warnings, &axes);
+  else if (eo_request_design(request, order.design, "/design", &design, &geometry, &warnings)) {
+    if (eo_sweep_steps_check(&axes, &design, &error) || eo_sweep_steps_take(&axes, order.design, &error))
+      eo_reply_error(&request->reply, "", &error);
+    else
+      put_sweep(request, &design, &warnings, &axes);
+  }
   eo_sweep_axes_done(&axes);
 }
 
@@ -241,6 +251,7 @@ const struct eo_route eo_routes_analysis[] = {
      .rate = EO_RATE_START,
      .csv = true,
      .query = {EO_UNITS_QUERY},
-     .summary =
-         "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
+     .summary = "A design over torque or another of its numbers, over speed, or over both, beside the unmodified pair. "
+                "202 while "
+                "the gear pair is being prepared."},
     {0}};

@@ -175,9 +175,9 @@ struct eo_analysis_question {
 enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_analysis_question *question,
                                 enum eo_admission *admission, int64_t *job, struct eo_error *error);
 
-/* axes: copied. */
+/* axes: taken over, and empty then. */
 enum eo_code eo_service_sweep(struct eo_service *service, const struct eo_question *question,
-                              const struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
+                              struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
                               struct eo_error *error);
 
 /* Other work on a prepared pair (see rig_tasks.h), one at a time at a lower priority. run: adds the answer to text;

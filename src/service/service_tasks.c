@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "document/result.h"
 #include "service/cached_pairs.h"
+#include "variants/sweep_steps.h"
 
 static const double bucket_ms[EO_SERVICE_BUCKETS - 1] = {5, 10, 15, 20, 25, 50, 100, 250, 500, 1000, 5000};
 
@@ -107,8 +108,17 @@ static void write_sweep(const struct asked *asked, const struct eo_sweep *sweep,
 static enum eo_code run_sweep(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
 {
   const struct eo_progress progress = {watch_task, asked};
-  const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed,
-                                     asked->service->settings.threads};
+  struct eo_sweep_axes *axes = &asked->axes;
+  EO_TRY(eo_sweep_steps_init(axes, &asked->design, &answer->error));
+  const struct eo_sweep_plan plan = {.torques = axes->torques,
+                                     .speeds = axes->speeds,
+                                     .torque = axes->torque,
+                                     .speed = axes->speed,
+                                     .threads = asked->service->settings.threads,
+                                     .steps = axes->steps,
+                                     .key = axes->key,
+                                     .value = axes->value,
+                                     .step = axes->step};
   struct eo_sweep result = {0};
   double start = eo_clock_milliseconds();
   enum eo_code code = eo_sweep_run(&result, eo_held_pair(held), &asked->design, &plan, &progress, &answer->error);
@@ -209,33 +219,16 @@ enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_anal
   return admit(service, service->analyses, asked, question->common.wait, admission, job, error);
 }
 
-static enum eo_code copy_axis(const double *from, int count, double **to, struct eo_error *error)
-{
-  if (!count)
-    return EO_OK;
-  *to = malloc(sizeof **to * (size_t)count);
-  if (!*to)
-    return eo_error_memory(error);
-  memcpy(*to, from, sizeof **to * (size_t)count);
-  return EO_OK;
-}
-
 enum eo_code eo_service_sweep(struct eo_service *service, const struct eo_question *question,
-                              const struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
+                              struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
                               struct eo_error *error)
 {
   struct asked *asked = copy_question(service, question, run_sweep, error);
   if (!asked)
     return EO_ERROR_MEMORY;
-  asked->axes.torques = axes->torques;
-  asked->axes.speeds = axes->speeds;
-  enum eo_code code = copy_axis(axes->torque, axes->torques, &asked->axes.torque, error);
-  if (!code)
-    code = copy_axis(axes->speed, axes->speeds, &asked->axes.speed, error);
-  if (!code)
-    return admit(service, service->sweeps, asked, question->wait, admission, job, error);
-  eo_service_release_task(&asked->task);
-  return code;
+  asked->axes = *axes;
+  *axes = (struct eo_sweep_axes){0};
+  return admit(service, service->sweeps, asked, question->wait, admission, job, error);
 }
 
 enum eo_code eo_service_compute(struct eo_service *service, const struct eo_question *question,

@@ -31,9 +31,8 @@ struct eo_variant_plan {
   enum eo_study_sampling sampling;
   int samples;
   uint64_t seed;
-  struct eo_sampler *sampler;           /* of samples; owned */
-  bool of_modification;                 /* nothing but the modification varies, and no grid: all are of one problem of the
-                                           history */
+  struct eo_sampler *sampler; /* of samples; owned */
+  bool of_modification; /* nothing but the modification varies, and no grid: all are of one problem of the history */
   char study_hash[EO_HASH_LENGTH + 1];  /* equal studies have equal rows */
   char design_hash[EO_HASH_LENGTH + 1]; /* of what is evaluated of the base design */
 };

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep, *pairs, *many_pairs, *tolerance_order, *limited, *spur, *stages, *study,
-    *once_more, *other_paper;
+static char *coarse, *order, *named, *sweep, *vary, *vary_pair, *pairs, *many_pairs, *tolerance_order, *limited, *spur,
+    *stages, *study, *once_more, *other_paper;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -215,6 +215,12 @@ static const struct command analyses[] = {
     {"tolerance", "POST", API "/tolerance", .body = &pairs, .status = 200, .pointer = "pairs", .value = "6"},
     {"tolerance as CSV", "POST", API "/tolerance.csv", .body = &pairs, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
+    {"sweep of another number", "POST", API "/sweep", .body = &vary, .status = 200, .pointer = "vary/values",
+     .value = "[0,0.125,0.25]"},
+    {"sweep of another number as CSV", "POST", API "/sweep.csv", .body = &vary, .status = 200,
+     .says = "alignment.shaft_angle_error_in_plane_deg,torque_Nm"},
+    {"sweep of another gear pair", "POST", API "/sweep", .body = &vary_pair, .status = 422,
+     .pointer = "errors/0/pointer", .value = "/vary/key"},
     {"sweep in inches", "POST", API "/sweep.csv?units=inch", .body = &sweep, .status = 200,
      .says = "peak_to_peak_thou"},
     {"tolerance in inches", "POST", API "/tolerance.csv?units=inch", .body = &pairs, .status = 200,
@@ -756,6 +762,13 @@ int main(void)
   json_t *range = json_pack("{s:O, s:n, s:{s:i, s:i, s:i}}", "design", document, "torque", "speed", "from", 1000, "to",
                             2000, "points", 3);
   sweep = json_dumps(range, JSON_COMPACT);
+  json_t *number = json_pack("{s:s, s:i, s:f, s:i}", "key", "alignment.shaft_angle_error_in_plane_deg", "from", 0, "to",
+                             0.25, "points", 3),
+         *numbers = json_pack("{s:O, s:o}", "design", document, "vary", number);
+  vary = json_dumps(numbers, JSON_COMPACT | JSON_REAL_PRECISION(6));
+  json_object_set_new(number, "key", json_string("gear_pair.helix_angle_deg"));
+  vary_pair = json_dumps(numbers, JSON_COMPACT);
+  json_decref(numbers);
   json_t *many = json_pack("{s:O, s:i}", "design", document, "pairs", 6);
   pairs = json_dumps(many, JSON_COMPACT);
   json_object_set_new(many, "pairs", json_integer(6000));
@@ -838,6 +851,8 @@ int main(void)
   free(order);
   free(named);
   free(sweep);
+  free(vary);
+  free(vary_pair);
   free(pairs);
   free(many_pairs);
   free(tolerance_order);

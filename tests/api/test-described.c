@@ -160,11 +160,14 @@ static void test_sweeps(void)
       {"a sweep of one end", single, "null", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
       {"a sweep through lost contact", fast, "{\"from\": 60, \"to\": 60}",
        "{\"from\": 1000, \"to\": 9000, \"points\": 33}"}};
+  static const char vary[] = "{\"key\": \"alignment.coupling_thrust_N\", \"from\": -500, \"to\": 500, \"points\": 3}";
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, API "/sweep",
                   json_pack("{s:o, s:o, s:o}", "design", design_with("ga", 10, row[i].patch), "torque",
                             json_loads(row[i].torque, JSON_DECODE_ANY, NULL), "speed",
                             json_loads(row[i].speed, JSON_DECODE_ANY, NULL)));
+  expect_answer("a sweep of another number", API "/sweep",
+                json_pack("{s:o, s:o}", "design", design_with("ga", 10, plain), "vary", json_loads(vary, 0, NULL)));
 }
 
 static void look_at(int id)

@@ -103,6 +103,39 @@ paste "$folder/frequency_Hz" "$folder/order" "$folder/speed_rpm" |
   awk '{ e = 60 * $1 / (17 * $2) / $3 - 1; if (e * e > 1e-18 || $3 < 500 || $3 > 5000) bad = 1 } END { exit bad || NR < 20 }'
 result $? "an order line meets a mode where order * teeth * speed is its frequency"
 
+# ---- another number in place of the torque ----
+
+sweep --vary 'modification.pinion.*.tip_relief_um=10:18:3' --json
+cp "$folder/out" "$folder/vary.json"
+near "the values of the number" /vary/values "$folder/vary.json" /vary/values 0
+[ "$(column /vary/values | tr '\n' ' ')" = "10 14 18 " ] && [ "$(column /torque_Nm | tr '\n' ' ')" = "828 828 828 " ]
+result $? "a step for each value, at the torque of the case with the largest share"
+near "the design's own value is the design" /modified/by_torque/peak_to_peak_um/1 "$folder/torque.json" /modified/by_torque/peak_to_peak_um/1 1e-9 relative
+near "its vibration" /modified/points/rms_m_per_s2/normal/1 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
+near "the unmodified pair" /unmodified/by_torque/peak_to_peak_um/2 "$folder/torque.json" /unmodified/by_torque/peak_to_peak_um/1 1e-9 relative
+sweep --vary 'modification.pinion.*.tip_relief_um=10:18:3' --speed 1000:2000:2 --csv "$folder/vary.csv"
+[ "$(head -1 "$folder/vary.csv" | cut -d, -f1-3)" = "modification.pinion.*.tip_relief_um,torque_Nm,speed_rpm" ] && [ "$(wc -l <"$folder/vary.csv")" -eq 7 ]
+result $? "the number is a column of the CSV"
+for end in left right; do
+  grid='"grid": {"u_mm": [-5, 0, 5], "y_mm": [-27, 0, 27], "delta_um": [[0, 0, 0], [0, 0, 0], [0, 0, 0]]'
+  sed "s/\"$end\": {/&$grid}, /" "$design" >"$folder/with-grid" && mv "$folder/with-grid" "$design"
+done
+sweep --vary 'modification.pinion.*.grid_um.3.0=0:8:3' --json
+cp "$folder/out" "$folder/vary.json"
+near "a flat grid is none" /modified/by_torque/peak_to_peak_um/0 "$folder/torque.json" /modified/by_torque/peak_to_peak_um/1 1e-5 relative
+near "the unmodified pair goes without any of it" /unmodified/by_torque/peak_to_peak_um/2 "$folder/torque.json" /unmodified/by_torque/peak_to_peak_um/1 1e-6 relative
+sed 's/, \[0, 0, 0\]\]/, [8, 8, 8]], "kind": "designed"/g' "$design" >"$folder/grid.json"
+"$EASEOFF" analyze "$folder/grid.json" --data "$folder/data" --json >"$folder/analysis.json" 2>"$folder/err"
+result $? "a design with the last of these grids"
+near "its PPLTE" /modified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /load_cases/1/lte/peak_to_peak_um 1e-6 relative
+near "and that of its unmodified pair" /unmodified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /objectives/unmodified/load_cases/1/peak_to_peak_um 1e-6 relative
+refuses "another gear pair: a study varies it" "$design" --vary gear_pair.helix_angle_deg=24:25:2
+refuses "is not KEY=FIRST:LAST:POINTS" "$design" --vary alignment.coupling_thrust_N
+refuses "not both at once" "$design" --torque 600:700:2 --vary alignment.coupling_thrust_N=0:100:2
+refuses "ranges of their own" "$design" --vary 'load_cases.*.torque_Nm=600:700:2'
+refuses "no number" "$design" --vary modification.pinion.left.relief_shape=1:2:2
+write_design ""
+
 # ---- map, threads ----
 
 sweep --torque 621:1035:3 --speed 500:5000:10 --json
@@ -174,7 +207,7 @@ refuses "more than the 20000 points" "$design" --torque 1:2000:2000 --speed 1:20
 for wrong in a:3:4 1:2:3:4 nan:2:2 1::2 1e400:2:2 : "" 1:2:; do
   refuses "is not FIRST:LAST:POINTS" "$design" --torque "$wrong"
 done
-refuses "needs a range of torques, of speeds, or both" "$design"
+refuses "needs a range of torques, of another number, of speeds" "$design"
 refuses "outside 1 .. 256" "$design" --torque 5 --threads 0
 refuses "outside 1 .. 256" "$design" --torque 5 --threads 2x
 refuses "unknown or incomplete option --torque" "$design" --torque

@@ -191,9 +191,10 @@ class Client:
     def sweep(
         self, request: Mapping[str, Any], *, units: str | None = None, easeoff_lane: str | None = None
     ) -> doc.Sweep:
-        """A design over torque, speed or both, beside the unmodified pair. units: as in analyze().
+        """A design over torque or another of its numbers, over speed or both, beside the unmodified pair. units: as in analyze().
 
-        request: {"design": .., "speed_rpm": {"from": .., "to": .., "points": ..}, "torque_Nm": the same}.
+        request: {"design": .., "speed_rpm": {"from": .., "to": .., "points": ..}, "torque_Nm": the same}; in place of
+        torque_Nm "vary": {"key": "modification.pinion.left.grid_um.3.4", "from": .., "to": .., "points": ..}.
         """
         return self._computed("POST", "/sweep", document=request, query={"units": units}, lane=easeoff_lane).json
 

@@ -62,7 +62,10 @@ export class Flank {
     notice.say(`${file.name} is the grid of this flank now; undo takes it back.`);
   }
 
-  /** A table in place of the numbers that are there; it is what they were, measured or designed. @param {string} pointer @param {string} csv */
+  /**
+   * A table in place of the numbers that are there; it is what they were, measured or designed.
+   * @param {string} pointer @param {string} csv
+   */
   #take(pointer, csv) {
     const kind = this.store.get(pointer)?.kind;
     this.store.set(pointer, kind ? { csv, kind } : { csv });
@@ -165,7 +168,7 @@ export class Flank {
         'First row: places along the face in mm; each further row: its place on the profile, then µm.',
       ),
       h('p.figure-note', null, now ? 'This flank has a grid.' : 'This flank has no grid.'),
-      now ? this.fields.field(`${pointer}/kind`) : null,
+      ...(now ? [this.fields.field(`${pointer}/kind`)] : []),
       text,
       h(
         '.switches',
