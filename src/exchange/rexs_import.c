@@ -330,7 +330,7 @@ static bool read_again(const json_t *carried, struct eo_import *again)
   bool good = design && faults && model && eo_import_begin(again) && eo_design_decode(carried, design, NULL, faults) &&
               !eo_design_complete(design, &geometry, &error);
   if (good) {
-    eo_rexs_export(design, &geometry, EO_REXS_EXPORT_VERSION, false, model);
+    eo_rexs_export(design, &geometry, EO_REXS_EXPORT_VERSION, true, model);
     again->failed = again->failed || model->failed;
     if (!again->failed)
       read_model(again, model, &options);

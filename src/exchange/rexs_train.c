@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "format/json.h"
+
 static const double same = 1e-6;           /* relative: numbers of two ends that are one */
 static const double place_tolerance = 0.1; /* mm, by which the distances of both members' ends may differ */
 
@@ -182,10 +184,25 @@ static double transverse_tangent(const struct eo_rexs_wheel *wheel)
   return transverse(wheel, tan(wheel->pressure_angle * M_PI / 180));
 }
 
-/* Hands opposite, all else equal but the face width and the helix: halves may be unequal, on one transverse section. */
-static bool is_mirrored(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b)
+/* Spur teeth have no hand that tells two ends from two stages; a design that the model carries does. */
+static bool has_spur_ends(const struct eo_rexs_model *model)
 {
-  bool other_hand = alike(a->teeth, b->teeth) && a->helix * b->helix < 0 && a->along == b->along;
+  struct eo_error error;
+  long long ends = 0;
+  for (int i = 0; i < model->components; i++) {
+    const struct eo_rexs_attribute *carried = eo_rexs_attribute(&model->component[i], "custom_easeoff_design");
+    json_t *design = carried ? eo_json_parse(carried->text, strlen(carried->text), &error) : NULL;
+    ends = design ? json_integer_value(json_object_get(json_object_get(design, "gear_pair"), "ends")) : ends;
+    json_decref(design);
+  }
+  return ends == 2;
+}
+
+/* Hands opposite, all else equal but the face width and the helix: halves may be unequal, on one transverse section. */
+static bool is_mirrored(const struct eo_rexs_wheel *a, const struct eo_rexs_wheel *b, bool spur)
+{
+  bool opposite = a->helix * b->helix < 0 || (spur && a->helix == 0 && b->helix == 0);
+  bool other_hand = alike(a->teeth, b->teeth) && opposite && a->along == b->along;
   if (alike(a->helix, -b->helix))
     return other_hand && alike(a->module, b->module) && alike(a->pressure_angle, b->pressure_angle) &&
            alike(a->shift, b->shift);
@@ -211,14 +228,14 @@ static void swap_wheels(struct eo_rexs_mesh *mesh)
   mesh->wheel[1] = first;
 }
 
-static bool are_two_ends(const struct eo_rexs_mesh *a, const struct eo_rexs_mesh *b)
+static bool are_two_ends(const struct eo_rexs_mesh *a, const struct eo_rexs_mesh *b, bool spur)
 {
   struct eo_rexs_mesh other = *b;
   if (other.wheel[0].shaft != a->wheel[0].shaft)
     swap_wheels(&other);
   for (int i = 0; i < 2; i++)
     if (a->wheel[i].shaft < 0 || other.wheel[i].shaft != a->wheel[i].shaft ||
-        !is_mirrored(&a->wheel[i], &other.wheel[i]))
+        !is_mirrored(&a->wheel[i], &other.wheel[i], spur))
       return false;
   double gap[2] = {gap_between(&a->wheel[0], &other.wheel[0]), gap_between(&a->wheel[1], &other.wheel[1])};
   double distance[2] = {distance_between(&a->wheel[0], &other.wheel[0]),
@@ -259,11 +276,12 @@ static void add_pair(struct eo_rexs_train *train, int left, int right, const cha
 
 static void find_pairs(struct eo_rexs_train *train)
 {
+  bool spur = has_spur_ends(train->model);
   bool taken[EO_REXS_MESHES] = {false};
   for (int i = 0; i < train->meshes; i++) {
     int partner = -1, partners = 0;
     for (int k = 0; k < train->meshes; k++)
-      if (k != i && are_two_ends(&train->mesh[i], &train->mesh[k])) {
+      if (k != i && are_two_ends(&train->mesh[i], &train->mesh[k], spur)) {
         partners++;
         partner = k;
       }

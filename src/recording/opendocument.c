@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define VALUE 1024 /* bytes of a cell's text at most; longer ones are cut */
+#define VALUE \
+  ((size_t)512 << 10) /* bytes of a cell's value at most: a grid of a flank as one list; longer texts are cut */
 
 struct document {
   struct eo_archive *archive;

@@ -12,7 +12,8 @@
 
 #define FORMATS 4096             /* of cells that are remembered */
 #define TEXTS ((size_t)64 << 20) /* bytes of shared texts at most */
-#define VALUE 1024               /* bytes of a cell's value at most; longer texts are cut */
+#define VALUE \
+  ((size_t)512 << 10) /* bytes of a cell's value at most: a grid of a flank as one list; longer texts are cut */
 #define NAME 64
 
 enum { FACT_SHEETS = 8, FACT_CELLS = 200 }; /* sheets that are no table, and what they hold at most */

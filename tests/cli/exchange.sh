@@ -84,6 +84,26 @@ for format in rexs rexs-json rexs-zip rexs-2.0.0 rexs-2.0.0-json table table-com
   cmp -s "$folder/one" "$folder/two"
   result $? "$format: the same design"
 done
+# A grid of a hundred and fifty numbers in one cell of a sheet; spur teeth on two ends.
+awk 'BEGIN { printf "{\"gear_pair\":{\"ends\":2,\"pinion_teeth\":23,\"gear_teeth\":61,\"normal_module_mm\":4,"
+  printf "\"helix_angle_deg\":0,\"face_width_mm\":40,\"groove_width_mm\":20},\"load_cases\":[{\"torque_Nm\":300,\"speed_rpm\":1500}],"
+  printf "\"modification\":{\"pinion\":{\"left\":{\"grid\":{\"u_mm\":["
+  for (i = 0; i < 10; i++) printf "%s%d", i ? "," : "", i - 5
+  printf "],\"y_mm\":["
+  for (k = 0; k < 15; k++) printf "%s%d", k ? "," : "", k * 2 - 14
+  printf "],\"delta_um\":["
+  for (i = 0; i < 10; i++)
+    for (k = 0; k < 15; k++) printf "%s%.15g%s", k ? "," : i ? ",[" : "[", sin(i * 15 + k), k == 14 ? "]" : ""
+  print "]}}}}}" }' >"$folder/grid.json"
+run 0 "a spur pair with two ends and a grid" "$EASEOFF" export "$folder/grid.json" --format design
+cp "$folder/out" "$folder/one"
+for format in rexs rexs-json table table-rows workbook; do
+  "$EASEOFF" export "$folder/grid.json" --format "$format" -o "$folder/file"
+  run 0 "its import of $format" "$EASEOFF" import "$folder/file" -o "$folder/back.json"
+  "$EASEOFF" export "$folder/back.json" --format design >"$folder/two"
+  cmp -s "$folder/one" "$folder/two"
+  result $? "$format: the same design"
+done
 "$EASEOFF" example single >"$folder/single.json"
 run 0 "two designs in one table" "$EASEOFF" export "$folder/design.json" "$folder/single.json" --format table -o "$folder/two.csv"
 run 0 "the second of them" "$EASEOFF" import "$folder/two.csv" --pair 2
