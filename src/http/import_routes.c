@@ -15,14 +15,21 @@ static int flank_of(const char *word)
 /* 422, with each fault as an error and the whole answer beside: the pairs to choose from stand in it. */
 static void refuse(struct eo_request *request, const struct eo_import *import)
 {
-  json_t *errors = json_array();
+  struct eo_problem_fault *fault = malloc((size_t)import->faults * sizeof *fault);
+  struct eo_error error;
+  if (!fault) {
+    eo_error_memory(&error);
+    eo_reply_error(&request->reply, "", &error);
+    return;
+  }
   for (int i = 0; i < import->faults; i++) {
     const char *pointer = import->fault[i].pointer;
-    json_array_append_new(errors,
-                          json_pack("{s:s, s:s}", "pointer", pointer ? pointer : "", "detail", import->fault[i].text));
+    fault[i] = (struct eo_problem_fault){"", pointer ? pointer : "", import->fault[i].text};
   }
-  json_t *more = json_pack("{s:o, s:o}", "errors", errors, "imported", eo_import_encode(import));
-  eo_reply_problem_with(&request->reply, 422, "import", more, import->fault[0].text);
+  const struct eo_problem_more more = {
+      .faults = import->faults, .fault = fault, .of_import = true, .imported = eo_import_encode(import)};
+  eo_reply_problem_with(&request->reply, 422, "import", &more, import->fault[0].text);
+  free(fault);
 }
 
 static void import(struct eo_request *request)

@@ -169,20 +169,21 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
 
 static void reply_refused(struct eo_request *request, const json_t *document)
 {
-  static const char *const kept[] = {"findings", "notes", "layout", "signal"};
-  json_t *more = json_object();
+  const struct eo_problem_more more = {.of_recording = true,
+                                       .findings = json_incref(json_object_get(document, "findings")),
+                                       .notes = json_incref(json_object_get(document, "notes")),
+                                       .layout = json_incref(json_object_get(document, "layout")),
+                                       .signal = json_incref(json_object_get(document, "signal"))};
   const char *detail = "The recording has no result; its findings say why.";
   json_t *finding;
   size_t i;
-  for (i = 0; i < sizeof kept / sizeof kept[0]; i++)
-    json_object_set(more, kept[i], json_object_get(document, kept[i]));
-  json_array_foreach(json_object_get(document, "findings"), i,
+  json_array_foreach(more.findings, i,
                      finding) if (strcmp(json_string_value(json_object_get(finding, "severity")), "refused") == 0)
   {
     detail = json_string_value(json_object_get(finding, "text"));
     break;
   }
-  eo_reply_problem_with(&request->reply, 422, "refused", more, detail);
+  eo_reply_problem_with(&request->reply, 422, "refused", &more, detail);
 }
 
 static void reply_stored(struct eo_request *request, unsigned status, struct eo_found_measurement *found)

@@ -9,6 +9,7 @@
 #include <jansson.h>
 
 #include "format/faults.h"
+#include "format/outline.h"
 #include "format/text.h"
 
 struct MHD_Response;
@@ -17,6 +18,23 @@ struct eo_storage_watch;
 struct eo_resource;
 
 enum { EO_TAG = 70 };
+
+/* A fault of the body; all borrowed. */
+struct eo_problem_fault {
+  const char *path, *pointer; /* the key's JSON pointer is one behind the other */
+  const char *detail;
+};
+
+/* What stands in a problem beside what every one has. */
+struct eo_problem_more {
+  int faults;
+  const struct eo_problem_fault *fault; /* [faults], borrowed */
+  bool of_recording;                    /* the next line is there */
+  json_t *findings, *notes, *layout, *signal;
+  bool of_import; /* the next line is there */
+  json_t *imported;
+};
+extern const struct eo_outline eo_outline_problem;
 
 struct eo_reply {
   const char *request;                            /* its id, borrowed; it stands in problems */
@@ -48,8 +66,9 @@ void eo_reply_empty(struct eo_reply *reply, unsigned status);
 void eo_reply_problem(struct eo_reply *reply, unsigned status, const char *name, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The same with further members, taken over: what a program can read about the problem. */
-void eo_reply_problem_with(struct eo_reply *reply, unsigned status, const char *name, json_t *more, const char *detail);
+/* The same with what else a program can read about the problem; its documents are taken over. */
+void eo_reply_problem_with(struct eo_reply *reply, unsigned status, const char *name,
+                           const struct eo_problem_more *more, const char *detail);
 
 /* 422 with every fault and its pointer below path. */
 void eo_reply_faults(struct eo_reply *reply, const char *path, const struct eo_faults *faults);

@@ -14,6 +14,7 @@
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "http/answers.h"
+#include "http/reply.h"
 #include "http/route.h"
 #include "reproduction/reproduction.h"
 #include "variants/variant_cost.h"
@@ -33,27 +34,6 @@ static const struct eo_outline_row description_rows[] = {
     EO_KEY("paths", "any", "as OpenAPI says"),       EO_KEY("components", "any", "as OpenAPI says"),
 };
 static const struct eo_outline description = EO_OUTLINE("Description", description_rows);
-
-static const struct eo_outline_row fault_rows[] = {
-    EO_KEY("pointer", "text", "to the key of the body that is to blame, or empty"),
-    EO_KEY("detail", "text", "what is wrong with it, for people"),
-};
-static const struct eo_outline fault = EO_OUTLINE("ProblemError", fault_rows);
-
-static const struct eo_outline_row problem_rows[] = {
-    EO_KEY("type", "text", "which problem, /problems/NAME, or about:blank"),
-    EO_KEY("title", "text", "of the status"),
-    EO_KEY("status", "integer", "of the reply"),
-    EO_KEY("detail", "text", "what is wrong, for people"),
-    EO_KEY("errors", "[object]", "every fault of the body", .outline = &fault),
-    EO_KEY("request_id", "text", "under which the log has it"),
-    EO_KEY("findings", "[object]", "of the recording", .when = "of a recording without a result", .name = "Finding"),
-    EO_KEY("notes", "[text]", "of reading it", .when = "of a recording without a result"),
-    EO_KEY("layout", "object?", "of its columns", .when = "of a recording without a result", .name = "Layout"),
-    EO_KEY("signal", "object", "its quality", .when = "of a recording without a result", .name = "Signal"),
-    EO_KEY("imported", "object", "what was found in the file", .when = "of an import", .name = "Import"),
-};
-static const struct eo_outline problem = EO_OUTLINE("Problem", problem_rows);
 
 static const struct eo_outline_row field_rows[] = {
     EO_KEY("key", "text", "of the document"),
@@ -146,7 +126,7 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_measurement_outline,
                                                     &eo_measurement_brief,
                                                     &description,
-                                                    &problem,
+                                                    &eo_outline_problem,
                                                     &eo_outline_health,
                                                     &eo_outline_live,
                                                     &eo_outline_session,
