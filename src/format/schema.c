@@ -5,15 +5,9 @@
 #include <stdlib.h>
 
 #include "format/object.h"
+#include "format/schema_private.h"
 
-static const char *const kind_names[] = {
-    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
-    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
-    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",   [EO_FIELD_LIST] = "list",
-    [EO_FIELD_SERIES] = "series",   [EO_FIELD_MATRIX] = "matrix",   [EO_FIELD_DOCUMENT] = "document"};
-
-/* What the document says where every key is absent: the defaults, as the tables themselves write them. */
-static json_t *encode_defaults(const struct eo_table *table)
+json_t *eo_schema_defaults(const struct eo_table *table)
 {
   void *defaults = calloc(1, table->size);
   if (!defaults)
@@ -25,14 +19,13 @@ static json_t *encode_defaults(const struct eo_table *table)
   return document;
 }
 
-/* Of what is read and never written: none. */
-static json_t *default_of(const struct eo_field *field, const json_t *defaults)
+json_t *eo_schema_default(const struct eo_field *field, const json_t *defaults)
 {
   json_t *value = json_object_get(defaults, field->key);
   return value ? json_incref(value) : json_null();
 }
 
-static bool has_default(const struct eo_field *field)
+bool eo_schema_has_default(const struct eo_field *field)
 {
   return !(field->flags & (EO_FIELD_REQUIRED | EO_FIELD_ELSEWHERE)) && field->kind != EO_FIELD_SERIES &&
          field->kind != EO_FIELD_MATRIX && field->kind != EO_FIELD_DOCUMENT &&
@@ -44,21 +37,19 @@ static bool is_whole(const struct eo_field *field)
   return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED || field->flags & EO_FIELD_WHOLE;
 }
 
-static bool is_numeric(const struct eo_field *field)
+json_t *eo_schema_bound(double bound)
 {
-  return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED || field->kind == EO_FIELD_NUMBER ||
-         field->kind == EO_FIELD_NUMBERS;
+  return fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound);
 }
 
-/* Ranges without an end are left out; a whole number reads 17, not 17.0. */
+/* Ranges without an end are left out. */
 static void put_bound(struct eo_object *object, const char *key, double bound)
 {
   if (isfinite(bound))
-    eo_object_put(object, key,
-                  fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
+    eo_object_put(object, key, eo_schema_bound(bound));
 }
 
-static json_t *list_texts(const char *const *text)
+json_t *eo_schema_texts(const char *const *text)
 {
   json_t *list = json_array();
   bool failed = !list;
@@ -68,78 +59,6 @@ static json_t *list_texts(const char *const *text)
     return list;
   json_decref(list);
   return NULL;
-}
-
-static json_t *list_fields(const struct eo_table *table);
-
-static void put_range(struct eo_object *object, const struct eo_field *field)
-{
-  bool numbers = field->kind == EO_FIELD_SERIES || field->kind == EO_FIELD_MATRIX;
-  bool rows = field->kind == EO_FIELD_LIST || numbers;
-  if (is_numeric(field) || rows) {
-    put_bound(object, "low", field->low);
-    put_bound(object, "high", field->high);
-  }
-  if (numbers) {
-    put_bound(object, "number_low", field->series_low);
-    put_bound(object, "number_high", field->series_high);
-  }
-  if (field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIST)
-    eo_object_put(object, "count", json_integer(field->count));
-  if (field->kind == EO_FIELD_TEXT)
-    eo_object_put(object, "count", json_integer(field->count - 1));
-}
-
-static json_t *encode_field(const struct eo_field *field, const json_t *defaults)
-{
-  struct eo_object object = eo_object_open();
-  eo_object_put(&object, "key", json_string(field->key));
-  eo_object_put(&object, "kind", json_string(kind_names[field->kind]));
-  if (field->unit) {
-    eo_object_put(&object, "unit", json_string(field->unit->suffix));
-    eo_object_put(&object, "symbol", json_string(field->unit->symbol));
-  }
-  put_range(&object, field);
-  if (has_default(field))
-    eo_object_put(&object, "default", default_of(field, defaults));
-  if (field->choices)
-    eo_object_put(&object, "choices", list_texts(field->choices));
-  if (field->help)
-    eo_object_put(&object, "help", json_string(field->help));
-  eo_object_put(&object, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
-  eo_object_put(&object, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
-  if (field->derived)
-    eo_object_put(&object, "derived", json_string(field->derived));
-  if (field->basis)
-    eo_object_put(&object, "basis", json_string(field->basis));
-  if (field->flags & EO_FIELD_ENTRY)
-    eo_object_put(&object, "entry", json_string(field->states));
-  if (field->instead)
-    eo_object_put(&object, "instead", list_texts(field->instead));
-  if (field->table)
-    eo_object_put(&object, "fields", list_fields(field->table));
-  return eo_object_close(&object);
-}
-
-static json_t *list_fields(const struct eo_table *table)
-{
-  json_t *fields = json_array(), *defaults = encode_defaults(table);
-  bool failed = !fields || !defaults;
-  for (int i = 0; i < table->count && !failed; i++)
-    failed = json_array_append_new(fields, encode_field(&table->field[i], defaults)) != 0;
-  json_decref(defaults);
-  if (!failed)
-    return fields;
-  json_decref(fields);
-  return NULL;
-}
-
-json_t *eo_table_fields(const struct eo_table *table)
-{
-  struct eo_object object = eo_object_open();
-  eo_object_put(&object, "name", json_string(table->name));
-  eo_object_put(&object, "fields", list_fields(table));
-  return eo_object_close(&object);
 }
 
 static void put_type(struct eo_object *object, const char *type, bool nullable)
@@ -171,7 +90,7 @@ static void put_text(struct eo_object *object, const struct eo_field *field)
   if (!field->choices && field->low > 0)
     eo_object_put(object, "minLength", json_integer((json_int_t)field->low));
   if (field->choices) {
-    json_t *words = list_texts(field->choices);
+    json_t *words = eo_schema_texts(field->choices);
     if (field->flags & EO_FIELD_NULLABLE) /* an enumeration admits null only where it lists it */
       object->failed = json_array_append_new(words, json_null()) != 0 || object->failed;
     eo_object_put(object, "enum", words);
@@ -262,8 +181,8 @@ static json_t *property(const struct eo_field *field, const json_t *defaults, bo
     eo_object_put(&object, "description", json_string(field->help));
   if (field->unit)
     eo_object_put(&object, "x-unit", json_string(field->unit->symbol));
-  if (input && has_default(field))
-    eo_object_put(&object, "default", default_of(field, defaults));
+  if (input && eo_schema_has_default(field))
+    eo_object_put(&object, "default", eo_schema_default(field, defaults));
   return eo_object_close(&object);
 }
 
@@ -281,7 +200,7 @@ static bool must_be_there(const struct eo_field *field)
 
 static void put_object(struct eo_object *object, const struct eo_table *table, bool nullable, bool input)
 {
-  json_t *required = json_array(), *defaults = encode_defaults(table);
+  json_t *required = json_array(), *defaults = eo_schema_defaults(table);
   struct eo_object properties = eo_object_open();
   object->failed = object->failed || !required || !defaults;
   put_type(object, "object", nullable);

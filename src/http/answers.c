@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/answers.h"
 
+#include "format/form.h"
+
 static const char *const states[] = {"ok", "failing", NULL};
 
 #define OF_HEALTH(member) EO_AT(struct eo_health, member)
@@ -38,3 +40,9 @@ static const struct eo_outline_row examples_rows[] = {
            EO_AT(struct eo_listed_examples, items)),
 };
 const struct eo_outline eo_outline_examples = EO_OUTLINE("Examples", examples_rows);
+
+static const struct eo_outline_row form_rows[] = {
+    EO_KEY("design", "object", "of a design", .outline = &eo_fields_outline, EO_AT(struct eo_form, design)),
+    EO_KEY("sweep", "object", "of a sweep", .outline = &eo_fields_outline, EO_AT(struct eo_form, sweep)),
+};
+const struct eo_outline eo_outline_form = EO_OUTLINE("Form", form_rows);

@@ -20,6 +20,12 @@ struct eo_health {
 };
 extern const struct eo_outline eo_outline_health, eo_outline_live; /* of a struct eo_health */
 
+/* What a page makes its forms of; taken over. */
+struct eo_form {
+  json_t *design, *sweep;
+};
+extern const struct eo_outline eo_outline_form;
+
 extern const struct eo_outline eo_outline_session;       /* session_routes.c */
 extern const struct eo_outline eo_outline_exports;       /* export_routes.c */
 extern const struct eo_outline eo_outline_check;         /* analysis_routes.c */

@@ -25,52 +25,12 @@
 #include "study/history_prune.h"
 #include "document/rig_answer.h"
 
-static const char *const kinds[] = {"number", "integer", "seed", "flag",   "text",   "choice", "numbers",
-                                    "limit",  "object",  "list", "series", "matrix", NULL};
-
 static const struct eo_outline_row description_rows[] = {
     EO_KEY("openapi", "text", "version of OpenAPI"), EO_KEY("info", "any", "as OpenAPI says"),
     EO_KEY("servers", "any", "as OpenAPI says"),     EO_KEY("security", "any", "as OpenAPI says"),
     EO_KEY("paths", "any", "as OpenAPI says"),       EO_KEY("components", "any", "as OpenAPI says"),
 };
 static const struct eo_outline description = EO_OUTLINE("Description", description_rows);
-
-static const struct eo_outline_row field_rows[] = {
-    EO_KEY("key", "text", "of the document"),
-    EO_KEY("kind", "word", "of its value", .words = kinds),
-    EO_KEY("unit", "text", "suffix of the key", .when = "where it applies"),
-    EO_KEY("symbol", "text", "of the unit", .when = "where it applies"),
-    EO_KEY("low", "number", "lowest", .when = "where it applies"),
-    EO_KEY("high", "number", "highest", .when = "where it applies"),
-    EO_KEY("number_low", "number", "lowest of each number", .when = "where it applies"),
-    EO_KEY("number_high", "number", "highest of each number", .when = "where it applies"),
-    EO_KEY("count", "integer", "how many", .when = "where it applies"),
-    EO_KEY("default", "any", "as the document says it", .when = "where it applies"),
-    EO_KEY("choices", "[text]", "one of these", .when = "where it applies"),
-    EO_KEY("help", "text", "one line for people", .when = "where it applies"),
-    EO_KEY("required", "flag", "there is no default"),
-    EO_KEY("nullable", "flag", "null is allowed"),
-    EO_KEY("derived", "text", "what null means", .when = "where it applies"),
-    EO_KEY("basis", "text", "where a default that is a number comes from", .when = "where it is not the program's own"),
-    EO_KEY("entry", "text", "the key beside it that it is another way to state; read and never written",
-           .when = "where it is"),
-    EO_KEY("instead", "[text]", "keys beside a required one of which one may stand in its place",
-           .when = "where there are"),
-    EO_KEY("fields", "[object]", "of the object, or of each row", .when = "where it applies", .name = "Field"),
-};
-static const struct eo_outline field = EO_OUTLINE("Field", field_rows);
-
-static const struct eo_outline_row fields_rows[] = {
-    EO_KEY("name", "text", "for people"),
-    EO_KEY("fields", "[object]", "in the order of the document", .outline = &field),
-};
-static const struct eo_outline fields = EO_OUTLINE("Fields", fields_rows);
-
-static const struct eo_outline_row form_rows[] = {
-    EO_KEY("design", "object", "of a design", .outline = &fields),
-    EO_KEY("sweep", "object", "of a sweep", .outline = &fields),
-};
-static const struct eo_outline form = EO_OUTLINE("Form", form_rows);
 
 static const struct eo_outline_row asked_columns_rows[] = {
     EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
@@ -132,7 +92,7 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_outline_session,
                                                     &eo_outline_examples,
                                                     &eo_outline_exports,
-                                                    &form,
+                                                    &eo_outline_form,
                                                     &eo_outline_check,
                                                     &eo_outline_stored_design,
                                                     &eo_outline_designs,

@@ -12,6 +12,7 @@
 #include "format/object.h"
 #include "document/measurement_document.h"
 #include "document/result_private.h"
+#include "format/form.h"
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "document/sweep_document.h"
