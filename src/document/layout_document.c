@@ -105,9 +105,35 @@ static void read_time(const json_t *document, struct eo_layout_request *request,
     request->choice.time_scale = time_scale[choice_of(unit, times, "/time_unit", faults)];
 }
 
+/* What can be asked for. */
+static const struct eo_outline_row asked_columns_rows[] = {
+    EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
+    EO_KEY("gear", "any", "of the gear", .when = "where it is chosen"),
+};
+static const struct eo_outline asked_columns = EO_OUTLINE("AskedColumns", asked_columns_rows);
+
+static const struct eo_outline_row asked_layout_rows[] = {
+    EO_KEY("kind", "text", "of the recording", .when = "where it is chosen"),
+    EO_KEY("unit", "text", "of the angles", .when = "where it is chosen"),
+    EO_KEY("time", "any", "column of the time", .when = "where it is chosen"),
+    EO_KEY("time_unit", "text", "of the time", .when = "where it is chosen"),
+    EO_KEY("columns", "object", "of the channels", .when = "where it is chosen", .outline = &asked_columns),
+    EO_KEY("sample_rate_Hz", "number?", "samples per second", .when = "where it is chosen"),
+    EO_KEY("lines", "any", "of the encoders", .when = "where it is chosen"),
+};
+const struct eo_outline eo_asked_layout_outline = EO_OUTLINE("AskedLayout", asked_layout_rows);
+
+static bool is_asked_key(const char *key)
+{
+  const struct eo_outline_row *row;
+  for (int i = 0; (row = eo_outline_at(&eo_asked_layout_outline, i)); i++)
+    if (strcmp(key, row->key) == 0)
+      return true;
+  return false;
+}
+
 void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults)
 {
-  static const char *const known[] = {"kind", "unit", "time", "time_unit", "columns", "sample_rate_Hz", "lines", NULL};
   const char *key;
   json_t *value;
   memset(request, 0, sizeof *request);
@@ -119,12 +145,9 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *request,
   }
   json_object_foreach((json_t *)document, key, value)
   {
-    bool found = false;
-    for (int i = 0; known[i]; i++)
-      found = found || strcmp(key, known[i]) == 0;
     char pointer[120];
     snprintf(pointer, sizeof pointer, "/%.80s", key);
-    if (!found)
+    if (!is_asked_key(key))
       eo_faults_add(faults, pointer, "Unknown key in a layout.");
   }
   request->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);

@@ -22,6 +22,9 @@ struct eo_layout_request {
    are faults. */
 void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults);
 
+/* What it may say; its keys are those that are known here. */
+extern const struct eo_outline eo_asked_layout_outline;
+
 extern const struct eo_outline eo_layout_outline;
 
 /* What was found, with column numbers; a layout that gives the same tracks again. New; NULL without memory. */

@@ -31,9 +31,12 @@ extern const struct eo_outline eo_outline_exports;       /* export_routes.c */
 extern const struct eo_outline eo_outline_check;         /* analysis_routes.c */
 extern const struct eo_outline eo_outline_listed_design; /* stored_design.c: of a struct eo_stored_design */
 extern const struct eo_outline eo_outline_stored_design;
-extern const struct eo_outline eo_outline_designs;   /* design_routes.c */
-extern const struct eo_outline eo_outline_jobs;      /* job_routes.c */
-extern const struct eo_outline eo_outline_job_files; /* reproduction_routes.c */
+extern const struct eo_outline eo_outline_stored; /* stored_measurement.c: what is known of its storage alone, */
+extern const struct eo_outline eo_outline_stored_measurement, eo_outline_listed_measurement; /* and what was measured */
+extern const struct eo_outline eo_outline_measurements;                                      /* measurement_routes.c */
+extern const struct eo_outline eo_outline_designs;                                           /* design_routes.c */
+extern const struct eo_outline eo_outline_jobs;                                              /* job_routes.c */
+extern const struct eo_outline eo_outline_job_files;                                         /* reproduction_routes.c */
 
 struct eo_listed_examples {
   json_t *items;

@@ -7,6 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "format/list_page.h"
+#include "format/object.h"
+#include "http/answers.h"
 #include "http/measurement_upload.h"
 #include "http/stored_measurement.h"
 #include "http/route.h"
@@ -32,8 +35,12 @@ static void get_one(struct eo_request *request)
   eo_text_done(&found.text);
 }
 
+static const struct eo_outline_row list_rows[] = {
+    EO_PAGE_ROWS("newest first", .outline = &eo_outline_listed_measurement)};
+const struct eo_outline eo_outline_measurements = EO_OUTLINE("Measurements", list_rows);
+
 struct page {
-  struct eo_text text;
+  struct eo_object items;
   int count, limit;
   int64_t last;
   bool more;
@@ -45,30 +52,25 @@ static enum eo_code visit_listed(void *context, const struct eo_stored_measureme
   page->more = page->count == page->limit;
   if (page->more)
     return EO_OK;
+  page->count++;
   page->last = row->id;
-  eo_text_add(&page->text, page->count++ ? "," : "{\"items\":[");
-  eo_stored_measurement_write(row, row->summary, &page->text);
-  return page->text.failed ? eo_error_memory(error) : EO_OK;
+  eo_list_add(&page->items, eo_listed_measurement_encode(row));
+  return page->items.failed ? eo_error_memory(error) : EO_OK;
 }
 
 static void list(struct eo_request *request)
 {
-  struct page page = {.limit = (int)eo_route_number(request, "limit")};
+  struct page page = {.items = eo_list_open(), .limit = (int)eo_route_number(request, "limit")};
   struct eo_error error;
   enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_route_number(request, "design"),
                                                  (int64_t)eo_route_number(request, "cursor"), page.limit + 1,
                                                  visit_listed, &page, &error);
-  if (!page.count)
-    eo_text_add(&page.text, "{\"items\":[");
-  if (page.more)
-    eo_text_print(&page.text, "],\"next\":\"%lld\"}\n", (long long)page.last);
-  else
-    eo_text_add(&page.text, "],\"next\":null}\n");
-  if (code)
+  json_t *items = eo_object_close(&page.items);
+  if (code) {
+    json_decref(items);
     eo_reply_error(&request->reply, "", &error);
-  else
-    eo_reply_text(&request->reply, 200, "application/json", &page.text);
-  eo_text_done(&page.text);
+  } else
+    eo_reply_json(&request->reply, 200, eo_page_encode(&eo_outline_measurements, items, page.more, page.last));
 }
 
 static void take_out(struct eo_request *request)

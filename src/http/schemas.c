@@ -32,46 +32,6 @@ static const struct eo_outline_row description_rows[] = {
 };
 static const struct eo_outline description = EO_OUTLINE("Description", description_rows);
 
-static const struct eo_outline_row asked_columns_rows[] = {
-    EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
-    EO_KEY("gear", "any", "of the gear", .when = "where it is chosen"),
-};
-static const struct eo_outline asked_columns = EO_OUTLINE("AskedColumns", asked_columns_rows);
-
-static const struct eo_outline_row asked_layout_rows[] = {
-    EO_KEY("kind", "text", "of the recording", .when = "where it is chosen"),
-    EO_KEY("unit", "text", "of the angles", .when = "where it is chosen"),
-    EO_KEY("time", "any", "column of the time", .when = "where it is chosen"),
-    EO_KEY("time_unit", "text", "of the time", .when = "where it is chosen"),
-    EO_KEY("columns", "object", "of the channels", .when = "where it is chosen", .outline = &asked_columns),
-    EO_KEY("sample_rate_Hz", "number?", "samples per second", .when = "where it is chosen"),
-    EO_KEY("lines", "any", "of the encoders", .when = "where it is chosen"),
-};
-static const struct eo_outline asked_layout = EO_OUTLINE("AskedLayout", asked_layout_rows);
-
-static const struct eo_outline_row stored_file_rows[] = {
-    EO_KEY("name", "text", "without folders"),
-    EO_KEY("size", "integer", "bytes"),
-    EO_KEY("sha256", "text", "of its bytes"),
-};
-static const struct eo_outline stored_file = EO_OUTLINE("StoredFile", stored_file_rows);
-
-static const struct eo_outline_row storage_rows[] = {
-    EO_KEY("id", "integer", "number of the measurement"),
-    EO_KEY("design", "integer", "number of the design"),
-    EO_KEY("created", "text", "date and time, UTC"),
-    EO_KEY("stated_speed_rpm", "number?", "as it was said"),
-    EO_KEY("asked_layout", "object?", "as it was asked for", .outline = &asked_layout),
-    EO_KEY("files", "[object]", "as they came", .outline = &stored_file),
-};
-static const struct eo_outline storage = EO_OUTLINE("Stored", storage_rows);
-
-static const struct eo_outline_row measurements_rows[] = {
-    EO_KEY("items", "[object]", "newest first", .name = "ListedMeasurement"),
-    EO_KEY("next", "text?", "cursor of the next page"),
-};
-static const struct eo_outline measurements = EO_OUTLINE("Measurements", measurements_rows);
-
 static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_sweep_outline,
                                                     &eo_tolerance_outline,
@@ -102,22 +62,14 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &eo_reproduction_outline,
                                                     &eo_outline_job_history_page,
                                                     &eo_outline_problem_rows,
-                                                    &storage,
-                                                    &measurements,
+                                                    &eo_outline_stored,
+                                                    &eo_outline_stored_measurement,
+                                                    &eo_outline_listed_measurement,
+                                                    &eo_outline_measurements,
                                                     &eo_variant_table_outline,
                                                     &eo_variant_columns_outline,
                                                     &eo_variant_cost_outline,
                                                     &eo_import_outline};
-
-/* A stored measurement is what was measured, behind what is known of its storage. */
-static json_t *stored(const json_t *schemas, const char *measured)
-{
-  const json_t *inner = json_object_get(schemas, measured);
-  json_t *schema = json_deep_copy(json_object_get(schemas, "Stored"));
-  bool good = json_object_update(json_object_get(schema, "properties"), json_object_get(inner, "properties")) == 0 &&
-              json_array_extend(json_object_get(schema, "required"), json_object_get(inner, "required")) == 0;
-  return good ? schema : (json_decref(schema), NULL);
-}
 
 /* What a fit takes, with what it works on. */
 static json_t *fit_order(void)
@@ -166,8 +118,6 @@ json_t *eo_openapi_schemas(const struct eo_route *const *routes)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
   good = good &&
          json_object_set_new(json_object_get(schemas, "AskedLayout"), "additionalProperties", json_false()) == 0;
-  good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
-         json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
   good = good && json_object_set_new(schemas, "FitOrder", fit_order()) == 0;
   if (good)
     return schemas;

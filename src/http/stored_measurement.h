@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stored measurements as documents: written as text, since their results are kept as text. */
+/* Stored measurements as documents: what is known of their storage, and what was measured, which is kept as text. */
 #ifndef EASEOFF_HTTP_STORED_MEASUREMENT_H
 #define EASEOFF_HTTP_STORED_MEASUREMENT_H
 
 #include "http/reply.h"
 #include "store/measurements.h"
 
-/* Appends what is known of its storage and the document, a JSON object: its result or the summary. */
-void eo_stored_measurement_write(const struct eo_stored_measurement *row, const char *document, struct eo_text *text);
+/* As it stands in a list, with the summary. New; NULL without memory. */
+json_t *eo_listed_measurement_encode(const struct eo_stored_measurement *row);
 
-/* A measurement as a document. */
+/* A measurement as a document, with its result. */
 struct eo_found_measurement {
   struct eo_text text; /* owned */
   int64_t id;
