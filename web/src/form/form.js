@@ -129,7 +129,7 @@ export class Form {
   #elsewhere(texts, changed) {
     const places = [...texts.keys()].map(pointer => pointer.replace('/right/', '/left/'));
     const fields = [...this.#controls].filter(({ pointer }) => changed.some(each => related(each, pointer)));
-    const met = fields.some(({ pointer }) => places.some(place => related(place, pointer.replace('/right/', '/left/'))));
+    const met = fields.some(({ pointer }) => places.includes(pointer.replace('/right/', '/left/')));
     return met || !texts.size ? [] : fields;
   }
 

@@ -88,7 +88,9 @@ export class Parameters {
 
   refresh() {
     const pair = this.store.design.gear_pair ?? {};
-    this.pairText.textContent = `${pair.pinion_teeth ?? '–'}/${pair.gear_teeth ?? '–'}`;
+    const { helix_angle_deg: left, right_helix_angle_deg: right } = pair;
+    const halves = typeof right === 'number' && right !== left ? `, left ${left ?? '–'}°, right ${right}°` : '';
+    this.pairText.textContent = `${pair.pinion_teeth ?? '–'}/${pair.gear_teeth ?? '–'}${halves}`;
     this.flank.refresh();
     this.cases.refresh();
     this.teeth.refresh();

@@ -21,6 +21,7 @@ function titled(title, about, parts, kind = 'table.numbers') {
 }
 
 const SHOWN = 10; // inputs with a bar
+const ROOM = matchMedia('(min-width: 1100px)'); // for the list of inputs beside the rest
 
 /** "modification.pinion.left.profile_slope_um" -> "pinion left, profile slope". @param {string} key */
 function nameOf(key) {
@@ -131,9 +132,9 @@ export function inputTable(result) {
       h('td', null, shownOf(row.key, row.nominal)),
       h('td', null, row.distribution),
     );
-  const table = h('table.numbers', null, h('tbody', null, result.inputs.map(line)));
+  const table = h('table.numbers.scattering', null, h('tbody', null, result.inputs.map(line)));
   return [
     h('.figure-head', null, h('h3', null, 'What scatters')),
-    h('details.more', null, h('summary', null, `${result.inputs.length} inputs`), table),
+    h('details.more', { open: ROOM.matches }, h('summary', null, `${result.inputs.length} inputs`), h('.table-scroll', null, table)),
   ];
 }
