@@ -245,6 +245,42 @@ await chapter('a fault is said where the edit was', async () => {
   await banner.waitFor({ state: 'hidden' });
 });
 
+await chapter('the start of a relief in any way', async () => {
+  await open();
+  await settled();
+  const row = page.locator('.field', { has: page.getByLabel('Tip relief start as') });
+  const start = () => row.locator('input[type=text]').inputValue();
+  const others = row.locator('.start-others');
+  await page.waitForFunction(() => /diameter/.test(document.querySelector('.start-others')?.textContent ?? ''));
+  const rack = Number(await start());
+  const numbers = text => Object.fromEntries([...text.matchAll(/([a-z ]+) ([\d.]+)/g)].map(([, n, v]) => [n.trim(), +v]));
+  const at = numbers(await others.innerText());
+  const { geometry: g } = await (
+    await fetch(`${server.address}api/v1/check`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify({ ...(await api('examples/paper-case-a')), resolution: { ...COARSE } }),
+    })
+  ).json();
+  const roll = g.tangent_length_mm[0] + rack / g.rack_factor;
+  const base = g.base_radius_mm[0];
+  ok(Math.abs(at.diameter / (2 * Math.hypot(roll, base)) - 1) < 1e-5, `its diameter is that of its roll: ${at.diameter}`);
+  ok(Math.abs(at['length of roll'] / roll - 1) < 1e-5, 'so is the length of roll');
+  ok(Math.abs(at['roll angle'] / ((roll / base) * (180 / Math.PI)) - 1) < 1e-5, 'and the roll angle');
+  const value = await page.locator('.number-cell .value').first().innerText();
+  for (const way of ['diameter_mm', 'roll_angle_deg', 'length_mm', 'roll_length_mm', 'start_mm']) {
+    await page.getByLabel('Tip relief start as').selectOption(way);
+    await page.waitForFunction(key => decodeURIComponent(location.hash).includes(`tip_relief_${key}`), way);
+    await page.waitForFunction(
+      text => !document.querySelector('.design-view.refused') && document.querySelector('.number-cell .value').textContent === text,
+      value,
+    );
+  }
+  ok(Math.abs(Number(await start()) - rack) < 1e-5, `all ways round it is where it was: ${await start()}, ${rack}`);
+  await page.keyboard.press('Control+z');
+  ok(/length of roll/.test(await row.locator('select').evaluate(s => s.selectedOptions[0].text)), 'undo is one step');
+});
+
 await chapter('load cases are pasted', async () => {
   await open();
   await settled();

@@ -2,7 +2,7 @@
 // The report: the verdict first, then every figure drawn for paper from its numbers, then data and assumptions. It is
 // the same on the screen and on paper, and does not depend on what has been seen.
 import { fill, h } from './base/dom.js';
-import { dateText, labelOf, plain } from './base/format.js';
+import { choiceText, dateText, labelOf, plain } from './base/format.js';
 import { valueAt } from './base/pointer.js';
 import { fieldAt, unitOf } from './base/schema.js';
 import { inInches, shownSentence, shownValue } from './base/units.js';
@@ -24,6 +24,11 @@ const NARROW = { width: 470, height: 220, foot: false };
 const WIDE = { width: 960, height: 300, foot: false };
 const LOOK = 500; // ms between two looks at what is missing
 
+/** A word as people write it, a number in its unit. @param {Field} field @param {unknown} value */
+function fieldText(field, value) {
+  return field.choices && typeof value === 'string' ? choiceText(value) : valueText(value, field.unit);
+}
+
 /** @param {unknown} value @param {string | null} [unit] of the field @returns {string} */
 function valueText(value, unit) {
   if (value === null || value === undefined) return '–';
@@ -43,7 +48,7 @@ function lines(fields, value) {
         'div.report-line',
         null,
         h('dt', null, labelOf(field.key)),
-        h('dd', null, `${valueText(valueAt(value, `/${field.key}`), field.unit)} ${unitOf(field)}`.trim()),
+        h('dd', null, `${fieldText(field, valueAt(value, `/${field.key}`))} ${unitOf(field)}`.trim()),
       ),
     ];
   });
@@ -57,14 +62,22 @@ function modification(fields, design) {
     )
     .filter(flank => flank.value);
   const keys = fields.find(field => field.key === 'modification')?.fields?.[0]?.fields?.[0]?.fields ?? [];
+  /** Of a shape: whether something has it. @param {string} key */
+  const matters = key => {
+    const stem = /^(.*?)_?(shape|exponent)$/.exec(key)?.[1];
+    if (stem === undefined) return true;
+    const amounts = keys.filter(({ key: other, unit }) => unit === 'um' && other.includes(stem));
+    return flanks.some(({ value }) => amounts.some(({ key: other }) => value[other]));
+  };
   const shown = keys.filter(
-    field => field.kind !== 'object' && !field.entry && flanks.some(({ value }) => value[field.key]),
+    field =>
+      field.kind !== 'object' && !field.entry && matters(field.key) && flanks.some(({ value }) => value[field.key]),
   );
   return tableOf(
     ['Modification', ...flanks.map(({ member, end }) => `${member}, ${end}`)],
     shown.map(field => [
       `${labelOf(field.key)} ${field.unit ? `(${unitOf(field)})` : ''}`,
-      ...flanks.map(({ value }) => valueText(value[field.key], field.unit)),
+      ...flanks.map(({ value }) => fieldText(field, value[field.key])),
     ]),
   );
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is taken off the flanks, as on an inspection sheet: profile traces upright from root to tip, lead traces along
 // the face.
-import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
-import { shownUnit, shownValue, unitInstead } from '../base/units.js';
+import { textOf, wayOf } from '../base/relief_start.js';
+import { shownValue, unitInstead } from '../base/units.js';
 import { fill, h } from '../base/dom.js';
 import { flankShown } from '../base/flank_shown.js';
 import { switcher } from '../base/switcher.js';
@@ -245,18 +245,19 @@ export class ModificationCharts {
   #starts(pen, end, left, width, box) {
     const { result } = /** @type {import('./context.js').Context} */ (this.#context);
     const trace = this.#trace(result, end, 'profile_um');
+    const curves = flankOf(result, this.#member, end, this.#side);
     const drive = result.design.modification?.[this.#member]?.[end];
     const flank = this.#side === 'coast' ? drive?.coast : drive;
-    if (!trace || !flank) return;
+    if (!trace || !flank || !curves) return;
     const [bottom, top] = [trace.at[0], trace.at[trace.at.length - 1]];
     pen.strokeStyle = colour('line');
     pen.setLineDash([2, 3]);
-    for (const [amount, start, side] of /** @type {const} */ ([
-      [flank.tip_relief_um, flank.tip_relief_start_mm, 1],
-      [flank.root_relief_um, flank.root_relief_start_mm, -1],
+    for (const [side, start] of /** @type {const} */ ([
+      ['tip', curves.tip_relief_start],
+      ['root', curves.root_relief_start],
     ])) {
-      if (!amount || amount < 0 || start === null) continue;
-      const u = side * start;
+      if (!start) continue;
+      const u = start.u_mm;
       const y = box.top + box.height * (1 - (u - bottom) / (top - bottom));
       pen.beginPath();
       pen.moveTo(left, y);
@@ -264,7 +265,7 @@ export class ModificationCharts {
       pen.stroke();
       pen.fillStyle = colour('muted');
       pen.textAlign = 'right';
-      pen.fillText(`${sig(shownValue(Math.abs(u), 'mm'), 3)} ${shownUnit('mm')}`, left + width, u > 0 ? y - 3 : y + 10);
+      pen.fillText(textOf(start, wayOf(flank, side)), left + width, side === 'tip' ? y - 3 : y + 10);
     }
     pen.setLineDash([]);
   }

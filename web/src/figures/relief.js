@@ -18,6 +18,7 @@ const LEAST = 20; // um that the height stands for at least
 const NEAR = 0.08; // of a mesh cycle round a contact line that is bright: more than a cell, so that it is a line
 const PALE = 0.7; // of the colour elsewhere
 const LIGHT = 2; // of the slope in the brightness
+const NARROW = 460; // px of a picture that has room for short words alone
 const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
 
 /** @typedef {{ turn: number, tilt: number }} View radians */
@@ -112,6 +113,7 @@ class Projection {
     const [left, right] = [Math.min(...xs) - 0.12, Math.max(...xs) + 0.22];
     const [top, bottom] = [Math.min(...ys) - 0.08, Math.max(...ys) + 0.2];
     this.scale = Math.min(w / (right - left), t / (bottom - top));
+    this.narrow = width < NARROW;
     this.move = [
       ROOM.left + (w - this.scale * (right - left)) / 2 - this.scale * left,
       ROOM.top + (t - this.scale * (bottom - top)) / 2 - this.scale * top,
@@ -256,7 +258,8 @@ function paintAxes(pen, projection, relief) {
       pen.fillText(tickText(Number(shownValue(part * relief.face, 'mm').toPrecision(5))), x, y + 13);
     }
     const [x, y] = projection.at([sign * (from + FACE / 2), -TALL, front]);
-    pen.fillText(`${relief.two ? `${end} end, ` : ''}face width, ${shownUnit('mm')}`, x, y + 26);
+    const name = projection.narrow ? end : `${end} end, face width`;
+    pen.fillText(`${relief.two ? name : 'face width'}, ${shownUnit('mm')}`, x, y + 26);
   }
   line(pen, projection, [
     [right, -TALL, 0.5],
@@ -289,7 +292,8 @@ function paintHeights(pen, projection, relief, [x, z]) {
     pen.moveTo(left, top);
     pen.lineTo(left + 4, top);
     pen.stroke();
-    pen.fillText(`${tickText(value)}${value === 0 ? ` ${shownUnit('µm')} taken off` : ''}`, left + 7, top + 3);
+    const unit = `${shownUnit('µm')}${projection.narrow ? '' : ' taken off'}`;
+    pen.fillText(value === 0 ? `0 ${unit}` : tickText(value), left + 7, top + 3);
   }
 }
 

@@ -106,7 +106,7 @@ export class Form {
     ]);
     const after = changed.length > MOST_CHANGES ? [] : this.#elsewhere(texts, changed);
     const said = [...texts].map(([pointer, detail]) => ({ pointer, detail, name: this.#nameOf(pointer) }));
-    const whole = said.map(({ name, detail }) => `${name}: ${detail}`).join(' ');
+    const whole = said.map(({ name, detail }) => (name ? `${name}: ${detail}` : detail)).join(' ');
     for (const { pointer } of after) texts.set(pointer, whole);
     for (const { pointer, fault, input } of this.#controls) {
       const text = texts.get(pointer) ?? '';

@@ -30,7 +30,7 @@ export function group(key, title, open, children, aside = null) {
   return element;
 }
 
-/** What is seldom needed, closed below what often is. @param {string} title @param {HTMLElement[]} children */
+/** What is seldom needed, closed below what often is. @param {string} title @param {(HTMLElement | null)[]} children */
 export function more(title, children) {
   return h('details.more', null, h('summary', null, title), h('.group-body', null, children));
 }

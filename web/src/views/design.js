@@ -31,7 +31,7 @@ class TroubleLine {
       troubles.map(({ name, detail, lead, after }) =>
         h('p', null, [
           lead ? link({ name, lead }) : name,
-          `: ${detail}`,
+          name ? `: ${detail}` : detail,
           after.length ? ' It was possible before a change of ' : null,
           after.map((place, i) => [i ? ', ' : '', link(place)]),
           after.length ? '.' : null,
@@ -51,6 +51,7 @@ class DesignView {
   /** @param {import('../app.js').App} app */
   constructor(app) {
     this.app = app;
+    this.parameters = new Parameters(app.store, app.form);
     this.headline = new Headline(app.store);
     this.strip = h('.sensitivity');
     this.figures = h('.figures');
@@ -63,7 +64,7 @@ class DesignView {
       h(
         'aside.form-pane',
         { 'aria-label': 'Parameters' },
-        h('.form-scroll', null, new Parameters(app.store, app.form).element),
+        h('.form-scroll', null, this.parameters.element),
         this.foot,
         h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…')),
       ),
@@ -129,6 +130,7 @@ class DesignView {
     subject.set(store.design.name ?? '', context.result);
     form.resolved = context.result.design;
     form.showFindings(context.result.findings ?? []);
+    if (context.result.modification) this.parameters.flank.showStarts(context.result);
     this.headline.set(context);
     this.results?.set(context);
     this.#drawTeeth();
@@ -165,7 +167,8 @@ class DesignView {
     const refused = analyst.state === 'refused';
     const preparing = analyst.state === 'preparing';
     const changed = refused && analyst.possible ? differences(analyst.possible, this.app.store.design) : [];
-    const troubles = form.showFaults(refused ? analyst.faults : [], changed);
+    const whole = analyst.faults.length || !analyst.message ? analyst.faults : [{ pointer: '', detail: analyst.message }];
+    const troubles = form.showFaults(refused ? whole : [], changed);
     this.trouble.show(troubles, refused && !troubles.length ? analyst.message : '');
     this.element.classList.toggle('refused', refused);
     this.element.classList.toggle('preparing', preparing);

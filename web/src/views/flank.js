@@ -2,23 +2,26 @@
 // The modification of the flanks: which member, which end, sliders for what is moved most.
 import { fill, h } from '../base/dom.js';
 import { flankShown } from '../base/flank_shown.js';
+import { labelOf } from '../base/format.js';
 import { notice } from '../base/notice.js';
 import { valueAt } from '../base/pointer.js';
 import { fieldAt } from '../base/schema.js';
+import { WAYS, keyOf, otherTexts, restated, wayOf } from '../base/relief_start.js';
 import { switcher } from '../base/switcher.js';
 import { more } from '../form/group.js';
 
 const MAIN = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um'];
+const START = /^(tip|root)_relief_(start|diameter|roll|length)/; // each has its place, in the way that is chosen
 /** What is moved less often, by what it is about; the first pattern that fits. @type {[string, RegExp][]} */
 const GROUPS = [
   ['Shape of the reliefs', /_(shape|exponent)$/],
   ['Triangular relief of the corners', /triangular/],
   ['Relief of the face ends', /^(leading|trailing)_end/],
-  ['Start of the reliefs, stated otherwise', /^(tip|root)_relief_(diameter|roll|length)/],
   ['Profile, helix and twist', /./],
 ];
 const MEMBERS = ['pinion', 'gear'];
 const ENDS = ['left', 'right'];
+const SIDES = /** @type {import('../base/relief_start.js').Side[]} */ (['tip', 'root']);
 const COAST = 'coast';
 const USUAL = { um: 50, mm: 5 }; // ends of sliders without bounds of their own
 const CURVATURE = 0.001; // 1/mm, of a profile crowning stated as a coefficient
@@ -28,6 +31,8 @@ export class Flank {
   #end = 'left';
   #side = 'drive';
   #shape = '';
+  /** Where the reliefs of the last result start. @type {Page.Result | null} */ #result = null;
+  /** What shows it. @type {Partial<Record<import('../base/relief_start.js').Side, () => void>>} */ #starts = {};
 
   /** @param {import('../base/store.js').DesignStore} store @param {import('../form/form.js').Form} form */
   constructor(store, form) {
@@ -96,7 +101,8 @@ export class Flank {
     const end = split ? this.#end : 'left';
     const grid = Boolean(this.store.get(this.#pointer('/grid')));
     flankShown.set(/** @type {Page.Member} */ (this.#member), this.#side === COAST ? COAST : 'drive');
-    const shape = JSON.stringify([this.#member, split, end, this.#side, grid]);
+    const ways = SIDES.map(side => wayOf(this.store.get(this.#pointer('')), side).way);
+    const shape = JSON.stringify([this.#member, split, end, this.#side, grid, ways]);
     if (shape === this.#shape) return;
     this.#shape = shape;
     const flank = `/modification/${this.#member}/${end}`;
@@ -127,14 +133,65 @@ export class Flank {
     const all = fieldAt(this.form.fields, base)?.fields ?? [];
     const main = all.filter(field => MAIN.includes(field.key));
     main.sort((a, b) => MAIN.indexOf(a.key) - MAIN.indexOf(b.key));
-    const rest = all.filter(field => !MAIN.includes(field.key) && !field.entry);
+    const rest = all.filter(field => !MAIN.includes(field.key) && !START.test(field.key) && !field.entry);
     fill(
       this.element,
       switches,
-      main.map(field => this.#entry(base, field)),
+      main.map(field => (START.test(field.key) ? this.#start(base, field) : this.#entry(base, field))),
       this.#groups(base, rest),
       this.#grid(base, all),
     );
+  }
+
+  /** Where the reliefs start in every way, of the result on the screen. @param {Page.Result} result */
+  showStarts(result) {
+    this.#result = result;
+    for (const show of Object.values(this.#starts)) show();
+  }
+
+  /** @param {import('../base/relief_start.js').Side} side @returns {Api.ReliefStart | null} */
+  #startOf(side) {
+    const end = /** @type {Page.End} */ (this.#pointer('').split('/')[3]);
+    const drive = this.#result?.modification?.[/** @type {Page.Member} */ (this.#member)]?.[end];
+    const flank = this.#side === COAST ? drive?.coast : drive;
+    return (side === 'tip' ? flank?.tip_relief_start : flank?.root_relief_start) ?? null;
+  }
+
+  /**
+   * The start of a relief in the way in which it is stated, and what it is in the others.
+   * @param {string} base @param {import('../base/schema.js').Field} field
+   */
+  #start(base, field) {
+    const side = field.key.startsWith('tip') ? 'tip' : 'root';
+    const stated = wayOf(this.store.get(base), side);
+    const name = labelOf(field.key);
+    const own = fieldAt(this.form.fields, `${base}/${keyOf(side, stated)}`) ?? field;
+    const row = stated === WAYS[0] ? this.#entry(base, own)[0] : this.fields.field(`${base}/${own.key}`, { label: name });
+    const choice = h(
+      'select.start-way',
+      {
+        'aria-label': `${name} as`,
+        onchange: () => {
+          const [way, start] = [WAYS.find(each => each.way === choice.value), this.#startOf(side)];
+          if (way && start) this.store.set(base, restated(this.store.get(base), side, way, start));
+        },
+      },
+      WAYS.map(({ way, name: text }) => h('option', { value: way }, text)),
+    );
+    choice.value = stated.way;
+    const others = h('small.start-others');
+    this.#starts[side] = () => {
+      const start = this.#startOf(side);
+      choice.disabled = !start;
+      others.textContent = start ? `= ${otherTexts(start, stated).join(', ')}` : '';
+    };
+    this.#starts[side]?.();
+    const label = row.querySelector('label');
+    const both = h('span.start-name');
+    label?.before(both);
+    both.append(...(label ? [label] : []), choice);
+    row.append(others);
+    return row;
   }
 
   /** @param {string} base @param {import('../base/schema.js').Field[]} fields */
