@@ -88,6 +88,7 @@ function editsOf(field) {
 const rowOf = pointer => page.locator(`.form-pane [data-pointer="${pointer}"]`).first();
 
 async function edit(field, { name, text }) {
+  await page.evaluate(() => document.querySelectorAll('.form-pane details').forEach(group => (group.open = true)));
   const input = rowOf(field.pointer).locator('input:not([type=range]), select').first();
   if (name === 'switched') await input.click();
   else if (name === 'chosen') await input.selectOption(text);
@@ -141,7 +142,8 @@ async function undo(field) {
       const row = document.querySelector(`.form-pane [data-pointer="${CSS.escape(pointer)}"]`);
       const input = row?.querySelector('input:not([type=range]), select');
       const now = input?.type === 'checkbox' ? String(input.checked) : input?.value;
-      return now === value && window.isQuiet() && !document.querySelector('.design-view.refused, .design-view.preparing');
+      const late = document.querySelector('.design-view.refused, .design-view.preparing');
+      return now === value && window.isQuiet() && !late;
     },
     [field.pointer, field.value],
     { polling: 20 },

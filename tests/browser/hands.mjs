@@ -253,7 +253,8 @@ await chapter('the start of a relief in any way', async () => {
   const others = row.locator('.start-others');
   await page.waitForFunction(() => /diameter/.test(document.querySelector('.start-others')?.textContent ?? ''));
   const rack = Number(await start());
-  const numbers = text => Object.fromEntries([...text.matchAll(/([a-z ]+) ([\d.]+)/g)].map(([, n, v]) => [n.trim(), +v]));
+  const numbers = text =>
+    Object.fromEntries([...text.matchAll(/([a-z ]+) ([\d.]+)/g)].map(([, name, value]) => [name.trim(), +value]));
   const at = numbers(await others.innerText());
   const { geometry: g } = await (
     await fetch(`${server.address}api/v1/check`, {
@@ -264,7 +265,8 @@ await chapter('the start of a relief in any way', async () => {
   ).json();
   const roll = g.tangent_length_mm[0] + rack / g.rack_factor;
   const base = g.base_radius_mm[0];
-  ok(Math.abs(at.diameter / (2 * Math.hypot(roll, base)) - 1) < 1e-5, `its diameter is that of its roll: ${at.diameter}`);
+  const diameter = 2 * Math.hypot(roll, base);
+  ok(Math.abs(at.diameter / diameter - 1) < 1e-5, `its diameter is that of its roll: ${at.diameter}`);
   ok(Math.abs(at['length of roll'] / roll - 1) < 1e-5, 'so is the length of roll');
   ok(Math.abs(at['roll angle'] / ((roll / base) * (180 / Math.PI)) - 1) < 1e-5, 'and the roll angle');
   const value = await page.locator('.number-cell .value').first().innerText();
@@ -272,7 +274,9 @@ await chapter('the start of a relief in any way', async () => {
     await page.getByLabel('Tip relief start as').selectOption(way);
     await page.waitForFunction(key => decodeURIComponent(location.hash).includes(`tip_relief_${key}`), way);
     await page.waitForFunction(
-      text => !document.querySelector('.design-view.refused') && document.querySelector('.number-cell .value').textContent === text,
+      text =>
+        !document.querySelector('.design-view.refused') &&
+        document.querySelector('.number-cell .value').textContent === text,
       value,
     );
   }

@@ -27,7 +27,8 @@ page.on('pageerror', error => troubles.push(error.message));
 function smallTargets(least) {
   for (const group of document.querySelectorAll('details')) group.open = true;
   const found = new Map();
-  const pressed = 'button, select, input:not([type=hidden]), textarea, summary, a[href], [role=button], canvas[tabindex]';
+  const pressed =
+    'button, select, input:not([type=hidden]), textarea, summary, a[href], [role=button], canvas[tabindex]';
   for (const each of document.querySelectorAll(pressed)) {
     if (!each.checkVisibility({ visibilityProperty: true }) || each.disabled || each.matches('.away, .skip')) continue;
     if (each.matches('a') && each.closest('p, li, td, dd, small')) continue;

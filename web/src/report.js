@@ -64,14 +64,18 @@ function modification(fields, design) {
   const keys = fields.find(field => field.key === 'modification')?.fields?.[0]?.fields?.[0]?.fields ?? [];
   /** Of a shape: whether something has it. @param {string} key */
   const matters = key => {
-    const stem = /^(.*?)_?(shape|exponent)$/.exec(key)?.[1];
+    const [, stem, what] = /^(.*?)_?(shape|exponent)$/.exec(key) ?? [];
     if (stem === undefined) return true;
+    if (what === 'exponent' && !flanks.some(({ value }) => Object.values(value).includes('exponent'))) return false;
     const amounts = keys.filter(({ key: other, unit }) => unit === 'um' && other.includes(stem));
     return flanks.some(({ value }) => amounts.some(({ key: other }) => value[other]));
   };
   const shown = keys.filter(
     field =>
-      field.kind !== 'object' && !field.entry && matters(field.key) && flanks.some(({ value }) => value[field.key]),
+      field.kind !== 'object' &&
+      !field.entry &&
+      matters(field.key) &&
+      flanks.some(({ value }) => value[field.key] && value[field.key] !== 'as_relief_shape'),
   );
   return tableOf(
     ['Modification', ...flanks.map(({ member, end }) => `${member}, ${end}`)],

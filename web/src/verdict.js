@@ -11,6 +11,8 @@ const isNumber = text => /^[−\d–±+.]/.test(text) && text.length < 24 && !/[
 
 /** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
 export function tableOf(head, rows) {
+  /** @param {number} i */
+  const numeric = i => i > 0 && rows.some(row => isNumber(String(row[i])));
   return h(
     'table.numbers',
     null,
@@ -20,7 +22,9 @@ export function tableOf(head, rows) {
       h(
         'tr',
         null,
-        head.map(text => h('th', { scope: 'col' }, text || h('span.unseen', null, 'name'))),
+        head.map((text, i) =>
+          h(numeric(i) ? 'th.number' : 'th', { scope: 'col' }, text || h('span.unseen', null, 'name')),
+        ),
       ),
     ),
     h(

@@ -5,7 +5,8 @@ import { plain } from './format.js';
 import { shownUnit, shownValue } from './units.js';
 
 /** @typedef {'tip' | 'root'} Side */
-/** @typedef {{ way: string, of: keyof Api.ReliefStart, name: string, unit: 'mm' | '°' }} Way the key's end, and words */
+/** @typedef {{ way: string, of: keyof Api.ReliefStart, name: string, unit: string }} Way end of its key, and words */
+/** @typedef {Record<string, unknown> | null | undefined} Flank of a design */
 
 /** @type {Way[]} */
 export const WAYS = [
@@ -21,7 +22,7 @@ const KEPT = 8; // that are stated: going round all ways leads back to a nanomet
 /** @param {Side} side @param {Way} way */
 export const keyOf = (side, { way }) => `${side}_relief_${way}`;
 
-/** The way in which a flank states it. @param {Record<string, unknown> | null | undefined} flank @param {Side} side @returns {Way} */
+/** The way in which a flank states it. @param {Flank} flank @param {Side} side @returns {Way} */
 export function wayOf(flank, side) {
   return WAYS.slice(1).find(way => typeof flank?.[keyOf(side, way)] === 'number') ?? WAYS[0];
 }
@@ -45,7 +46,7 @@ export function otherTexts(start, stated) {
 
 /**
  * The flank with its start stated in another way: where it is.
- * @param {Record<string, unknown> | null | undefined} flank @param {Side} side @param {Way} way @param {Api.ReliefStart} start
+ * @param {Flank} flank @param {Side} side @param {Way} way @param {Api.ReliefStart} start
  */
 export function restated(flank, side, way, start) {
   const others = Object.fromEntries(WAYS.slice(1).map(each => [keyOf(side, each), undefined]));

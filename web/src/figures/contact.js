@@ -98,7 +98,8 @@ export class Contact {
       pen.fillStyle = colour('muted');
       pen.font = SMALL;
       pen.textAlign = 'center';
-      pen.fillText(ends.length === 2 ? `${end} end` : 'left … face … right', panel.left + panel.width / 2, height - 6);
+      const name = ends.length === 2 ? `${end} end` : 'left … face … right';
+      pen.fillText(name, panel.left + panel.width / 2, height - 6);
       const most = context.result.load_cases[context.loadCase].contact.max_pressure_MPa[end];
       pen.fillText(`max ${sig(most, 4)}`, panel.left + panel.width / 2, 11);
     });

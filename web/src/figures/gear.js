@@ -24,8 +24,8 @@ export class GearDrawing {
       {
         title: 'Teeth in mesh',
         help:
-          'Transverse section at mid face, the pinion above. The line of action with the points of contact; in colour ' +
-          'what the modification takes off the flanks that carry, drawn larger.',
+          'Transverse section at mid face, the pinion above. The line of action with the points of contact; in ' +
+          'colour what the modification takes off the flanks that carry, drawn larger.',
       },
       (pen, width, height) => this.#paint(pen, width, height),
       { label: 'Transverse section of the teeth in mesh', empty: () => this.#result === null },

@@ -125,7 +125,10 @@ export class Form {
     return this.#find(pointer)?.name ?? labelOf(pointer.split('/').pop() ?? '');
   }
 
-  /** Fields that were changed while every fault is at others. @param {Map<string, string>} texts @param {string[]} changed */
+  /**
+   * Fields that were changed while every fault is at others.
+   * @param {Map<string, string>} texts @param {string[]} changed
+   */
   #elsewhere(texts, changed) {
     const places = [...texts.keys()].map(pointer => pointer.replace('/right/', '/left/'));
     const fields = [...this.#controls].filter(({ pointer }) => changed.some(each => related(each, pointer)));

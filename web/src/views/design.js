@@ -167,9 +167,10 @@ class DesignView {
     const refused = analyst.state === 'refused';
     const preparing = analyst.state === 'preparing';
     const changed = refused && analyst.possible ? differences(analyst.possible, this.app.store.design) : [];
-    const whole = analyst.faults.length || !analyst.message ? analyst.faults : [{ pointer: '', detail: analyst.message }];
+    const { faults, message } = analyst;
+    const whole = faults.length || !message ? faults : [{ pointer: '', detail: message }];
     const troubles = form.showFaults(refused ? whole : [], changed);
-    this.trouble.show(troubles, refused && !troubles.length ? analyst.message : '');
+    this.trouble.show(troubles, refused && !troubles.length ? message : '');
     this.element.classList.toggle('refused', refused);
     this.element.classList.toggle('preparing', preparing);
     const fraction = analyst.job?.progress?.fraction;

@@ -134,6 +134,7 @@ export class Flank {
     const main = all.filter(field => MAIN.includes(field.key));
     main.sort((a, b) => MAIN.indexOf(a.key) - MAIN.indexOf(b.key));
     const rest = all.filter(field => !MAIN.includes(field.key) && !START.test(field.key) && !field.entry);
+    const open = new Set([...this.element.querySelectorAll('details[open] > summary')].map(each => each.textContent));
     fill(
       this.element,
       switches,
@@ -141,6 +142,8 @@ export class Flank {
       this.#groups(base, rest),
       this.#grid(base, all),
     );
+    for (const group of this.element.querySelectorAll('details'))
+      group.open = open.has(group.querySelector('summary')?.textContent ?? '');
   }
 
   /** Where the reliefs start in every way, of the result on the screen. @param {Page.Result} result */
@@ -166,7 +169,8 @@ export class Flank {
     const stated = wayOf(this.store.get(base), side);
     const name = labelOf(field.key);
     const own = fieldAt(this.form.fields, `${base}/${keyOf(side, stated)}`) ?? field;
-    const row = stated === WAYS[0] ? this.#entry(base, own)[0] : this.fields.field(`${base}/${own.key}`, { label: name });
+    const row =
+      stated === WAYS[0] ? this.#entry(base, own)[0] : this.fields.field(`${base}/${own.key}`, { label: name });
     const choice = h(
       'select.start-way',
       {

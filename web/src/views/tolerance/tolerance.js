@@ -68,7 +68,7 @@ class ToleranceView {
     this.percentiles = h('section.figure.with-table', { tabindex: '0', 'aria-label': 'Percentiles' });
     this.influences = h('section.figure.with-table', { 'aria-label': 'What decides' });
     this.yields = h('section.figure.with-table', { 'aria-label': 'Yield' });
-    this.inputs = h('section.figure.with-table', { 'aria-label': 'What scatters' });
+    this.inputs = h('section.figure.with-table.scattering-card', { 'aria-label': 'What scatters' });
     this.notes = h('section.tolerance-notes', { 'aria-label': 'Notes' });
     this.worst = h('button', { type: 'button', onclick: () => this.#openWorst() }, 'Open the worst pair');
     this.empty = h(

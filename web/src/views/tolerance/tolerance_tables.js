@@ -135,6 +135,11 @@ export function inputTable(result) {
   const table = h('table.numbers.scattering', null, h('tbody', null, result.inputs.map(line)));
   return [
     h('.figure-head', null, h('h3', null, 'What scatters')),
-    h('details.more', { open: ROOM.matches }, h('summary', null, `${result.inputs.length} inputs`), h('.table-scroll', null, table)),
+    h(
+      'details.more',
+      { open: ROOM.matches },
+      h('summary', null, `${result.inputs.length} inputs`),
+      h('.table-scroll', null, table),
+    ),
   ];
 }
