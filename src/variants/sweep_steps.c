@@ -87,10 +87,11 @@ static enum eo_code make_step(const struct eo_variant_axis *axis, const json_t *
   enum eo_code code = eo_variant_design(base, axis, 1, values, step, &geometry, &found);
   json_decref(values);
   if (code)
-    return eo_error_set(error, code, "/vary", "At %.9g: %.80s: %.300s", value, found.pointer, found.text);
-  return same_pair(step, design) ? EO_OK
-                                 : eo_error_set(error, EO_ERROR_INPUT, "/vary/key",
-                                                "At %.9g it is another gear pair: a study varies that.", value);
+    return eo_error_set(error, code, found.pointer, "With %.9g of %.100s: %.300s", value, axis->path[0], found.text);
+  return same_pair(step, design)
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "",
+                            "With %.9g of %.100s it is another gear pair: a study varies that.", value, axis->path[0]);
 }
 
 enum eo_code eo_sweep_steps_check(const struct eo_sweep_axes *axes, const struct eo_design *design,

@@ -14,7 +14,8 @@ enum eo_code eo_sweep_steps_check(const struct eo_sweep_axes *axes, const struct
 enum eo_code eo_sweep_steps_take(struct eo_sweep_axes *axes, const json_t *base, struct eo_error *error);
 
 /* Makes the design of every step from the noted one, some milliseconds each; nothing where no such number varies.
-   design: the base, complete. Errors: those of the check; at /vary what the design may not be; memory. */
+   design: the base, complete. Errors: those of the check; where it stands in the design what that may not be; memory.
+ */
 enum eo_code eo_sweep_steps_init(struct eo_sweep_axes *axes, const struct eo_design *design, struct eo_error *error);
 
 #endif
