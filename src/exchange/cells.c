@@ -170,6 +170,17 @@ enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t siz
   return code;
 }
 
+/* Names of files stand in a zip archive as they are. */
+enum eo_cells_kind eo_cells_kind_of(const char *bytes, size_t size)
+{
+  static const char workbook[] = "xl/workbook.xml", opendocument[] = "content.xml";
+  if (size < 4 || memcmp(bytes, "PK", 2) != 0)
+    return EO_CELLS_NONE;
+  if (memmem(bytes, size, workbook, sizeof workbook - 1))
+    return EO_CELLS_WORKBOOK;
+  return memmem(bytes, size, opendocument, sizeof opendocument - 1) ? EO_CELLS_OPENDOCUMENT : EO_CELLS_NONE;
+}
+
 enum eo_code eo_cells_read_workbook(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error)
 {
   char path[64], name[80], *text = NULL;
@@ -183,7 +194,9 @@ enum eo_code eo_cells_read_workbook(struct eo_cells *cells, const char *bytes, s
   snprintf(path, sizeof path, "/proc/self/fd/%d", file);
   struct eo_archive archive = {.path = path, .bytes = (int64_t)size, .limit = WORKBOOK_BYTES, .error = error};
   if (!code)
-    code = eo_workbook_write(&archive, out, name, sizeof name);
+    code = eo_cells_kind_of(bytes, size) == EO_CELLS_OPENDOCUMENT
+               ? eo_opendocument_write(&archive, out, name, sizeof name)
+               : eo_workbook_write(&archive, out, name, sizeof name);
   if (out && fclose(out) && !code)
     code = eo_error_memory(error);
   if (file >= 0)

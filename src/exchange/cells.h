@@ -20,7 +20,11 @@ struct eo_cells {
 /* Separator: of ; tab , the one that the first line has most of. Quotes as in RFC 4180; blanks around a cell go.
    Errors: EO_ERROR_INPUT (with the line), EO_ERROR_MEMORY. */
 enum eo_code eo_cells_read(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error);
-/* The largest sheet of a workbook (.xlsx). */
+/* What a zip archive is. */
+enum eo_cells_kind { EO_CELLS_NONE, EO_CELLS_WORKBOOK, EO_CELLS_OPENDOCUMENT };
+enum eo_cells_kind eo_cells_kind_of(const char *bytes, size_t size);
+
+/* The largest sheet of a workbook (.xlsx), or of an OpenDocument spreadsheet (.ods). */
 enum eo_code eo_cells_read_workbook(struct eo_cells *cells, const char *bytes, size_t size, struct eo_error *error);
 void eo_cells_done(struct eo_cells *cells);
 

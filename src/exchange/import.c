@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#define _GNU_SOURCE
 #include "exchange/import.h"
 
 #include <stdarg.h>
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "exchange/cells.h"
 #include "exchange/table_import.h"
 #include "format/object.h"
 
@@ -255,12 +255,12 @@ bool eo_import_begin(struct eo_import *import)
    table. */
 static void read_any(struct eo_import *import, const char *bytes, size_t size, const struct eo_import_options *options_)
 {
-  static const char sheet[] = "xl/workbook.xml", mark[] = "\xEF\xBB\xBF";
+  static const char mark[] = "\xEF\xBB\xBF";
   size_t at = size >= 3 && memcmp(bytes, mark, 3) == 0 ? 3 : 0;
   while (at < size && strchr(" \t\r\n", bytes[at]) && bytes[at])
     at++;
   bool zip = size > 4 && memcmp(bytes, "PK", 2) == 0;
-  bool workbook = zip && memmem(bytes, size, sheet, sizeof sheet - 1);
+  bool workbook = eo_cells_kind_of(bytes, size) != EO_CELLS_NONE;
   bool wide = size >= 2 && (unsigned char)bytes[0] >= 0xFE; /* two bytes a character: XML is, or a table */
   at = wide ? (bytes[2 * (size > 2)] ? 2 : 3) : at;
   bool model = at >= size || bytes[at] == '<' || bytes[at] == '{';

@@ -71,6 +71,9 @@ run 1 "a document type" "$EASEOFF" import "$files/entity.rexs"
 says "document type"
 run 1 "a document type in a workbook" "$EASEOFF" import "$files/entity.xlsx"
 says "A part of the workbook has a document type"
+run 0 "an OpenDocument spreadsheet" "$EASEOFF" import "$files/pair.ods"
+prints '"normal_module_mm": 4.5'
+prints '"tip_relief_um": 12.5'
 run 1 "as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
 prints '"kind": "not_a_boolean"'
 prints '"design": null'
