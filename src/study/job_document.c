@@ -101,19 +101,27 @@ struct progress {
   double generation, true_evaluations, predicted, reused, individuals, pfc_percent, seconds, seconds_left;
 };
 
+/* How much it took; the row of a job that ended says it too. */
+#define ROW_TRUE_EVALUATIONS                                                        \
+  EO_KEY("true_evaluations", "integer?", "by the model, or known from the history", \
+         EO_AT(struct progress, true_evaluations))
+#define ROW_INDIVIDUALS EO_KEY("individuals", "integer?", "fitness values needed", EO_AT(struct progress, individuals))
+#define ROW_PFC \
+  EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent", EO_AT(struct progress, pfc_percent))
+static const struct eo_outline_row count_rows[] = {ROW_TRUE_EVALUATIONS, ROW_INDIVIDUALS, ROW_PFC};
+static const struct eo_outline count_outline = EO_OUTLINE("JobCounts", count_rows);
+
 static const struct eo_outline_row progress_rows[] = {
     EO_KEY("fraction", "number?", "0..1 of what the job does now: preparing, then optimizing",
            EO_AT(struct progress, fraction)),
     EO_KEY("what", "text", "what it does now, for people", EO_AT(struct progress, what)),
     EO_KEY("generation", "integer?", "of an optimization; null, as all below, while it is not known",
            EO_AT(struct progress, generation)),
-    EO_KEY("true_evaluations", "integer?", "by the model, or known from the history",
-           EO_AT(struct progress, true_evaluations)),
+    ROW_TRUE_EVALUATIONS,
     EO_KEY("predicted", "integer?", "individuals whose fitness was predicted", EO_AT(struct progress, predicted)),
     EO_KEY("reused", "integer?", "true evaluations that the history knew", EO_AT(struct progress, reused)),
-    EO_KEY("individuals", "integer?", "fitness values needed", EO_AT(struct progress, individuals)),
-    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent",
-           EO_AT(struct progress, pfc_percent)),
+    ROW_INDIVIDUALS,
+    ROW_PFC,
     EO_KEY("seconds", "number?", "since it was begun, s", EO_AT(struct progress, seconds)),
     EO_KEY("seconds_left", "number?", "estimated, s", EO_AT(struct progress, seconds_left)),
 };
@@ -231,10 +239,12 @@ static void put_counts(json_t *progress, const struct eo_stored_job *job)
 {
   if (!progress || job->individuals <= 0 || (job->state != EO_JOB_DONE && job->state != EO_JOB_CANCELLED))
     return;
-  json_object_set_new(progress, "true_evaluations", json_integer(job->true_evaluations));
-  json_object_set_new(progress, "individuals", json_integer(job->individuals));
-  json_object_set_new(progress, "pfc_percent",
-                      eo_json_quantity(pfc_percent(job->true_evaluations, job->individuals), NULL));
+  const struct progress took = {.true_evaluations = job->true_evaluations,
+                                .individuals = job->individuals,
+                                .pfc_percent = pfc_percent(job->true_evaluations, job->individuals)};
+  json_t *counts = eo_outline_encode(&count_outline, &took);
+  json_object_update(progress, counts);
+  json_decref(counts);
 }
 
 static const struct eo_outline_row error_rows[] = {
