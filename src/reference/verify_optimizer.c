@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's
-   latin hypercube, surrogate and credibility. */
+/* Kind "optimizer": the counter, operators, whole runs, and the successor's latin hypercube, surrogate and credibility;
+   what predicts from the history stands in verify_prediction.c. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,37 +9,29 @@
 #include "base/random.h"
 #include "optimizer/operators.h"
 #include "optimizer/optimizer.h"
-#include "optimizer/prediction_history.h"
 #include "optimizer/surrogate.h"
 #include "reference/formula.h"
-#include "reference/verify.h"
+#include "reference/verify_optimizer_private.h"
 
-enum { MOST_ROWS = 100000, MOST_GENERATIONS = 100000 };
+enum { MOST_GENERATIONS = 100000 };
 
-struct verifier {
-  struct eo_case *file;
-  struct eo_verification *v;
-  double usual;    /* relative tolerance of the file */
-  double relative; /* of the case under work */
-};
-
-static void begin(struct verifier *verifier, struct eo_case *item)
+void eo_optimizer_case_begin(struct eo_optimizer_verifier *verifier, struct eo_case *item)
 {
   verifier->relative = eo_case_relative_or(item, "rel_tol", verifier->usual);
 }
 
-/* To the tolerance in force; a 0 to the same part of 1, the size of the unit cube and of a credibility. */
-static void compare(const struct verifier *verifier, struct eo_case *expected, double value)
+void eo_optimizer_case_compare(const struct eo_optimizer_verifier *verifier, struct eo_case *expected, double value)
 {
   eo_verify_number(verifier->v, expected, value, verifier->relative,
                    eo_case_largest(expected) == 0 ? verifier->relative : 0);
 }
 
-static void compare_list(const struct verifier *verifier, struct eo_case *expected, int count, const double *value)
+void eo_optimizer_case_compare_list(const struct eo_optimizer_verifier *verifier, struct eo_case *expected, int count,
+                                    const double *value)
 {
   eo_verify_size(verifier->v, expected, count);
   for (int i = 0; i < eo_case_size(expected); i++)
-    compare(verifier, eo_case_at(expected, i), i < count ? value[i] : NAN);
+    eo_optimizer_case_compare(verifier, eo_case_at(expected, i), i < count ? value[i] : NAN);
 }
 
 static uint64_t whole_number(struct eo_case *value)
@@ -72,14 +64,12 @@ static double number_or_flag(struct eo_case *value)
   return value && json_is_boolean(eo_case_json(value)) ? eo_case_flag(value) : eo_case_real(value);
 }
 
-/* A list of numbers, or of rows of numbers of equal length; freed by the caller. NULL with a fault. *columns is 1 for a
-   flat one. */
-static double *numbers(struct eo_case *list, int *rows, int *columns)
+double *eo_optimizer_case_numbers(struct eo_case *list, int *rows, int *columns)
 {
   struct eo_case *first = eo_case_at(list, 0);
   *rows = eo_case_size(list);
   *columns = eo_case_is_list(first) ? eo_case_size(first) : 1;
-  if (!list || !eo_case_is_list(list) || *rows < 1 || *rows > MOST_ROWS || *columns < 1 ||
+  if (!list || !eo_case_is_list(list) || *rows < 1 || *rows > EO_OPTIMIZER_MOST_ROWS || *columns < 1 ||
       *columns > EO_MAX_VARIABLES) {
     eo_case_fault(list, "A list of numbers or of rows of numbers is expected here.");
     return NULL;
@@ -95,9 +85,15 @@ static double *numbers(struct eo_case *list, int *rows, int *columns)
   return result;
 }
 
+bool eo_optimizer_case_chooses(struct eo_case *object, const char *key, const char *usual, const char *other)
+{
+  const char *const words[] = {usual, other, NULL};
+  return eo_case_choice(object, key, words, 0) == 1;
+}
+
 static enum eo_code check_random(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const struct verifier *verifier = context;
+  const struct eo_optimizer_verifier *verifier = context;
   const double unit = 0x1p-53;
   struct eo_case *expected = eo_case_need(item, "u64");
   const uint64_t wanted = big_whole(expected), seed = big_whole(eo_case_need(item, "seed")),
@@ -114,244 +110,6 @@ static enum eo_code check_random(void *context, struct eo_case *item, struct eo_
   return EO_OK;
 }
 
-/* Rows from {x, fit, R, pred}; rows without R and pred are true ones. */
-static enum eo_code load_history(struct eo_case *object, struct eo_history *history, struct eo_error *error)
-{
-  int rows, n, count[3];
-  static const char *const keys[3] = {"fit", "R", "pred"};
-  double *x = numbers(eo_case_need(object, "x"), &rows, &n), *column[3] = {NULL};
-  enum eo_code code = EO_OK;
-  for (int k = 0; k < 3 && x; k++) {
-    struct eo_case *list = eo_case_find(object, keys[k]);
-    int columns;
-    column[k] = list ? numbers(list, &count[k], &columns) : NULL;
-    if (column[k] && (count[k] != rows || columns != 1))
-      eo_case_fault(list, "A list of %d numbers, one for each row, is expected here.", rows);
-  }
-  if (!eo_case_faulty(object))
-    code = x ? eo_history_init(history, n, rows + 1, error) : eo_error_memory(error);
-  for (int i = 0; i < rows && !code && !eo_case_faulty(object); i++)
-    code = eo_history_add(history, x + (size_t)i * (size_t)n, column[0] ? column[0][i] : 0,
-                          column[1] ? column[1][i] : 1, column[2] && column[2][i] != 0, error);
-  for (int k = 0; k < 3; k++)
-    free(column[k]);
-  free(x);
-  return code;
-}
-
-/* Histories are read where they stand, so that one which no case names cannot be wrong unseen. */
-static enum eo_code read_histories(void *context, struct eo_case *block, struct eo_error *error)
-{
-  enum eo_code code = EO_OK;
-  (void)context;
-  for (int i = 0; i < eo_case_size(block) && !code && !eo_case_faulty(block); i++) {
-    struct eo_history history = {0};
-    if (eo_case_is_commentary(eo_case_key(eo_case_peek(block, i))))
-      continue;
-    code = load_history(eo_case_at(block, i), &history, error);
-    eo_history_done(&history);
-  }
-  return code;
-}
-
-static bool is_choice(struct eo_case *object, const char *key, const char *usual, const char *other)
-{
-  const char *const words[] = {usual, other, NULL};
-  return eo_case_choice(object, key, words, 0) == 1;
-}
-
-/* The rows of the region with their distances and weights. */
-static void compare_region(const struct verifier *verifier, struct eo_case *item, const struct eo_history *history,
-                           double radius)
-{
-  struct eo_case *rows = eo_case_need(item, "region"), *this_case = eo_case_need(item, "e"),
-                 *the_case = eo_case_need(item, "w");
-  int region = 0;
-  for (int j = 0; j < history->count; j++) {
-    if (!(history->distance[j] <= radius))
-      continue;
-    eo_verify_exact(verifier->v, eo_case_at(rows, region), j);
-    compare(verifier, eo_case_at(this_case, region), history->distance[j]);
-    compare(verifier, eo_case_at(the_case, region), history->weight[j]);
-    region++;
-  }
-  eo_verify_size(verifier->v, rows, region);
-  eo_verify_size(verifier->v, this_case, region);
-  eo_verify_size(verifier->v, the_case, region);
-}
-
-/* null where the point has to be evaluated: then there is no estimate. */
-static void compare_fitness(const struct verifier *verifier, struct eo_case *item, const char *key, double fitness,
-                            bool predicts)
-{
-  struct eo_case *expected = eo_case_find(item, key);
-  if (expected && eo_case_is_null(expected))
-    eo_verify_fact(verifier->v, expected, "not predicted", !predicts);
-  else
-    compare(verifier, expected, fitness);
-}
-
-static void compare_estimate(const struct verifier *verifier, struct eo_case *item, struct eo_history *history)
-{
-  static const char decision_key[] = "decision_at_Rstar_0_6";
-  const double usual_trust = 0.6;
-  const struct eo_history_law law = {.share_radius = eo_case_number(item, "r_share"),
-                                     .weight_decay = eo_case_number(item, "alpha"),
-                                     .rms = is_choice(item, "norm", "range", "rms"),
-                                     .weights_over_all = is_choice(item, "wnorm", "region", "all")};
-  const double trust = eo_case_number_or(item, "Rstar", usual_trust);
-  int n, columns;
-  double *x = numbers(eo_case_need(item, "x"), &n, &columns);
-  if (x && (n != history->variables || columns != 1))
-    eo_case_fault(eo_case_find(item, "x"), "x has another length than the rows of its history.");
-  const bool evaluates = is_choice(item, decision_key, "predict", "evaluate");
-  eo_case_need(item, decision_key);
-  if (x && !eo_case_faulty(item)) {
-    const struct eo_history_estimate estimate = eo_history_predict(history, &law, x);
-    const bool predicts = eo_history_trusts(&estimate, trust);
-    compare_region(verifier, item, history, law.share_radius);
-    compare(verifier, eo_case_need(item, "R"), estimate.credibility);
-    eo_verify_fact(verifier->v, eo_case_find(item, decision_key), "the same decision", predicts == !evaluates);
-    compare_fitness(verifier, item, "fitness", estimate.fitness, predicts);
-    compare_fitness(verifier, item, "weighted_fitness", estimate.fitness, predicts);
-  }
-  free(x);
-}
-
-static enum eo_code check_predict(void *context, struct eo_case *item, struct eo_error *error)
-{
-  struct verifier *verifier = context;
-  struct eo_history history = {0};
-  struct eo_case *name = eo_case_need(item, "history"), *all = eo_case_need(verifier->file, "histories");
-  struct eo_case *block = eo_case_text(name) ? eo_case_find(all, eo_case_text(name)) : NULL;
-  begin(verifier, item);
-  if (!block && eo_case_is_text(name))
-    eo_case_fault(name, "There is no such history.");
-  enum eo_code code = block ? load_history(block, &history, error) : EO_OK;
-  if (!code && !eo_case_faulty(item))
-    compare_estimate(verifier, item, &history);
-  eo_history_done(&history);
-  return code;
-}
-
-/* Positions that are set in mark, in order, as the ids of their rows. ids NULL: the positions themselves. */
-static void compare_marks(const struct verifier *verifier, const bool *mark, const double *ids, int count,
-                          struct eo_case *expected)
-{
-  int seen = 0;
-  for (int i = 0; i < count; i++)
-    if (mark[i]) {
-      eo_verify_exact(verifier->v, eo_case_at(expected, seen), ids ? ids[i] : i);
-      seen++;
-    }
-  eo_verify_size(verifier->v, expected, seen);
-}
-
-static enum eo_code check_redundancy(void *context, struct eo_case *item, struct eo_error *error)
-{
-  struct verifier *verifier = context;
-  struct eo_history history = {0};
-  const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "threshold"),
-                                     .literal_redundancy = true};
-  struct eo_case *expected = eo_case_need(item, "I_r"), *removed = eo_case_need(item, "removed");
-  begin(verifier, item);
-  enum eo_code code = load_history(item, &history, error);
-  if (!code && !eo_case_faulty(item)) {
-    eo_history_mark_redundant(&history, &law);
-    eo_verify_size(verifier->v, expected, history.count);
-    for (int i = 0; i < history.count && i < eo_case_size(expected); i++) {
-      struct eo_case *one = eo_case_at(expected, i);
-      if (eo_case_is_null(one)) /* the first and last row of a coordinate */
-        eo_verify_fact(verifier->v, one, "infinite", isinf(history.redundancy[i]));
-      else
-        compare(verifier, one, history.redundancy[i]);
-    }
-    compare_marks(verifier, history.removed, NULL, history.count, removed);
-  }
-  eo_history_done(&history);
-  return code;
-}
-
-static enum eo_code check_decay(void *context, struct eo_case *item, struct eo_error *error)
-{
-  struct verifier *verifier = context;
-  struct eo_history history = {0};
-  const struct eo_history_law law = {.credibility_loss = eo_case_number(item, "beta"),
-                                     .removal_threshold = eo_case_number(item, "R0")};
-  const double origin = 0, trust = eo_case_number_or(item, "Rstar", 0.6), start = eo_case_number(item, "R");
-  struct eo_case *expected = eo_case_need(item, "R_after_each_generation");
-  int last_trusted = 0, removed_after = 0;
-  begin(verifier, item);
-  if (eo_case_faulty(item))
-    return EO_OK;
-  enum eo_code code = eo_history_init(&history, 1, 1, error);
-  if (!code)
-    code = eo_history_add(&history, &origin, 1, start, true, error);
-  for (int generation = 1; generation <= eo_case_size(expected) && !code; generation++) {
-    if (eo_history_decay(&history, &law) > 0)
-      removed_after = generation;
-    compare(verifier, eo_case_at(expected, generation - 1), history.credibility[0]);
-    if (history.credibility[0] >= trust)
-      last_trusted = generation;
-  }
-  if (!code) {
-    eo_verify_exact(verifier->v, eo_case_need(item, "removed_after_generation"), removed_after);
-    eo_verify_exact(verifier->v, eo_case_need(item, "last_generation_with_R_at_least_Rstar"), last_trusted);
-  }
-  eo_history_done(&history);
-  return code;
-}
-
-/* Ids of the redundant rows, of those that decay marks in addition, and of what stays. */
-static enum eo_code compare_clean_up(const struct verifier *verifier, struct eo_case *item, struct eo_history *history,
-                                     const double *ids, const struct eo_history_law *law, struct eo_error *error)
-{
-  struct eo_case *after = eo_case_need(item, "after");
-  const int count = history->count;
-  bool *decayed = calloc((size_t)count + 1, sizeof *decayed), *kept = calloc((size_t)count + 1, sizeof *kept);
-  enum eo_code code = decayed && kept ? EO_OK : eo_error_memory(error);
-  if (!code) {
-    eo_history_mark_redundant(history, law);
-    compare_marks(verifier, history->removed, ids, count, eo_case_need(item, "removed_redundant"));
-    for (int j = 0; j < count; j++)
-      kept[j] = history->removed[j]; /* before decay */
-    eo_history_decay(history, law);
-    for (int j = 0; j < count; j++) {
-      decayed[j] = history->removed[j] && !kept[j];
-      kept[j] = !history->removed[j];
-    }
-    compare_marks(verifier, decayed, ids, count, eo_case_need(item, "removed_decayed"));
-    compare_marks(verifier, kept, ids, count, eo_case_need(after, "id"));
-    eo_history_compact(history);
-    compare_list(verifier, eo_case_need(after, "R"), history->count, history->credibility);
-  }
-  free(kept);
-  free(decayed);
-  return code;
-}
-
-static enum eo_code check_clean_up(void *context, struct eo_case *item, struct eo_error *error)
-{
-  struct verifier *verifier = context;
-  struct eo_history history = {0};
-  struct eo_case *before = eo_case_need(item, "before");
-  const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "Ir"),
-                                     .literal_redundancy = true,
-                                     .credibility_loss = eo_case_number(item, "beta"),
-                                     .removal_threshold = eo_case_number(item, "R0")};
-  int count, columns;
-  double *ids = numbers(eo_case_need(before, "id"), &count, &columns);
-  begin(verifier, item);
-  enum eo_code code = before ? load_history(before, &history, error) : EO_OK;
-  if (!code && ids && !eo_case_faulty(item) && (count != history.count || columns != 1))
-    eo_case_fault(eo_case_find(before, "id"), "There are %d rows.", history.count);
-  if (!code && !eo_case_faulty(item))
-    code = compare_clean_up(verifier, item, &history, ids, &law, error);
-  eo_history_done(&history);
-  free(ids);
-  return code;
-}
-
 static void replace(struct eo_case *object, const char *key, double *value)
 {
   *value = eo_case_number_or(object, key, *value);
@@ -364,28 +122,29 @@ static void read_parameters(struct eo_optimizer_settings *settings, struct eo_ca
   replace(this_case, "pm", &settings->mutation);
   replace(this_case, "eta_c", &settings->crossover_index);
   replace(this_case, "eta_m", &settings->mutation_index);
-  settings->mutation_mode = is_choice(this_case, "pm_mode", "gene", "individual") ? EO_MUTATE_INDIVIDUAL
-                                                                                  : EO_MUTATE_GENE;
-  settings->population = eo_case_whole_or(this_case, "npop", 1, MOST_ROWS, settings->population);
+  settings->mutation_mode = eo_optimizer_case_chooses(this_case, "pm_mode", "gene", "individual") ? EO_MUTATE_INDIVIDUAL
+                                                                                                  : EO_MUTATE_GENE;
+  settings->population = eo_case_whole_or(this_case, "npop", 1, EO_OPTIMIZER_MOST_ROWS, settings->population);
   settings->generations = eo_case_whole_or(this_case, "ngen", 1, MOST_GENERATIONS, settings->generations);
-  settings->elite = eo_case_whole_or(this_case, "elite", 0, MOST_ROWS, settings->elite);
+  settings->elite = eo_case_whole_or(this_case, "elite", 0, EO_OPTIMIZER_MOST_ROWS, settings->elite);
   settings->share_radius = eo_case_number_or(this_case, "r_share", NAN);
   replace(this_case, "alpha", &settings->weight_decay);
   replace(this_case, "Rstar", &settings->trust_threshold);
   replace(this_case, "beta", &settings->credibility_loss);
   replace(this_case, "R0", &settings->removal_threshold);
   replace(this_case, "Ir", &settings->redundancy_threshold);
-  settings->distance_norm = is_choice(this_case, "norm", "range", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
-  settings->weight_sum = is_choice(this_case, "wnorm", "region", "all") ? EO_WEIGHTS_ALL : EO_WEIGHTS_REGION;
-  settings->decision_order = is_choice(this_case, "order", "sequential", "batch") ? EO_ORDER_BATCH
-                                                                                  : EO_ORDER_SEQUENTIAL;
+  settings->distance_norm = eo_optimizer_case_chooses(this_case, "norm", "range", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
+  settings->weight_sum = eo_optimizer_case_chooses(this_case, "wnorm", "region", "all") ? EO_WEIGHTS_ALL
+                                                                                        : EO_WEIGHTS_REGION;
+  settings->decision_order = eo_optimizer_case_chooses(this_case, "order", "sequential", "batch") ? EO_ORDER_BATCH
+                                                                                                  : EO_ORDER_SEQUENTIAL;
   settings->store_predicted = eo_case_flag_or(this_case, "store_predicted", true);
   settings->literal_redundancy = eo_case_flag_or(this_case, "literal", true);
   settings->verify = eo_case_whole_or(this_case, "verify", 0, 1, 0);
   settings->reuse = eo_case_flag_or(this_case, "reuse", false);
 }
 
-static enum eo_code compare_children(const struct verifier *verifier, struct eo_case *expected,
+static enum eo_code compare_children(const struct eo_optimizer_verifier *verifier, struct eo_case *expected,
                                      const struct eo_optimizer_settings *settings, const double *parents,
                                      const double *fitness, int size, int n, int generation, struct eo_error *error)
 {
@@ -395,22 +154,22 @@ static enum eo_code compare_children(const struct verifier *verifier, struct eo_
     return eo_error_memory(error);
   eo_breed(settings, parents, fitness, size, generation, 0, child, children);
   for (int i = 0; i < children; i++)
-    compare_list(verifier, eo_case_at(expected, i), n, child + (size_t)i * (size_t)n);
+    eo_optimizer_case_compare_list(verifier, eo_case_at(expected, i), n, child + (size_t)i * (size_t)n);
   free(child);
   return EO_OK;
 }
 
 static enum eo_code check_operators(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *verifier = context;
+  struct eo_optimizer_verifier *verifier = context;
   int size, n, count, columns;
-  double *parents = numbers(eo_case_need(item, "parents"), &size, &n);
-  double *fitness = numbers(eo_case_need(item, "fitness"), &count, &columns);
+  double *parents = eo_optimizer_case_numbers(eo_case_need(item, "parents"), &size, &n);
+  double *fitness = eo_optimizer_case_numbers(eo_case_need(item, "fitness"), &count, &columns);
   struct eo_case *expected = eo_case_need(item, "children"), *parameters = eo_case_need(item, "params");
   const int generation = eo_case_whole(item, "gen", 0, MOST_GENERATIONS);
   struct eo_optimizer_settings settings;
   enum eo_code code = EO_OK;
-  begin(verifier, item);
+  eo_optimizer_case_begin(verifier, item);
   eo_optimizer_defaults(&settings, EO_GA, n);
   read_parameters(&settings, parameters);
   settings.seed = big_whole(eo_case_need(item, "seed"));
@@ -440,7 +199,8 @@ static enum eo_code run_to_the_end(struct eo_optimizer *optimizer, const char *f
   return code;
 }
 
-static void compare_run(const struct verifier *verifier, const struct eo_optimizer *optimizer, struct eo_case *item)
+static void compare_run(const struct eo_optimizer_verifier *verifier, const struct eo_optimizer *optimizer,
+                        struct eo_case *item)
 {
   static const char *const keys[] = {"true_evaluations_after_generation", "rows_after_generation", "removed_redundant",
                                      "removed_decayed", "best_true_fitness"};
@@ -458,22 +218,23 @@ static void compare_run(const struct verifier *verifier, const struct eo_optimiz
                                   generation[i].removed_decayed};
     for (int k = 0; k < COUNTS; k++)
       eo_verify_exact(verifier->v, eo_case_at(list[k], i), count[k]);
-    compare(verifier, eo_case_at(list[COUNTS], i), -generation[i].best_value);
+    eo_optimizer_case_compare(verifier, eo_case_at(list[COUNTS], i), -generation[i].best_value);
   }
-  compare(verifier, eo_case_need(item, "pfc"), eo_optimizer_counters(optimizer).fitness_computed);
+  eo_optimizer_case_compare(verifier, eo_case_need(item, "pfc"), eo_optimizer_counters(optimizer).fitness_computed);
   eo_verify_fact(verifier->v, best_x, "there is a best point", best >= 0);
   if (best >= 0)
-    compare_list(verifier, best_x, eo_case_whole(item, "n", 1, EO_MAX_VARIABLES), eo_optimizer_row(optimizer, best).x);
+    eo_optimizer_case_compare_list(verifier, best_x, eo_case_whole(item, "n", 1, EO_MAX_VARIABLES),
+                                   eo_optimizer_row(optimizer, best).x);
 }
 
 static enum eo_code check_run(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *verifier = context;
+  struct eo_optimizer_verifier *verifier = context;
   const char *formula = eo_case_word(item, "fitness");
   const int n = eo_case_whole(item, "n", 1, EO_MAX_VARIABLES);
   struct eo_optimizer *optimizer = NULL;
   struct eo_optimizer_settings settings;
-  begin(verifier, item);
+  eo_optimizer_case_begin(verifier, item);
   eo_optimizer_defaults(&settings, EO_FPGA, n);
   read_parameters(&settings, eo_case_need(item, "params"));
   settings.seed = big_whole(eo_case_need(item, "seed"));
@@ -501,8 +262,8 @@ static double ridge_of(struct eo_case *item)
   return value;
 }
 
-static void compare_surrogate(const struct verifier *verifier, struct eo_case *item, struct eo_surrogate *surrogate,
-                              const double *query, int queries)
+static void compare_surrogate(const struct eo_optimizer_verifier *verifier, struct eo_case *item,
+                              struct eo_surrogate *surrogate, const double *query, int queries)
 {
   struct eo_case *credibility = eo_case_need(item, "credibility"), *trust = eo_case_need(credibility, "R"),
                  *prediction = eo_case_need(item, "prediction");
@@ -510,24 +271,24 @@ static void compare_surrogate(const struct verifier *verifier, struct eo_case *i
   eo_case_remark(credibility, "formula");
   if (eo_case_faulty(item))
     return;
-  compare_list(verifier, eo_case_need(item, "loo_abs"), surrogate->rows, surrogate->residual);
-  compare_list(verifier, eo_case_need(item, "loo_by_refit"), surrogate->rows, surrogate->residual);
+  eo_optimizer_case_compare_list(verifier, eo_case_need(item, "loo_abs"), surrogate->rows, surrogate->residual);
+  eo_optimizer_case_compare_list(verifier, eo_case_need(item, "loo_by_refit"), surrogate->rows, surrogate->residual);
   eo_surrogate_set_scale(surrogate, surrogate->residual, scale);
   eo_verify_size(verifier->v, prediction, queries);
   eo_verify_size(verifier->v, trust, queries);
   for (int i = 0; i < queries; i++) {
     eo_surrogate_visit(surrogate, query + (size_t)i * (size_t)surrogate->variables);
-    compare(verifier, eo_case_at(prediction, i), eo_surrogate_value(surrogate, 0));
-    compare(verifier, eo_case_at(trust, i), eo_surrogate_credibility(surrogate, length));
+    eo_optimizer_case_compare(verifier, eo_case_at(prediction, i), eo_surrogate_value(surrogate, 0));
+    eo_optimizer_case_compare(verifier, eo_case_at(trust, i), eo_surrogate_credibility(surrogate, length));
   }
 }
 
-static enum eo_code check_surrogate(const struct verifier *verifier, struct eo_case *item, const double *x, int m,
-                                    int n, struct eo_error *error)
+static enum eo_code check_surrogate(const struct eo_optimizer_verifier *verifier, struct eo_case *item, const double *x,
+                                    int m, int n, struct eo_error *error)
 {
   int rows, queries, one, columns;
-  double *y = numbers(eo_case_need(item, "y"), &rows, &one);
-  double *query = numbers(eo_case_need(item, "query"), &queries, &columns);
+  double *y = eo_optimizer_case_numbers(eo_case_need(item, "y"), &rows, &one);
+  double *query = eo_optimizer_case_numbers(eo_case_need(item, "query"), &queries, &columns);
   struct eo_surrogate surrogate = {0};
   const double ridge = ridge_of(item);
   enum eo_code code = EO_OK;
@@ -547,11 +308,12 @@ static enum eo_code check_surrogate(const struct verifier *verifier, struct eo_c
 
 static enum eo_code check_successor(void *context, struct eo_case *item, struct eo_error *error)
 {
-  struct verifier *verifier = context;
+  struct eo_optimizer_verifier *verifier = context;
   struct eo_case *latin = eo_case_need(item, "lhs"), *expected = eo_case_need(latin, "x");
-  const int n = eo_case_whole(latin, "n", 1, EO_MAX_VARIABLES), m = eo_case_whole(latin, "m", 1, MOST_ROWS);
+  const int n = eo_case_whole(latin, "n", 1, EO_MAX_VARIABLES),
+            m = eo_case_whole(latin, "m", 1, EO_OPTIMIZER_MOST_ROWS);
   const uint64_t seed = big_whole(eo_case_need(latin, "seed"));
-  begin(verifier, item);
+  eo_optimizer_case_begin(verifier, item);
   if (eo_case_faulty(item))
     return EO_OK;
   double *x = calloc((size_t)m * (size_t)n, sizeof *x), *scratch = calloc((size_t)m, sizeof *scratch);
@@ -560,7 +322,7 @@ static enum eo_code check_successor(void *context, struct eo_case *item, struct 
     eo_latin_hypercube(x, m, n, seed, 0, scratch);
     eo_verify_size(verifier->v, expected, m);
     for (int i = 0; i < m && i < eo_case_size(expected); i++)
-      compare_list(verifier, eo_case_at(expected, i), n, x + (size_t)i * (size_t)n);
+      eo_optimizer_case_compare_list(verifier, eo_case_at(expected, i), n, x + (size_t)i * (size_t)n);
     if (eo_case_find(item, "y"))
       code = check_surrogate(verifier, item, x, m, n, error);
   }
@@ -571,11 +333,11 @@ static enum eo_code check_successor(void *context, struct eo_case *item, struct 
 
 static const struct eo_verify_block blocks[] = {
     {"rng", EO_BLOCK_EACH, check_random},
-    {"histories", EO_BLOCK_EITHER, read_histories},
-    {"predict", EO_BLOCK_EACH, check_predict},
-    {"redundancy", EO_BLOCK_EACH, check_redundancy},
-    {"decay", EO_BLOCK_EACH, check_decay},
-    {"S6", EO_BLOCK_EACH, check_clean_up},
+    {"histories", EO_BLOCK_EITHER, eo_verify_histories},
+    {"predict", EO_BLOCK_EACH, eo_verify_predict},
+    {"redundancy", EO_BLOCK_EACH, eo_verify_redundancy},
+    {"decay", EO_BLOCK_EACH, eo_verify_decay},
+    {"S6", EO_BLOCK_EACH, eo_verify_clean_up},
     {"operators", EO_BLOCK_EACH, check_operators},
     {"runs", EO_BLOCK_EACH, check_run},
     {"invariants", EO_BLOCK_REMARKS, NULL},
@@ -586,7 +348,7 @@ static const struct eo_verify_block blocks[] = {
 enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *verification, struct eo_error *error)
 {
   struct eo_case *conventions = eo_case_find(file, "conventions");
-  struct verifier verifier = {
+  struct eo_optimizer_verifier verifier = {
       .file = file, .v = verification, .usual = eo_case_relative_or(conventions, "rel_tol", 1e-12)};
   return eo_verify_blocks(verification, file, blocks, &verifier, error);
 }
