@@ -354,118 +354,6 @@ static void check_harmonics(const struct expected *expected, struct eo_case *ite
                    0.005, 0);
 }
 
-enum { MOST_POSITIONS = 4096 };
-
-struct stage {
-  int positions;
-  double z[2][MOST_POSITIONS], stiffness[2][MOST_POSITIONS]; /* [end], m, N/m */
-  double datum[2];                                           /* m */
-};
-
-static void read_curves(struct eo_case *pair, double unit, int *positions, double curve[2][MOST_POSITIONS])
-{
-  if (pair && eo_case_size(pair) != 2)
-    eo_case_fault(pair, "Two lists, [left, right], are expected here.");
-  for (int end = 0; end < 2; end++) {
-    int n = eo_case_numbers(eo_case_at(pair, end), *positions, MOST_POSITIONS, curve[end]);
-    *positions = n > 0 ? n : *positions;
-    for (int j = 0; j < n; j++)
-      curve[end][j] *= unit;
-  }
-}
-
-static void read_stage(struct eo_case *item, struct stage *this_stage)
-{
-  struct eo_case *stage = eo_case_find(item, "stage"), *ends = eo_case_find(item, "ends"),
-                 *datum = ends ? eo_case_find(ends, "datum_Z_um") : NULL;
-  this_stage->positions = -1;
-  read_curves(eo_case_need(stage, "Z_um"), 1e-6, &this_stage->positions, this_stage->z);
-  read_curves(eo_case_need(stage, "kt_N_um"), 1e6, &this_stage->positions, this_stage->stiffness);
-  for (int end = 0; end < 2; end++)
-    this_stage->datum[end] = datum ? 1e-6 * eo_case_element(datum, end) : 0;
-}
-
-/* The response under the tangent or the secant law of the arrays. */
-static enum eo_code solve_stage(const struct bench *bench, const struct stage *stage, const struct eo_design *design,
-                                bool secant, struct eo_vibration_solver *solver, struct eo_vibration *result,
-                                struct eo_error *error)
-{
-  struct eo_law law[2] = {{0}, {0}};
-  const struct eo_geometry *geometry = &bench->pair->geometry;
-  const struct eo_load_case *load_case = &design->load_case[0];
-  const double force = load_case->torque / (2 * geometry->base_radius[0] * cos(geometry->base_helix_angle)),
-               back = -design->gear_pair.backlash;
-  const int order = design->resolution.te_harmonics;
-  const struct eo_vibration_case load = {.torque = load_case->torque,
-                                         .speed = load_case->speed,
-                                         .pinion_teeth = geometry->teeth[0],
-                                         .law = {&law[0], &law[1]},
-                                         .phase_right = -design->alignment.stagger,
-                                         .gated = true};
-  enum eo_code code = EO_OK;
-  for (int end = 0; end < 2 && !code; end++)
-    code = secant ? eo_law_set_secant(&law[end], stage->positions, stage->z[end], force, stage->datum[end], order, back,
-                                      error)
-                  : eo_law_set_tangent(&law[end], stage->positions, stage->z[end], stage->stiffness[end], force, order,
-                                       back, error);
-  if (!code)
-    code = eo_vibration_solve(solver, &load, EO_START_COLD, result, error);
-  eo_law_done(&law[0]);
-  eo_law_done(&law[1]);
-  return code;
-}
-
-static void compare_stage(const struct expected *this_expected, const char *key, const struct eo_vibration *vibration,
-                          enum eo_reading reading)
-{
-  const double relative = 1e-3;
-  struct eo_case *expected = eo_case_find(this_expected->out, key);
-  if (!expected)
-    return;
-  if (vibration->outcome == EO_VIBRATION_NOT_CONVERGED) {
-    eo_verify_diverged(this_expected->v, expected);
-    return;
-  }
-  double wanted = eo_case_real(expected);
-  eo_verify_derived(this_expected->v, expected, "of the stage arrays", vibration->rms_pair[reading], wanted,
-                    relative * fabs(wanted));
-}
-
-static enum eo_code check_stage(const struct bench *bench, struct eo_case *item, const struct expected *expected,
-                                const struct eo_design *design, struct eo_error *error)
-{
-  struct eo_dynamics_parameters parameters;
-  struct eo_vibration_solver *solver = NULL;
-  struct eo_vibration tangent, secant;
-  struct stage *stage = calloc(1, sizeof *stage);
-  enum eo_code code = stage ? EO_OK : eo_error_memory(error);
-  if (!code)
-    read_stage(item, stage);
-  if (code || eo_case_faulty(item)) {
-    free(stage);
-    return code;
-  }
-  code = eo_dynamics_parameters_init(&parameters, &bench->pair->geometry, design->gear_pair.ends, 0, &design->supports,
-                                     false, 1, error);
-  if (!code)
-    code = eo_vibration_new(&solver, design->resolution.harmonics, 0, error);
-  if (!code)
-    code = eo_vibration_set_model(solver, &parameters, error);
-  if (!code)
-    code = solve_stage(bench, stage, design, false, solver, &tangent, error);
-  if (!code)
-    code = solve_stage(bench, stage, design, true, solver, &secant, error);
-  if (!code) {
-    compare_stage(expected, "rms_n", &tangent, EO_READING_NORMAL);
-    compare_stage(expected, "rms_t", &tangent, EO_READING_TRANSVERSE);
-    compare_stage(expected, "rms_rot", &tangent, EO_READING_ROTATIONAL);
-    compare_stage(expected, "rms_n_secant", &secant, EO_READING_NORMAL);
-  }
-  eo_vibration_free(solver);
-  free(stage);
-  return code;
-}
-
 /* The case's own design: misalignment, flanks, load, stagger and what it changes of the lumped model. */
 static enum eo_code read_case(struct bench *bench, struct eo_case *item, struct eo_design *design,
                               struct eo_error *error)
@@ -554,7 +442,9 @@ static enum eo_code run_case(void *context, struct eo_case *item, struct eo_erro
     return code;
   struct eo_design changed = design;
   code = check_runs(bench, item, &expected, &changed, error);
-  return !code && eo_case_find(item, "stage") ? check_stage(bench, item, &expected, &design, error) : code;
+  return !code && eo_case_find(item, "stage")
+             ? eo_verify_stage_arrays(expected.v, expected.out, item, &bench->pair->geometry, &design, error)
+             : code;
 }
 
 static const struct eo_verify_block blocks[] = {
