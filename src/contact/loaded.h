@@ -33,6 +33,9 @@ enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_co
 void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps);
 void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                         const struct eo_gap_field *field);
+/* Of positions first <= j < last alone, which do not depend on the others. */
+void eo_loaded_gaps_set_some(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                             const struct eo_gap_field *field, int first, int last);
 
 /* Loads about P, as shares of it, at which Z is known where that was asked for. */
 enum { EO_LOADED_NEARBY = 4 };

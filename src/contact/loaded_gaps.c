@@ -35,10 +35,11 @@ static double pair_contact(const struct eo_contact_grid *grid, const struct eo_c
   return eo_gap_field_line_descend(field, c, range, step, lowest, &eta);
 }
 
-void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, const double *gap,
-                             double *unloaded)
+/* Of positions first <= j < last. */
+static void find_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, const double *gap,
+                         int first, int last, double *unloaded)
 {
-  for (int j = 0; j < grid->positions; j++) {
+  for (int j = first; j < last; j++) {
     const struct eo_contact_position *position = &grid->position[j];
     unloaded[j] = INFINITY;
     for (int l = 0; l < position->lines; l++)
@@ -46,20 +47,27 @@ void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo
   }
 }
 
-static void set_gaps(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *gap)
+void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, const double *gap,
+                             double *unloaded)
 {
-  for (int j = 0; j < grid->positions; j++) {
+  find_contact(grid, field, gap, 0, grid->positions, unloaded);
+}
+
+void eo_loaded_gaps_set_some(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                             const struct eo_gap_field *field, int first, int last)
+{
+  for (int j = first; j < last; j++) {
     const struct eo_contact_position *position = &grid->position[j];
     for (int i = 0; i < position->points; i++)
-      gap[position->first + i] = eo_gap_field_at(field, position->path[i], position->point[i].eta, NULL, NULL);
+      gaps->gap[position->first + i] = eo_gap_field_at(field, position->path[i], position->point[i].eta, NULL, NULL);
   }
+  find_contact(grid, field, gaps->gap, first, last, gaps->unloaded);
 }
 
 void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                         const struct eo_gap_field *field)
 {
-  set_gaps(grid, field, gaps->gap);
-  eo_loaded_first_contact(grid, field, gaps->gap, gaps->unloaded);
+  eo_loaded_gaps_set_some(gaps, grid, field, 0, grid->positions);
 }
 
 double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius)

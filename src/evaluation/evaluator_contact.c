@@ -116,7 +116,7 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
   return share_thrust(evaluator, design, error);
 }
 
-void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, int end)
+void eo_end_set_fields(struct eo_evaluator *evaluator, const struct eo_run *run, int end)
 {
   if (!evaluator->needs_solving[end])
     return;
@@ -127,10 +127,43 @@ void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, i
                                                      evaluator->spline[side][EO_GEAR][end]};
     eo_meeting_field_init(&meeting->field[end], eo_pair_half(evaluator->pair, end), run->design, spline,
                           &meeting->running, end);
-    eo_loaded_gaps_set(&meeting->gaps[end], eo_evaluator_grid(evaluator, end), &meeting->field[end]);
     meeting->datum[end] = eo_gap_field_datum(&meeting->field[end]);
     meeting->incoming[end].known = 0;
   }
+}
+
+enum { GAP_PARTS = 4 }; /* of the mesh cycle, so that two threads share the gaps of one end */
+
+struct gap_parts {
+  const struct eo_evaluator *evaluator;
+  int count;
+  struct {
+    struct eo_meeting *meeting;
+    int end;
+  } of[2 * EO_MAX_LOAD_CASES];
+};
+
+static void set_part(void *context, int thread, int piece)
+{
+  const struct gap_parts *parts = context;
+  struct eo_meeting *meeting = parts->of[piece / GAP_PARTS].meeting;
+  int end = parts->of[piece / GAP_PARTS].end, part = piece % GAP_PARTS;
+  const struct eo_contact_grid *grid = eo_evaluator_grid(parts->evaluator, end);
+  (void)thread;
+  eo_loaded_gaps_set_some(&meeting->gaps[end], grid, &meeting->field[end], grid->positions * part / GAP_PARTS,
+                          grid->positions * (part + 1) / GAP_PARTS);
+}
+
+void eo_evaluator_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run)
+{
+  struct gap_parts parts = {.evaluator = evaluator};
+  EO_TIMED(evaluator->result.static_ms);
+  for (int end = 0; end < evaluator->result.ends; end++)
+    for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++) {
+      parts.of[parts.count].meeting = evaluator->meeting[m];
+      parts.of[parts.count++].end = end;
+    }
+  eo_team_do(run->team, &(struct eo_work_list){set_part, &parts, .pieces = parts.count * GAP_PARTS});
 }
 
 /* Solutions in batches: one thread's share of those that stand together and have the same gaps. */

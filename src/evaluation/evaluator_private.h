@@ -204,7 +204,10 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
 typedef void eo_end_step(struct eo_evaluator *evaluator, const struct eo_run *run, int end);
 
 /* Of an end that is not kept. */
-eo_end_step eo_end_set_gaps;
+eo_end_step eo_end_set_fields;
+
+/* At every point of every end that is not kept. */
+void eo_evaluator_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run);
 
 /* Every end and load that is not kept. */
 void eo_evaluator_solve_cases(struct eo_evaluator *evaluator, const struct eo_run *run);

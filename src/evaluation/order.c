@@ -33,8 +33,10 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   /* which ends differ from what the last run solved; the others are kept */
   eo_reuse_compare(evaluator, run);
 
-  /* slice gap, lead, tip corners, misalignment at every point of each end, both at once */
-  eo_evaluator_each_end(evaluator, run, eo_end_set_gaps);
+  /* slice gap, lead, tip corners, misalignment of each end, both at once */
+  eo_evaluator_each_end(evaluator, run, eo_end_set_fields);
+  /* the gaps that they make at every point */
+  eo_evaluator_set_gaps(evaluator, run);
   /* root stress, tooth by tooth: by whichever thread has nothing else to do once the loads of an end are there */
   EO_TRY(eo_roots_begin(run->roots, evaluator, run, error));
   /* loaded contact, each end alone: Z, k_tan, line loads at every position and P */
