@@ -60,7 +60,7 @@ export class DesignMenu {
     );
     this.upload = h('input.away', {
       type: 'file',
-      accept: '.json,.xml,.rexs,.rexsj,.rexsz,.zip,.csv,.txt,application/json',
+      accept: '.json,.xml,.rexs,.rexsj,.rexsz,.zip,.csv,.txt,.xlsx,.ods,application/json',
       tabindex: '-1',
       'aria-hidden': 'true',
       onchange: () => {
