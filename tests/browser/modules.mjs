@@ -23,6 +23,7 @@ const { caseLong, caseNames, torqueOf } = await import('../../web/src/figures/co
 const { shownSentence, useInches } = await import('../../web/src/base/units.js');
 const { Jobs } = await import('../../web/src/base/jobs.js');
 const { DesignStore } = await import('../../web/src/base/store.js');
+const { byComponent } = await import('../../web/src/shell/import_file.js');
 
 let count = 0;
 let failed = 0;
@@ -438,6 +439,12 @@ log = serve({ stopped: [1] });
 is(await follow([{ teeth: 19 }]), { teeth: 19 }, 'stopped by somebody else, the preparation is asked for once more');
 log = serve({ stopped: [1, 2, 3, 4] });
 is(await follow([{ teeth: 19 }]), 'The preparation of the teeth was stopped.', 'but not for ever');
+
+is(
+  byComponent(['gear_casing 2', 'width of bearing 49', 'name of bearing 49', 'name of shaft 6']),
+  ['gear_casing 2', 'width, name of bearing 49', 'name of shaft 6'],
+  'what an import did not use: attributes of one component on one line',
+);
 
 console.log(`1..${count}`);
 process.exit(failed ? 1 : 0);

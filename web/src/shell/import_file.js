@@ -27,6 +27,23 @@ function readJson(text) {
   }
 }
 
+/**
+ * Attributes of one component on one line: "A of C" and "B of C" are "A, B of C".
+ * @param {string[]} entries
+ */
+export function byComponent(entries) {
+  /** @type {{ attributes: string, of: string }[]} */
+  const lines = [];
+  for (const entry of entries) {
+    const at = entry.indexOf(' of ');
+    const [attribute, of] = at < 0 ? [entry, ''] : [entry.slice(0, at), entry.slice(at)];
+    const last = lines.at(-1);
+    if (last && of && last.of === of) last.attributes += `, ${attribute}`;
+    else lines.push({ attributes: attribute, of });
+  }
+  return lines.map(line => line.attributes + line.of);
+}
+
 class ImportDialog {
   /** @type {Api.Import | null} */ #found = null;
   #pair = 0;
@@ -113,7 +130,7 @@ class ImportDialog {
       found && found.pairs.length > 1 ? this.#choice(found.pairs) : null,
       faults.map(text => h('p.fault', null, text)),
       found?.design ? this.#about(found.design) : null,
-      found && LISTS.map(([key, title]) => listed(title, found[key])),
+      found && LISTS.map(([key, title]) => listed(title, key === 'not_used' ? byComponent(found[key]) : found[key])),
       h(
         'details.more',
         { open: faults.length > 0 && found !== null },
