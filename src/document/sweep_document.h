@@ -46,9 +46,9 @@ struct eo_sweep_axes {
   double *torque, *speed;
   int steps; /* values of another number; 0: none */
   char key[EO_SWEEP_KEY];
-  double *value;           /* [steps], as the document has it */
-  char *base;              /* the design as it was stated, JSON; owned; needed where there are steps */
-  struct eo_design **step; /* [steps], owned: eo_sweep_steps_init(), variants/; NULL until then */
+  double *value;          /* [steps], as the document has it */
+  char *base;             /* the design as it was stated, JSON; owned; needed where there are steps */
+  struct eo_design *step; /* [steps], owned: eo_sweep_steps_init(), variants/; NULL until then */
 };
 
 /* Equidistant in the document's unit. Errors: EO_ERROR_INPUT with the pointer of the axis (descending, one point for

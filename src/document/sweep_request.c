@@ -125,8 +125,6 @@ void eo_sweep_axes_done(struct eo_sweep_axes *axes)
   free(axes->speed);
   free(axes->value);
   free(axes->base);
-  for (int k = 0; axes->step && k < axes->steps; k++)
-    free(axes->step[k]);
   free(axes->step);
   *axes = (struct eo_sweep_axes){0};
 }

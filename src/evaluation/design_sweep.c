@@ -32,7 +32,7 @@ struct job {
   struct eo_sweep *sweep;
   const struct eo_pair *pair;
   const struct eo_design *design;
-  struct eo_design *const *step; /* [torques], where a number of the design varies; NULL: none does */
+  const struct eo_design *step; /* [torques], where a number of the design varies; NULL: none does */
   int threads;
   struct worker *worker;      /* [threads] */
   struct problem *problem;    /* [variant][torque] */
@@ -84,7 +84,7 @@ static double *torques_of(const struct eo_sweep_plan *plan)
 {
   double *torque = malloc((size_t)plan->steps * sizeof *torque);
   for (int k = 0; torque && k < plan->steps; k++)
-    torque[k] = heaviest(plan->step[k])->torque;
+    torque[k] = heaviest(&plan->step[k])->torque;
   return torque;
 }
 
@@ -212,7 +212,7 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   struct worker *worker = &job->worker[thread];
   const struct eo_evaluation *evaluation;
   int variant = item / sweep->torques, k = item % sweep->torques;
-  const struct eo_design *design = job->step ? job->step[k] : job->design;
+  const struct eo_design *design = job->step ? &job->step[k] : job->design;
   enum eo_code code = make_worker(job, worker, error);
   if (code)
     return code;

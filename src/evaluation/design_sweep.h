@@ -19,10 +19,10 @@ struct eo_sweep_plan {
 
   /* In place of torques (0 of them) a number of the design: at each step the design's own torque, that of its load case
      with the largest share. */
-  int steps;                     /* 0: none */
-  const char *key;               /* the number's name */
-  const double *value;           /* [steps], as the document has it */
-  struct eo_design *const *step; /* [steps], resolved, served by the pair */
+  int steps;                    /* 0: none */
+  const char *key;              /* the number's name */
+  const double *value;          /* [steps], as the document has it */
+  const struct eo_design *step; /* [steps], resolved, served by the pair */
 };
 
 /* Static: at one torque. NaN, and no modes, where the loaded contact did not converge. */

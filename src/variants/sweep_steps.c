@@ -119,15 +119,12 @@ enum eo_code eo_sweep_steps_init(struct eo_sweep_axes *axes, const struct eo_des
   if (axes->steps == 0)
     return EO_OK;
   json_t *base = eo_json_parse(axes->base, strlen(axes->base), error);
-  axes->step = calloc((size_t)axes->steps, sizeof *axes->step);
-  enum eo_code code = !base        ? error->code
-                      : axes->step ? find_axis(&axis, axes->key, design, error)
-                                   : eo_error_memory(error);
-  for (int k = 0; k < axes->steps && !code; k++) {
-    axes->step[k] = malloc(sizeof *axes->step[k]);
-    code = axes->step[k] ? make_step(&axis, base, design, axes->value[k], axes->step[k], error)
-                         : eo_error_memory(error);
-  }
+  axes->step = malloc((size_t)axes->steps * sizeof *axes->step);
+  enum eo_code code = base ? EO_OK : error->code;
+  if (!code)
+    code = axes->step ? find_axis(&axis, axes->key, design, error) : eo_error_memory(error);
+  for (int k = 0; k < axes->steps && !code; k++)
+    code = make_step(&axis, base, design, axes->value[k], &axes->step[k], error);
   eo_variant_axis_done(&axis);
   json_decref(base);
   return code;
