@@ -4,10 +4,20 @@
 #define EASEOFF_REFERENCE_VERIFY_DEVIATIONS_H
 
 #include "contact/hunting.h"
+#include "design/design.h"
 #include "gear/flank_grid.h"
 #include "reference/verify.h"
 
 enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
+
+/* The pair of a file as its cases take it. */
+void eo_case_deviation_pair(struct eo_case *pair, struct eo_design *design);
+
+/* The geometry that a file states of its pairs, and its table of tolerances by ISO 1328-1:2013. */
+enum eo_code eo_verify_deviation_pairs(struct eo_verification *verification, struct eo_case *pairs,
+                                       struct eo_error *error);
+enum eo_code eo_verify_flank_tolerances(struct eo_verification *verification, struct eo_case *block,
+                                        struct eo_error *error);
 
 /* What a case of pitch deviations is computed on: of each end its grid and the gaps of its flanks, m; borrowed. */
 struct eo_pitch_bench {
