@@ -62,7 +62,8 @@ int64_t eo_archive_read(struct eo_archive *archive, void *bytes, size_t size)
   archive->taken += got;
   if (archive->taken > archive->limit ||
       (archive->taken > EO_SOURCE_FREE && archive->taken / EO_SOURCE_EXPANSION > archive->bytes)) {
-    eo_error_set(archive->error, EO_ERROR_INPUT, "", "The zip file grows to more than %lld MB; that is no table and no recording.",
+    eo_error_set(archive->error, EO_ERROR_INPUT, "",
+                 "The zip file grows to more than %lld MB; that is no table and no recording.",
                  (long long)(archive->taken >> 20));
     return -1;
   }

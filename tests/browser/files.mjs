@@ -40,6 +40,10 @@ await chapter('a gear unit of two stages', async () => {
   const text = await dialog.innerText();
   ok(/amounts are normal to the flank/.test(text), 'says what was assumed');
   ok(/gear_casing 2/.test(text), 'and what was not used');
+  await page.setViewportSize({ width: 1280, height: 320 });
+  const button = await dialog.getByRole('button', { name: 'Open this pair' }).boundingBox();
+  ok(button.y + button.height < 320, 'however long that is, its buttons stay in sight');
+  await page.setViewportSize({ width: 1280, height: 800 });
   await dialog.getByRole('button', { name: 'Open this pair' }).click();
   await page.waitForFunction(() => /two-stage unit/.test(document.title));
   ok((await teeth()).join('/') === '19/58', 'the chosen pair is on the table');
