@@ -148,12 +148,20 @@ static void test_overtaking(void)
   eo_service_free(service);
 }
 
+/* Equidistant, N m; the service takes them over. */
+static struct eo_sweep_axes axes_of(int torques, double from, double step)
+{
+  struct eo_sweep_axes axes = {.torques = torques, .torque = calloc((size_t)torques, sizeof(double))};
+  for (int i = 0; i < torques; i++)
+    axes.torque[i] = from + i * step;
+  return axes;
+}
+
 static void test_sweep(void)
 {
   struct eo_service *service = start();
   struct answered answered = {0}, overtaken = {0};
-  double torque[] = {500, 600, 700}, long_axis[200];
-  const struct eo_sweep_axes axes = {.torques = 3, .torque = torque};
+  struct eo_sweep_axes axes = axes_of(3, 500, 100), long_axes = axes_of(200, 300, 1);
   struct eo_question question = {
       .design = &design, .wait = 60, .token = "sweep", .answer = take_answer, .context = &answered};
   enum eo_admission admission;
@@ -165,9 +173,7 @@ static void test_sweep(void)
   ok(answered.last.kind == EO_ANSWER_DONE && json_array_size(json_object_get(document, "torque_Nm")) == 3,
      "and is answered %s", answered.last.error.text);
   json_decref(document);
-  for (int i = 0; i < 200; i++)
-    long_axis[i] = 300 + i;
-  const struct eo_sweep_axes long_axes = {.torques = 200, .torque = long_axis};
+  axes = axes_of(3, 500, 100);
   question.context = &overtaken;
   eo_service_sweep(service, &question, &long_axes, &admission, &job, &error);
   pause_for(20);
