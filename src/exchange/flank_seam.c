@@ -158,7 +158,7 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
                            const struct eo_flank_piece *above, double y)
 {
   const double anywhere[2] = {-INFINITY, INFINITY};
-  struct meeting meeting;
+  struct meeting meeting = {0};
   struct side side[2];
   look_at(pieces, below, above, y, side);
   bool corner = below->swept[1] && next_to(pieces, below, 1) == above,

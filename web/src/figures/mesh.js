@@ -113,13 +113,13 @@ export class Sharing {
 
 /**
  * The share of one pair from where it enters to where it leaves.
- * @param {Page.LoadCase} loadCase
+ * @param {Page.LoadCase | undefined} loadCase undefined: a reference does not have it
  * @param {'left' | 'right'} end
  */
 function passage(loadCase, end) {
   const sharing = loadCase?.contact?.load_share;
   const rows = sharing?.[end];
-  const { position } = loadCase;
+  const position = loadCase?.position;
   if (!sharing || !rows || !position) return null;
   /** @type {number[]} */ const x = [];
   /** @type {number[]} */ const y = [];
