@@ -325,6 +325,7 @@ static void test_proxy(void)
 int main(void)
 {
   signal(SIGPIPE, SIG_IGN);
+  signal(SIGHUP, SIG_DFL); /* ignored under nohup, which the server would take over */
   if (!make_data_folder() ||
       !ok(start_server("--quiet", "--threads", "2", "--recordings-GB", "0.02"), "the server starts"))
     return 1;
