@@ -58,7 +58,7 @@ static json_t *value_of(const struct eo_field *field, const char *text)
   bool whole = field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
   if (*end || end == text || !isfinite(number))
     return json_string(text);
-  return whole && number == floor(number) && fabs(number) < 9e15 ? json_integer((json_int_t)number) : json_real(number);
+  return whole ? eo_json_whole(number) : json_real(number);
 }
 
 static json_t *settings_document(struct request *request, const struct options *options, struct eo_error *error)

@@ -54,7 +54,7 @@ static bool add_range(json_t *axis, const char *text)
     if (!is_number(at, length))
       return false;
     double value = strtod(at, NULL);
-    json_object_set_new(axis, key[part], part == 2 ? json_integer((json_int_t)value) : json_real(value));
+    json_object_set_new(axis, key[part], part == 2 ? eo_json_whole(value) : json_real(value));
     at += length + (at[length] == ':');
     if (part == 2 && *at)
       return false;

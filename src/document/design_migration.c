@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "format/json.h"
 #include "format/text.h"
 
 /* What version 1 took where a document says nothing. */
@@ -91,18 +92,13 @@ static void fill(struct filling *filling, json_t *group, const char *key, json_t
   eo_text_print(&filling->said, "%s%s", filling->said.size ? ", " : "", said);
 }
 
-static json_t *number(double value)
-{
-  return value == (int)value ? json_integer((json_int_t)value) : json_real(value);
-}
-
 static void fill_numbers(struct filling *filling)
 {
   for (size_t i = 0; i < sizeof first_defaults / sizeof *first_defaults; i++) {
     char said[80];
     snprintf(said, sizeof said, "%s %g", first_defaults[i].key, first_defaults[i].value);
     fill(filling, group_of(filling, filling->document, first_defaults[i].group), first_defaults[i].key,
-         number(first_defaults[i].value), said);
+         eo_json_whole(first_defaults[i].value), said);
   }
 }
 

@@ -30,7 +30,7 @@ bool eo_rexs_put(struct eo_rexs_import *import, const struct eo_table *table, js
   bool whole = false;
   for (int i = 0; i < table->count; i++)
     whole = whole || (strcmp(table->field[i].key, key) == 0 && table->field[i].kind == EO_FIELD_INTEGER);
-  json_t *number = whole ? json_integer((json_int_t)value) : json_real(value);
+  json_t *number = whole ? eo_json_whole(value) : json_real(value);
   import->out->failed = json_object_set_new(object, key, number) != 0 || import->out->failed;
   return true;
 }

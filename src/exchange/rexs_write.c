@@ -147,7 +147,7 @@ static json_t *attribute_value(const struct eo_rexs_attribute *attribute, const 
     return json_real(eo_rexs_number(attribute->text));
   case EO_REXS_WHOLE:
   case EO_REXS_COMPONENT:
-    return json_integer((json_int_t)eo_rexs_number(attribute->text));
+    return eo_json_whole(eo_rexs_number(attribute->text));
   case EO_REXS_FLAG:
     return json_boolean(strcmp(attribute->text, "true") == 0);
   default:

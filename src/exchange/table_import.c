@@ -179,7 +179,7 @@ static json_t *read_value(struct reader *reader, const struct eo_design_key *key
   if (isnan(value))
     return NULL;
   bool whole = key->field->kind == EO_FIELD_INTEGER || key->field->kind == EO_FIELD_SEED;
-  return whole && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
+  return whole ? eo_json_whole(value) : json_real(value);
 }
 
 static void put(struct reader *reader, const struct eo_design_key *key, int column, json_t *value)

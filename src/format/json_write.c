@@ -224,6 +224,12 @@ json_t *eo_json_real(double value, const struct eo_unit *unit)
   return isfinite(outside) ? json_real(outside) : json_null();
 }
 
+json_t *eo_json_whole(double value)
+{
+  static const double EXACT = 9007199254740992; /* 2^53 */
+  return fabs(value) < EXACT && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
+}
+
 static void write_ready(struct eo_text *text, double value, int digits)
 {
   char *to = eo_text_room(text, EO_DIGITS_ROOM);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "variants/variant_axis.h"
+#include "format/json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -128,7 +129,7 @@ static bool is_whole(const struct eo_variant_axis *axis)
 
 static json_t *number(const struct eo_variant_axis *axis, double value)
 {
-  return is_whole(axis) && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
+  return is_whole(axis) ? eo_json_whole(value) : json_real(value);
 }
 
 static bool is_word(const struct eo_variant_axis *axis)

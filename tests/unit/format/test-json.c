@@ -329,6 +329,22 @@ static void test_files(void)
   eo_text_done(&back);
 }
 
+static void test_whole(void)
+{
+  static const struct {
+    double value;
+    bool whole;
+  } number[] = {{17, true},     {-3, true}, {17.5, false}, {9007199254740991, true}, {9007199254740992, false},
+                {1.3e62, false}};
+  for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+    json_t *value = eo_json_whole(number[i].value);
+    ok(json_is_integer(value) == number[i].whole && json_number_value(value) == number[i].value,
+       "%.17g stays what it is", number[i].value);
+    json_decref(value);
+  }
+  ok(!eo_json_whole(NAN), "and what is not a number has no document");
+}
+
 int main(void)
 {
   test_syntax();
@@ -338,5 +354,6 @@ int main(void)
   test_text();
   test_sheet();
   test_files();
+  test_whole();
   return tap_done();
 }
