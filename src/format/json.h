@@ -31,8 +31,8 @@ void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style
 /* New values in the document's unit (NULL: dimensionless); what is not finite becomes null. */
 json_t *eo_json_real(double value, const struct eo_unit *unit);
 
-/* A value that should be whole: an integer where it is one that a double holds exactly, else as it is, for whoever reads
-   it to refuse. NULL without memory and for what is not finite. */
+/* A value that should be whole: an integer where it is one that a double holds exactly, else as it is, for whoever
+   reads it to refuse. NULL without memory and for what is not finite. */
 json_t *eo_json_whole(double value);
 /* digits: significant digits kept, for curves that people and pages read; 0 keeps all. stride: between values. With
    EO_DIGITS_READY the array as text already, which eo_json_write() alone understands: for who only writes it, at a
