@@ -127,20 +127,6 @@ void eo_bench_read_inputs(struct eo_tolerance_bench *bench, struct eo_case *vari
   }
 }
 
-static void read_design(struct eo_case *pair, struct eo_design *design)
-{
-  struct eo_case *input = eo_case_need(pair, "input");
-  eo_case_design(input, design);
-  design->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
-  design->gear_pair.bore[EO_PINION] = 0;
-  design->resolution.positions = 64;
-  design->resolution.cells_per_line = 30;
-  design->resolution.tip_edge_contact = false;
-  design->resolution.body = EO_BODY_SECTOR;
-  design->resolution.sector_teeth = 3;
-  design->resolution.neighbour_coupling = false;
-}
-
 static void drop(struct eo_tolerance_bench *bench)
 {
   for (int end = 0; end < 2; end++) {
@@ -214,7 +200,7 @@ enum eo_code eo_bench_read(struct eo_tolerance_bench *bench, struct eo_case *ite
     eo_case_fault(name ? name : item, "There is no such pair.");
     return EO_OK;
   }
-  read_design(pair, &bench->nominal);
+  eo_case_deviation_pair(pair, &bench->nominal);
   bench->ends = bench->nominal.gear_pair.ends;
   bench->torque = eo_case_number(item, "T_Nm");
   bench->flank = eo_case_choice(item, "flank_used", sides, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "rating/flank_tolerance.h"
+#include "reference/verify_deviations.h"
 
 /* The tolerance of a row's output: "PPLTE_rel", "PPLTE_um". */
 static void row_tolerance(const struct eo_tolerance_trial *trial, const char *name, double *relative, double *absolute)
@@ -200,24 +201,7 @@ static enum eo_code run_case(void *context, struct eo_case *item, struct eo_erro
 static enum eo_code check_pairs(void *context, struct eo_case *pairs, struct eo_error *error)
 {
   const struct eo_tolerance_bench *bench = context;
-  double torque[EO_MAX_LOAD_CASES];
-  for (int i = 0; i < eo_case_size(pairs); i++) {
-    struct eo_case *pair = eo_case_at(pairs, i), *output = eo_case_find(pair, "check"),
-                   *input = eo_case_need(pair, "input");
-    struct eo_design design;
-    struct eo_geometry geometry;
-    eo_case_design(input, &design);
-    design.gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
-    if (eo_case_find(pair, "torques_Nm"))
-      eo_case_numbers(eo_case_find(pair, "torques_Nm"), -1, EO_MAX_LOAD_CASES, torque);
-    if (eo_case_faulty(pair))
-      return EO_OK;
-    EO_TRY(eo_geometry_init(&geometry, &design.gear_pair, error));
-    if (output)
-      eo_case_check_geometry(bench->v, output, &geometry, 1e3, 1e-9);
-    eo_verify_member(bench->v, output, "aw", geometry.working_pressure_angle, 1e-9, 0);
-  }
-  return EO_OK;
+  return eo_verify_deviation_pairs(bench->v, pairs, error);
 }
 
 static const struct eo_verify_block blocks[] = {

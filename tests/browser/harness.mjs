@@ -44,6 +44,19 @@ export function finish() {
   process.exitCode = failed ? 1 : 0;
 }
 
+/** A page of somebody who has been here before, without movement; `troubles`: what its scripts complained about. */
+export async function knownPage(browser, options) {
+  const context = await browser.newContext({ reducedMotion: 'reduce', ...options });
+  await context.addInitScript(() => {
+    if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
+  });
+  const page = await context.newPage();
+  page.setDefaultTimeout(30000);
+  const troubles = [];
+  page.on('pageerror', error => troubles.push(error.message));
+  return { page, troubles };
+}
+
 /** Settings with which a pair is prepared in a moment; as an address has them. */
 export const COARSE = {
   positions: 16,

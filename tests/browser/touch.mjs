@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fingers: on a phone everything that is pressed is 44 px high and wide, in every view, and nothing is cut.
-import { LOOSE, Server, chapter, cutLabels, finish, note, ok, openBrowser, settled } from './harness.mjs';
+import { LOOSE, Server, chapter, cutLabels, finish, knownPage, note, ok, openBrowser, settled } from './harness.mjs';
 
 const LEAST = 44; // px
 const PAIR =
@@ -9,19 +9,11 @@ const PAIR =
 
 const server = await Server.start();
 const browser = await openBrowser();
-const context = await browser.newContext({
+const { page, troubles } = await knownPage(browser, {
   viewport: { width: 390, height: 844 },
   hasTouch: true,
   isMobile: true,
-  reducedMotion: 'reduce',
 });
-await context.addInitScript(() => {
-  if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
-});
-const page = await context.newPage();
-page.setDefaultTimeout(30000);
-const troubles = [];
-page.on('pageerror', error => troubles.push(error.message));
 
 /** What is smaller than a finger, each kind once. A link inside a sentence is as high as its line. */
 function smallTargets(least) {

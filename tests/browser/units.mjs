@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths in inches: what a figure, a readout, a number and a saved table say is what they say in mm, by 25.4.
 import { readFile } from 'node:fs/promises';
-import { LOOSE, Server, chapter, finish, ok, openBrowser, settled } from './harness.mjs';
+import { LOOSE, Server, chapter, finish, knownPage, ok, openBrowser, settled } from './harness.mjs';
 
 const PAIR =
   'gear_pair.pinion_teeth=23&gear_pair.gear_teeth=61&gear_pair.normal_module_mm=4&gear_pair.helix_angle_deg=24&' +
@@ -13,14 +13,7 @@ const PER_INCH = 25.4;
 
 const server = await Server.start();
 const browser = await openBrowser();
-const context = await browser.newContext({ viewport: { width: 1400, height: 1000 }, reducedMotion: 'reduce' });
-await context.addInitScript(() => {
-  if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
-});
-const page = await context.newPage();
-page.setDefaultTimeout(30000);
-const troubles = [];
-page.on('pageerror', error => troubles.push(error.message));
+const { page, troubles } = await knownPage(browser, { viewport: { width: 1400, height: 1000 } });
 
 const figure = title =>
   page.locator('section.figure', { has: page.getByRole('heading', { name: title }) }).first();
