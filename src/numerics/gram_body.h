@@ -375,28 +375,50 @@ INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_
     *(float_lane *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
 }
 
+/* One row: several vectors of columns at a time, as a sum has to wait for the one before it. */
+INLINE void multiply_row(int inner, int columns, const float *a, const float *b, int b_stride, bool add, float *c)
+{
+  enum { LANES = 6 };
+  for (int column = 0, lanes; column < columns; column += lanes * FLOATS) {
+    float_lane sum[LANES];
+    lanes = (columns - column) / FLOATS < LANES ? 1 : LANES;
+    UNROLL
+    for (int l = 0; l < LANES; l++)
+      sum[l] = add && l < lanes ? *(const float_lane *)(c + column + l * FLOATS) : (float_lane){0};
+    if (lanes == 1)
+      for (int k = 0; k < inner; k++)
+        sum[0] = MADD_FLOAT(SPLAT_FLOAT(a[k]), *(const float_lane *)(b + (long)k * b_stride + column), sum[0]);
+    else
+      for (int k = 0; k < inner; k++) {
+        float_lane left = SPLAT_FLOAT(a[k]);
+        UNROLL
+        for (int l = 0; l < LANES; l++)
+          sum[l] = MADD_FLOAT(left, *(const float_lane *)(b + (long)k * b_stride + column + l * FLOATS), sum[l]);
+      }
+    UNROLL
+    for (int l = 0; l < LANES; l++)
+      if (l < lanes)
+        *(float_lane *)(c + column + l * FLOATS) = sum[l];
+  }
+}
+
 /* Strips of columns, so that b's strip stays in the cache while all rows pass over it. Every number of c is one sum in
    the order of b's rows, whatever tile it falls into. */
 TARGET static void multiply(int rows, int inner, int columns, const float *a, int a_stride, const float *b,
                             int b_stride, bool add, float *c, int c_stride)
 {
   enum { STRIP = TILE_LANES * FLOATS };
-  for (int column = 0; column < columns; column += STRIP) {
-    const float *from = b + column;
-    float *to = c + column;
-    int row = 0;
-    bool whole = column + STRIP <= columns;
-    for (; whole && row + TILE_ROWS <= rows; row += TILE_ROWS)
-      multiply_tile(TILE_ROWS, TILE_LANES, inner, a + (long)row * a_stride, a_stride, from, b_stride, add,
-                    to + (long)row * c_stride, c_stride);
-    for (; whole && row < rows; row++)
-      multiply_tile(1, TILE_LANES, inner, a + (long)row * a_stride, a_stride, from, b_stride, add,
-                    to + (long)row * c_stride, c_stride);
-    for (; row < rows; row++)
-      for (int left = 0; left < columns - column; left += FLOATS)
-        multiply_tile(1, 1, inner, a + (long)row * a_stride, a_stride, from + left, b_stride, add,
-                      to + (long)row * c_stride + left, c_stride);
-  }
+  int tiled = rows / TILE_ROWS * TILE_ROWS, whole = columns / STRIP * STRIP;
+  for (int column = 0; column < whole; column += STRIP)
+    for (int row = 0; row < tiled; row += TILE_ROWS)
+      multiply_tile(TILE_ROWS, TILE_LANES, inner, a + (long)row * a_stride, a_stride, b + column, b_stride, add,
+                    c + (long)row * c_stride + column, c_stride);
+  for (int column = whole; column < columns; column += FLOATS)
+    for (int row = 0; row < tiled; row += TILE_ROWS)
+      multiply_tile(TILE_ROWS, 1, inner, a + (long)row * a_stride, a_stride, b + column, b_stride, add,
+                    c + (long)row * c_stride + column, c_stride);
+  for (int row = tiled; row < rows; row++)
+    multiply_row(inner, columns, a + (long)row * a_stride, b, b_stride, add, c + (long)row * c_stride);
 }
 
 typedef int64_t mask __attribute__((vector_size(8 * WIDTH), may_alias));
