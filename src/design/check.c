@@ -109,15 +109,16 @@ static enum eo_code check_relief(const struct eo_flank_modification *flank, int 
          rack = side == EO_TIP_SIDE ? flank->tip_relief_start : flank->root_relief_start;
   const struct eo_relief_place *stated = &flank->place[side];
   int ways = eo_relief_places_stated(stated);
+  bool twice = ways > 1 || (ways == 1 && rack != 0);
   char key[128];
+  if (!twice && amount == 0)
+    return EO_OK;
   point_to(place, relief_side[side], stated_key(stated), key);
-  if (ways > 1 || (ways == 1 && rack != 0))
+  if (twice)
     return eo_error_set(error, EO_ERROR_INPUT, key,
                         "The start of a relief is stated in one way: %s_relief_start_mm (0 where another is taken), "
                         "_diameter_mm, _roll_length_mm, _roll_angle_deg or _length_mm; here are %d.",
                         relief_side[side], ways + (rack != 0));
-  if (amount == 0)
-    return EO_OK;
   double start = eo_relief_start_at(place->geometry, place->member, flank, side);
   eo_active_profile(place->geometry, place->member, end);
   bool inside = side == EO_TIP_SIDE ? start < end[EO_TIP_SIDE] : start > end[EO_ROOT_SIDE];
@@ -165,19 +166,20 @@ static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank,
   char key[128];
   double length = 0, face_width = place->geometry->face_width;
   for (int k = 0; k < 2; k++) {
-    point_to(place, which[k], "_end_relief_um", key);
-    if (flank->end_relief[k] > 0 && flank->end_relief_length[k] <= 0)
-      return eo_error_set(error, EO_ERROR_INPUT, key,
-                          "An end relief of %.6g um needs its length: %s_end_relief_length_mm above 0, and up to %.6g "
-                          "mm with the other end's.",
-                          1e6 * flank->end_relief[k], which[k], 1e3 * face_width);
     length += flank->end_relief_length[k];
+    if (flank->end_relief[k] <= 0 || flank->end_relief_length[k] > 0)
+      continue;
+    point_to(place, which[k], "_end_relief_um", key);
+    return eo_error_set(error, EO_ERROR_INPUT, key,
+                        "An end relief of %.6g um needs its length: %s_end_relief_length_mm above 0, and up to %.6g "
+                        "mm with the other end's.",
+                        1e6 * flank->end_relief[k], which[k], 1e3 * face_width);
   }
+  if (length <= face_width)
+    return EO_OK;
   point_to(place, which[flank->end_relief_length[0] <= flank->end_relief_length[1]], "_end_relief_length_mm", key);
-  if (length > face_width)
-    return eo_error_set(error, EO_ERROR_INPUT, key, "The end reliefs are %.6g mm long together, the face only %.6g mm.",
-                        1e3 * length, 1e3 * face_width);
-  return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, key, "The end reliefs are %.6g mm long together, the face only %.6g mm.",
+                      1e3 * length, 1e3 * face_width);
 }
 
 static enum eo_code check_triangles(const struct eo_flank_modification *flank, const struct flank_place *place,
@@ -187,13 +189,14 @@ static enum eo_code check_triangles(const struct eo_flank_modification *flank, c
   for (int i = 0; i < 4; i++) {
     const struct eo_triangular_relief *relief = &flank->triangular[i / 2][i % 2];
     char corner[32], key[128];
+    if (relief->amount == 0 || (relief->profile_length > 0 && relief->face_length > 0))
+      continue;
     snprintf(corner, sizeof corner, "%s%s", relief_side[i / 2], face[i % 2]);
     point_to(place, corner, "_triangular_relief_um", key);
-    if (relief->amount != 0 && !(relief->profile_length > 0 && relief->face_length > 0))
-      return eo_error_set(error, EO_ERROR_INPUT, key,
-                          "A triangular relief of %.6g um needs lengths above 0: %s_triangular_profile_length_mm and "
-                          "%s_triangular_face_length_mm.",
-                          1e6 * relief->amount, corner, corner);
+    return eo_error_set(error, EO_ERROR_INPUT, key,
+                        "A triangular relief of %.6g um needs lengths above 0: %s_triangular_profile_length_mm and "
+                        "%s_triangular_face_length_mm.",
+                        1e6 * relief->amount, corner, corner);
   }
   return EO_OK;
 }

@@ -22,11 +22,12 @@ static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error 
   for (int i = 0; i < n; i++) {
     char pointer[sizeof error->pointer];
     bool positive = rule[i].kind == POSITIVE || rule[i].kind == SUPPORT, rigid = rule[i].kind >= SPRING;
+    if (!isnan(rule[i].value) && (!isinf(rule[i].value) || rigid) && rule[i].value >= 0 &&
+        (!positive || rule[i].value > 0))
+      continue;
     snprintf(pointer, sizeof pointer, "/supports/%s", rule[i].key);
-    if (isnan(rule[i].value) || (isinf(rule[i].value) && !rigid) || rule[i].value < 0 ||
-        (positive && rule[i].value == 0))
-      return eo_error_set(error, EO_ERROR_INPUT, pointer, "The %s must be a finite %s number, not %g.", rule[i].name,
-                          positive ? "positive" : "non-negative", rule[i].value);
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The %s must be a finite %s number, not %g.", rule[i].name,
+                        positive ? "positive" : "non-negative", rule[i].value);
   }
   return EO_OK;
 }

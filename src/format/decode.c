@@ -146,24 +146,28 @@ static void list_choices(const char *const *choices, struct eo_text *text)
     eo_text_print(text, "%s\"%s\"", i ? ", " : "", choices[i]);
 }
 
+static void refuse_choice(const json_t *value, const struct eo_field *field, const struct eo_path *path,
+                          struct eo_faults *faults)
+{
+  struct eo_text list = {0};
+  list_choices(field->choices, &list);
+  const char *all = list.data ? list.data : "its values";
+  if (json_is_string(value))
+    eo_faults_at(faults, path, "\"%.60s\" is none of %s.", json_string_value(value), all);
+  else
+    eo_faults_at(faults, path, "Must be one of %s, not %s.", all, type_name(value));
+  eo_text_done(&list);
+}
+
 /* Index of the string among the choices; -1 and a fault otherwise. */
 static int read_choice(const json_t *value, const struct eo_field *field, const struct eo_path *path,
                        struct eo_faults *faults)
 {
-  struct eo_text list = {0};
-  list_choices(field->choices, &list);
-  int found = -1;
-  if (!json_is_string(value))
-    eo_faults_at(faults, path, "Must be one of %s, not %s.", list.data ? list.data : "its values", type_name(value));
-  else {
-    for (int i = 0; field->choices[i] && found < 0; i++)
-      found = strcmp(field->choices[i], json_string_value(value)) == 0 ? i : -1;
-    if (found < 0)
-      eo_faults_at(faults, path, "\"%.60s\" is none of %s.", json_string_value(value),
-                   list.data ? list.data : "its values");
-  }
-  eo_text_done(&list);
-  return found;
+  for (int i = 0; field->choices[i] && json_is_string(value); i++)
+    if (strcmp(field->choices[i], json_string_value(value)) == 0)
+      return i;
+  refuse_choice(value, field, path, faults);
+  return -1;
 }
 
 static void decode_text(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place,

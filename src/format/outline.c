@@ -58,8 +58,8 @@ static json_t *encode_line(const struct eo_series *series, const double *value, 
 {
   int n = series->count;
   double *number = malloc(sizeof *number * (size_t)(n ? n : 1));
-  for (int i = 0; i < n && number; i++)
-    number[i] = value[(i + n - series->lag) % n] * series->scale;
+  for (int i = 0, from = n ? (n - series->lag) % n : 0; i < n && number; i++, from = from + 1 < n ? from + 1 : 0)
+    number[i] = value[from] * series->scale;
   json_t *line = number ? eo_json_reals(n, number, 1, unit, series->digits) : NULL;
   free(number);
   return line;
