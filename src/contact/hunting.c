@@ -199,14 +199,15 @@ static void read_roots(const struct eo_hunt *hunt, struct eo_hunting_walker *wal
                        int end, int cycle)
 {
   struct eo_hunting *hunting = hunt->result;
-  const struct eo_loaded_end *solved = &walker->solved[end];
   int half = walker->root[EO_RIGHT] && end == EO_RIGHT, range[2];
+  const struct eo_root_loads *loads = &walker->root_loads[half];
   struct eo_root_history *history = &walker->history[half];
   eo_contact_grid_pairs(hunt->input->grid[end], range);
+  eo_root_loads_find(&walker->root_loads[half], hunt->input->root[half], &walker->solved[end]);
   for (int member = 0; member < 2; member++)
     for (int k = range[0]; k <= range[1]; k++) {
       struct eo_root_peak peak;
-      eo_root_tooth_compute(walker->root[half], member, k, 1, &solved, &history, &peak);
+      eo_root_tooth_compute(walker->root[half], member, k, 1, &loads, &history, &peak);
       struct eo_hunting_place place = {
           .value = peak.stress, .end = end, .cycle = wrap(cycle, hunting->cycles), .line = k};
       for (int i = 0; i < 2; i++)

@@ -40,7 +40,7 @@ struct eo_hunting_input {
   double load[2];                               /* P of each end, N */
   double shared_load;                           /* P per end of a held pinion, N */
   struct eo_axial_hold hold;
-  const struct eo_root_modes *root[2][2]; /* [end][member]; NULL: no root stress */
+  const struct eo_root_tables *root[2]; /* [end]; NULL: no root stress */
   int threads;
 };
 

@@ -19,6 +19,7 @@ struct eo_hunting_find {
 struct eo_hunting_walker {
   struct eo_loaded_workspace *loaded[2]; /* [end] */
   struct eo_root_workspace *root[2];     /* [end]; NULL: no root stress; one where the ends have one grid */
+  struct eo_root_loads root_loads[2];
   struct eo_root_history history[2];
   double *gap[2];                 /* [end]: [grid->points] of the cycle at hand, behind it of the one before */
   struct eo_loaded_end solved[2]; /* [end]: the same */

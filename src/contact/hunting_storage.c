@@ -63,7 +63,7 @@ static enum eo_code make_result(struct eo_hunting *hunting, const struct eo_hunt
     for (int member = 0; member < 2; member++)
       hunting->tooth_load[end][member] = make_places(hunting->teeth[member], &complete);
   }
-  for (int member = 0; member < 2 && input->root[EO_LEFT][0]; member++)
+  for (int member = 0; member < 2 && input->root[EO_LEFT]; member++)
     hunting->tooth_stress[member] = make_places(hunting->ends * hunting->teeth[member], &complete);
   return complete ? EO_OK : eo_error_memory(error);
 }
@@ -91,9 +91,10 @@ static enum eo_code make_walker(struct eo_hunting_walker *walker, const struct e
     walker->gap[end] = make_numbers(input->grid[end]->points, &complete);
   }
   bool one_grid = input->ends == 1 || input->grid[EO_RIGHT] == input->grid[EO_LEFT];
-  for (int end = 0; complete && input->root[EO_LEFT][0] && end < (one_grid ? 1 : 2); end++) {
+  for (int end = 0; complete && input->root[EO_LEFT] && end < (one_grid ? 1 : 2); end++) {
     int step = input->positions > ROOT_POSITIONS ? input->positions / ROOT_POSITIONS * hunt->step : hunt->step;
-    EO_TRY(eo_root_workspace_new(&walker->root[end], input->grid[end], input->root[end], step, 1, error));
+    EO_TRY(eo_root_workspace_new(&walker->root[end], input->root[end], 1, error));
+    EO_TRY(eo_root_loads_init(&walker->root_loads[end], input->root[end], step, error));
     EO_TRY(eo_root_history_init(&walker->history[end], input->grid[end], error));
   }
   return complete ? EO_OK : eo_error_memory(error);
@@ -124,6 +125,7 @@ static void walker_done(struct eo_hunting_walker *walker)
   }
   for (int end = 0; end < 2; end++) {
     eo_root_workspace_free(walker->root[end]);
+    eo_root_loads_done(&walker->root_loads[end]);
     eo_root_history_done(&walker->history[end]);
   }
 }

@@ -42,60 +42,188 @@ void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, 
     }
 }
 
-enum { MOST_TEETH = 64 };
-
-struct eo_root_workspace {
+struct eo_root_tables {
   const struct eo_contact_grid *grid;
   const struct eo_root_modes *modes[2]; /* [member] */
-  int step, count;                      /* positions that count */
-  struct eo_root_weights *weights[2];   /* [member]: [grid->points], of the positions that count */
-  double *force;                        /* [ends][most points] */
-  float *load;                          /* [positions][ends][slots] */
-  float *scratch;                       /* [positions][ends][rank stride] */
-  float *stress;                        /* [positions][ends][stress stride] */
-  uint64_t *touched;                    /* [positions]: see eo_root_modes_add() */
+  int first_pair, pairs;
+  int *present;     /* [pairs][2]: positions of the grid between which a pair can touch, the last one not among them */
+  float *own[2];    /* [member]: [grid->points][stride] */
+  float *remote[2]; /* [member]: [grid->points][remote stride]; NULL: loads on other teeth do not count */
 };
 
-/* NULL without memory. */
-static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, const struct eo_root_modes *modes,
-                                            int step)
+static void find_present(struct eo_root_tables *tables)
 {
-  struct eo_root_weights *weights = malloc(sizeof *weights * (size_t)grid->points);
-  for (int j = 0; weights && j < grid->positions; j += step) {
-    const struct eo_contact_position *position = &grid->position[j];
-    for (int i = 0; i < position->points; i++)
-      eo_root_modes_weigh(modes, &position->point[i], &weights[position->first + i]);
+  for (int j = 0; j < tables->grid->positions; j++) {
+    const struct eo_contact_position *position = &tables->grid->position[j];
+    for (int l = 0; l < position->lines; l++) {
+      int *present = tables->present + 2 * (position->line[l].pair - tables->first_pair);
+      present[0] = present[1] ? present[0] : j;
+      present[1] = j + 1;
+    }
   }
-  return weights;
 }
 
-enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
-                                   const struct eo_root_modes *const modes[2], int step, int ends,
+static enum eo_code weigh_points(struct eo_root_tables *tables, int member, struct eo_error *error)
+{
+  const struct eo_contact_grid *grid = tables->grid;
+  const struct eo_root_modes *modes = tables->modes[member];
+  size_t stride = (size_t)eo_root_modes_stride(modes), far = (size_t)eo_root_modes_remote_stride(modes);
+  tables->own[member] = eo_gram_allocate((long)(((size_t)grid->points * stride + 1) / 2));
+  tables->remote[member] = far ? eo_gram_allocate((long)(((size_t)grid->points * far + 1) / 2)) : NULL;
+  if (!tables->own[member] || (far && !tables->remote[member]))
+    return eo_error_memory(error);
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *position = &grid->position[j];
+    for (int i = 0; i < position->points; i++) {
+      size_t row = (size_t)(position->first + i);
+      eo_root_modes_own(modes, &position->point[i], tables->own[member] + row * stride);
+      if (far)
+        eo_root_modes_remote(modes, &position->point[i], tables->remote[member] + row * far);
+    }
+  }
+  return EO_OK;
+}
+
+static enum eo_code fill_tables(struct eo_root_tables *tables, struct eo_error *error)
+{
+  int range[2];
+  eo_contact_grid_pairs(tables->grid, range);
+  tables->first_pair = range[0];
+  tables->pairs = range[1] - range[0] + 1;
+  tables->present = calloc((size_t)tables->pairs, sizeof *tables->present * 2);
+  if (!tables->present)
+    return eo_error_memory(error);
+  find_present(tables);
+  EO_TRY(weigh_points(tables, EO_PINION, error));
+  return weigh_points(tables, EO_GEAR, error);
+}
+
+enum eo_code eo_root_tables_new(struct eo_root_tables **result, const struct eo_contact_grid *grid,
+                                const struct eo_root_modes *const modes[2], struct eo_error *error)
+{
+  struct eo_root_tables *tables = calloc(1, sizeof *tables);
+  if (!tables)
+    return eo_error_memory(error);
+  tables->grid = grid;
+  tables->modes[EO_PINION] = modes[EO_PINION];
+  tables->modes[EO_GEAR] = modes[EO_GEAR];
+  enum eo_code code = fill_tables(tables, error);
+  if (code)
+    eo_root_tables_free(tables);
+  else
+    *result = tables;
+  return code;
+}
+
+void eo_root_tables_free(struct eo_root_tables *tables)
+{
+  if (!tables)
+    return;
+  for (int member = 0; member < 2; member++) {
+    free(tables->own[member]);
+    free(tables->remote[member]);
+  }
+  free(tables->present);
+  free(tables);
+}
+
+static int counted(const struct eo_root_tables *tables, int step)
+{
+  return (tables->grid->positions + step - 1) / step;
+}
+
+/* Where the loads of a pair are kept, by position. */
+static float *remote_of(const struct eo_root_loads *loads, const struct eo_root_tables *tables, int member, int pair)
+{
+  size_t stride = (size_t)eo_root_modes_remote_stride(tables->modes[member]);
+  return loads->remote[member] + (size_t)((pair - tables->first_pair) * counted(tables, loads->step)) * stride;
+}
+
+enum eo_code eo_root_loads_init(struct eo_root_loads *loads, const struct eo_root_tables *tables, int step,
+                                struct eo_error *error)
+{
+  *loads = (struct eo_root_loads){.step = step};
+  loads->force = calloc((size_t)tables->grid->points, sizeof *loads->force);
+  bool complete = loads->force;
+  for (int member = 0; member < 2; member++) {
+    long stride = eo_root_modes_remote_stride(tables->modes[member]);
+    loads->remote[member] = eo_gram_allocate((long)tables->pairs * counted(tables, step) * stride / 2 + 1);
+    complete = complete && loads->remote[member];
+  }
+  if (complete)
+    return EO_OK;
+  eo_root_loads_done(loads);
+  return eo_error_memory(error);
+}
+
+void eo_root_loads_done(struct eo_root_loads *loads)
+{
+  free(loads->force);
+  free(loads->remote[0]);
+  free(loads->remote[1]);
+  *loads = (struct eo_root_loads){0};
+}
+
+static void find_forces(float *force, const struct eo_contact_position *position, const double *line_load)
+{
+  for (int i = position->first; i < position->first + position->points; i++)
+    force[i] = (float)(line_load[i] * position->length[i - position->first]);
+}
+
+static void find_remote(struct eo_root_loads *loads, const struct eo_root_tables *tables, int member)
+{
+  const struct eo_root_modes *modes = tables->modes[member];
+  int stride = eo_root_modes_remote_stride(modes);
+  for (int j = 0; j < tables->grid->positions; j += loads->step) {
+    const struct eo_contact_position *position = &tables->grid->position[j];
+    for (int l = 0; l < position->lines; l++) {
+      const struct eo_contact_line *line = &position->line[l];
+      int first = position->first + line->first;
+      eo_root_modes_add(modes, line->cells, loads->force + first,
+                        tables->remote[member] + (size_t)first * (size_t)stride, stride,
+                        remote_of(loads, tables, member, line->pair) + (size_t)(j / loads->step) * (size_t)stride);
+    }
+  }
+}
+
+void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables *tables,
+                        const struct eo_loaded_end *end)
+{
+  for (int j = 0; j < tables->grid->positions; j += loads->step)
+    find_forces(loads->force, &tables->grid->position[j], end->line_load);
+  for (int member = 0; member < 2; member++) {
+    size_t stride = (size_t)eo_root_modes_remote_stride(tables->modes[member]);
+    memset(loads->remote[member], 0,
+           sizeof(float) * (size_t)tables->pairs * (size_t)counted(tables, loads->step) * stride);
+    if (stride)
+      find_remote(loads, tables, member);
+  }
+}
+
+enum { MOST_TEETH = 64, ROWS = 64 }; /* ROWS: stresses at a time, so that they stay in the cache until they are read */
+
+struct eo_root_workspace {
+  const struct eo_root_tables *tables;
+  float *coefficient; /* [ends][positions][stride] */
+  float *stress;      /* [ROWS][stress stride] */
+};
+
+enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_root_tables *tables, int ends,
                                    struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
-  size_t rank = 1, length = 1, slots = 1;
+  long stride = 1, length = 1;
   if (!ws)
     return eo_error_memory(error);
-  ws->grid = grid;
-  ws->step = step;
-  ws->count = (grid->positions + step - 1) / step;
+  ws->tables = tables;
   for (int member = 0; member < 2; member++) {
-    size_t r = (size_t)eo_root_modes_rank_stride(modes[member]), m = (size_t)eo_root_modes_stress_stride(modes[member]);
-    rank = r > rank ? r : rank;
-    length = m > length ? m : length;
-    m = (size_t)eo_root_modes_slots(modes[member]);
-    slots = m > slots ? m : slots;
-    ws->modes[member] = modes[member];
-    ws->weights[member] = weigh_points(grid, modes[member], step);
+    long own = eo_root_modes_stride(tables->modes[member]), all = eo_root_modes_stress_stride(tables->modes[member]);
+    stride = own > stride ? own : stride;
+    length = all > length ? all : length;
   }
-  size_t rows = (size_t)ws->count * (size_t)ends;
-  ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
-  ws->load = malloc(sizeof *ws->load * rows * slots);
-  ws->scratch = eo_gram_allocate((long)(rows * rank / 2));
-  ws->stress = eo_gram_allocate((long)(rows * length / 2));
-  ws->touched = malloc(sizeof *ws->touched * (size_t)ws->count);
-  if (!ws->weights[0] || !ws->weights[1] || !ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
+  ws->coefficient = eo_gram_allocate((long)ends * tables->grid->positions * stride / 2 + 1);
+  ws->stress = eo_gram_allocate(ROWS * length / 2 + 1);
+  if (!ws->coefficient || !ws->stress) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -107,13 +235,8 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
 {
   if (!ws)
     return;
-  free(ws->weights[0]);
-  free(ws->weights[1]);
-  free(ws->force);
-  free(ws->load);
-  free(ws->scratch);
+  free(ws->coefficient);
   free(ws->stress);
-  free(ws->touched);
   free(ws);
 }
 
@@ -161,46 +284,77 @@ static double largest_principal(int nodes, const float *stress, int *where)
   return largest;
 }
 
-/* Loads of every step-th position on the teeth around one tooth: load[count][ends][slots]. */
-static void collect(struct eo_root_workspace *ws, int member, int tooth, int ends,
-                    const struct eo_loaded_end *const *end)
+/* What the tooth itself carries, of all ends at one position after the other: they read the same rows. */
+static void add_own(struct eo_root_workspace *ws, int member, int tooth, int ends,
+                    const struct eo_root_loads *const *loads)
 {
-  const struct eo_root_modes *modes = ws->modes[member];
-  int slots = eo_root_modes_slots(modes);
-  memset(ws->load, 0, sizeof *ws->load * (size_t)ends * (size_t)ws->count * (size_t)slots);
-  for (int j = 0; j < ws->count; j++) {
-    const struct eo_contact_position *position = &ws->grid->position[j * ws->step];
-    for (int e = 0; e < ends; e++)
-      for (int i = 0; i < position->points; i++)
-        ws->force[e * position->points + i] = end[e]->line_load[position->first + i] * position->length[i];
-    ws->touched[j] = eo_root_modes_add(modes, tooth, position->points, position->point,
-                                       ws->weights[member] + position->first, ends, ws->force,
-                                       ws->load + (size_t)(j * ends) * (size_t)slots);
+  const struct eo_root_tables *tables = ws->tables;
+  const struct eo_root_modes *modes = tables->modes[member];
+  int stride = eo_root_modes_stride(modes), step = loads[0]->step, count = counted(tables, step);
+  for (int j = 0; j < count; j++) {
+    const struct eo_contact_position *position = &tables->grid->position[j * step];
+    for (int l = 0; l < position->lines; l++) {
+      const struct eo_contact_line *line = &position->line[l];
+      int first = position->first + line->first;
+      for (int e = 0; e < ends && line->pair == tooth; e++)
+        eo_root_modes_add(modes, line->cells, loads[e]->force + first,
+                          tables->own[member] + (size_t)first * (size_t)stride, stride,
+                          ws->coefficient + (size_t)(e * count + j) * (size_t)stride);
+    }
+  }
+}
+
+/* What the others carry, each while it can touch. */
+static void add_others(struct eo_root_workspace *ws, int member, int tooth, int ends,
+                       const struct eo_root_loads *const *loads)
+{
+  const struct eo_root_tables *tables = ws->tables;
+  const struct eo_root_modes *modes = tables->modes[member];
+  int reach = eo_root_modes_reach(modes), step = loads[0]->step, count = counted(tables, step);
+  size_t stride = (size_t)eo_root_modes_stride(modes), far = (size_t)eo_root_modes_remote_stride(modes);
+  for (int pair = tables->first_pair; pair < tables->first_pair + tables->pairs; pair++) {
+    const int *present = tables->present + 2 * (pair - tables->first_pair);
+    int first = (present[0] + step - 1) / step, last = (present[1] + step - 1) / step;
+    for (int e = 0; e < ends && first < last && pair != tooth && abs(pair - tooth) <= reach; e++)
+      eo_root_modes_pass(modes, pair - tooth, last - first,
+                         remote_of(loads[e], tables, member, pair) + (size_t)first * far,
+                         ws->coefficient + (size_t)(e * count + first) * stride);
+  }
+}
+
+/* Largest stress, and its node, at `rows` positions. */
+static void read_rows(struct eo_root_workspace *ws, int member, int rows, const float *coefficient, double *stress,
+                      struct eo_root_peak *peak)
+{
+  const struct eo_root_modes *modes = ws->tables->modes[member];
+  int nodes = eo_root_modes_nodes(modes), stride = eo_root_modes_stress_stride(modes);
+  eo_root_modes_stress(modes, rows, coefficient, ws->stress);
+  for (int j = 0; j < rows; j++) {
+    int node = 0;
+    stress[j] = largest_principal(nodes, ws->stress + (size_t)j * (size_t)stride, &node);
+    if (stress[j] > peak->stress)
+      *peak = (struct eo_root_peak){stress[j], node};
   }
 }
 
 void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, int ends,
-                           const struct eo_loaded_end *const *end, struct eo_root_history *const *history,
+                           const struct eo_root_loads *const *loads, struct eo_root_history *const *history,
                            struct eo_root_peak *peak)
 {
-  const struct eo_contact_grid *grid = ws->grid;
-  const struct eo_root_modes *modes = ws->modes[member];
-  int range[2], nodes = eo_root_modes_nodes(modes), stride = eo_root_modes_stress_stride(modes);
-  eo_contact_grid_pairs(grid, range);
-  int first = (tooth - range[0]) * ws->count;
-  collect(ws, member, tooth, ends, end);
-  eo_root_modes_stress(modes, ws->count, ends, ws->load, ws->touched, ws->scratch, ws->stress);
+  const struct eo_root_tables *tables = ws->tables;
+  const struct eo_contact_grid *grid = tables->grid;
+  int step = loads[0]->step, count = counted(tables, step), first = (tooth - tables->first_pair) * count;
+  size_t stride = (size_t)eo_root_modes_stride(tables->modes[member]);
+  memset(ws->coefficient, 0, sizeof *ws->coefficient * (size_t)(ends * count) * stride);
+  add_own(ws, member, tooth, ends, loads);
+  add_others(ws, member, tooth, ends, loads);
   for (int e = 0; e < ends; e++) {
     peak[e] = (struct eo_root_peak){0};
-    for (int j = 0; j < ws->count; j++) {
-      int node = 0;
-      const float *stress = ws->stress + (size_t)(j * ends + e) * (size_t)stride;
-      double s = ws->touched[j] ? largest_principal(nodes, stress, &node) : 0;
-      history[e]->phase[first + j] = grid->position[j * ws->step].phase / grid->geometry.transverse_base_pitch + tooth;
-      history[e]->stress[first + j] = s;
-      if (s > peak[e].stress)
-        peak[e] = (struct eo_root_peak){s, node};
-    }
+    for (int j = 0; j < count; j++)
+      history[e]->phase[first + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
+    for (int j = 0; j < count; j += ROWS)
+      read_rows(ws, member, count - j < ROWS ? count - j : ROWS, ws->coefficient + (size_t)(e * count + j) * stride,
+                history[e]->stress + first + j, &peak[e]);
   }
 }
 
@@ -222,12 +376,11 @@ void eo_root_history_finish(struct eo_root_history *history, const struct eo_roo
 }
 
 void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root,
-                             int member, const struct eo_loaded_end *end)
+                             int member, const struct eo_root_loads *loads)
 {
+  const struct eo_root_tables *tables = ws->tables;
   struct eo_root_peak peak[MOST_TEETH];
-  int range[2];
-  eo_contact_grid_pairs(ws->grid, range);
-  for (int tooth = range[0]; tooth <= range[1]; tooth++)
-    eo_root_tooth_compute(ws, member, tooth, 1, &end, &history, &peak[tooth - range[0]]);
-  eo_root_history_finish(history, root, ws->grid, ws->step, peak, 1);
+  for (int i = 0; i < tables->pairs; i++)
+    eo_root_tooth_compute(ws, member, tables->first_pair + i, 1, &loads, &history, &peak[i]);
+  eo_root_history_finish(history, root, tables->grid, loads->step, peak, 1);
 }

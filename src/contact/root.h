@@ -40,28 +40,45 @@ struct eo_root_peak {
   int node;      /* of the root's nodes, see eo_root_modes_nodes() */
 };
 
-/* Scratch of one thread for at most `ends` ends at a time and every step-th position of the grid; borrows the grid and
-   the modes [member]. */
+/* What the loads of a contact grid's points are to the roots of both members; constant once made, shared by all
+   threads. Borrows the grid and the modes [member]. */
+struct eo_root_tables;
+enum eo_code eo_root_tables_new(struct eo_root_tables **tables, const struct eo_contact_grid *grid,
+                                const struct eo_root_modes *const modes[2], struct eo_error *error);
+void eo_root_tables_free(struct eo_root_tables *tables);
+
+/* The loads of one end at every step-th position of the grid, as the roots of both members feel them. */
+struct eo_root_loads {
+  int step;
+  float *force;     /* [grid->points], N */
+  float *remote[2]; /* [member]: [pairs][positions that count][remote stride]: to the roots of other teeth */
+};
+enum eo_code eo_root_loads_init(struct eo_root_loads *loads, const struct eo_root_tables *tables, int step,
+                                struct eo_error *error);
+void eo_root_loads_done(struct eo_root_loads *loads);
+void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables *tables,
+                        const struct eo_loaded_end *end);
+
+/* Scratch of one thread for at most `ends` ends at a time; borrows the tables. */
 struct eo_root_workspace;
-enum eo_code eo_root_workspace_new(struct eo_root_workspace **workspace, const struct eo_contact_grid *grid,
-                                   const struct eo_root_modes *const modes[2], int step, int ends,
+enum eo_code eo_root_workspace_new(struct eo_root_workspace **workspace, const struct eo_root_tables *tables, int ends,
                                    struct eo_error *error);
 void eo_root_workspace_free(struct eo_root_workspace *workspace);
 
-/* One tooth of a member, of the range that eo_contact_grid_pairs() tells, under the loads of several ends at once: its
-   phases and stresses in each history[ends], and its peak[ends]. Every step-th position of the grid counts (the stress
-   is a smooth function of the phase). Teeth may be computed in any order, on any thread. */
+/* One tooth of a member, of the range that eo_contact_grid_pairs() tells, under the loads of several ends at once, all
+   of one step: its phases and stresses in each history[ends], and its peak[ends]. Teeth may be computed in any order,
+   on any thread. */
 void eo_root_tooth_compute(struct eo_root_workspace *workspace, int member, int tooth, int ends,
-                           const struct eo_loaded_end *const *end, struct eo_root_history *const *history,
+                           const struct eo_root_loads *const *loads, struct eo_root_history *const *history,
                            struct eo_root_peak *peak);
 
 /* When every tooth is there: the number of phases, the maximum and its place. root: of the member's flexibility;
-   peak[teeth], stride apart. */
+   peak[teeth], stride apart; step: of the loads. */
 void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root,
                             const struct eo_contact_grid *grid, int step, const struct eo_root_peak *peak, int stride);
 
 /* All of this for one end. */
 void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *workspace,
-                             const struct eo_root *root, int member, const struct eo_loaded_end *end);
+                             const struct eo_root *root, int member, const struct eo_root_loads *loads);
 
 #endif

@@ -88,20 +88,6 @@ double eo_result_hub_windup(const struct eo_result_source *source, int member)
                                    source->design->gear_pair.bore[member] / 2);
 }
 
-/* Deflection of mid face at s = 0 under 1 N/m on that row, by the trapezoidal rule, m. */
-static double pitch_deflection(const struct eo_flexibility *flexibility, int member, double width)
-{
-  enum { STRETCHES = 56, POINTS = STRETCHES + 1 };
-  struct eo_flank_point point[POINTS];
-  double compliance[POINTS * POINTS] = {0}, sum = 0;
-  for (int i = 0; i < POINTS; i++)
-    point[i] = (struct eo_flank_point){0, {0, 0}, width * ((double)i / STRETCHES - 0.5)};
-  eo_flexibility_add_compliance(flexibility, member, POINTS, point, compliance);
-  for (int i = 0; i < POINTS; i++)
-    sum += compliance[STRETCHES / 2 * POINTS + i] * width / STRETCHES * (i == 0 || i == STRETCHES ? 0.5 : 1);
-  return sum;
-}
-
 static json_t *encode_member(const struct eo_result_source *source, int member)
 {
   const struct eo_flexibility *flexibility = source->pair->flexibility;
@@ -113,7 +99,7 @@ static json_t *encode_member(const struct eo_result_source *source, int member)
       .support = support_text[report->support[member]],
       .radius = report->radius[member],
       .reach = report->reach[member],
-      .deflection = pitch_deflection(flexibility, member, source->pair->geometry.face_width),
+      .deflection = source->pair->pitch_deflection[member],
       .harmonic = {ring ? part[0] : NAN, ring ? part[1] : NAN},
       .windup = eo_result_hub_windup(source, member),
   };

@@ -94,6 +94,7 @@ struct eo_evaluator {
   /* what is still valid from the last run: reuse.c */
   struct eo_end_key solved_for[2]; /* [end] */
   bool needs_solving[2];           /* [end]: in this run; the other end is as the last run left it */
+  bool kept[2];                    /* [end]: its loads, and all that follows from them, are those of the last run */
   bool root_valid[2];              /* [end]: its root stress belongs to the loads that are stored */
   struct eo_law_key (*law_of)[2];  /* [most_cases][end]: its mesh law does */
 
@@ -117,6 +118,7 @@ struct eo_evaluator {
   /* root stress */
   struct eo_root_workspace *root[2][2]; /* [thread][half]; NULL until asked for */
   struct eo_root_peak *peaks[2];        /* [half]: [member][teeth][most_cases * 2]; NULL until asked for */
+  struct eo_root_loads *root_loads[2];  /* [half]: [most_cases * 2]; NULL until asked for */
 
   /* mesh laws and vibration */
   struct eo_loaded_end *table;              /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */

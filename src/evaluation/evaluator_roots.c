@@ -4,16 +4,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROOT_STEP = 2 }; /* every other position: the stress is a smooth function of the phase */
+/* At every position: the edge of a tip can touch at a single one, and makes the largest stress there. */
+enum { ROOT_STEP = 1 };
+
+/* Of as many ends as there are to compute. */
+static enum eo_code make_loads(struct eo_evaluator *evaluator, int half, int ends, struct eo_error *error)
+{
+  if (!evaluator->root_loads[half])
+    evaluator->root_loads[half] = calloc(2 * (size_t)evaluator->most_cases, sizeof **evaluator->root_loads);
+  if (!evaluator->root_loads[half])
+    return eo_error_memory(error);
+  for (int i = 0; i < ends; i++)
+    if (!evaluator->root_loads[half][i].force)
+      EO_TRY(eo_root_loads_init(&evaluator->root_loads[half][i], eo_pair_half(evaluator->pair, half)->root, ROOT_STEP,
+                                error));
+  return EO_OK;
+}
 
 static enum eo_code make_workspaces(struct eo_evaluator *evaluator, int half, int teeth, struct eo_error *error)
 {
   const struct eo_pair *pair = eo_pair_half(evaluator->pair, half);
-  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
   int ends = 2 * evaluator->most_cases < EO_ROOT_BATCH ? 2 * evaluator->most_cases : EO_ROOT_BATCH;
   for (int thread = 0; thread < evaluator->threads; thread++)
     if (!evaluator->root[thread][half])
-      EO_TRY(eo_root_workspace_new(&evaluator->root[thread][half], pair->grid, modes, ROOT_STEP, ends, error));
+      EO_TRY(eo_root_workspace_new(&evaluator->root[thread][half], pair->root, ends, error));
   if (!evaluator->peaks[half])
     evaluator->peaks[half] = malloc(sizeof **evaluator->peaks * (size_t)teeth * 4 * (size_t)evaluator->most_cases);
   return evaluator->peaks[half] ? EO_OK : eo_error_memory(error);
@@ -39,16 +53,16 @@ static void find_tooth(void *context, int thread, int piece)
   EO_TIMED(roots->milliseconds[thread]);
   const struct eo_root_half *half = &roots->half[group->half];
   int tooth = piece % half->teeth, member = piece / half->teeth;
-  const struct eo_loaded_end *loaded[EO_ROOT_BATCH];
+  const struct eo_root_loads *loads[EO_ROOT_BATCH];
   struct eo_root_history *history[EO_ROOT_BATCH];
   struct eo_root_peak found[EO_ROOT_BATCH],
       *peak = roots->evaluator->peaks[group->half] + (member * half->teeth + tooth) * half->ends;
   for (int i = 0; i < group->ends; i++) {
-    loaded[i] = &group->end[i]->loaded;
+    loads[i] = &roots->evaluator->root_loads[group->half][group->place[i]];
     history[i] = &group->end[i]->root[member];
   }
   eo_root_tooth_compute(roots->evaluator->root[thread][group->half], member, half->first_tooth + tooth, group->ends,
-                        loaded, history, found);
+                        loads, history, found);
   for (int i = 0; i < group->ends; i++)
     peak[group->place[i]] = found[i];
 }
@@ -63,6 +77,7 @@ static int place_of(const struct eo_root_half *half, const struct eo_end_result 
 
 static void offer_group(struct eo_roots *roots, int number, int ends, const int *place)
 {
+  struct eo_evaluator *evaluator = roots->evaluator;
   struct eo_root_half *half = &roots->half[number];
   struct eo_root_group *group = &roots->group[atomic_fetch_add(&roots->groups, 1)];
   *group = (struct eo_root_group){.roots = roots, .half = number, .ends = ends};
@@ -71,6 +86,8 @@ static void offer_group(struct eo_roots *roots, int number, int ends, const int 
     half->offered[place[i]] = true;
     group->place[i] = place[i];
     group->end[i] = half->end[place[i]];
+    eo_root_loads_find(&evaluator->root_loads[number][place[i]], eo_pair_half(evaluator->pair, number)->root,
+                       &group->end[i]->loaded);
   }
   eo_team_offer(roots->team, &group->list);
 }
@@ -123,6 +140,8 @@ enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluat
     EO_TRY(make_workspaces(evaluator, half, roots->half[half].teeth, error));
   }
   list_ends(roots);
+  for (int half = 0; half < eo_pair_halves(evaluator->pair); half++)
+    EO_TRY(make_loads(evaluator, half, roots->half[half].ends, error));
   return EO_OK;
 }
 

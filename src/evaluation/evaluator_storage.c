@@ -152,8 +152,12 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
     eo_loaded_workspace_free(evaluator->loaded[i / 2][i % 2]);
     eo_root_workspace_free(evaluator->root[i / 2][i % 2]);
   }
-  for (int half = 0; half < 2; half++)
+  for (int half = 0; half < 2; half++) {
+    for (int i = 0; evaluator->root_loads[half] && i < 2 * evaluator->most_cases; i++)
+      eo_root_loads_done(&evaluator->root_loads[half][i]);
+    free(evaluator->root_loads[half]);
     free(evaluator->peaks[half]);
+  }
   free(evaluator->made);
   eo_meetings_done(evaluator);
   eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);

@@ -81,7 +81,7 @@ static void summarise(const struct eo_evaluator *evaluator, struct eo_case_resul
 void eo_end_summarise(struct eo_evaluator *evaluator, const struct eo_run *run, int end)
 {
   (void)run;
-  for (int k = 0; k < evaluator->result.cases; k++)
+  for (int k = 0; k < evaluator->result.cases && !evaluator->kept[end]; k++)
     summarise(evaluator, &evaluator->result.load_case[k], end);
 }
 
@@ -117,18 +117,24 @@ void eo_evaluator_summarise_pairs(struct eo_evaluator *evaluator, const struct e
     summarise_pair(evaluator, run, &evaluator->result.load_case[k]);
 }
 
+/* Of an end that is kept, the touch is where it was; the speed may be another. */
 static void find_impact(const struct eo_evaluator *evaluator, const struct eo_run *run,
                         struct eo_case_result *load_case, int end)
 {
+  struct eo_impact *impact = &load_case->end[end].impact;
+  double speed = load_case->load_case.speed * run->scenario.speed;
   const struct eo_pair *pair = eo_pair_half(evaluator->pair, end);
   struct eo_impact_settings settings = pair->impact;
   struct eo_gap_field bent;
   settings.backwards = load_case->running.backwards;
+  if (evaluator->kept[end]) {
+    eo_impact_strike(impact, pair->grid, &settings, speed, run->scenario.compliance);
+    return;
+  }
   if (!evaluator->bodies_are_elastic)
     settings.incoming = &eo_meeting_of(evaluator, load_case)->incoming[eo_reuse_stored_at(evaluator, end)];
-  eo_impact_find(&load_case->end[end].impact, pair->grid, loaded_field(evaluator, load_case, end, &bent), pair->kernel,
-                 &settings, load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
-                 run->scenario.compliance);
+  eo_impact_find(impact, pair->grid, loaded_field(evaluator, load_case, end, &bent), pair->kernel, &settings,
+                 load_case->end[end].loaded.approach, speed, run->scenario.compliance);
 }
 
 void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_run *run)

@@ -9,6 +9,20 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* By the trapezoidal rule. */
+static double pitch_deflection(const struct eo_flexibility *flexibility, int member, double width)
+{
+  enum { STRETCHES = 56, POINTS = STRETCHES + 1 };
+  struct eo_flank_point point[POINTS];
+  double compliance[POINTS * POINTS] = {0}, sum = 0;
+  for (int i = 0; i < POINTS; i++)
+    point[i] = (struct eo_flank_point){0, {0, 0}, width * ((double)i / STRETCHES - 0.5)};
+  eo_flexibility_add_compliance(flexibility, member, POINTS, point, compliance);
+  for (int i = 0; i < POINTS; i++)
+    sum += compliance[STRETCHES / 2 * POINTS + i] * width / STRETCHES * (i == 0 || i == STRETCHES ? 0.5 : 1);
+  return sum;
+}
+
 static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options,
                             const struct eo_progress *progress, struct eo_error *error)
 {
@@ -22,14 +36,18 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     if (code)
       return code;
     pair->kernel = eo_flexibility_kernel(pair->flexibility);
+    for (int member = 0; member < 2; member++)
+      pair->pitch_deflection[member] = pitch_deflection(pair->flexibility, member, pair->geometry.face_width);
     for (int member = 0; member < 2 && !code; member++)
-      code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
+      code = eo_root_modes_new(&pair->root_modes[member], pair->flexibility, member, error);
   }
   if (!code)
     code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
                                progress, error);
   for (int side = 0; side < 2 && !code; side++)
     pair->grid->corner[side].rule = options->tilt_rule;
+  if (!code && pair->flexibility)
+    code = eo_root_tables_new(&pair->root, pair->grid, (const struct eo_root_modes *const *)pair->root_modes, error);
   return code;
 }
 
@@ -133,9 +151,10 @@ void eo_pair_free(struct eo_pair *pair)
   if (!pair)
     return;
   eo_pair_free(pair->right);
+  eo_root_tables_free(pair->root);
   eo_contact_grid_free(pair->grid);
   for (int member = 0; member < 2; member++)
-    eo_root_modes_free(pair->root[member]);
+    eo_root_modes_free(pair->root_modes[member]);
   eo_flexibility_free(pair->flexibility);
   free(pair);
 }

@@ -24,7 +24,9 @@ struct eo_pair {
   struct eo_flexibility *flexibility; /* NULL with a foreign kernel */
   struct eo_kernel kernel;
   struct eo_contact_grid *grid;
-  struct eo_root_modes *root[2]; /* [member]; NULL with a foreign kernel */
+  struct eo_root_modes *root_modes[2]; /* [member]; NULL with a foreign kernel, as what follows */
+  struct eo_root_tables *root;         /* of the points of the grid */
+  double pitch_deflection[2];          /* [member]: of mid face at s = 0 under 1 N/m on that row, m */
 
   struct eo_impact_settings impact;
   double pivot[2];       /* [end]: mid face from the pivot of the shaft angle errors, m */

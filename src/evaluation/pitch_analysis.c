@@ -106,8 +106,8 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
       .threads = work->threads};
   for (int i = 0; i < 4; i++)
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
-  for (int i = 0; i < 4 && work->root; i++)
-    input.root[i / 2][i % 2] = eo_pair_half(pair, i / 2)->root[i % 2];
+  for (int end = 0; end < 2 && work->root; end++)
+    input.root[end] = eo_pair_half(pair, end)->root;
   struct share share = {work->progress, (int)(own - work->result->load_case), work->result->cases};
   const struct eo_progress progress = {report_share, &share};
   return eo_hunting_run(&own->hunting, &input, &progress, error);
@@ -355,7 +355,7 @@ enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo
                       .progress = progress,
                       .evaluator = evaluator,
                       .design = design,
-                      .root = root && evaluator->pair->root[0],
+                      .root = root && evaluator->pair->root,
                       .threads = threads};
   *analysis = (struct eo_pitch_analysis){0};
   EO_TIMED(analysis->milliseconds);

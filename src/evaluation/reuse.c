@@ -121,7 +121,8 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
     bool copied = end == EO_RIGHT && evaluator->result.equal_ends;
     struct eo_end_key key = key_of(evaluator, run, end);
     evaluator->needs_solving[end] = !copied && differs_from_solved(&key, &evaluator->solved_for[end]);
-    evaluator->root_valid[end] = evaluator->root_valid[end] && alone && !copied && !evaluator->needs_solving[end];
+    evaluator->kept[end] = alone && !copied && !evaluator->needs_solving[end];
+    evaluator->root_valid[end] = evaluator->root_valid[end] && evaluator->kept[end];
     if (!alone || copied || evaluator->needs_solving[end])
       eo_reuse_forget_laws(evaluator, end);
     key.around = key.around || (!evaluator->needs_solving[end] && evaluator->solved_for[end].around);

@@ -6,6 +6,7 @@
 #include "numerics/lowrank.h"
 
 #include <cblas.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,39 +14,54 @@ struct eo_root_modes {
   const struct eo_flank_table *table;
   int reach; /* loads on pairs k - reach .. k + reach count */
   const struct eo_gram *gram;
-  int member, rank, length;                      /* length = nodes x EO_STRESSES */
-  int rank_stride, shape_stride;                 /* rank and length, padded with zeros as the kernel wants them */
-  int slots, slot[2 * EO_FLEXIBILITY_REACH + 2]; /* grid points of loads on pair k - reach .. k + reach, and where each
-                                                    begins; at last their end */
-  float *coefficient;                            /* [slots][rank_stride] */
-  float *shape;                                  /* [rank][shape_stride]: [EO_STRESSES][nodes] */
+  int member, rank, length;       /* length = nodes x EO_STRESSES */
+  int rank_stride, shape_stride;  /* rank and length, padded with zeros as the kernel wants them */
+  int remote_rank, remote_stride; /* of the loads on other teeth; 0: they do not count */
+  float *own;                     /* [flank.points][rank_stride]: coefficients of the shapes */
+  float *remote;                  /* [next.points][remote_stride] */
+  float *passed;                  /* [2 reach + 1][remote_rank][rank_stride]: those that `remote` makes, by distance */
+  float *shape;                   /* [rank][shape_stride]: [EO_STRESSES][nodes] */
 };
 
-static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
+/* Influence rows below each other, Pa/N, from the root's first point on: those of the tooth itself, then those of the
+   others from the pair furthest behind to the one furthest ahead. */
+struct influence {
+  int own, remote, others; /* rows: of the tooth itself, of one other tooth; how many others there are */
+  int rows, length;
+  double *row;  /* [rows][length] */
+  double *gram; /* [rows][rows]: their products */
+};
+
+static int behind_or_ahead(const struct eo_root_modes *modes, int other)
 {
-  return ahead_by == 0 ? &modes->table->flank : &modes->table->next;
+  return other < modes->reach ? other - modes->reach : other - modes->reach + 1;
 }
 
-static void count_slots(struct eo_root_modes *modes)
+static void copy_rows(const struct eo_root_modes *modes, int ahead_by, size_t skip, double *to)
 {
-  for (int part = 0; part <= 2 * modes->reach; part++) {
-    modes->slot[part] = modes->slots;
-    modes->slots += grid_of(modes, part - modes->reach)->points;
-  }
-  modes->slot[2 * modes->reach + 1] = modes->slots;
+  const struct eo_grid *grid;
+  const double *row = eo_flank_table_stress(modes->table, ahead_by, &grid) + skip;
+  for (int i = 0; i < grid->points; i++, to += modes->length, row += modes->table->stresses)
+    memcpy(to, row, sizeof *to * (size_t)modes->length);
 }
 
-/* All influence rows below each other: [slots][length], Pa/N, from the root's first point on. */
-static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
+static enum eo_code stack_rows(struct influence *influence, const struct eo_root_modes *modes, size_t skip,
+                               struct eo_error *error)
 {
-  double *stack = malloc(sizeof *stack * (size_t)modes->slots * (size_t)modes->length), *to = stack;
-  for (int ahead = -modes->reach; stack && ahead <= modes->reach; ahead++) {
-    const struct eo_grid *grid;
-    const double *row = eo_flank_table_stress(modes->table, ahead, &grid) + skip;
-    for (int i = 0; i < grid->points; i++, to += modes->length, row += modes->table->stresses)
-      memcpy(to, row, sizeof *to * (size_t)modes->length);
-  }
-  return stack;
+  int others = 2 * modes->reach, own = modes->table->flank.points, remote = modes->table->next.points;
+  size_t rows = (size_t)own + (size_t)others * (size_t)remote, length = (size_t)modes->length;
+  *influence = (struct influence){own, remote, others, (int)rows, modes->length, NULL, NULL};
+  influence->row = malloc(sizeof(double) * rows * length);
+  influence->gram = malloc(sizeof(double) * rows * rows);
+  if (!influence->row || !influence->gram)
+    return eo_error_memory(error);
+  copy_rows(modes, 0, skip, influence->row);
+  for (int i = 0; i < others; i++)
+    copy_rows(modes, behind_or_ahead(modes, i), skip, influence->row + (size_t)(own + i * remote) * length);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, influence->rows, influence->rows, influence->length, 1,
+              influence->row, influence->length, influence->row, influence->length, 0, influence->gram,
+              influence->rows);
+  return EO_OK;
 }
 
 static int padded(int count)
@@ -59,49 +75,141 @@ static float *make_floats(int rows, int stride)
   return eo_gram_allocate(((long)rows * stride + 1) / 2);
 }
 
-/* stack = factor x shape in the least-squares sense: (factor' factor) shape = factor' stack. */
-static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor,
-                               const double *stack, struct eo_error *error)
+static enum eo_code keep_rows(float **kept, int rows, int columns, int from_stride, const double *from, int stride,
+                              struct eo_error *error)
+{
+  *kept = make_floats(rows, stride);
+  for (int i = 0; *kept && i < rows; i++)
+    for (int r = 0; r < columns; r++)
+      (*kept)[i * stride + r] = (float)from[i * from_stride + r];
+  return *kept ? EO_OK : eo_error_memory(error);
+}
+
+/* x[rank][columns] with factor[rows][stride] x = rhs[rows][rhs_stride] in the least-squares sense: (factor' factor) x =
+   factor' rhs. */
+static enum eo_code fit(int rows, int rank, int stride, const double *factor, int columns, int rhs_stride,
+                        const double *rhs, double *x, struct eo_error *error)
+{
+  double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank);
+  if (!normal)
+    return eo_error_memory(error);
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, columns, rows, 1, factor, stride, rhs, rhs_stride, 0, x,
+              columns);
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal,
+              rank);
+  enum eo_code code = eo_lowrank_solve(rank, normal, columns, x, error);
+  free(normal);
+  return code;
+}
+
+static enum eo_code fit_shapes(struct eo_root_modes *modes, const struct influence *influence, int stride,
+                               const double *factor, struct eo_error *error)
 {
   int rank = modes->rank;
   size_t length = (size_t)modes->length, size = (size_t)rank * length;
-  double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank), *shape = malloc(sizeof *shape * size);
+  double *shape = malloc(sizeof *shape * size);
   modes->shape_stride = padded(modes->length);
   modes->shape = make_floats(rank, modes->shape_stride);
-  enum eo_code code = normal && shape && modes->shape ? EO_OK : eo_error_memory(error);
-  if (!code) {
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack,
-                modes->length, 0, shape, modes->length);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal,
-                rank);
-    code = eo_lowrank_solve(rank, normal, modes->length, shape, error);
-  }
+  enum eo_code code = shape && modes->shape ? EO_OK : eo_error_memory(error);
+  if (!code)
+    code = fit(influence->rows, rank, stride, factor, modes->length, modes->length, influence->row, shape, error);
   for (size_t i = 0; !code && i < size; i++) {
     size_t row = i / length, node = i % length / EO_STRESSES, part = i % EO_STRESSES;
     modes->shape[row * (size_t)modes->shape_stride + part * (length / EO_STRESSES) + node] = (float)shape[i];
   }
-  free(normal);
   free(shape);
   return code;
 }
 
-static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, const double *factor,
-                                      struct eo_error *error)
+/* Of squares, of the largest influence there is. */
+static const double TOLERANCE = 3e-6;
+
+static double largest_diagonal(const struct influence *influence)
 {
+  double largest = 0;
+  for (size_t i = 0, n = (size_t)influence->rows; i < n; i++)
+    largest = fmax(largest, influence->gram[i * n + i]);
+  return largest;
+}
+
+/* gram[remote][remote]: products of the influences that a point of another tooth has, over all distances. */
+static void add_remote_products(const struct influence *influence, double *gram)
+{
+  size_t n = (size_t)influence->remote, rows = (size_t)influence->rows;
+  memset(gram, 0, sizeof *gram * n * n);
+  for (int other = 0; other < influence->others; other++) {
+    size_t first = (size_t)influence->own + (size_t)other * n;
+    for (size_t i = 0; i < n * n; i++)
+      gram[i] += influence->gram[(first + i / n) * rows + first + i % n];
+  }
+}
+
+/* What each distance makes of the remote numbers, in coefficients of the shapes: factor[rows][stride]. */
+static enum eo_code fit_distances(struct eo_root_modes *modes, const struct influence *influence, int remote_stride,
+                                  const double *remote, int stride, const double *factor, struct eo_error *error)
+{
+  int rank = modes->remote_rank;
+  double *x = malloc(sizeof *x * (size_t)rank * (size_t)modes->rank);
+  modes->passed = make_floats((2 * modes->reach + 1) * rank, modes->rank_stride);
+  enum eo_code code = x && modes->passed ? EO_OK : eo_error_memory(error);
+  for (int other = 0; other < influence->others && !code; other++) {
+    const double *of_other = factor + (size_t)(influence->own + other * influence->remote) * (size_t)stride;
+    int distance = behind_or_ahead(modes, other) + modes->reach;
+    code = fit(influence->remote, rank, remote_stride, remote, modes->rank, stride, of_other, x, error);
+    for (int i = 0; i < rank * modes->rank && !code; i++)
+      modes->passed[(size_t)(distance * rank + i / modes->rank) * (size_t)modes->rank_stride + i % modes->rank] =
+          (float)x[i];
+  }
+  free(x);
+  return code;
+}
+
+/* Numbers that tell the loads on other teeth apart as far as the shapes do: left out is as little. largest: of the
+   products of all influences. */
+static enum eo_code find_remote(struct eo_root_modes *modes, const struct influence *influence, double largest,
+                                int stride, const double *factor, struct eo_error *error)
+{
+  size_t n = (size_t)influence->remote;
+  double *gram = malloc(sizeof *gram * n * n), *remote = NULL, most = 0;
+  int remote_stride = 0;
+  if (!gram)
+    return eo_error_memory(error);
+  add_remote_products(influence, gram);
+  for (size_t i = 0; i < n; i++)
+    most = fmax(most, gram[i * n + i]);
+  enum eo_code code = eo_lowrank_factor((int)n, gram, fmin(1e-8 * largest / most, 0.5), &modes->remote_rank,
+                                        &remote_stride, &remote, error);
+  modes->remote_stride = padded(modes->remote_rank);
+  if (!code)
+    code = keep_rows(&modes->remote, (int)n, modes->remote_rank, remote_stride, remote, modes->remote_stride, error);
+  if (!code)
+    code = fit_distances(modes, influence, remote_stride, remote, stride, factor, error);
+  free(gram);
+  free(remote);
+  return code;
+}
+
+/* skip: stresses before the root's first point. */
+static enum eo_code find_modes(struct eo_root_modes *modes, size_t skip, struct influence *influence, double **factor,
+                               struct eo_error *error)
+{
+  int stride = 0;
+  EO_TRY(stack_rows(influence, modes, skip, error));
+  double largest = largest_diagonal(influence);
+  EO_TRY(eo_lowrank_factor(influence->rows, influence->gram, TOLERANCE, &modes->rank, &stride, factor, error));
   modes->rank_stride = padded(modes->rank);
-  modes->coefficient = make_floats(modes->slots, modes->rank_stride);
-  for (int i = 0; modes->coefficient && i < modes->slots; i++)
-    for (int r = 0; r < modes->rank; r++)
-      modes->coefficient[i * modes->rank_stride + r] = (float)factor[i * stride + r];
-  return modes->coefficient ? EO_OK : eo_error_memory(error);
+  EO_TRY(fit_shapes(modes, influence, stride, *factor, error));
+  EO_TRY(keep_rows(&modes->own, influence->own, modes->rank, stride, *factor, modes->rank_stride, error));
+  return modes->reach ? find_remote(modes, influence, largest, stride, *factor, error) : EO_OK;
 }
 
 enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_flexibility *flexibility, int member,
                                struct eo_error *error)
 {
-  static const double TOLERANCE = 3e-6; /* of squares */
   struct eo_root root = eo_flexibility_root(flexibility, member);
   struct eo_root_modes *modes = calloc(1, sizeof *modes);
+  struct influence influence = {0};
+  double *factor = NULL;
   if (!modes)
     return eo_error_memory(error);
   modes->table = &flexibility->table[member];
@@ -109,22 +217,10 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   modes->gram = eo_gram_select();
   modes->member = member;
   modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
-  count_slots(modes);
-  int rows = modes->slots, stride = 0;
-  double *stack = stack_rows(modes, (size_t)root.first * (root.layers + 1) * EO_STRESSES), *factor = NULL;
-  double *gram = malloc(sizeof *gram * (size_t)rows * (size_t)rows);
-  enum eo_code code = stack && gram ? EO_OK : eo_error_memory(error);
-  if (!code) {
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, rows, modes->length, 1, stack, modes->length, stack,
-                modes->length, 0, gram, rows);
-    code = eo_lowrank_factor(rows, gram, TOLERANCE, &modes->rank, &stride, &factor, error);
-  }
-  if (!code)
-    code = fit_shapes(modes, rows, stride, factor, stack, error);
-  if (!code)
-    code = keep_coefficients(modes, stride, factor, error);
-  free(stack);
-  free(gram);
+  enum eo_code code = find_modes(modes, (size_t)root.first * (root.layers + 1) * EO_STRESSES, &influence, &factor,
+                                 error);
+  free(influence.row);
+  free(influence.gram);
   free(factor);
   if (code)
     eo_root_modes_free(modes);
@@ -137,14 +233,26 @@ void eo_root_modes_free(struct eo_root_modes *modes)
 {
   if (!modes)
     return;
-  free(modes->coefficient);
+  free(modes->own);
+  free(modes->remote);
+  free(modes->passed);
   free(modes->shape);
   free(modes);
 }
 
-int eo_root_modes_rank_stride(const struct eo_root_modes *modes)
+int eo_root_modes_reach(const struct eo_root_modes *modes)
+{
+  return modes->reach;
+}
+
+int eo_root_modes_stride(const struct eo_root_modes *modes)
 {
   return modes->rank_stride;
+}
+
+int eo_root_modes_remote_stride(const struct eo_root_modes *modes)
+{
+  return modes->remote_stride;
 }
 
 int eo_root_modes_stress_stride(const struct eo_root_modes *modes)
@@ -157,94 +265,46 @@ int eo_root_modes_nodes(const struct eo_root_modes *modes)
   return modes->length / EO_STRESSES;
 }
 
-int eo_root_modes_slots(const struct eo_root_modes *modes)
+/* row[stride]: the sixteen rows of from[][stride] that count at a point, by their weights. */
+static void weigh(const struct eo_grid *grid, double s, double eta, int stride, const float *from, float *row)
 {
-  return modes->slots;
-}
-
-static bool is_loaded(int n, int sets, const double *force)
-{
-  for (int set = 0; set < sets; set++)
-    if (force[set * n] != 0)
-      return true;
-  return false;
-}
-
-void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point,
-                         struct eo_root_weights *weights)
-{
-  for (int ahead = 0; ahead <= (modes->reach ? 1 : 0); ahead++) {
-    const struct eo_grid *grid = grid_of(modes, ahead);
-    int row, layer;
-    eo_spline_weights(&grid->s, point->s[modes->member], &row, weights->across[ahead]);
-    eo_spline_weights(&grid->eta, point->eta, &layer, weights->along[ahead]);
-    weights->first[ahead] = row * grid->eta.count + layer;
+  struct eo_grid_weights at;
+  eo_grid_weights(grid, s, eta, &at);
+  for (int i = 0; i < stride; i++) {
+    double sum = 0;
+    for (int r = 0; r < EO_SPLINE_WIDTH; r++)
+      for (int l = 0; l < EO_SPLINE_WIDTH; l++)
+        sum += at.weight[EO_SPLINE_WIDTH * r + l] * (double)from[(at.first + r * grid->eta.count + l) * stride + i];
+    row[i] = (float)sum;
   }
 }
 
-uint64_t eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
-                           const struct eo_root_weights *weights, int sets, const double *force, float *load)
+void eo_root_modes_own(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *own)
 {
-  uint64_t touched = 0;
-  for (int j = 0; j < n; j++) {
-    int ahead = point[j].pair - pair;
-    if (abs(ahead) > modes->reach || !is_loaded(n, sets, force + j))
-      continue;
-    int columns = grid_of(modes, ahead)->eta.count;
-    const double *across = weights[j].across[ahead != 0], *along = weights[j].along[ahead != 0];
-    touched |= (uint64_t)1 << (ahead + modes->reach);
-    for (int set = 0; set < sets; set++) {
-      double f = force[set * n + j];
-      float *to = load + set * modes->slots + modes->slot[ahead + modes->reach] + weights[j].first[ahead != 0];
-      for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
-        for (int l = 0; l < EO_SPLINE_WIDTH; l++)
-          to[r * columns + l] += (float)(f * (across[r] * along[l]));
-    }
-  }
-  return touched;
+  weigh(&modes->table->flank, point->s[modes->member], point->eta, modes->rank_stride, modes->own, own);
 }
 
-/* Adds what one part of the loads gives at positions first .. last - 1. */
-static void add_part(const struct eo_root_modes *modes, int part, int first, int last, int sets, const float *load,
-                     float *scratch)
+void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *remote)
 {
-  int slots = modes->slot[part + 1] - modes->slot[part], row = first * sets;
-  modes->gram->multiply((last - first) * sets, slots, modes->rank_stride,
-                        load + (size_t)row * (size_t)modes->slots + modes->slot[part], modes->slots,
-                        modes->coefficient + (size_t)modes->slot[part] * (size_t)modes->rank_stride, modes->rank_stride,
-                        true, scratch + (size_t)row * (size_t)modes->rank_stride, modes->rank_stride);
+  weigh(&modes->table->next, point->s[modes->member], point->eta, modes->remote_stride, modes->remote, remote);
 }
 
-/* The end of the run of positions from `first` on that are loaded in one of the parts, or in none of them. */
-static int run_end(int first, int count, const uint64_t *touched, uint64_t parts)
+void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *force, const float *row, int stride,
+                       float *sum)
 {
-  bool loaded = touched[first] & parts;
-  int last = first + 1;
-  while (last < count && !(touched[last] & parts) == !loaded)
-    last++;
-  return last;
+  modes->gram->multiply(1, n, stride, force, n, row, stride, true, sum, stride);
 }
 
-/* Run by run of positions: a tooth is loaded during a part of the cycle, and each part of the loads during less. What
-   is left out is zero, and a row of a product does not depend on the others: so it does not matter which load sets are
-   asked for together. */
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
-                          const uint64_t *touched, float *scratch, float *stress)
+void eo_root_modes_pass(const struct eo_root_modes *modes, int ahead_by, int count, const float *remote,
+                        float *coefficient)
 {
-  size_t rank = (size_t)modes->rank_stride, stride = (size_t)modes->shape_stride;
-  memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * rank);
-  for (int part = 0; part <= 2 * modes->reach; part++)
-    for (int first = 0, last; first < count; first = last) {
-      last = run_end(first, count, touched, (uint64_t)1 << part);
-      if (touched[first] & (uint64_t)1 << part)
-        add_part(modes, part, first, last, sets, load, scratch);
-    }
-  for (int first = 0, last; first < count; first = last) {
-    size_t row = (size_t)first * sets;
-    last = run_end(first, count, touched, ~(uint64_t)0);
-    if (touched[first])
-      modes->gram->multiply((last - first) * sets, modes->rank, modes->shape_stride, scratch + row * rank,
-                            modes->rank_stride, modes->shape, modes->shape_stride, false, stress + row * stride,
-                            modes->shape_stride);
-  }
+  size_t distance = (size_t)(ahead_by + modes->reach), size = (size_t)modes->remote_rank * (size_t)modes->rank_stride;
+  modes->gram->multiply(count, modes->remote_rank, modes->rank_stride, remote, modes->remote_stride,
+                        modes->passed + distance * size, modes->rank_stride, true, coefficient, modes->rank_stride);
+}
+
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const float *coefficient, float *stress)
+{
+  modes->gram->multiply(count, modes->rank, modes->shape_stride, coefficient, modes->rank_stride, modes->shape,
+                        modes->shape_stride, false, stress, modes->shape_stride);
 }

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Root stress of many load distributions at once: the stress influence of flank loads in the form coefficient x shape
    with a few dozen shapes, so that a history over the mesh cycle costs a small matrix product. The shapes are the
-   stresses of some flank points, picked by pivoted Cholesky, and every other point is a combination of them. In single
-   precision: its 1e-7 are far below the 1e-3 of the shapes, and it takes half the time. */
+   stresses of some flank points, picked by pivoted Cholesky, and every other point is a combination of them. Loads on
+   other teeth reach the root far and smoothly: they are told by fewer numbers still, which each distance turns into
+   coefficients. In single precision: its 1e-7 are far below the 1e-3 of the shapes, and it takes half the time. */
 #ifndef EASEOFF_FLEXIBILITY_ROOT_MODES_H
 #define EASEOFF_FLEXIBILITY_ROOT_MODES_H
 
 #include "flexibility/flexibility.h"
-#include "flexibility/spline.h"
-
-#include <stdint.h>
 
 struct eo_root_modes; /* constant once made; borrows the flexibility */
 
@@ -19,30 +17,32 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **modes, const struct eo_fle
                                struct eo_error *error);
 void eo_root_modes_free(struct eo_root_modes *modes);
 
-int eo_root_modes_rank_stride(const struct eo_root_modes *modes);   /* floats between two rows of the scratch */
+int eo_root_modes_reach(const struct eo_root_modes *modes);  /* teeth on either side whose loads count */
+int eo_root_modes_stride(const struct eo_root_modes *modes); /* floats of the coefficients of a distribution */
+int eo_root_modes_remote_stride(
+    const struct eo_root_modes *modes); /* floats of what other teeth carry; 0: none counts */
 int eo_root_modes_stress_stride(const struct eo_root_modes *modes); /* floats between the stresses of two loads */
-int eo_root_modes_slots(const struct eo_root_modes *modes);         /* numbers that describe a load distribution */
 int eo_root_modes_nodes(const struct eo_root_modes *modes);         /* of the root: [point][layer] from root.first on */
 
-/* How a load at a flank point is told to the splines of its own tooth [0] and of any other [1]. The same for every
-   tooth, load and time. */
-struct eo_root_weights {
-  int first[2];
-  double across[2][EO_SPLINE_WIDTH], along[2][EO_SPLINE_WIDTH];
-};
-void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point,
-                         struct eo_root_weights *weights);
+/* What 1 N at a flank point is to the root of its own tooth, own[stride], and to those of others, remote[remote
+   stride]. The same for every tooth, load and time. */
+void eo_root_modes_own(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *own);
+void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *remote);
 
-/* Adds the loads force[sets][n], N, at the points, weights[n] of them, to load[sets][slots] of the root of tooth pair
-   `pair`. Returns which parts of load they touch. */
-uint64_t eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
-                           const struct eo_root_weights *weights, int sets, const double *force, float *load);
+/* All arrays of the following are aligned to EO_GRAM_ALIGN but for the forces, and a row of a result comes from its own
+   rows alone, to the last bit, whatever else is asked for. */
 
-/* stress[count][sets][stress stride], Pa: [EO_STRESSES][nodes] and zeros, under load[count][sets][slots], of which
-   touched[count] says which parts are not zero (see above); where none is, nothing is written. scratch:
-   [count][sets][rank stride]; both aligned to EO_GRAM_ALIGN. The stresses under one load are the same to the last bit
-   whatever else is asked for. */
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
-                          const uint64_t *touched, float *scratch, float *stress);
+/* sum[stride] += what the forces force[n], N, at points are whose own (or remote) rows follow each other in
+   row[n][stride]. stride: that of own or of remote rows. */
+void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *force, const float *row, int stride,
+                       float *sum);
+
+/* coefficient[count][stride] += that of remote[count][remote stride], the loads of the tooth `ahead_by` pairs ahead,
+   not 0, within reach. */
+void eo_root_modes_pass(const struct eo_root_modes *modes, int ahead_by, int count, const float *remote,
+                        float *coefficient);
+
+/* stress[count][stress stride], Pa: [EO_STRESSES][nodes] and zeros, of coefficient[count][stride]. */
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const float *coefficient, float *stress);
 
 #endif

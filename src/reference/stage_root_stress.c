@@ -184,19 +184,23 @@ static enum eo_code read_history(struct member_output *out, const struct eo_stag
                                  struct eo_error *error)
 {
   const struct eo_pair *pair = mesh->pair;
-  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
   struct eo_root root = eo_flexibility_root(pair->flexibility, member);
   struct eo_root_workspace *workspace = NULL;
+  struct eo_root_loads loads = {0};
   struct eo_root_history history = {0};
-  enum eo_code code = eo_root_workspace_new(&workspace, pair->grid, modes, 1, 1, error);
+  enum eo_code code = eo_root_workspace_new(&workspace, pair->root, 1, error);
+  if (!code)
+    code = eo_root_loads_init(&loads, pair->root, 1, error);
   if (!code)
     code = eo_root_history_init(&history, pair->grid, error);
-  if (code) {
-    eo_root_workspace_free(workspace);
-    return code;
+  if (!code) {
+    eo_root_loads_find(&loads, pair->root, &mesh->end[end]);
+    eo_root_history_compute(&history, workspace, &root, member, &loads);
   }
-  eo_root_history_compute(&history, workspace, &root, member, &mesh->end[end]);
+  eo_root_loads_done(&loads);
   eo_root_workspace_free(workspace);
+  if (code)
+    return code;
   out->maximum = history.maximum;
   out->arc = history.arc;
   out->eta = history.eta;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios,
    laws, bands, threads. */
+#include "design/design_grids.h"
 #include "document/design_document.h"
 #include "document/examples.h"
-#include "evaluation/objective_anatomy.h"
 #include "evaluation/evaluator.h"
+#include "evaluation/objective_anatomy.h"
 #include "support/tap.h"
 
 #include <pthread.h>
@@ -460,6 +461,90 @@ static NOT_INLINE void test_root_stress(void)
   ok(run(&design, NULL, 0)->objective[1].root_stress > 0, "or constrained");
 }
 
+/* Of a tooth under the loads of a mesh position: from the finite elements' own influence, without modes. */
+static double exact_stress(const struct eo_pair *of, int member, int tooth, const struct eo_contact_position *position,
+                           const double *line_load)
+{
+  struct eo_root root = eo_flexibility_root(of->flexibility, member);
+  struct eo_root_place place;
+  double *force = malloc(sizeof *force * (size_t)position->points),
+         *stress = malloc(sizeof *stress * (size_t)(root.points * (root.layers + 1) * EO_STRESSES));
+  for (int i = 0; i < position->points; i++)
+    force[i] = line_load[position->first + i] * position->length[i];
+  eo_root_find_largest(of->flexibility, member, tooth, position->points, position->point, force, stress, &place);
+  free(force);
+  free(stress);
+  return place.stress;
+}
+
+/* The largest at any position, and the largest difference of the history there. */
+static double compare_roots(const struct eo_pair *of, const struct eo_end_result *end, int member, double *difference)
+{
+  const struct eo_contact_grid *grid = of->grid;
+  double largest = 0;
+  int range[2];
+  eo_contact_grid_pairs(grid, range);
+  *difference = 0;
+  for (int tooth = range[0]; tooth <= range[1]; tooth++)
+    for (int j = 0; j < grid->positions; j++) {
+      double exact = exact_stress(of, member, tooth, &grid->position[j], end->loaded.line_load),
+             found = end->root[member].stress[(tooth - range[0]) * grid->positions + j];
+      largest = fmax(largest, exact);
+      *difference = fmax(*difference, fabs(found - exact));
+    }
+  return largest;
+}
+
+/* Unmodified teeth of a narrow pair meet with the edge of a tip, some of them at one position only: what is largest
+   there must not be passed over. */
+static NOT_INLINE void test_root_peak(void)
+{
+  struct eo_design design = design_of("narrow");
+  struct eo_evaluator *shared = evaluator;
+  struct eo_pair *narrow = make_pair(&design);
+  design.modification = eo_design_unmodified(&design);
+  evaluator = make_evaluator(narrow);
+  const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
+  for (int member = 0; member < 2; member++) {
+    const struct eo_end_result *end = &r->load_case[0].end[EO_LEFT];
+    double difference, largest = compare_roots(narrow, end, member, &difference);
+    ok(fabs(end->root[member].maximum / largest - 1) < 1e-3 && difference < 2e-3 * largest,
+       "%s: the largest root stress of any position, %.3f MPa, is found: %.3f; histories within %.1e of it",
+       member ? "gear" : "pinion", 1e-6 * largest, 1e-6 * end->root[member].maximum, difference / largest);
+  }
+  eo_evaluator_free(evaluator);
+  eo_pair_free(narrow);
+  evaluator = shared;
+}
+
+static bool same_end(const struct eo_end_result *a, const struct eo_end_result *b)
+{
+  return memcmp(&a->impact, &b->impact, sizeof a->impact) == 0 && a->max_pressure == b->max_pressure &&
+         a->max_line_load == b->max_line_load && a->edge_share == b->edge_share && a->datum == b->datum &&
+         memcmp(a->stiffness, b->stiffness, sizeof *a->stiffness * POSITIONS) == 0 &&
+         a->face.face_factor == b->face.face_factor;
+}
+
+/* An end that did not change keeps what follows from its loads, and strikes at the speed that is asked for. */
+static NOT_INLINE void test_kept_end(void)
+{
+  struct eo_evaluator *shared = evaluator, *fresh;
+  struct eo_design design = design_of("paper-case-b");
+  run(&design, NULL, 0);
+  design.load_case[0].speed *= 1.5;
+  design.modification.flank[EO_PINION][EO_LEFT].tip_relief += 1e-6;
+  const struct eo_evaluation *kept = run(&design, NULL, 0), *made;
+  evaluator = fresh = make_evaluator(pair);
+  made = run(&design, NULL, 0);
+  evaluator = shared;
+  bool same = true;
+  for (int k = 0; k < kept->cases; k++)
+    for (int end = 0; end < 2; end++)
+      same = same && same_end(&kept->load_case[k].end[end], &made->load_case[k].end[end]);
+  ok(same, "an end that is kept shows what a new evaluation does, at another speed too");
+  eo_evaluator_free(fresh);
+}
+
 /* Loads that shafts or a held pinion move from what is stored take the root stress with them. */
 static NOT_INLINE void test_root_stress_moves(void)
 {
@@ -664,6 +749,8 @@ int main(void)
   test_band();
   test_curves();
   test_root_stress();
+  test_root_peak();
+  test_kept_end();
   test_root_stress_moves();
   test_axial();
   test_held_share();
