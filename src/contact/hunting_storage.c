@@ -4,8 +4,8 @@
 
 #include <stdlib.h>
 
-/* Of a cycle, at which root stress is read: twice as many change its maximum by 0.2 %, and it takes more time than the
-   contact. */
+/* Of a cycle, at which root stress is read: four times as many change its maximum by 0.2 % (the pairs of teeth differ,
+   so that what one of them does between two positions another does at one), and take as much time as the contact. */
 enum { ROOT_POSITIONS = 16 };
 
 static struct eo_hunting_place *make_places(int count, bool *complete)
