@@ -57,6 +57,15 @@ static int save_text(struct eo_text *text, const char *path)
   return status;
 }
 
+static void tell(const struct eo_export *format, const struct eo_text *file)
+{
+  struct eo_text notes = {0};
+  eo_exports_tell(format, file, &notes);
+  for (const char *line = notes.data; line && *line; line = strchr(line, '\n') + 1)
+    fprintf(stderr, "easeoff: %.*s\n", (int)strcspn(line, "\n"), line);
+  eo_text_done(&notes);
+}
+
 static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
                 const int grid[2], bool inches, const char *path)
 {
@@ -66,6 +75,7 @@ static int save(const struct eo_export *format, const struct eo_design *design, 
     return eo_app_fail(NULL, &error);
   if (inches)
     eo_inch_table(&text);
+  tell(format, &text);
   return save_text(&text, path);
 }
 

@@ -132,6 +132,17 @@ const struct eo_export *eo_exports_find(const char *name)
   return eo_export_find(name);
 }
 
+void eo_exports_tell(const struct eo_export *format, const struct eo_text *file, struct eo_text *notes)
+{
+  const char *end;
+  if (strcmp(format->type, "model/step") != 0 || file->failed)
+    return;
+  for (const char *at = strstr(file->data, "/* "); at && (end = strstr(at, " */")); at = strstr(end, "/* ")) {
+    eo_text_add_bytes(notes, at + 3, (size_t)(end - at - 3));
+    eo_text_add(notes, "\n");
+  }
+}
+
 enum eo_code eo_exports_write_many(const struct eo_export *format, const json_t *const *documents, int count,
                                    struct eo_text *text, struct eo_error *error)
 {

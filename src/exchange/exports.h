@@ -11,6 +11,10 @@
 const struct eo_export *eo_exports_at(int index);
 const struct eo_export *eo_exports_find(const char *name);
 
+/* What a reader of the file has to know and would find in its comments alone, a line each: where a face is further off
+   than the format promises. Nothing where there is nothing to say. */
+void eo_exports_tell(const struct eo_export *format, const struct eo_text *file, struct eo_text *notes);
+
 /* Several designs in one file, of the formats that are tables. documents: [count] of eo_design_encode(). Errors:
    EO_ERROR_INPUT for another format. */
 enum eo_code eo_exports_write_many(const struct eo_export *format, const json_t *const *documents, int count,

@@ -469,15 +469,17 @@ static int write_product(struct writer *writer, const char *name, int *context)
 }
 
 /* What of a part the file cannot promise, as comments. */
-static void tell_errors(const struct part *part, struct eo_text *text)
+static void tell_errors(const struct part *part, const struct eo_tooth *tooth, struct eo_text *text)
 {
-  const char *name = eo_tooth_part_names[part->part];
+  const char *name = eo_tooth_part_names[part->part], *end = !tooth->two_ends         ? ""
+                                                             : tooth->end == EO_RIGHT ? " of the right end"
+                                                                                      : " of the left end";
   double folded = part->flank ? eo_flank_rest_error(&part->pieces) : 0;
   if (part->error > tolerance)
-    eo_text_print(text, "/* %s: up to %.3g nm off the exact surface */\n", name, 1e9 * part->error);
+    eo_text_print(text, "/* %s%s: up to %.3g um off the exact surface */\n", name, end, 1e6 * part->error);
   if (folded > tolerance)
-    eo_text_print(text, "/* %s, where reliefs fold it: up to %.3g nm off what the rack leaves */\n", name,
-                  1e9 * folded);
+    eo_text_print(text, "/* %s%s, where reliefs fold it: up to %.3g um off what the rack leaves */\n", name, end,
+                  1e6 * folded);
 }
 
 static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bool whole, int *shell, int *shells)
@@ -487,7 +489,7 @@ static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bo
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
     if (good)
-      tell_errors(&part, writer->text);
+      tell_errors(&part, tooth, writer->text);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(writer, &part, number);
     free(part.face);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files for other programs. */
 #include <stdio.h>
+#include <string.h>
 
 #include "http/answers.h"
 #include "format/object.h"
@@ -8,6 +9,18 @@
 #include "format/inch.h"
 #include "http/route.h"
 #include "http/http_private.h"
+
+/* The notes on a file as one header field. */
+static void tell(const struct eo_export *format, const struct eo_text *file, char *notes, size_t size)
+{
+  struct eo_text lines = {0};
+  size_t length = 0;
+  eo_exports_tell(format, file, &lines);
+  for (const char *line = lines.data; line && *line && length < size; line = strchr(line, '\n') + 1)
+    length += (size_t)snprintf(notes + length, size - length, "%s%.*s", length ? "; " : "", (int)strcspn(line, "\n"),
+                               line);
+  eo_text_done(&lines);
+}
 
 static void export(struct eo_request *request)
 {
@@ -36,6 +49,7 @@ static void export(struct eo_request *request)
     }
     if (request->reply.inches)
       eo_inch_table(&text);
+    tell(format, &text, request->reply.notes, sizeof request->reply.notes);
     eo_reply_text(&request->reply, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
   }
@@ -91,5 +105,6 @@ const struct eo_route eo_routes_export[] = {
      .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 21, NULL, "points of a flank from root to tip"},
                {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"},
                EO_UNITS_QUERY},
-     .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
+     .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design. "
+                "Easeoff-Notes says which face of a STEP file is further off than 5 nm."},
     {0}};

@@ -113,7 +113,7 @@ void eo_reply_problem_with(struct eo_reply *reply, unsigned status, const char *
   if (name && eo_problem_find(name)) /* each has a page */
     snprintf(problem.type, sizeof problem.type, "/problems/%s", name);
   json_t *document = eo_outline_encode(&eo_outline_problem, &problem);
-  *reply->file_name = '\0';
+  *reply->file_name = *reply->notes = '\0';
   if (document)
     reply_document(reply, status, "application/problem+json", document);
   else

@@ -47,8 +47,9 @@ struct eo_reply {
   struct MHD_Response *stream;                    /* in place of the body: owned until it is queued */
   char tag[EO_TAG];                               /* ETag without quotes; "": none */
   char location[240], file_name[80], cookie[320]; /* "": none */
-  int retry_after;                                /* s; 0: none */
-  unsigned allow;                                 /* methods; 0: no Allow */
+  char notes[600];               /* what a reader of the body has to know, "; " between sentences; "": nothing */
+  int retry_after;               /* s; 0: none */
+  unsigned allow;                /* methods; 0: no Allow */
   bool authenticate, revalidate; /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */
   bool close;                    /* the connection ends with this reply */
   bool inches; /* asked for by ?units=inch, of a route that has it: documents and problems are spelt so */

@@ -64,6 +64,8 @@ static void add_headers(struct MHD_Response *response, const struct eo_request *
     snprintf(text, sizeof text, "attachment; filename=\"%s\"", reply->file_name);
     add(response, "Content-Disposition", text);
   }
+  if (*reply->notes)
+    add(response, "Easeoff-Notes", reply->notes);
   if (reply->retry_after) {
     snprintf(text, sizeof text, "%d", reply->retry_after);
     add(response, "Retry-After", text);

@@ -7,6 +7,12 @@
 
 #include <math.h>
 
+static const char folded[] =
+    "{\"gear_pair\": {\"pinion_teeth\": 23, \"gear_teeth\": 61, \"normal_module_mm\": 5, \"helix_angle_deg\": 26, "
+    "\"face_width_mm\": 60}, \"load_cases\": [{\"torque_Nm\": 500, \"speed_rpm\": 1500}], \"modification\": "
+    "{\"pinion\": "
+    "{\"left\": {\"root_relief_um\": 60, \"root_relief_start_mm\": 3.5, \"root_relief_shape\": \"exponent\", "
+    "\"root_relief_exponent\": 1.2}}}}";
 static char *coarse, *order, *named, *sweep, *vary, *vary_pair, *pairs, *many_pairs, *tolerance_order, *limited, *spur,
     *stages, *study, *once_more, *other_paper;
 
@@ -251,6 +257,8 @@ static const struct command analyses[] = {
     {"a unit that is none", "POST", API "/export/topography?units=ell", .body = &coarse, .status = 400},
     {"a grid of one row", "POST", API "/export/topography?rows=1", .body = &coarse, .status = 400},
     {"a chart on a grid", "POST", API "/export/k-chart?rows=3", .body = &coarse, .status = 422},
+    {"a flank that its relief folds", "POST", API "/export/step-pinion", .text = folded, .status = 200,
+     .header = "Easeoff-Notes", .holds = "drive flank of the left end, where reliefs fold it: up to "},
     {"K-charts", "POST", API "/export/k-chart-drawing", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "image/svg+xml"},
     {"report", "POST", API "/report", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/html"},

@@ -117,6 +117,13 @@ run 0 "what exists in place of GDE" "$EASEOFF" export --help
 prints "GDE"
 run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-gear
 prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
+test ! -s "$folder/err"
+result $? "there is nothing to say about it"
+echo '{"gear_pair": {"pinion_teeth": 23, "gear_teeth": 61, "normal_module_mm": 5, "helix_angle_deg": 26, "face_width_mm": 60},
+  "load_cases": [{"torque_Nm": 500, "speed_rpm": 1500}], "modification": {"pinion": {"left": {"root_relief_um": 60,
+  "root_relief_start_mm": 3.5, "root_relief_shape": "exponent", "root_relief_exponent": 1.2}}}}' >"$folder/folded.json"
+run 0 "a flank that its relief folds" "$EASEOFF" export "$folder/folded.json" --format step-pinion
+says "drive flank of the left end, where reliefs fold it: up to "
 
 # Drawing data of a pair: symbols, units, values to six digits and more.
 run 0 "dimensions as a table" "$EASEOFF" export "$folder/single.json" --format dimensions

@@ -115,7 +115,7 @@ static double stated_deviation(const char *text, bool *folded)
   *folded = strstr(text, "where reliefs fold it") != NULL;
   for (const char *at = strstr(text, "/* "); at; at = strstr(at + 1, "/* ")) {
     const char *number = strstr(at, "up to ");
-    largest = fmax(largest, number ? strtod(number + 6, NULL) : INFINITY);
+    largest = fmax(largest, number ? 1e3 * strtod(number + 6, NULL) : INFINITY);
     printf("# %.*s\n", (int)strcspn(at, "\n"), at);
   }
   return largest;

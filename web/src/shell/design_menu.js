@@ -323,6 +323,8 @@ export class DesignMenu {
     const answer = await ask('POST', `export/${format}${units}`, { body: this.app.store.design, whole: true });
     const name = /filename="([^"]+)"/.exec(answer.headers.get('content-disposition') ?? '');
     download(name ? name[1] : format, answer.data);
+    const notes = answer.headers.get('easeoff-notes');
+    if (notes) notice.say(`In this file: ${notes}.`);
   }
 
   /** The document of the service, which one signs and sends. */
