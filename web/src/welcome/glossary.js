@@ -17,6 +17,20 @@ const WORDS = [
       ['Helix angle', 'Slope of the teeth against the axis at the reference cylinder.'],
       ['Groove', 'Room between the two ends in which the tool runs out.'],
       [
+        'Apex',
+        'Where the helices of both halves would meet. A leading apex comes into mesh before the face ends, a ' +
+          'trailing one behind them.',
+      ],
+      [
+        'Stagger',
+        'By what part of a pitch the teeth of one half stand behind those of the other; half a pitch evens out ' +
+          'the mesh.',
+      ],
+      [
+        'Axial float',
+        'A pinion that no bearing holds along its axis moves until both halves carry the same axial force.',
+      ],
+      [
         'Profile shift',
         'By how many modules the tool stands away from where it would cut a plain tooth; thickens the root of ' +
           'a small pinion.',
@@ -40,9 +54,25 @@ const WORDS = [
         'Material taken off near the tip or the root, from a start towards the end of the flank.',
       ],
       [
+        'Drive flank, coast flank',
+        'The two sides of a tooth: the drive flank carries in the usual direction, the coast flank when the gear ' +
+          'drives or the machine runs astern.',
+      ],
+      ['Profile crowning', 'Material taken off towards root and tip in one smooth curve.'],
+      [
         'Lead crowning',
         'Material taken off towards both face ends, so that the middle carries when the shafts are not parallel.',
       ],
+      [
+        'Helix slope, profile slope',
+        'Material taken off more and more from one face end to the other, or from root to tip (C_Hβ, C_Hα).',
+      ],
+      [
+        'Twist',
+        'A profile slope that turns from one face end to the other; grinding a crowned helical flank makes one ' +
+          'by itself.',
+      ],
+      ['End relief', 'Material taken off over a stretch at a face end.'],
       [
         'K-chart',
         'The profile drawn upright from root to tip, with what is taken off to the side, as an inspection ' +
@@ -81,6 +111,42 @@ const WORDS = [
       ],
       ['Root stress, contact pressure', 'Largest stress in the fillet and largest Hertzian pressure on the flank.'],
       ['Edge contact', 'Load on the sharp edge of a tip, where there should be none.'],
+    ],
+  ],
+  [
+    'As made',
+    [
+      [
+        'Tolerance class',
+        'What ISO 1328-1 allows a flank or a pitch to deviate; the smaller the number, the better the gear.',
+      ],
+      [
+        'Pitch deviation',
+        'How far a tooth stands from its place: against the one before it (single), or since the first (index, total).',
+      ],
+      ['Run-out', 'How far the toothing stands off its axis: once per turn teeth are nearer and farther.'],
+      [
+        'Hunting period',
+        'The time until the same two teeth meet again; only then everything has happened that can.',
+      ],
+      ['Sideband', 'An order beside a mesh order, one or several turns of a shaft away; uneven teeth make them.'],
+      [
+        'Percentile',
+        'The value below which so many per cent of the pairs stay: 95 % of the pairs as made are better than the 95th.',
+      ],
+      ['Yield', 'The share of pairs as made that keep all limits.'],
+    ],
+  ],
+  [
+    'Strength',
+    [
+      [
+        'Safety S_H, S_F',
+        'Strength of flank and root over their stress by ISO 6336; below 1 the gear does not reach its life.',
+      ],
+      ['K_Hβ', 'The largest load per face width over the mean one: how unevenly the face carries.'],
+      ['K_γ', 'The larger load of the two halves over an even share.'],
+      ['Film ratio', 'Thickness of the oil film over the roughness of the flanks; above 2 or so they hardly touch.'],
     ],
   ],
   [
