@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "exchange/step.h"
+#include "exchange/step_private.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -8,266 +8,14 @@
 #include <string.h>
 #include <time.h>
 
-#include "exchange/flank_pieces.h"
 #include "exchange/flank_rest.h"
-#include "exchange/patch.h"
-#include "exchange/tooth.h"
 
 #include <config.h>
-
-static const double tolerance = 5e-9; /* m: half of what a file may be off */
-enum { FIRST_COUNT = 8, SWEPT_COUNT = 5 };
 
 struct writer {
   struct eo_text *text;
   int last; /* number of the instance written last */
 };
-
-enum { SIDES = 4 };
-
-/* A smooth piece. Its sides: along p at q = 0, along q at p = 1, along p at q = 1, along q at p = 0; its corners (0,
-   0), (1, 0), (1, 1), (0, 1). */
-struct face {
-  int i, j;          /* what is no flank: the piece along p and along q */
-  int group[2];      /* pieces that share a number of points along p, along q */
-  int edge[SIDES];   /* numbers in the part; -1: the side is one point */
-  int vertex[SIDES]; /* numbers in the part */
-  double error;      /* m */
-  struct eo_patch patch;
-};
-
-enum { GROUPS = EO_FLANK_LINES * EO_FLANK_LINES };
-
-/* One part of a tooth in smooth pieces. */
-struct part {
-  const struct eo_tooth *tooth;
-  enum eo_tooth_part part;
-  bool flipped; /* p runs backwards, so that dS/dp x dS/dq points out of the tooth */
-  bool flank;
-  struct eo_flank_pieces pieces; /* of a flank */
-  double at[2][EO_TOOTH_PIECES + 1];
-  struct eo_patch_sites sites[2][GROUPS]; /* of each group */
-  double error;                           /* m off the exact surface at most, between the points */
-  int faces;
-  struct face *face; /* owned */
-  int edges, vertices;
-  int *id; /* owned: of every edge, then of every vertex, in the file */
-};
-
-struct piece {
-  const struct part *part;
-  int number;
-  struct eo_flank_row *row;
-};
-
-/* Surfaces: */
-
-static void piece_point(const void *context, double p, double q, double point[3], double normal[3])
-{
-  const struct piece *piece = context;
-  const struct part *part = piece->part;
-  const struct face *face = &part->face[piece->number];
-  double own = part->flipped ? 1 - p : p;
-  if (part->flank) {
-    eo_flank_piece_point(&part->pieces, piece->number, piece->row, own, q, point, normal);
-    return;
-  }
-  const double *from = &part->at[0][face->i], *to = &part->at[1][face->j];
-  eo_tooth_point(part->tooth, part->part, 0, from[0] + own * (from[1] - from[0]), to[0] + q * (to[1] - to[0]), point,
-                 normal);
-}
-
-/* Whether dS/dp x dS/dq points into the tooth. */
-static bool points_in(const struct part *part)
-{
-  const double step = 1e-3;
-  double a[3], b[3], c[3], normal[3], cross;
-  struct eo_flank_row row = {.b = -1};
-  const struct piece piece = {part, 0, &row};
-  piece_point(&piece, 0.5, 0.5, a, normal);
-  piece_point(&piece, 0.5 + step, 0.5, b, NULL);
-  piece_point(&piece, 0.5, 0.5 + step, c, NULL);
-  for (int i = 0; i < 3; i++) {
-    b[i] -= a[i];
-    c[i] -= a[i];
-  }
-  cross = (b[1] * c[2] - b[2] * c[1]) * normal[0] + (b[2] * c[0] - b[0] * c[2]) * normal[1] +
-          (b[0] * c[1] - b[1] * c[0]) * normal[2];
-  return cross < 0;
-}
-
-static void set_flank_faces(struct part *part)
-{
-  for (int k = 0; k < part->faces; k++) {
-    const struct eo_flank_piece *piece = &part->pieces.piece[k];
-    struct face *face = &part->face[k];
-    face->group[0] = piece->line[0] * EO_FLANK_LINES + piece->line[1];
-    face->group[1] = piece->band;
-    if (piece->line[0] == piece->line[1])
-      part->sites[0][face->group[0]] = eo_patch_even_sites(SWEPT_COUNT);
-  }
-}
-
-static bool cut_faces(struct part *part)
-{
-  int pieces[2] = {1, 1};
-  for (int k = 0; k < GROUPS; k++)
-    part->sites[0][k] = part->sites[1][k] = eo_patch_even_sites(FIRST_COUNT);
-  if (part->flank) {
-    eo_flank_pieces_init(&part->pieces, part->tooth, part->part);
-    part->faces = part->pieces.count;
-  } else {
-    for (int d = 0; d < 2; d++)
-      pieces[d] = eo_tooth_breaks(part->tooth, part->part, d, part->at[d]) - 1;
-    part->faces = pieces[0] * pieces[1];
-  }
-  part->face = calloc((size_t)part->faces, sizeof *part->face);
-  part->id = calloc((size_t)part->faces * 2 * SIDES, sizeof *part->id);
-  if (!part->face || !part->id)
-    return false;
-  if (part->flank)
-    set_flank_faces(part);
-  for (int k = 0; k < part->faces && !part->flank; k++) {
-    struct face *face = &part->face[k];
-    face->i = face->group[0] = k / pieces[1];
-    face->j = face->group[1] = k % pieces[1];
-  }
-  part->flipped = points_in(part);
-  return true;
-}
-
-/* Fits a piece to the points that it has now; says where it asks for more. */
-static bool fit_face(struct part *part, int number, bool wide[2][GROUPS][EO_PATCH_MOST])
-{
-  struct face *face = &part->face[number];
-  struct eo_flank_row row = {.b = -1};
-  const struct piece piece = {part, number, &row};
-  const struct eo_patch_sites *const sites[2] = {&part->sites[0][face->group[0]], &part->sites[1][face->group[1]]};
-  bool own[2][EO_PATCH_MOST] = {{false}};
-  if (!eo_patch_fit(&face->patch, sites, piece_point, &piece))
-    return false;
-  face->error = eo_patch_error(&face->patch, piece_point, &piece, tolerance, own);
-  for (int d = 0; d < 2; d++)
-    for (int i = 0; i < EO_PATCH_MOST; i++)
-      wide[d][face->group[d]][i] = wide[d][face->group[d]][i] || own[d][i];
-  return true;
-}
-
-/* Where points on the flank are no good parameters, those of the rack may be. */
-static bool fit_evenly(struct part *part, int number, bool wide[2][GROUPS][EO_PATCH_MOST])
-{
-  bool *direct = &part->pieces.piece[number].direct, before = *direct;
-  double error = part->face[number].error;
-  *direct = true;
-  bool fitted = fit_face(part, number, wide);
-  if (fitted && part->face[number].error > error) {
-    *direct = before;
-    fitted = fit_face(part, number, wide);
-  }
-  return fitted;
-}
-
-/* Every piece with as many points as it needs; false: memory, or a system that has no solution. */
-static bool fit_faces(struct part *part)
-{
-  bool again = true, wide[2][GROUPS][EO_PATCH_MOST];
-  while (again) {
-    memset(wide, 0, sizeof wide);
-    for (int k = 0; k < part->faces; k++) {
-      const struct face *face = &part->face[k];
-      bool same = face->patch.sites[0].count == part->sites[0][face->group[0]].count &&
-                  face->patch.sites[1].count == part->sites[1][face->group[1]].count;
-      if (!same && !fit_face(part, k, wide))
-        return false;
-    }
-    again = false;
-    for (int d = 0; d < 2; d++)
-      for (int g = 0; g < GROUPS; g++)
-        again = eo_patch_halve(&part->sites[d][g], wide[d][g]) || again;
-  }
-  for (int k = 0; k < part->faces; k++) {
-    if (part->face[k].error > tolerance && part->flank && !fit_evenly(part, k, wide))
-      return false;
-    part->error = fmax(part->error, part->face[k].error);
-  }
-  return true;
-}
-
-/* Edges: */
-
-/* Which control points a side has: the first, how far to the next, how many. */
-struct strip {
-  int first, stride, count;
-};
-
-static struct strip strip_of(const struct eo_patch *patch, int side)
-{
-  int rows = patch->sites[0].count, columns = patch->sites[1].count;
-  if (side % 2 == 0)
-    return (struct strip){side ? columns - 1 : 0, columns, rows};
-  return (struct strip){side == 1 ? (rows - 1) * columns : 0, 1, columns};
-}
-
-static bool same_point(const double a[3], const double b[3])
-{
-  return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]) < tolerance;
-}
-
-static bool same_side(const struct face *a, int of_a, const struct face *b, int of_b)
-{
-  struct strip x = strip_of(&a->patch, of_a), y = strip_of(&b->patch, of_b);
-  bool same = x.count == y.count;
-  for (int i = 0; i < x.count && same; i++)
-    same = same_point(a->patch.control[x.first + i * x.stride], b->patch.control[y.first + i * y.stride]);
-  return same;
-}
-
-static bool is_point(const struct face *face, int side)
-{
-  struct strip strip = strip_of(&face->patch, side);
-  bool same = true;
-  for (int i = 1; i < strip.count && same; i++)
-    same = same_point(face->patch.control[strip.first], face->patch.control[strip.first + i * strip.stride]);
-  return same;
-}
-
-static const double *corner_of(const struct face *face, int corner)
-{
-  int rows = face->patch.sites[0].count, columns = face->patch.sites[1].count;
-  return face->patch.control[(corner == 1 || corner == 2 ? (rows - 1) * columns : 0) + (corner >= 2 ? columns - 1 : 0)];
-}
-
-/* Neighbours have an edge in common where their sides are one curve, and corners that are one point. */
-static void join_faces(struct part *part)
-{
-  for (int k = 0; k < SIDES * part->faces; k++) {
-    struct face *face = &part->face[k / SIDES];
-    int own = k % SIDES;
-    face->vertex[own] = part->vertices;
-    face->edge[own] = is_point(face, own) ? -1 : part->edges;
-    for (int i = k - 1; i >= 0; i--) {
-      const struct face *other = &part->face[i / SIDES];
-      if (same_point(corner_of(face, own), corner_of(other, i % SIDES)))
-        face->vertex[own] = other->vertex[i % SIDES];
-      if (face->edge[own] >= 0 && own % 2 == i % 2 && same_side(face, own, other, i % SIDES))
-        face->edge[own] = other->edge[i % SIDES];
-    }
-    part->vertices += face->vertex[own] == part->vertices;
-    part->edges += face->edge[own] == part->edges;
-  }
-}
-
-static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_tooth_part kind)
-{
-  memset(part, 0, sizeof *part);
-  part->tooth = tooth;
-  part->part = kind;
-  part->flank = kind == EO_TOOTH_DRIVE || kind == EO_TOOTH_COAST;
-  if (!cut_faces(part) || !fit_faces(part))
-    return false;
-  join_faces(part);
-  return true;
-}
 
 /* Instances: */
 
@@ -358,17 +106,18 @@ static int put_curve(struct writer *writer, int count, const double *knot, const
 }
 
 /* Edges and corners of a piece that no neighbour has written yet. */
-static void put_edges(struct writer *writer, struct part *part, const struct face *face, const int *point)
+static void put_edges(struct writer *writer, struct eo_step_part *part, const struct eo_step_face *face,
+                      const int *point)
 {
-  static const int ends[SIDES][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
+  static const int ends[EO_STEP_SIDES][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
   const struct eo_patch *patch = &face->patch;
   int *edge = part->id, *vertex = part->id + part->edges, rows = patch->sites[0].count, columns = patch->sites[1].count;
-  const int corner[SIDES] = {0, (rows - 1) * columns, rows * columns - 1, columns - 1};
-  for (int k = 0; k < SIDES; k++)
+  const int corner[EO_STEP_SIDES] = {0, (rows - 1) * columns, rows * columns - 1, columns - 1};
+  for (int k = 0; k < EO_STEP_SIDES; k++)
     if (!vertex[face->vertex[k]])
       vertex[face->vertex[k]] = put(writer, "VERTEX_POINT('',#%d)", point[corner[k]]);
-  for (int side = 0; side < SIDES; side++) {
-    struct strip strip = strip_of(patch, side);
+  for (int side = 0; side < EO_STEP_SIDES; side++) {
+    struct eo_step_strip strip = eo_step_strip(patch, side);
     if (face->edge[side] < 0 || edge[face->edge[side]])
       continue;
     int curve = put_curve(writer, strip.count, patch->knot[side % 2], point + strip.first, strip.stride);
@@ -378,16 +127,16 @@ static void put_edges(struct writer *writer, struct part *part, const struct fac
 }
 
 /* The loop runs counter-clockwise seen against the surface's normal: with p at q = 0, with q at p = 1, back. */
-static int put_face(struct writer *writer, struct part *part, const struct face *face, double turn)
+static int put_face(struct writer *writer, struct eo_step_part *part, const struct eo_step_face *face, double turn)
 {
   const struct eo_patch *patch = &face->patch;
-  int count = patch->sites[0].count * patch->sites[1].count, point[EO_PATCH_MOST * EO_PATCH_MOST], edge[SIDES],
+  int count = patch->sites[0].count * patch->sites[1].count, point[EO_PATCH_MOST * EO_PATCH_MOST], edge[EO_STEP_SIDES],
       edges = 0;
   for (int k = 0; k < count; k++)
     point[k] = put_point(writer, patch->control[k], turn);
   int surface = put_surface(writer, patch, point);
   put_edges(writer, part, face, point);
-  for (int side = 0; side < SIDES; side++)
+  for (int side = 0; side < EO_STEP_SIDES; side++)
     if (face->edge[side] >= 0)
       edge[edges++] = put(writer, "ORIENTED_EDGE('',*,*,#%d,.%c.)", part->id[face->edge[side]], side < 2 ? 'T' : 'F');
   eo_text_print(writer->text, "#%d=EDGE_LOOP('',", ++writer->last);
@@ -397,7 +146,7 @@ static int put_face(struct writer *writer, struct part *part, const struct face 
   return put(writer, "ADVANCED_FACE('',(#%d),#%d,.T.)", bound, surface);
 }
 
-static int put_shell(struct writer *writer, struct part *part, int number)
+static int put_shell(struct writer *writer, struct eo_step_part *part, int number)
 {
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct eo_tooth *tooth = part->tooth;
@@ -469,15 +218,15 @@ static int write_product(struct writer *writer, const char *name, int *context)
 }
 
 /* What of a part the file cannot promise, as comments. */
-static void tell_errors(const struct part *part, const struct eo_tooth *tooth, struct eo_text *text)
+static void tell_errors(const struct eo_step_part *part, const struct eo_tooth *tooth, struct eo_text *text)
 {
   const char *name = eo_tooth_part_names[part->part], *end = !tooth->two_ends         ? ""
                                                              : tooth->end == EO_RIGHT ? " of the right end"
                                                                                       : " of the left end";
   double folded = part->flank ? eo_flank_rest_error(&part->pieces) : 0;
-  if (part->error > tolerance)
+  if (part->error > eo_step_tolerance)
     eo_text_print(text, "/* %s%s: up to %.3g um off the exact surface */\n", name, end, 1e6 * part->error);
-  if (folded > tolerance)
+  if (folded > eo_step_tolerance)
     eo_text_print(text, "/* %s%s, where reliefs fold it: up to %.3g um off what the rack leaves */\n", name, end,
                   1e6 * folded);
 }
@@ -485,15 +234,14 @@ static void tell_errors(const struct part *part, const struct eo_tooth *tooth, s
 static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bool whole, int *shell, int *shells)
 {
   int teeth = whole ? tooth->geometry->teeth[tooth->member] : 1;
-  struct part part;
+  struct eo_step_part part;
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
-    bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
+    bool good = eo_step_part_init(&part, tooth, (enum eo_tooth_part)kind);
     if (good)
       tell_errors(&part, tooth, writer->text);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(writer, &part, number);
-    free(part.face);
-    free(part.id);
+    eo_step_part_done(&part);
     if (!good)
       return false;
   }
