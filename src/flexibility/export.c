@@ -358,6 +358,17 @@ static enum eo_code weigh_cuts(struct output *out, const struct eo_section *sect
   return out->weight ? eo_member_cut_weights(out->sector, out->teeth, out->weight) : EO_ERROR_MEMORY;
 }
 
+static enum eo_code lay_out(struct output *out, struct eo_section *section, struct eo_sector *sector,
+                            const struct eo_geometry *geometry, int member, const struct eo_material *material,
+                            const struct eo_member_settings *settings, struct eo_error *error)
+{
+  EO_TRY(eo_section_init(section, geometry, member, settings->bore_radius, &settings->section, error));
+  EO_TRY(eo_sector_init(sector, section, settings->layers, geometry->member_width[member],
+                        eo_sector_twist(geometry, member), material, EO_WHOLE_SECTOR, error));
+  return find_edges(out, section) || number_own(out, section) || weigh_cuts(out, section) ? eo_error_memory(error)
+                                                                                          : EO_OK;
+}
+
 enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, const struct eo_material *material,
                             const struct eo_member_settings *settings, enum eo_mesh_element element, int cases,
                             const struct eo_mesh_case *load_case, eo_writer_function *writer, void *context,
@@ -368,17 +379,11 @@ enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, cons
   struct output out = {.sector = &sector, .writer = writer, .context = context};
   out.teeth = settings->section.open ? geometry->teeth[member] : 1;
   out.floating = settings->section.floating;
-  enum eo_code code = eo_section_init(&section, geometry, member, settings->bore_radius, &settings->section, error);
+  enum eo_code code = lay_out(&out, &section, &sector, geometry, member, material, settings, error);
   if (!code)
-    code = eo_sector_init(&sector, &section, settings->layers, geometry->member_width[member],
-                          eo_sector_twist(geometry, member), material, EO_WHOLE_SECTOR, error);
-  if (!code && (find_edges(&out, &section) || number_own(&out, &section) || weigh_cuts(&out, &section)))
-    code = eo_error_memory(error);
-  if (!code) {
     put_model(&out, material, element, cases, load_case);
-    if (out.stopped)
-      code = eo_error_set(error, EO_ERROR_FILE, "", "The finite-element mesh could not be written.");
-  }
+  if (out.stopped)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "The finite-element mesh could not be written.");
   free(out.edge);
   free(out.ends);
   free(out.node_place);

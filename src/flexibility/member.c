@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "flexibility/member_private.h"
 
-#include "base/clock.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,44 +61,41 @@ static enum eo_code split_inverse(struct eo_member_job *job, const struct wanted
   return code;
 }
 
+static enum eo_code invert(struct eo_member_job *job, struct wanted *wanted, struct eo_sparse_factor **factor,
+                           double **inverse)
+{
+  const struct eo_sector *sector = &job->sector;
+  struct eo_member_times *times = job->times;
+  EO_TRY(list_wanted(sector, wanted));
+  EO_TRY(eo_member_report(job, "ordering", 0.05));
+  double start = eo_member_now();
+  EO_TRY(eo_sparse_analyse(&sector->matrix, sector->group, sector->groups, wanted->unknown, wanted->count, factor,
+                           job->error));
+  times->ordering = eo_member_lap(&start);
+  EO_TRY(eo_member_report(job, "factorisation", 0.15));
+  EO_TRY(eo_sparse_factorise(*factor, job->error));
+  times->factorisation = eo_member_lap(&start);
+  EO_TRY(eo_member_report(job, "compliance", 0.85));
+  times->unknowns = sector->matrix.n;
+  times->entries = eo_sparse_entries(*factor);
+  times->memory = (double)eo_sparse_peak_memory(*factor);
+  int loaded = wanted->count - wanted->next[0];
+  *inverse = malloc((size_t)loaded * (size_t)wanted->count * sizeof **inverse);
+  if (!*inverse)
+    return EO_ERROR_MEMORY;
+  EO_TRY(eo_sparse_inverse(*factor, loaded, *inverse, job->error));
+  times->compliance = eo_member_lap(&start);
+  EO_TRY(split_inverse(job, wanted, *inverse));
+  times->stress = eo_member_lap(&start);
+  return EO_OK;
+}
+
 static enum eo_code solve_sector(struct eo_member_job *job)
 {
   struct wanted wanted = {0};
   struct eo_sparse_factor *factor = NULL;
   double *inverse = NULL;
-  enum eo_code code = list_wanted(&job->sector, &wanted);
-  if (!code)
-    code = eo_member_report(job, "ordering", 0.05);
-  if (code)
-    goto out;
-  double start = (1e-3 * eo_clock_milliseconds());
-  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.groups, wanted.unknown, wanted.count,
-                           &factor, job->error);
-  job->times->ordering = (1e-3 * eo_clock_milliseconds()) - start;
-  if (!code)
-    code = eo_member_report(job, "factorisation", 0.15);
-  if (code)
-    goto out;
-  start = (1e-3 * eo_clock_milliseconds());
-  code = eo_sparse_factorise(factor, job->error);
-  job->times->factorisation = (1e-3 * eo_clock_milliseconds()) - start;
-  if (!code)
-    code = eo_member_report(job, "compliance", 0.85);
-  if (code)
-    goto out;
-  job->times->unknowns = job->sector.matrix.n;
-  job->times->entries = eo_sparse_entries(factor);
-  job->times->memory = (double)eo_sparse_peak_memory(factor);
-  start = (1e-3 * eo_clock_milliseconds());
-  int loaded = wanted.count - wanted.next[0];
-  inverse = malloc((size_t)loaded * (size_t)wanted.count * sizeof *inverse);
-  code = inverse ? eo_sparse_inverse(factor, loaded, inverse, job->error) : EO_ERROR_MEMORY;
-  job->times->compliance = (1e-3 * eo_clock_milliseconds()) - start;
-  start = (1e-3 * eo_clock_milliseconds());
-  if (!code)
-    code = split_inverse(job, &wanted, inverse);
-  job->times->stress = (1e-3 * eo_clock_milliseconds()) - start;
-out:
+  enum eo_code code = invert(job, &wanted, &factor, &inverse);
   eo_sparse_factor_free(factor);
   free(inverse);
   free(wanted.unknown);
@@ -109,51 +104,58 @@ out:
 
 static enum eo_code solve_whole(struct eo_member_job *job)
 {
-  double start = (1e-3 * eo_clock_milliseconds());
-  enum eo_code code =
-      eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
-                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error);
-  job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
-  if (code)
-    return code;
+  double start = eo_member_now();
+  EO_TRY(eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
+                        eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error));
+  job->times->mesh += eo_member_lap(&start);
   return job->settings->section.open ? eo_member_solve_ring(job) : solve_sector(job);
+}
+
+/* Room of the half tooth. */
+struct half {
+  struct eo_sector sector;
+  struct eo_sparse_factor *factor;
+  int *keep, *place; /* unknowns of the flank, and where on it each stands: [flank] */
+  double *inverse;   /* [flank][flank] */
+};
+
+static enum eo_code invert_half(struct eo_member_job *job, struct half *half)
+{
+  int across = job->result->layers + 1, flank = job->result->rows * across, kept = 0;
+  half->keep = malloc((size_t)flank * sizeof *half->keep);
+  half->place = malloc((size_t)flank * sizeof *half->place);
+  half->inverse = malloc((size_t)flank * (size_t)flank * sizeof *half->inverse);
+  if (!half->keep || !half->place || !half->inverse)
+    return EO_ERROR_MEMORY;
+  EO_TRY(eo_sector_init(&half->sector, &job->section, job->settings->layers, job->geometry->member_width[job->member],
+                        eo_sector_twist(job->geometry, job->member), job->material, EO_HALF_TOOTH, job->error));
+  for (int i = 0; i < flank; i++) {
+    int unknown = eo_sector_unknown(&half->sector, job->section.flank.node[i / across], i % across, 0);
+    half->place[kept] = i;
+    if (unknown >= 0)
+      half->keep[kept++] = unknown;
+  }
+  EO_TRY(eo_sparse_analyse(&half->sector.matrix, half->sector.group, half->sector.groups, half->keep, kept,
+                           &half->factor, job->error));
+  EO_TRY(eo_sparse_factorise(half->factor, job->error));
+  EO_TRY(eo_sparse_inverse(half->factor, kept, half->inverse, job->error));
+  for (int i = 0; i < kept; i++)
+    for (int j = 0; j < kept; j++)
+      job->result->half[half->place[i] * flank + half->place[j]] =
+          0.5 * (half->inverse[i * kept + j] + half->inverse[j * kept + i]);
+  return EO_OK;
 }
 
 /* Compliance of the half tooth; rows whose nodes it holds stay 0. */
 static enum eo_code solve_half(struct eo_member_job *job)
 {
-  struct eo_sector half = {0};
-  struct eo_sparse_factor *factor = NULL;
-  int across = job->result->layers + 1, flank = job->result->rows * across, kept = 0;
-  int *keep = malloc((size_t)flank * sizeof *keep), *place = malloc((size_t)flank * sizeof *place);
-  double *inverse = malloc((size_t)flank * (size_t)flank * sizeof *inverse);
-  enum eo_code code = EO_ERROR_MEMORY;
-  if (!keep || !place || !inverse)
-    goto out;
-  code = eo_sector_init(&half, &job->section, job->settings->layers, job->geometry->member_width[job->member],
-                        eo_sector_twist(job->geometry, job->member), job->material, EO_HALF_TOOTH, job->error);
-  if (code)
-    goto out;
-  for (int i = 0; i < flank; i++) {
-    int unknown = eo_sector_unknown(&half, job->section.flank.node[i / across], i % across, 0);
-    place[kept] = i;
-    if (unknown >= 0)
-      keep[kept++] = unknown;
-  }
-  code = eo_sparse_analyse(&half.matrix, half.group, half.groups, keep, kept, &factor, job->error);
-  if (!code)
-    code = eo_sparse_factorise(factor, job->error);
-  if (!code)
-    code = eo_sparse_inverse(factor, kept, inverse, job->error);
-  for (int i = 0; i < kept && !code; i++)
-    for (int j = 0; j < kept; j++)
-      job->result->half[place[i] * flank + place[j]] = 0.5 * (inverse[i * kept + j] + inverse[j * kept + i]);
-out:
-  eo_sparse_factor_free(factor);
-  eo_sector_done(&half);
-  free(keep);
-  free(place);
-  free(inverse);
+  struct half half = {0};
+  enum eo_code code = invert_half(job, &half);
+  eo_sparse_factor_free(half.factor);
+  eo_sector_done(&half.sector);
+  free(half.keep);
+  free(half.place);
+  free(half.inverse);
   return code;
 }
 
@@ -216,6 +218,23 @@ static enum eo_code allocate(struct eo_member_job *job)
   return EO_OK;
 }
 
+static enum eo_code compute(struct eo_member_job *job)
+{
+  struct eo_member_result *result = job->result;
+  double start = eo_member_now();
+  EO_TRY(eo_section_init(&job->section, job->geometry, job->member, job->settings->bore_radius, &job->settings->section,
+                         job->error));
+  EO_TRY(allocate(job));
+  job->times->mesh = eo_member_lap(&start);
+  EO_TRY(solve_whole(job));
+  start = eo_member_now();
+  EO_TRY(eo_member_report(job, "half tooth", 0.95));
+  EO_TRY(solve_half(job));
+  job->times->half_tooth = eo_member_lap(&start);
+  symmetrise(result->full, result->rows * (result->layers + 1));
+  return EO_OK;
+}
+
 enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_geometry *geometry, int member,
                                const struct eo_material *material, const struct eo_member_settings *settings,
                                const struct eo_progress *progress, struct eo_member_times *times,
@@ -231,21 +250,7 @@ enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_
                               .member = member};
   *result = (struct eo_member_result){0};
   *times = (struct eo_member_times){0};
-  double start = (1e-3 * eo_clock_milliseconds());
-  enum eo_code code = eo_section_init(&job.section, geometry, member, settings->bore_radius, &settings->section, error);
-  if (!code)
-    code = allocate(&job);
-  times->mesh = (1e-3 * eo_clock_milliseconds()) - start;
-  if (!code)
-    code = solve_whole(&job);
-  start = (1e-3 * eo_clock_milliseconds());
-  if (!code)
-    code = eo_member_report(&job, "half tooth", 0.95);
-  if (!code)
-    code = solve_half(&job);
-  times->half_tooth = (1e-3 * eo_clock_milliseconds()) - start;
-  if (!code)
-    symmetrise(result->full, result->rows * (result->layers + 1));
+  enum eo_code code = compute(&job);
   eo_sector_done(&job.sector);
   eo_section_done(&job.section);
   if (code)

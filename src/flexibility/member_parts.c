@@ -19,6 +19,18 @@ enum eo_code eo_member_report(const struct eo_member_job *job, const char *step,
   return EO_OK;
 }
 
+double eo_member_now(void)
+{
+  return 1e-3 * eo_clock_milliseconds();
+}
+
+double eo_member_lap(double *start)
+{
+  const double before = *start;
+  *start = eo_member_now();
+  return *start - before;
+}
+
 int eo_member_list_flank(const struct eo_sector *sector, const struct eo_flank_nodes *flank, int *unknown)
 {
   int count = 0;

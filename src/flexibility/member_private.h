@@ -21,6 +21,10 @@ struct eo_member_job {
 /* Tells the progress; EO_ERROR_CANCELLED when a stop is asked for. */
 enum eo_code eo_member_report(const struct eo_member_job *job, const char *step, double fraction);
 
+/* Now, in seconds; and the seconds since *start, which becomes now. */
+double eo_member_now(void);
+double eo_member_lap(double *start);
+
 /* Appends the unknowns of the displacements of root nodes 0 .. nodes - 1, [node][layer][3], without the flank's own
    normal at node 0; returns how many. */
 int eo_member_list_root(const struct eo_sector *sector, int nodes, int *unknown);

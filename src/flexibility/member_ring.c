@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/clock.h"
 #include "base/parallel.h"
 #include "flexibility/member_private.h"
 #include "flexibility/ring.h"
@@ -18,11 +17,6 @@ struct kept {
   int *node;      /* [face]: place along the cut, from the root inwards */
   int *layer;     /* [face] */
 };
-
-static double seconds(void)
-{
-  return 1e-3 * eo_clock_milliseconds();
-}
 
 static void kept_done(struct kept *kept)
 {
@@ -112,45 +106,48 @@ static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept
   return EO_OK;
 }
 
-/* Factorises the tooth and condenses it. The free tooth is singular: springs of E m_n, about the stiffness of its
-   nodes, stand on the cut faces meanwhile; they are taken off again exactly, because those unknowns are all kept. */
+/* Factorises the tooth, springs on its faces, and condenses it. */
+static enum eo_code factorise_and_condense(struct eo_member_job *job, const struct kept *kept,
+                                           struct eo_ring_tooth *tooth, struct eo_sparse_factor **factor)
+{
+  const struct eo_sector *sector = &job->sector;
+  struct eo_member_times *times = job->times;
+  int inner = kept->root + kept->flank, outer = 2 * kept->face;
+  double start = eo_member_now();
+  EO_TRY(eo_sparse_analyse(&sector->matrix, sector->group, sector->groups, kept->unknown, inner + outer, factor,
+                           job->error));
+  times->ordering = eo_member_lap(&start);
+  EO_TRY(eo_member_report(job, "factorisation", 0.1));
+  EO_TRY(eo_sparse_factorise(*factor, job->error));
+  times->factorisation = eo_member_lap(&start);
+  EO_TRY(eo_member_report(job, "compliance", 0.45));
+  EO_TRY(eo_ring_tooth_init(tooth, job->geometry->teeth[job->member], inner, kept->flank, kept->face,
+                            job->settings->section.floating, job->error));
+  EO_TRY(eo_sparse_condense(*factor, inner, kept->flank, tooth->compliance, tooth->influence, tooth->stiffness,
+                            job->error));
+  times->compliance = eo_member_lap(&start);
+  times->unknowns = sector->matrix.n;
+  times->entries = eo_sparse_entries(*factor);
+  times->memory = (double)eo_sparse_peak_memory(*factor);
+  return EO_OK;
+}
+
+/* The free tooth is singular: springs of E m_n, about the stiffness of its nodes, stand on the cut faces while it is
+   factorised; they are taken off again exactly, because those unknowns are all kept. */
 static enum eo_code condense(struct eo_member_job *job, const struct kept *kept, struct eo_ring_tooth *tooth)
 {
-  struct eo_sector *sector = &job->sector;
   struct eo_sparse_factor *factor = NULL;
   int inner = kept->root + kept->flank, outer = 2 * kept->face;
-  double spring = job->material->youngs_modulus * job->geometry->normal_module, start = seconds();
+  double spring = job->material->youngs_modulus * job->geometry->normal_module;
   for (int i = 0; i < outer; i++)
-    eo_sector_add_spring(sector, kept->unknown[inner + i], spring);
-  enum eo_code code = eo_sparse_analyse(&sector->matrix, sector->group, sector->groups, kept->unknown, inner + outer,
-                                        &factor, job->error);
-  job->times->ordering = seconds() - start;
-  if (!code)
-    code = eo_member_report(job, "factorisation", 0.1);
-  start = seconds();
-  if (!code)
-    code = eo_sparse_factorise(factor, job->error);
-  job->times->factorisation = seconds() - start;
-  if (!code)
-    code = eo_member_report(job, "compliance", 0.45);
-  start = seconds();
-  if (!code)
-    code = eo_ring_tooth_init(tooth, job->geometry->teeth[job->member], inner, kept->flank, kept->face,
-                              job->settings->section.floating, job->error);
-  if (!code)
-    code = eo_sparse_condense(factor, inner, kept->flank, tooth->compliance, tooth->influence, tooth->stiffness,
-                              job->error);
-  if (!code) {
-    job->times->unknowns = sector->matrix.n;
-    job->times->entries = eo_sparse_entries(factor);
-    job->times->memory = (double)eo_sparse_peak_memory(factor);
-    for (int i = 0; i < outer; i++)
-      tooth->stiffness[(size_t)i * (size_t)outer + (size_t)i] -= spring;
-    eo_ring_tooth_turn(tooth, kept->direction);
-  }
+    eo_sector_add_spring(&job->sector, kept->unknown[inner + i], spring);
+  enum eo_code code = factorise_and_condense(job, kept, tooth, &factor);
   eo_sparse_factor_free(factor);
-  job->times->compliance = seconds() - start;
-  return code;
+  EO_TRY(code);
+  for (int i = 0; i < outer; i++)
+    tooth->stiffness[(size_t)i * (size_t)outer + (size_t)i] -= spring;
+  eo_ring_tooth_turn(tooth, kept->direction);
+  return EO_OK;
 }
 
 /* Room for one tooth's answers. */
@@ -229,7 +226,7 @@ static enum eo_code answer_all(struct eo_member_job *job, const struct kept *kep
   size_t nodes = (size_t)job->section.root_nodes * (size_t)(job->result->layers + 1);
   struct answer answer = {.all = malloc(sizeof(double) * (size_t)tooth->flank * (size_t)tooth->inner),
                           .displacement = calloc(3 * nodes, sizeof(double))};
-  double start = seconds();
+  double start = eo_member_now();
   enum eo_code code = eo_stress_operator_init(&answer.operator, & job->sector, job->material, job->error);
   if (!answer.all || !answer.displacement)
     code = EO_ERROR_MEMORY;
@@ -240,7 +237,7 @@ static enum eo_code answer_all(struct eo_member_job *job, const struct kept *kep
   eo_stress_operator_done(&answer.operator);
   free(answer.all);
   free(answer.displacement);
-  job->times->stress = seconds() - start;
+  job->times->stress = eo_member_lap(&start);
   return code;
 }
 
@@ -256,30 +253,29 @@ static void describe(const struct eo_member_job *job, const struct eo_ring_tooth
     snprintf(what + length, size - (size_t)length, ", about %.0f s", estimate);
 }
 
-enum eo_code eo_member_solve_ring(struct eo_member_job *job)
+static enum eo_code solve(struct eo_member_job *job, struct kept *kept, struct eo_ring_tooth *tooth,
+                          struct eo_ring_motion *motion)
 {
   char what[80];
+  const int threads = job->settings->threads ? job->settings->threads : eo_parallel_cores();
+  EO_TRY(list_kept(&job->sector, kept));
+  EO_TRY(eo_member_report(job, "ordering", 0.05));
+  EO_TRY(condense(job, kept, tooth));
+  EO_TRY(set_rigid(job, kept, tooth));
+  EO_TRY(eo_ring_motion_init(motion, tooth, job->settings->reach, job->error));
+  describe(job, tooth, sizeof what, what);
+  double start = eo_member_now();
+  EO_TRY(eo_ring_solve(motion, tooth, threads, job->settings->method, job->progress, what, 0.5, 0.9, job->error));
+  job->times->harmonics = eo_member_lap(&start);
+  return answer_all(job, kept, tooth, motion);
+}
+
+enum eo_code eo_member_solve_ring(struct eo_member_job *job)
+{
   struct kept kept = {0};
   struct eo_ring_tooth tooth = {0};
   struct eo_ring_motion motion = {0};
-  enum eo_code code = list_kept(&job->sector, &kept);
-  if (!code)
-    code = eo_member_report(job, "ordering", 0.05);
-  if (!code)
-    code = condense(job, &kept, &tooth);
-  if (!code)
-    code = set_rigid(job, &kept, &tooth);
-  if (!code)
-    code = eo_ring_motion_init(&motion, &tooth, job->settings->reach, job->error);
-  double start = seconds();
-  if (!code) {
-    describe(job, &tooth, sizeof what, what);
-    code = eo_ring_solve(&motion, &tooth, job->settings->threads ? job->settings->threads : eo_parallel_cores(),
-                         job->settings->method, job->progress, what, 0.5, 0.9, job->error);
-  }
-  job->times->harmonics = seconds() - start;
-  if (!code)
-    code = answer_all(job, &kept, &tooth, &motion);
+  enum eo_code code = solve(job, &kept, &tooth, &motion);
   eo_ring_motion_done(&motion);
   eo_ring_tooth_done(&tooth);
   kept_done(&kept);

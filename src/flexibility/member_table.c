@@ -229,30 +229,26 @@ static void copy_values(struct eo_flank_table *table, const struct eo_member_res
 static enum eo_code make_coefficients(struct eo_flank_table *table)
 {
   size_t n = (size_t)table->flank.points, next = (size_t)table->next.points;
-  enum eo_code code = to_coefficients_twice(&table->flank, table->bulk);
-  if (!code)
-    code = to_coefficients(&table->flank, table->stresses, table->stress);
-  for (size_t d = 0; d < (size_t)table->reach && !code; d++) {
-    code = to_coefficients_twice(&table->flank, table->ahead + d * n * n);
-    for (int k = 0; k < 2 && !code; k++)
-      code = to_coefficients(&table->next, table->stresses, table->next_stress[k] + d * next * table->stresses);
+  EO_TRY(to_coefficients_twice(&table->flank, table->bulk));
+  EO_TRY(to_coefficients(&table->flank, table->stresses, table->stress));
+  for (size_t d = 0; d < (size_t)table->reach; d++) {
+    EO_TRY(to_coefficients_twice(&table->flank, table->ahead + d * n * n));
+    for (int k = 0; k < 2; k++)
+      EO_TRY(to_coefficients(&table->next, table->stresses, table->next_stress[k] + d * next * table->stresses));
   }
-  for (size_t i = 0; i < n && !code; i++)
+  for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < i; j++)
       table->bulk[i * n + j] = table->bulk[j * n + i] = 0.5 * (table->bulk[i * n + j] + table->bulk[j * n + i]);
-  return code;
+  return EO_OK;
 }
 
 enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width,
                                  double *smallest, struct eo_error *error)
 {
   copy_values(table, result);
-  enum eo_code code = eo_flank_table_connect(table, width, error);
-  if (!code)
-    code = fill_ahead(table, result);
-  if (!code)
-    code = measure(table, smallest, error);
-  if (!code)
-    code = make_coefficients(table);
-  return code == EO_ERROR_MEMORY ? eo_error_memory(error) : code;
+  EO_TRY(eo_flank_table_connect(table, width, error));
+  if (fill_ahead(table, result))
+    return eo_error_memory(error);
+  EO_TRY(measure(table, smallest, error));
+  return make_coefficients(table) ? eo_error_memory(error) : EO_OK;
 }

@@ -374,21 +374,21 @@ static void build(struct builder *builder)
   mark_nodes(builder);
 }
 
+static enum eo_code lay_out(struct builder *builder)
+{
+  EO_TRY(plan(builder));
+  EO_TRY(allocate(builder));
+  build(builder);
+  return list_boundary(builder);
+}
+
 enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member,
                              double bore_radius, const struct eo_section_settings *settings, struct eo_error *error)
 {
   struct builder builder = {.section = section, .geometry = geometry, .settings = settings, .member = member};
   *section = (struct eo_section){.bore_radius = bore_radius};
-  enum eo_code code = check(&builder, error);
-  if (code)
-    return code;
-  code = plan(&builder);
-  if (!code)
-    code = allocate(&builder);
-  if (!code)
-    build(&builder);
-  if (!code)
-    code = list_boundary(&builder);
+  EO_TRY(check(&builder, error));
+  enum eo_code code = lay_out(&builder);
   for (int t = 0; t < settings->teeth; t++) {
     free(builder.tooth[t].core);
     free(builder.tooth[t].side[0]);

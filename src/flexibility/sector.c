@@ -285,35 +285,37 @@ static void free_blocks(struct blocks *blocks)
   free(blocks->value);
 }
 
+static enum eo_code fill(struct eo_sector *sector, const struct eo_material *material, enum eo_sector_extent extent,
+                         struct blocks *blocks, struct eo_error *error)
+{
+  const struct eo_section *section = sector->section;
+  sector->frame = malloc((size_t)section->nodes * sizeof *sector->frame);
+  sector->free = malloc((size_t)section->nodes * sizeof *sector->free);
+  if (!sector->frame || !sector->free)
+    return EO_ERROR_MEMORY;
+  set_frames(sector);
+  number_nodes(sector, extent);
+  EO_TRY(number_unknowns(sector));
+  EO_TRY(find_neighbours(sector, extent, blocks));
+  for (int q = 0; q < section->quads; q++) {
+    double k[EO_BRICK_NODES][EO_BRICK_NODES][9];
+    if (!belongs(section, extent, q))
+      continue;
+    if (brick_stiffness(sector, section->quad + 4 * q, material, k))
+      return eo_error_set(error, EO_ERROR_NUMERIC, "",
+                          "The finite-element mesh folds: the tooth root is too unusual for it.");
+    add_brick(sector, section->quad + 4 * q, k, blocks);
+  }
+  return assemble(sector, blocks);
+}
+
 enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *section, int layers, double width,
                             double twist, const struct eo_material *material, enum eo_sector_extent extent,
                             struct eo_error *error)
 {
   struct blocks blocks = {0};
-  enum eo_code code = EO_ERROR_MEMORY;
   *sector = (struct eo_sector){.section = section, .layers = layers, .width = width, .twist = twist};
-  sector->frame = malloc((size_t)section->nodes * sizeof *sector->frame);
-  sector->free = malloc((size_t)section->nodes * sizeof *sector->free);
-  if (!sector->frame || !sector->free)
-    goto out;
-  set_frames(sector);
-  number_nodes(sector, extent);
-  code = number_unknowns(sector);
-  if (!code)
-    code = find_neighbours(sector, extent, &blocks);
-  for (int q = 0; q < section->quads && !code; q++) {
-    double k[EO_BRICK_NODES][EO_BRICK_NODES][9];
-    if (!belongs(section, extent, q))
-      continue;
-    if (brick_stiffness(sector, section->quad + 4 * q, material, k))
-      code = eo_error_set(error, EO_ERROR_NUMERIC, "",
-                          "The finite-element mesh folds: the tooth root is too unusual for it.");
-    else
-      add_brick(sector, section->quad + 4 * q, k, &blocks);
-  }
-  if (!code)
-    code = assemble(sector, &blocks);
-out:
+  enum eo_code code = fill(sector, material, extent, &blocks, error);
   free_blocks(&blocks);
   if (code)
     eo_sector_done(sector);
