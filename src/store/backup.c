@@ -227,15 +227,19 @@ static enum eo_code bring_to_disk(const char *path, struct eo_error *error)
   return code;
 }
 
+static enum eo_code fill_archive(struct writing *writing, const char *copied, const char *part, int64_t design,
+                                 struct eo_error *error)
+{
+  EO_TRY(open_archive(writing, part, error));
+  EO_TRY(add_all(writing, copied, design, error));
+  return archive_write_close(writing->archive) == ARCHIVE_OK ? EO_OK : archive_fault(writing->archive, error);
+}
+
 /* Complete beside its place, then there: nobody takes half of it for a backup. */
 static enum eo_code write_archive(struct writing *writing, const char *path, const char *part, const char *copied,
                                   int64_t design, struct eo_error *error)
 {
-  enum eo_code code = open_archive(writing, part, error);
-  if (!code)
-    code = add_all(writing, copied, design, error);
-  if (!code && archive_write_close(writing->archive) != ARCHIVE_OK)
-    code = archive_fault(writing->archive, error);
+  enum eo_code code = fill_archive(writing, copied, part, design, error);
   archive_write_free(writing->archive);
   eo_store_close(writing->copy);
   if (!code)

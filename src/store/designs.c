@@ -8,15 +8,6 @@
 #define COLUMNS "id, revision, name, document, created, updated"
 #define NOW "strftime('%Y-%m-%dT%H:%M:%fZ', 'now')"
 
-static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_error *error)
-{
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
-}
-
 /* Hands every row over; *rows: how many there were. */
 static enum eo_code visit_all(struct eo_statement statement, eo_store_visit_design *visit, void *context, int *rows,
                               struct eo_error *error)
@@ -67,8 +58,8 @@ enum eo_code eo_store_add_design(struct eo_store *store, const char *name, const
                                  eo_store_visit_design *visit, void *context, enum eo_design_outcome *outcome,
                                  struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, add(store, name, document, most, visit, context, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, add(store, name, document, most, visit, context, outcome, error), error);
 }
 
 /* What stands in the way of a change, if anything. */
@@ -102,8 +93,8 @@ enum eo_code eo_store_change_design(struct eo_store *store, int64_t id, int64_t 
                                     const char *document, eo_store_visit_design *visit, void *context,
                                     enum eo_design_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, change(store, id, expected, name, document, visit, context, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, change(store, id, expected, name, document, visit, context, outcome, error), error);
 }
 
 /* Recordings are not thrown away with the design they belong to. */
@@ -129,8 +120,8 @@ static enum eo_code remove_design(struct eo_store *store, int64_t id, int64_t ex
 enum eo_code eo_store_remove_design(struct eo_store *store, int64_t id, int64_t expected,
                                     enum eo_design_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, remove_design(store, id, expected, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, remove_design(store, id, expected, outcome, error), error);
 }
 
 enum eo_code eo_store_list_designs(struct eo_store *store, int64_t before, int limit, eo_store_visit_design *visit,

@@ -222,6 +222,14 @@ static enum eo_code verify(struct eo_store *store, const struct eo_stored_evalua
   return strcmp(digest, expected) == 0 ? EO_OK : damaged(store, row->id, error);
 }
 
+/* The values of a row whose head and modification are read. */
+static enum eo_code read_verified(struct eo_store *store, struct eo_stored_evaluation *row, const char *digest,
+                                  struct eo_error *error)
+{
+  EO_TRY(read_all_raw(store, row, error));
+  return verify(store, row, digest, error);
+}
+
 enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, const char *modification,
                                       struct eo_stored_evaluation *row, struct eo_error *error)
 {
@@ -238,9 +246,7 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
   }
   enum eo_code code = eo_statement_end(&statement, error);
   if (!code && found.id)
-    code = read_all_raw(store, &found, error);
-  if (!code && found.id)
-    code = verify(store, &found, digest, error);
+    code = read_verified(store, &found, digest, error);
   if (code)
     return code;
   found.modification = row->modification;
@@ -262,19 +268,15 @@ enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct 
     snprintf(digest, sizeof digest, "%s", eo_column_text(&statement, 4));
     eo_text_add(modification, eo_column_text(&statement, 5));
   }
-  enum eo_code code = eo_statement_end(&statement, error);
-  if (!code && modification->failed)
-    code = eo_error_memory(error);
-  if (!code && !found.id)
-    code = damaged(store, id, error);
-  if (!code)
-    code = read_all_raw(store, &found, error);
+  EO_TRY(eo_statement_end(&statement, error));
+  if (modification->failed)
+    return eo_error_memory(error);
+  if (!found.id)
+    return damaged(store, id, error);
   found.modification = modification->data ? modification->data + start : "";
-  if (!code)
-    code = verify(store, &found, digest, error);
-  if (!code)
-    *row = found;
-  return code;
+  EO_TRY(read_verified(store, &found, digest, error));
+  *row = found;
+  return EO_OK;
 }
 
 static enum eo_code add_values(struct eo_store *store, const struct eo_stored_evaluation *row, struct eo_error *error)

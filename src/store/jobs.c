@@ -115,15 +115,11 @@ enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool
 /* A job of an older model took another path. */
 static enum eo_code forget_path(struct eo_store *store, int64_t job, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM candidate WHERE job = ?", "i", job);
-  if (!code)
-    code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job = ?", "i", job);
-  if (!code)
-    code = EO_STATEMENT_RUN(store, error, "DELETE FROM variant WHERE job = ?", "i", job);
-  return code ? code
-              : EO_STATEMENT_RUN(store, error,
-                                 "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i",
-                                 job);
+  EO_TRY(EO_STATEMENT_RUN(store, error, "DELETE FROM candidate WHERE job = ?", "i", job));
+  EO_TRY(EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job = ?", "i", job));
+  EO_TRY(EO_STATEMENT_RUN(store, error, "DELETE FROM variant WHERE job = ?", "i", job));
+  return EO_STATEMENT_RUN(store, error,
+                          "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i", job);
 }
 
 enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *job, bool *resumed,
@@ -136,17 +132,14 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
     same = eo_column_integer(&statement, 0) != 0;
     *resumed = same && eo_column_integer(&statement, 1);
   }
-  enum eo_code code = eo_statement_end(&statement, error);
-  if (!code && !there)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job->id);
-  if (!code)
-    code = eo_store_claim_job(store, job->id, &taken, error);
-  if (!code && !taken)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "Another process works on job %lld.", (long long)job->id);
-  if (!code && !same)
-    code = forget_path(store, job->id, error);
-  if (code)
-    return code;
+  EO_TRY(eo_statement_end(&statement, error));
+  if (!there)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job->id);
+  EO_TRY(eo_store_claim_job(store, job->id, &taken, error));
+  if (!taken)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Another process works on job %lld.", (long long)job->id);
+  if (!same)
+    EO_TRY(forget_path(store, job->id, error));
   statement = eo_statement_begin(
       store,
       "UPDATE job SET state = 'running', problem = nullif(?, 0), study = ?, space = ?, updated = " EO_NOW ","

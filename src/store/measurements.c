@@ -10,15 +10,6 @@
 
 #define COLUMNS "id, design, digest, label, torque_Nm, speed_rad_s, ifnull(layout, ''), pair, summary, created"
 
-static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_error *error)
-{
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
-}
-
 static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurement *measurement,
                                struct eo_error *error)
 {
@@ -161,12 +152,10 @@ static enum eo_code add(struct eo_store *store, const struct eo_stored_measureme
     *outcome = EO_MEASUREMENT_KNOWN;
     return code;
   }
-  code = insert(store, measurement, &id, error);
-  if (!code)
-    code = eo_measurement_folder_keep(store, folder, id, error);
-  if (!code)
-    *kept = id;
-  return code ? code : eo_store_find_measurement(store, id, visit, context, outcome, error);
+  EO_TRY(insert(store, measurement, &id, error));
+  EO_TRY(eo_measurement_folder_keep(store, folder, id, error));
+  *kept = id;
+  return eo_store_find_measurement(store, id, visit, context, outcome, error);
 }
 
 enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_stored_measurement *measurement,
@@ -174,12 +163,10 @@ enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_st
                                       enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int64_t kept = 0;
-  enum eo_code code = eo_measurement_folder_flush(folder, measurement->files, error);
-  if (!code)
-    code = eo_store_begin_lasting(store, error);
-  if (code)
-    return code;
-  code = close(store, add(store, measurement, folder, &kept, visit, context, outcome, error), error);
+  EO_TRY(eo_measurement_folder_flush(folder, measurement->files, error));
+  EO_TRY(eo_store_begin_lasting(store, error));
+  enum eo_code code = eo_store_end(store, add(store, measurement, folder, &kept, visit, context, outcome, error),
+                                   error);
   if (code && kept)
     eo_measurement_folder_give_back(store, folder, kept);
   return code;
@@ -202,7 +189,7 @@ enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enu
   enum eo_code code = eo_store_begin_lasting(store, error);
   if (code)
     return code;
-  code = close(store, remove_row(store, id, outcome, error), error);
+  code = eo_store_end(store, remove_row(store, id, outcome, error), error);
   if (*outcome == EO_MEASUREMENT_DONE && code)
     eo_measurement_folder_mark(store, id, false, NULL);
   else if (*outcome == EO_MEASUREMENT_DONE)

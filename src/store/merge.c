@@ -123,11 +123,7 @@ enum eo_code eo_store_merge(struct eo_store *store, const char *directory, struc
   EO_TRY(EO_STATEMENT_RUN(store, error, "ATTACH DATABASE ? AS other", "t", path));
   enum eo_code code = eo_store_begin(store, error);
   if (!code)
-    code = merge(store, counts, error);
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
+    code = eo_store_end(store, merge(store, counts, error), error);
   enum eo_code end = EO_STATEMENT_RUN(store, code ? NULL : error, "DETACH DATABASE other", "");
   return code ? code : end;
 }

@@ -7,16 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Ends a transaction as code says. */
-static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_error *error)
-{
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
-}
-
 static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
                                   enum eo_job_outcome *outcome, struct eo_error *error)
 {
@@ -87,8 +77,8 @@ enum eo_code eo_queue_add(struct eo_store *store, const struct eo_queue_entry *e
 {
   *id = 0;
   *outcome = EO_JOB_OUTCOME_DONE;
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, add(store, entry, most, id, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, add(store, entry, most, id, outcome, error), error);
 }
 
 enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64_t *id, struct eo_error *error)
@@ -105,7 +95,7 @@ enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64
       "t", eo_store_job_kind_name(kind));
   while (eo_statement_step(&statement))
     *id = eo_column_integer(&statement, 0);
-  code = close(store, eo_statement_end(&statement, error), error);
+  code = eo_store_end(store, eo_statement_end(&statement, error), error);
   if (code)
     *id = 0;
   return code;
@@ -179,7 +169,7 @@ enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *
     if (!code && more)
       code = recover_one(store, id, attempts, fault, queued, error);
   }
-  return close(store, code, error);
+  return eo_store_end(store, code, error);
 }
 
 static enum eo_code find_state(struct eo_store *store, int64_t id, enum eo_job_state *state, enum eo_job_kind *kind,
@@ -224,8 +214,8 @@ static enum eo_code cancel(struct eo_store *store, int64_t id, enum eo_job_outco
 
 enum eo_code eo_queue_cancel(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, cancel(store, id, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, cancel(store, id, outcome, error), error);
 }
 
 static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome,
@@ -241,25 +231,23 @@ static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum
     *outcome = EO_JOB_OUTCOME_STATE;
     return EO_OK;
   }
-  code = count_waiting(store, kind, &waiting, error);
-  if (!code && waiting >= most) {
+  EO_TRY(count_waiting(store, kind, &waiting, error));
+  if (waiting >= most) {
     *outcome = EO_JOB_OUTCOME_FULL;
     return EO_OK;
   }
-  return code ? code
-              : EO_STATEMENT_RUN(
-                    store, error,
-                    "UPDATE job SET state = 'queued', served = 1, stop = 0, stopped = '', error = NULL, started = NULL,"
-                    " unclean = 0,"
-                    " finished = NULL, updated = " EO_NOW " WHERE id = ?",
-                    "i", id);
+  return EO_STATEMENT_RUN(
+      store, error,
+      "UPDATE job SET state = 'queued', served = 1, stop = 0, stopped = '', error = NULL, started = NULL, unclean = 0,"
+      " finished = NULL, updated = " EO_NOW " WHERE id = ?",
+      "i", id);
 }
 
 enum eo_code eo_queue_retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome,
                             struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, retry(store, id, most, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, retry(store, id, most, outcome, error), error);
 }
 
 static enum eo_code clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy,
@@ -268,32 +256,30 @@ static enum eo_code clone(struct eo_store *store, int64_t id, const int *priorit
   enum eo_job_state state;
   enum eo_job_kind kind;
   int64_t waiting = 0;
-  enum eo_code code = find_state(store, id, &state, &kind, outcome, error);
-  if (code || *outcome)
-    return code;
-  code = count_waiting(store, kind, &waiting, error);
-  if (!code && waiting >= most) {
+  EO_TRY(find_state(store, id, &state, &kind, outcome, error));
+  if (*outcome)
+    return EO_OK;
+  EO_TRY(count_waiting(store, kind, &waiting, error));
+  if (waiting >= most) {
     *outcome = EO_JOB_OUTCOME_FULL;
     return EO_OK;
   }
-  if (!code)
-    code =
-        EO_STATEMENT_RUN(store, error,
-                         "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state)"
-                         " SELECT kind, design, spec, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE "
-                         "priority END, 'queued'"
-                         " FROM job WHERE id = ?1",
-                         "inn", id, priority != NULL, priority ? *priority : 0);
+  EO_TRY(EO_STATEMENT_RUN(store, error,
+                          "INSERT INTO job (kind, design, spec, name, algorithm, pair, fresh, served, priority, state)"
+                          " SELECT kind, design, spec, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE "
+                          "priority END, 'queued'"
+                          " FROM job WHERE id = ?1",
+                          "inn", id, priority != NULL, priority ? *priority : 0));
   *copy = sqlite3_last_insert_rowid(store->handle);
-  return code;
+  return EO_OK;
 }
 
 enum eo_code eo_queue_clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy,
                             enum eo_job_outcome *outcome, struct eo_error *error)
 {
   *copy = 0;
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, clone(store, id, priority, most, copy, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, clone(store, id, priority, most, copy, outcome, error), error);
 }
 
 static enum eo_code remove_job(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
@@ -312,8 +298,8 @@ static enum eo_code remove_job(struct eo_store *store, int64_t id, enum eo_job_o
 
 enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin_lasting(store, error);
-  return code ? code : close(store, remove_job(store, id, outcome, error), error);
+  EO_TRY(eo_store_begin_lasting(store, error));
+  return eo_store_end(store, remove_job(store, id, outcome, error), error);
 }
 
 enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error)

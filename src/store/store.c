@@ -38,32 +38,26 @@ static enum eo_code expect_tables(struct eo_store *store, int schema, struct eo_
 {
   struct stat status = {0};
   int pages = 0, page_size = 0, tables = 0;
-  enum eo_code code = read_integer(store, "PRAGMA page_count", &pages, error);
-  if (!code)
-    code = read_integer(store, "PRAGMA page_size", &page_size, error);
-  if (code || (!schema && pages <= 1 && (stat(store->path, &status) != 0 || status.st_size <= page_size)))
-    return code;
-  code = read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables,
-                      error); /* another process may be making it */
-  return code || tables
-             ? code
-             : eo_error_set(error, EO_ERROR_FILE, "",
-                            "%.200s is damaged: it has content, but no table can be found in it. Put a copy back that "
-                            "is whole, or move the file to another place to begin anew.",
-                            store->path);
+  EO_TRY(read_integer(store, "PRAGMA page_count", &pages, error));
+  EO_TRY(read_integer(store, "PRAGMA page_size", &page_size, error));
+  if (!schema && pages <= 1 && (stat(store->path, &status) != 0 || status.st_size <= page_size))
+    return EO_OK;
+  /* another process may be making it */
+  EO_TRY(read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables, error));
+  return tables ? EO_OK
+                : eo_error_set(error, EO_ERROR_FILE, "",
+                               "%.200s is damaged: it has content, but no table can be found in it. Put a copy back "
+                               "that is whole, or move the file to another place to begin anew.",
+                               store->path);
 }
 
 /* Whose database this is and how old; both 0 in a new file. */
 static enum eo_code identify(struct eo_store *store, int *schema, struct eo_error *error)
 {
   int application = 0, tables = 0;
-  enum eo_code code = read_integer(store, "PRAGMA application_id", &application, error);
-  if (!code)
-    code = read_integer(store, "PRAGMA user_version", schema, error);
-  if (!code)
-    code = read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables, error);
-  if (code)
-    return code;
+  EO_TRY(read_integer(store, "PRAGMA application_id", &application, error));
+  EO_TRY(read_integer(store, "PRAGMA user_version", schema, error));
+  EO_TRY(read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables, error));
   if (application != APPLICATION_ID && (application || tables || *schema))
     return eo_error_set(error, EO_ERROR_FILE, "", "%.200s is the database of another program.", store->path);
   if (*schema > eo_store_schema)
@@ -78,11 +72,11 @@ static enum eo_code apply_steps(struct eo_store *store, struct eo_error *error)
 {
   int schema = 0;
   char mark[96];
-  enum eo_code code = identify(store, &schema, error);
-  for (; schema < eo_store_schema && !code; schema++)
-    code = execute(store, eo_store_migrations[schema], error);
+  EO_TRY(identify(store, &schema, error));
+  for (; schema < eo_store_schema; schema++)
+    EO_TRY(execute(store, eo_store_migrations[schema], error));
   snprintf(mark, sizeof mark, "PRAGMA application_id = %d; PRAGMA user_version = %d", APPLICATION_ID, eo_store_schema);
-  return code ? code : execute(store, mark, error);
+  return execute(store, mark, error);
 }
 
 static enum eo_code check_references(struct eo_store *store, struct eo_error *error)
@@ -95,30 +89,27 @@ static enum eo_code check_references(struct eo_store *store, struct eo_error *er
                                         "%.150s is damaged: a row refers to one that is not there.", store->path);
 }
 
+static enum eo_code apply_and_check(struct eo_store *store, struct eo_error *error)
+{
+  EO_TRY(apply_steps(store, error));
+  return check_references(store, error);
+}
+
 static enum eo_code migrate_at_once(struct eo_store *store, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
-  if (!code)
-    code = apply_steps(store, error);
-  if (!code)
-    code = check_references(store, error);
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
+  EO_TRY(eo_store_begin(store, error));
+  return eo_store_end(store, apply_and_check(store, error), error);
 }
 
 /* A step that replaces a table drops the old one: with references watched that would delete what refers to it. */
 static enum eo_code migrate(struct eo_store *store, struct eo_error *error)
 {
   int schema = 0;
-  enum eo_code code = identify(store, &schema, error);
-  if (code || schema == eo_store_schema)
-    return code;
-  code = execute(store, "PRAGMA foreign_keys = OFF", error);
-  if (!code)
-    code = migrate_at_once(store, error);
+  EO_TRY(identify(store, &schema, error));
+  if (schema == eo_store_schema)
+    return EO_OK;
+  EO_TRY(execute(store, "PRAGMA foreign_keys = OFF", error));
+  enum eo_code code = migrate_at_once(store, error);
   enum eo_code end = execute(store, "PRAGMA foreign_keys = ON", code ? NULL : error);
   return code ? code : end;
 }
@@ -127,12 +118,12 @@ static enum eo_code migrate(struct eo_store *store, struct eo_error *error)
 static enum eo_code expect_present(struct eo_store *store, struct eo_error *error)
 {
   int schema = 0;
-  enum eo_code code = identify(store, &schema, error);
-  if (!code && schema != eo_store_schema)
-    return eo_error_set(error, EO_ERROR_FILE, "",
-                        "%.200s has the older schema %d and cannot be brought to %d, because it cannot be written.",
-                        store->path, schema, eo_store_schema);
-  return code;
+  EO_TRY(identify(store, &schema, error));
+  return schema == eo_store_schema
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_FILE, "",
+                            "%.200s has the older schema %d and cannot be brought to %d, because it cannot be written.",
+                            store->path, schema, eo_store_schema);
 }
 
 static enum eo_code make_folder(const char *directory, struct eo_error *error)
@@ -248,20 +239,15 @@ static void use_sums(struct eo_store *store)
 static enum eo_code open_for_writing(struct eo_store *store, int flags, struct eo_error *error)
 {
   int schema = 0;
-  enum eo_code code = expect_no_lone_journal(store, error);
-  if (!code)
-    code = connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error);
-  if (!code)
-    code = identify(store, &schema, error);
-  if (!code)
-    code = use_journal(store, error);
-  if (!code && schema && schema < eo_store_schema)
-    code = keep_copy(store, schema, error);
-  if (!code)
-    code = migrate(store, error);
-  if (!code)
-    use_sums(store);
-  return code;
+  EO_TRY(expect_no_lone_journal(store, error));
+  EO_TRY(connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error));
+  EO_TRY(identify(store, &schema, error));
+  EO_TRY(use_journal(store, error));
+  if (schema && schema < eo_store_schema)
+    EO_TRY(keep_copy(store, schema, error));
+  EO_TRY(migrate(store, error));
+  use_sums(store);
+  return EO_OK;
 }
 
 /* "file:PATH?immutable=1": a database in WAL mode cannot be read in the usual way where its journal cannot be made. */
@@ -312,6 +298,16 @@ static enum eo_code name_files(struct eo_store *store, const char *directory, st
   return EO_OK;
 }
 
+static enum eo_code open_folder(struct eo_store *store, const char *directory, enum eo_store_mode mode,
+                                struct eo_error *error)
+{
+  EO_TRY(name_files(store, directory, error));
+  if (mode != EO_STORE_WRITE)
+    return open_for_reading(store, error);
+  EO_TRY(make_folder(directory, error));
+  return open_for_writing(store, SQLITE_OPEN_CREATE, error);
+}
+
 enum eo_code eo_store_open(struct eo_store **result, const char *directory, enum eo_store_mode mode,
                            struct eo_error *error)
 {
@@ -319,11 +315,7 @@ enum eo_code eo_store_open(struct eo_store **result, const char *directory, enum
   if (!store)
     return eo_error_memory(error);
   store->lock = -1;
-  enum eo_code code = name_files(store, directory, error);
-  if (!code && mode == EO_STORE_WRITE)
-    code = make_folder(directory, error);
-  if (!code)
-    code = mode == EO_STORE_WRITE ? open_for_writing(store, SQLITE_OPEN_CREATE, error) : open_for_reading(store, error);
+  enum eo_code code = open_folder(store, directory, mode, error);
   if (code)
     eo_store_close(store);
   else
@@ -376,10 +368,9 @@ enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error)
 
 enum eo_code eo_store_commit(struct eo_store *store, struct eo_error *error)
 {
-  enum eo_code code = execute(store, "COMMIT", error);
-  if (!code)
-    end_lasting(store);
-  return code;
+  EO_TRY(execute(store, "COMMIT", error));
+  end_lasting(store);
+  return EO_OK;
 }
 
 void eo_store_rollback(struct eo_store *store)
@@ -387,6 +378,15 @@ void eo_store_rollback(struct eo_store *store)
   if (!sqlite3_get_autocommit(store->handle))
     sqlite3_exec(store->handle, "ROLLBACK", NULL, NULL, NULL);
   end_lasting(store);
+}
+
+enum eo_code eo_store_end(struct eo_store *store, enum eo_code code, struct eo_error *error)
+{
+  if (!code)
+    code = eo_store_commit(store, error);
+  if (code)
+    eo_store_rollback(store);
+  return code;
 }
 
 /* Pages a step: a few milliseconds, after which others have their turn. */

@@ -35,6 +35,10 @@ enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error);
 enum eo_code eo_store_commit(struct eo_store *store, struct eo_error *error);
 void eo_store_rollback(struct eo_store *store);
 
+/* Ends a transaction as `code` says of what was done in it: commits, or rolls back, also where the commit fails.
+   Returns what went wrong first. */
+enum eo_code eo_store_end(struct eo_store *store, enum eo_code code, struct eo_error *error);
+
 /* The same for what somebody is told that it is kept: its commit is on the disk when it returns, whatever happens to
    the power. */
 enum eo_code eo_store_begin_lasting(struct eo_store *store, struct eo_error *error);
