@@ -68,6 +68,15 @@ static enum eo_code find_asked(const struct eo_reproduction_job *job, struct ask
              : eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job->job);
 }
 
+static enum eo_code keep_and_end(const struct eo_reproduction_job *job, struct eo_stored_job *row, const char *result,
+                                 struct eo_error *error)
+{
+  row->state = EO_JOB_DONE;
+  row->study = "";
+  EO_TRY(eo_store_keep_result(job->store, job->job, result, error));
+  return eo_store_update_job(job->store, row, error);
+}
+
 /* Result and end are one transaction. */
 static enum eo_code conclude(const struct eo_reproduction_job *job, struct eo_stored_job *row, const json_t *document,
                              struct eo_error *error)
@@ -75,17 +84,8 @@ static enum eo_code conclude(const struct eo_reproduction_job *job, struct eo_st
   struct eo_text text = {0};
   eo_json_write(&text, document, EO_JSON_COMPACT);
   enum eo_code code = text.failed ? eo_error_memory(error) : eo_store_begin_lasting(job->store, error);
-  bool open = !code;
-  row->state = EO_JOB_DONE;
-  row->study = "";
   if (!code)
-    code = eo_store_keep_result(job->store, job->job, text.data, error);
-  if (!code)
-    code = eo_store_update_job(job->store, row, error);
-  if (!code)
-    code = eo_store_commit(job->store, error);
-  if (code && open)
-    eo_store_rollback(job->store);
+    code = eo_store_end(job->store, keep_and_end(job, row, text.data, error), error);
   eo_text_done(&text);
   return code;
 }
@@ -94,12 +94,7 @@ static enum eo_code begin(struct eo_store *store, struct eo_stored_job *row, str
 {
   bool resumed;
   EO_TRY(eo_store_begin(store, error));
-  enum eo_code code = eo_store_begin_job(store, row, &resumed, error);
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
+  return eo_store_end(store, eo_store_begin_job(store, row, &resumed, error), error);
 }
 
 enum eo_code eo_reproduction_job_run(const struct eo_reproduction_job *job, struct eo_error *error)

@@ -135,16 +135,22 @@ static enum eo_code take_result(void *context, const struct eo_stored_job *store
   return wanted->result.failed ? eo_error_memory(error) : EO_OK;
 }
 
+static enum eo_code read_result(struct eo_store *store, struct wanted_job *wanted, json_t **document,
+                                struct eo_error *error)
+{
+  EO_TRY(eo_store_each_job(store, 0, take_result, wanted, error));
+  if (!wanted->found)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)wanted->job);
+  if (!wanted->result.size)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld has no result yet.", (long long)wanted->job);
+  *document = eo_json_parse(wanted->result.data, wanted->result.size, error);
+  return *document ? EO_OK : EO_ERROR_FILE;
+}
+
 enum eo_code eo_records_result(struct eo_store *store, int64_t job, json_t **document, struct eo_error *error)
 {
   struct wanted_job wanted = {.job = job};
-  enum eo_code code = eo_store_each_job(store, 0, take_result, &wanted, error);
-  if (!code && !wanted.found)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job);
-  if (!code && !wanted.result.size)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld has no result yet.", (long long)job);
-  if (!code && !(*document = eo_json_parse(wanted.result.data, wanted.result.size, error)))
-    code = EO_ERROR_FILE;
+  enum eo_code code = read_result(store, &wanted, document, error);
   eo_text_done(&wanted.result);
   return code;
 }
@@ -232,14 +238,20 @@ static enum eo_code add_row(void *context, const struct eo_stored_evaluation *ev
   return append(list->rows, eo_outline_encode(&evaluation_outline, &row), error);
 }
 
+static enum eo_code collect_rows(struct eo_store *store, struct row_list *list, struct eo_error *error)
+{
+  if (!list->rows)
+    return eo_error_memory(error);
+  EO_TRY(eo_store_each_problem(store, take_problem, list, error));
+  if (!list->cases)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)list->problem);
+  return eo_store_each_evaluation(store, list->problem, 0, NULL, list->scenarios, list->cases, add_row, list, error);
+}
+
 enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **document, struct eo_error *error)
 {
   struct row_list list = {.problem = problem, .rows = json_array()};
-  enum eo_code code = list.rows ? eo_store_each_problem(store, take_problem, &list, error) : eo_error_memory(error);
-  if (!code && !list.cases)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)problem);
-  if (!code)
-    code = eo_store_each_evaluation(store, problem, 0, NULL, list.scenarios, list.cases, add_row, &list, error);
+  enum eo_code code = collect_rows(store, &list, error);
   const struct written_rows rows = {list.spec ? list.spec : json_null(), list.rows};
   json_t *all = eo_outline_encode(&eo_outline_problem_rows, &rows);
   if (!code && !all)

@@ -67,12 +67,8 @@ enum eo_code eo_history_prune(struct eo_store *store, const struct eo_prune *pru
     EO_TRY(eo_store_remove_variants(store, prune->outdated ? EO_EVALUATOR_VERSION : 0, prune->unused, &pruned->rows,
                                     error));
   EO_TRY(eo_store_begin(store, error));
-  enum eo_code code = remove_rows(store, prune, &pruned->rows, error);
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code ? code : eo_store_compact(store, error);
+  EO_TRY(eo_store_end(store, remove_rows(store, prune, &pruned->rows, error), error));
+  return eo_store_compact(store, error);
 }
 
 static const struct eo_outline_row rows[] = {

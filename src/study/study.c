@@ -72,7 +72,6 @@ static enum eo_code work(void *context, int thread, int item, struct eo_error *e
 /* Rows of the batch behind those already told, and which of them have to be computed. */
 static enum eo_code lay_out(struct study *study, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
   if (study->batch.count > study->missing_capacity) {
     int *more = realloc(study->missing, sizeof *more * (size_t)study->batch.count);
     if (!more)
@@ -82,20 +81,18 @@ static enum eo_code lay_out(struct study *study, struct eo_error *error)
   }
   study->missing_count = 0;
   study->target = study->race.first ? study->race.first : study->result->scenarios;
-  for (int i = 0; i < study->batch.count && !code; i++) {
+  for (int i = 0; i < study->batch.count; i++) {
     struct eo_modification modification;
     struct eo_row_data *row;
     eo_study_space_apply(&study->result->space, &study->plan->design->modification, study->batch.candidates[i].x,
                          &modification);
-    code = eo_rows_add(&study->row, &modification, study->plan->design->gear_pair.ends, &row, error);
-    if (!code)
-      code = eo_study_look_up(study, row, error);
-    if (!code)
-      memcpy(row->x, study->batch.candidates[i].x, sizeof *row->x * (size_t)study->result->space.count);
-    if (!code && !row->point.evaluation)
+    EO_TRY(eo_rows_add(&study->row, &modification, study->plan->design->gear_pair.ends, &row, error));
+    EO_TRY(eo_study_look_up(study, row, error));
+    memcpy(row->x, study->batch.candidates[i].x, sizeof *row->x * (size_t)study->result->space.count);
+    if (!row->point.evaluation)
       study->missing[study->missing_count++] = study->told + i;
   }
-  return code;
+  return EO_OK;
 }
 
 static enum eo_code compute(struct study *study, struct eo_error *error)
@@ -177,21 +174,20 @@ static void sum_up(struct study *study, enum eo_job_state state, const char *sto
   study->job.best_value = study->result->best.there ? study->result->best.rank : NAN;
 }
 
+static enum eo_code write_batch(struct study *study, bool whole, struct eo_error *error)
+{
+  EO_TRY(save_rows(study, whole, error));
+  if (whole)
+    EO_TRY(log_predictions(study, error));
+  sum_up(study, EO_JOB_RUNNING, "");
+  return eo_store_update_job(study->plan->store, &study->job, error);
+}
+
 static enum eo_code save_batch(struct study *study, bool whole, struct eo_error *error)
 {
   double start = wall();
-  enum eo_code code = eo_store_begin(study->plan->store, error);
-  if (!code)
-    code = save_rows(study, whole, error);
-  if (!code && whole)
-    code = log_predictions(study, error);
-  sum_up(study, EO_JOB_RUNNING, "");
-  if (!code)
-    code = eo_store_update_job(study->plan->store, &study->job, error);
-  if (!code)
-    code = eo_store_commit(study->plan->store, error);
-  if (code)
-    eo_store_rollback(study->plan->store);
+  EO_TRY(eo_store_begin(study->plan->store, error));
+  enum eo_code code = eo_store_end(study->plan->store, write_batch(study, whole, error), error);
   study->result->store_seconds += wall() - start;
   return code;
 }
@@ -232,34 +228,36 @@ static enum eo_code tell(struct study *study, struct eo_error *error)
   return code ? code : note_best(study, error);
 }
 
-/* One batch; *more is false when the optimizer is through. EO_ERROR_CANCELLED: a stop was asked for. */
+static enum eo_code compute_batch(struct study *study, struct eo_error *error)
+{
+  EO_TRY(lay_out(study, error));
+  EO_TRY(compute(study, error));
+  if (!study->race.first)
+    return EO_OK;
+  eo_race_choose(study);
+  return compute(study, error);
+}
+
+/* One batch; *more is false when the optimizer is through. EO_ERROR_CANCELLED: a stop was asked for; what was computed
+   until then is kept. */
 static enum eo_code run_batch(struct study *study, bool *more, struct eo_error *error)
 {
   double start = wall();
-  enum eo_code code = eo_optimizer_ask(study->optimizer, &study->batch, error);
+  *more = false;
+  EO_TRY(eo_optimizer_ask(study->optimizer, &study->batch, error));
   study->result->optimizer_seconds += wall() - start;
-  *more = !code && study->batch.count > 0;
-  if (code)
-    return code;
-  if (*more)
-    code = lay_out(study, error);
-  if (!code && *more)
-    code = compute(study, error);
-  if (!code && *more && study->race.first) {
-    eo_race_choose(study);
-    code = compute(study, error);
-  }
+  *more = study->batch.count > 0;
+  enum eo_code code = *more ? compute_batch(study, error) : EO_OK;
   if (code && code != EO_ERROR_CANCELLED)
     return code;
   enum eo_code saved = save_batch(study, !code, error);
   if (code || saved || !*more)
     return saved ? saved : code;
   start = wall();
-  code = tell(study, error);
+  EO_TRY(tell(study, error));
   study->result->optimizer_seconds += wall() - start;
-  if (!code && eo_study_tell_progress(study, 0))
-    code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.");
-  return code;
+  return eo_study_tell_progress(study, 0) ? eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.")
+                                          : EO_OK;
 }
 
 static enum eo_code collect_generations(struct study *study, struct eo_error *error)
@@ -331,11 +329,10 @@ static enum eo_code finish(struct study *study, bool cancelled, struct eo_error 
                                                                                          : EO_STOP_CONVERGED;
   if (!cancelled && (study->settings.algorithm == EO_GA || study->settings.algorithm == EO_FPGA))
     result->stopped = EO_STOP_BUDGET; /* its generations are its budget */
-  enum eo_code code = collect_generations(study, error);
-  if (!code)
-    code = collect_front(study, error);
+  EO_TRY(collect_generations(study, error));
+  EO_TRY(collect_front(study, error));
   sum_up(study, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, eo_study_stop_name(result->stopped));
-  return code ? code : eo_store_update_job(study->plan->store, &study->job, error);
+  return eo_store_update_job(study->plan->store, &study->job, error);
 }
 
 static void release(struct study *study)
@@ -359,23 +356,28 @@ static void release(struct study *study)
   free(study);
 }
 
+/* Batches until the optimizer is through, or a stop is asked for. */
+static enum eo_code run(struct study *study, struct eo_error *error)
+{
+  EO_TRY(eo_study_begin(study, error));
+  EO_TRY(note_best(study, error));
+  if (eo_study_tell_progress(study, 0))
+    return EO_ERROR_CANCELLED;
+  for (bool more = true; more;)
+    EO_TRY(run_batch(study, &more, error));
+  return EO_OK;
+}
+
 enum eo_code eo_study_run(const struct eo_study_plan *plan, struct eo_study_result *result, struct eo_error *error)
 {
   struct study *study = calloc(1, sizeof *study);
-  bool more = true;
   *result = (struct eo_study_result){.knee = -1, .weighted = -1};
   if (!study)
     return eo_error_memory(error);
   study->plan = plan;
   study->result = result;
   study->started = wall();
-  enum eo_code code = eo_study_begin(study, error);
-  if (!code)
-    code = note_best(study, error);
-  if (!code && eo_study_tell_progress(study, 0))
-    code = EO_ERROR_CANCELLED;
-  while (!code && more)
-    code = run_batch(study, &more, error);
+  enum eo_code code = run(study, error);
   if (!code || code == EO_ERROR_CANCELLED)
     code = finish(study, code == EO_ERROR_CANCELLED, error);
   result->seconds = wall() - study->started;

@@ -59,27 +59,38 @@ static enum eo_code keep(struct eo_store *store, int64_t job, const json_t *docu
   return code;
 }
 
+/* What a document is made from. */
+struct making {
+  json_t *analysis;              /* of the best design; NULL: there is none */
+  struct eo_study_result result; /* with a check of its own */
+  struct eo_design *best;
+};
+
+static enum eo_code make(const struct eo_study_plan *plan, const struct eo_study_result *result,
+                         const struct eo_warnings *warnings, struct making *making, json_t **document,
+                         struct eo_error *error)
+{
+  if (!making->best)
+    return eo_error_memory(error);
+  if (eo_study_best_design(plan, result, making->best))
+    EO_TRY(analyse(plan, making->best, &making->analysis, error));
+  EO_TRY(check(plan, &making->result, error));
+  *document = eo_study_result_encode(&making->result, plan->design, making->analysis, warnings);
+  return *document ? keep(plan->store, result->job, *document, error) : eo_error_memory(error);
+}
+
 enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,
                                const struct eo_warnings *warnings, json_t **document, struct eo_error *error)
 {
-  json_t *analysis = NULL, *made = NULL;
-  struct eo_study_result checked = *result; /* with a check of its own */
-  struct eo_design *best = malloc(sizeof *best);
-  enum eo_code code = best ? EO_OK : eo_error_memory(error);
-  if (!code && eo_study_best_design(plan, result, best))
-    code = analyse(plan, best, &analysis, error);
-  if (!code)
-    code = check(plan, &checked, error);
-  if (!code && !(made = eo_study_result_encode(&checked, plan->design, analysis, warnings)))
-    code = eo_error_memory(error);
-  if (!code)
-    code = keep(plan->store, result->job, made, error);
+  json_t *made = NULL;
+  struct making making = {.result = *result, .best = malloc(sizeof *making.best)};
+  enum eo_code code = make(plan, result, warnings, &making, &made, error);
   if (document)
     *document = made;
   else
     json_decref(made);
-  eo_made_check_done(&checked.check);
-  json_decref(analysis);
-  free(best);
+  eo_made_check_done(&making.result.check);
+  json_decref(making.analysis);
+  free(making.best);
   return code;
 }
