@@ -131,13 +131,9 @@ static enum eo_code begin_job(struct variant_study *study, struct wording *wordi
 {
   EO_TRY(compose(study, wording, error));
   EO_TRY(eo_store_begin(study->run->store, error));
-  enum eo_code code = write_down(study, wording, error);
-  if (!code)
-    code = eo_store_commit(study->run->store, error);
-  if (code) {
-    eo_store_rollback(study->run->store);
+  enum eo_code code = eo_store_end(study->run->store, write_down(study, wording, error), error);
+  if (code)
     study->job.id = 0;
-  }
   study->result->job = study->job.id;
   return code;
 }

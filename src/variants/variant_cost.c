@@ -24,30 +24,34 @@ static const struct eo_outline_row cost_rows[] = {
 };
 const struct eo_outline eo_variant_cost_outline = EO_OUTLINE("StudyCost", cost_rows);
 
+static enum eo_code find_pair(const struct eo_variant_plan *plan, const json_t *values, struct eo_design *design,
+                              struct eo_preparation_cost *pair, struct eo_error *error)
+{
+  struct eo_geometry geometry;
+  if (!design || !values)
+    return eo_error_memory(error);
+  EO_TRY(eo_variant_design(plan->base, plan->axis, plan->axes, values, design, &geometry, error));
+  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design->resolution);
+  return eo_preparation_cost_find(&geometry, &design->gear_pair, &settings, pair, error);
+}
+
 static enum eo_code add_pair(const struct eo_variant_plan *plan, int variant, struct eo_variant_cost *cost,
                              struct eo_error *error)
 {
   struct eo_design *design = malloc(sizeof *design);
-  struct eo_geometry geometry;
-  struct eo_preparation_cost pair;
+  struct eo_preparation_cost pair = {0};
   json_t *values = eo_variant_values(plan, variant);
-  enum eo_code code = design && values ? EO_OK : eo_error_memory(error);
-  if (!code)
-    code = eo_variant_design(plan->base, plan->axis, plan->axes, values, design, &geometry, error);
-  if (!code) {
-    struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design->resolution);
-    code = eo_preparation_cost_find(&geometry, &design->gear_pair, &settings, &pair, error);
-  }
-  if (!code) {
-    cost->memory = fmax(cost->memory, pair.memory);
-    cost->preparation += pair.seconds;
-  } else if (code == EO_ERROR_INPUT) {
-    cost->refused_pairs++;
-    code = EO_OK;
-  }
+  enum eo_code code = find_pair(plan, values, design, &pair, error);
   json_decref(values);
   free(design);
-  return code;
+  if (code == EO_ERROR_INPUT) {
+    cost->refused_pairs++;
+    return EO_OK;
+  }
+  EO_TRY(code);
+  cost->memory = fmax(cost->memory, pair.memory);
+  cost->preparation += pair.seconds;
+  return EO_OK;
 }
 
 /* The values that a pair depends on are other ones than those of the variant before. */

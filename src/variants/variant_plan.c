@@ -389,18 +389,24 @@ json_t *eo_variant_document(const json_t *base, const struct eo_variant_axis *ax
   return document;
 }
 
+static enum eo_code read_design(const json_t *document, struct eo_design *design, struct eo_geometry *geometry,
+                                struct eo_faults *faults, struct eo_error *error)
+{
+  if (!faults)
+    return eo_error_memory(error);
+  if (!document)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The design has no place for what varies.");
+  if (!eo_design_decode(document, design, NULL, faults))
+    return eo_faults_first(faults, error);
+  return eo_design_complete(design, geometry, error);
+}
+
 enum eo_code eo_variant_design(const json_t *base, const struct eo_variant_axis *axis, int axes, const json_t *values,
                                struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
   json_t *document = eo_variant_document(base, axis, axes, values);
-  enum eo_code code = faults ? EO_OK : eo_error_memory(error);
-  if (!code && !document)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no place for what varies.");
-  if (!code && !eo_design_decode(document, design, NULL, faults))
-    code = eo_faults_first(faults, error);
-  if (!code)
-    code = eo_design_complete(design, geometry, error);
+  enum eo_code code = read_design(document, design, geometry, faults, error);
   json_decref(document);
   free(faults);
   return code;

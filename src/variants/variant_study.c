@@ -120,13 +120,20 @@ static enum eo_code keep_evaluation(struct variant_study *study, const struct eo
   return eo_store_add_evaluation(study->run->store, study->problem, &row, error);
 }
 
+static enum eo_code hash_variant(const struct eo_variant_plan *plan, int variant, char hash[EO_HASH_LENGTH + 1],
+                                 struct eo_error *error)
+{
+  json_t *values = eo_variant_values(plan, variant);
+  enum eo_code code = values ? eo_variant_hash(plan, values, hash, error) : eo_error_memory(error);
+  json_decref(values);
+  return code;
+}
+
 static enum eo_code keep_answer(struct variant_study *study, int variant, const struct eo_variant_answer *answer,
                                 struct eo_error *error)
 {
   char hash[EO_HASH_LENGTH + 1];
-  json_t *values = eo_variant_values(study->run->plan, variant);
-  enum eo_code code = values ? eo_variant_hash(study->run->plan, values, hash, error) : eo_error_memory(error);
-  json_decref(values);
+  EO_TRY(hash_variant(study->run->plan, variant, hash, error));
   for (int i = 0; i < study->scalars.count; i++)
     study->number[i] = i < answer->numbers ? answer->number[i] : NAN;
   struct eo_stored_variant row = {.design = hash,
@@ -137,13 +144,10 @@ static enum eo_code keep_answer(struct variant_study *study, int variant, const 
                                   .numbers = study->scalars.count,
                                   .number = study->number};
   memcpy(row.reason, answer->reason, sizeof row.reason);
-  if (!code)
-    code = eo_variant_open(study, error);
-  if (!code)
-    code = eo_store_add_variant(study->run->store, &row, error);
-  if (!code)
-    code = keep_evaluation(study, answer, error);
-  return code ? code : eo_variant_keep(study, variant, &row, false, error);
+  EO_TRY(eo_variant_open(study, error));
+  EO_TRY(eo_store_add_variant(study->run->store, &row, error));
+  EO_TRY(keep_evaluation(study, answer, error));
+  return eo_variant_keep(study, variant, &row, false, error);
 }
 
 /* The crew: */
@@ -173,18 +177,22 @@ static enum eo_code keep_waiting(struct variant_study *study, const struct waiti
   return code;
 }
 
+static enum eo_code write_waiting(struct variant_study *study, struct eo_error *error)
+{
+  for (int i = 0; i < study->waiting_count; i++) {
+    EO_TRY(keep_waiting(study, &study->waiting[i], error));
+    EO_TRY(eo_variant_commit(study, false, error));
+  }
+  return EO_OK;
+}
+
 /* Writes what waits, in its order. */
 static enum eo_code flush(struct variant_study *study, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
   double start = eo_variant_clock();
-  for (int i = 0; i < study->waiting_count; i++) {
-    if (!code)
-      code = keep_waiting(study, &study->waiting[i], error);
-    if (!code)
-      code = eo_variant_commit(study, false, error);
+  enum eo_code code = write_waiting(study, error);
+  for (int i = 0; i < study->waiting_count; i++)
     eo_text_done(&study->waiting[i].bytes);
-  }
   study->waiting_count = 0;
   if (!code)
     code = eo_variant_commit(study, true, error);

@@ -357,20 +357,19 @@ enum eo_code eo_variant_table_print(const struct eo_variant_table *table, struct
   struct sheet sheet = {.columns = shown, .digits = DIGITS};
   const char **headings = calloc((size_t)axes + (size_t)shown + 3, sizeof *headings);
   char(*name)[EO_SCALAR_NAME + 400] = calloc((size_t)axes + (size_t)shown, sizeof *name);
-  enum eo_code code = headings && name ? EO_OK : eo_error_memory(error);
-  for (int i = 0; i < axes + shown && !code; i++) {
+  bool room = headings && name;
+  for (int i = 0; i < axes + shown && room; i++) {
     shorten(i < axes ? table->plan.axis[i].name : table->scalars.scalar[i - axes].name, name[i], sizeof *name);
     headings[i + 1] = name[i];
   }
-  if (!code)
-    code = fill_sheet(table, store, &sheet, headings, error);
+  enum eo_code code = room ? fill_sheet(table, store, &sheet, headings, error) : eo_error_memory(error);
   if (!code)
     eo_text_table_print(&sheet.table, 0, text);
+  if (!code && shown < table->scalars.count)
+    eo_text_print(text, "%d columns more with --csv or --json.\n", table->scalars.count - shown);
   eo_text_table_done(&sheet.table);
   free(headings);
   free(name);
-  if (!code && shown < table->scalars.count)
-    eo_text_print(text, "%d columns more with --csv or --json.\n", table->scalars.count - shown);
   return code || !text->failed ? code : eo_error_memory(error);
 }
 
