@@ -230,28 +230,31 @@ static enum eo_code prepare_tracks(struct eo_angles_maker *maker, struct eo_angl
   return code;
 }
 
+static enum eo_code convert_rows(struct eo_angles_maker *maker, struct eo_angles *angles, double (*out)[3],
+                                 struct eo_error *error)
+{
+  const double rows = (double)(maker->scan->rows ? maker->scan->rows : 1);
+  int written = 0;
+  for (int count = 1; count;) {
+    EO_TRY(eo_sampler_next(&maker->sampler, maker->sample + maker->held, &count, error));
+    maker->held += count;
+    if (eo_progress_report(maker->progress, "angles", (double)maker->sampler.next / rows))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+    EO_TRY(eo_jumps_pass_on(maker, angles, count == 0, out, &written, error));
+  }
+  return written ? eo_recording_append(angles->series, out[0], written, error) : EO_OK;
+}
+
 static enum eo_code convert(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
 {
   double(*out)[3] = malloc(sizeof *out * EO_SAMPLER_BLOCK);
-  int count = 1, written = 0;
-  enum eo_code code = out ? EO_OK : eo_error_memory(error);
   for (int c = 0; c < 2; c++) {
     const struct eo_scan_column *column = &maker->scan->column[c][0];
     bool coarse = !angles->raw[c] && column->typical < 0.5 * column->quantum; /* most rows repeat the one before */
     maker->quantum[c] = coarse ? column->quantum * fabs(maker->sampler.scale[c]) : 0;
     maker->sampler.step[c] = 0;
   }
-  while (!code && count) {
-    code = eo_sampler_next(&maker->sampler, maker->sample + maker->held, &count, error);
-    maker->held += code ? 0 : count;
-    if (!code && eo_progress_report(maker->progress, "angles",
-                                    (double)maker->sampler.next / (double)(maker->scan->rows ? maker->scan->rows : 1)))
-      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-    if (!code)
-      code = eo_jumps_pass_on(maker, angles, count == 0, out, &written, error);
-  }
-  if (!code && written)
-    code = eo_recording_append(angles->series, out[0], written, error);
+  enum eo_code code = out ? convert_rows(maker, angles, out, error) : eo_error_memory(error);
   free(out);
   return code;
 }
@@ -290,6 +293,34 @@ static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
   eo_jumps_judge(maker, angles);
 }
 
+/* What the columns are found to hold, before they are read once more as angles. */
+static enum eo_code prepare(struct eo_angles_maker *maker, struct eo_angles *angles, const char *spool_directory,
+                            struct eo_error *error)
+{
+  EO_TRY(eo_sampler_init(&maker->sampler, maker->recording, maker->tracks, spool_directory, error));
+  if (maker->tracks->channel[0].track == EO_TRACK_PULSES) {
+    eo_pulses_judge(maker->sampler.pulses, maker->findings);
+    maker->scan->rows = eo_recording_rows(maker->recording);
+    return EO_OK;
+  }
+  EO_TRY(eo_scan_run(maker->scan, maker->recording, maker->tracks, maker->progress, error));
+  judge_time(maker);
+  judge_gaps(maker);
+  return prepare_tracks(maker, angles, error);
+}
+
+static enum eo_code make(struct eo_angles_maker *maker, struct eo_angles *angles, const char *spool_directory,
+                         struct eo_error *error)
+{
+  EO_TRY(prepare(maker, angles, spool_directory, error));
+  if (eo_findings_worst(maker->findings) == EO_SEVERITY_REFUSED)
+    return EO_OK;
+  EO_TRY(eo_recording_new(&angles->series, 3, spool_directory, error));
+  EO_TRY(convert(maker, angles, error));
+  conclude(maker, angles);
+  return EO_OK;
+}
+
 enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
                             const struct eo_tracks *tracks, const char *spool_directory, struct eo_findings *findings,
                             const struct eo_progress *progress, struct eo_error *error)
@@ -307,26 +338,7 @@ enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording 
   maker->tracks = tracks;
   maker->findings = findings;
   maker->progress = progress;
-  bool pulses = tracks->channel[0].track == EO_TRACK_PULSES;
-  enum eo_code code = eo_sampler_init(&maker->sampler, recording, tracks, spool_directory, error);
-  if (!code && !pulses)
-    code = eo_scan_run(maker->scan, recording, tracks, progress, error);
-  if (!code && !pulses) {
-    judge_time(maker);
-    judge_gaps(maker);
-    code = prepare_tracks(maker, angles, error);
-  }
-  if (pulses && !code)
-    eo_pulses_judge(maker->sampler.pulses, findings);
-  if (pulses)
-    maker->scan->rows = eo_recording_rows(recording);
-  if (!code && eo_findings_worst(findings) != EO_SEVERITY_REFUSED) {
-    code = eo_recording_new(&angles->series, 3, spool_directory, error);
-    if (!code)
-      code = convert(maker, angles, error);
-    if (!code)
-      conclude(maker, angles);
-  }
+  enum eo_code code = make(maker, angles, spool_directory, error);
   if (angles->series && (code || eo_findings_worst(findings) == EO_SEVERITY_REFUSED))
     eo_angles_done(angles);
   eo_sampler_done(&maker->sampler);

@@ -34,10 +34,35 @@ static enum eo_code judge_load(struct eo_measurement *measurement, const struct 
                                 .expected = {settings->expected_speed[0], settings->expected_speed[1]}};
   for (int i = 0; i < 2; i++)
     known.teeth[i] = settings->transmission.teeth[i];
-  enum eo_code code = eo_load_read(&measurement->load, recording, tracks, part->from, part->to, error);
-  if (!code)
-    eo_load_judge(&measurement->load, &known, &measurement->findings);
-  return code;
+  EO_TRY(eo_load_read(&measurement->load, recording, tracks, part->from, part->to, error));
+  eo_load_judge(&measurement->load, &known, &measurement->findings);
+  return EO_OK;
+}
+
+static bool is_refused(const struct eo_measurement *measurement)
+{
+  return eo_findings_worst(&measurement->findings) == EO_SEVERITY_REFUSED;
+}
+
+/* From the angles to what is judged; what is refused on the way is not looked at further. */
+static enum eo_code measure(struct eo_measurement *measurement, struct eo_angles *angles,
+                            const struct eo_recording *recording, const struct eo_tracks *tracks,
+                            const struct eo_measurement_settings *settings, const struct eo_progress *progress,
+                            struct eo_error *error)
+{
+  if (angles->series && angles->rows >= 64) {
+    measurement->ratio = angles->ratio;
+    eo_orientation_judge(angles, settings->transmission.teeth, settings->stated_speed, &measurement->findings);
+  }
+  if (!angles->series || is_refused(measurement))
+    return EO_OK;
+  if (unit_is_open(angles, tracks, settings->stated_speed))
+    EO_TRY(eo_units_judge(angles, &settings->transmission, doubt_of(tracks), &measurement->findings, error));
+  if (is_refused(measurement))
+    return EO_OK;
+  EO_TRY(eo_transmission_measure(&measurement->transmission, angles, &settings->transmission, &measurement->findings,
+                                 progress, error));
+  return measurement->transmission.harmonics > 0 ? judge_load(measurement, recording, tracks, settings, error) : EO_OK;
 }
 
 enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct eo_recording *recording,
@@ -56,19 +81,9 @@ enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct
     measurement->raw[channel] = angles.raw[channel];
     measurement->ellipse[channel] = angles.ellipse[channel];
   }
-  if (!code && angles.series && angles.rows >= 64) {
-    measurement->ratio = angles.ratio;
-    eo_orientation_judge(&angles, settings->transmission.teeth, settings->stated_speed, &measurement->findings);
-  }
-  if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED &&
-      unit_is_open(&angles, tracks, settings->stated_speed))
-    code = eo_units_judge(&angles, &settings->transmission, doubt_of(tracks), &measurement->findings, error);
-  if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED)
-    code = eo_transmission_measure(&measurement->transmission, &angles, &settings->transmission, &measurement->findings,
-                                   progress, error);
-  if (!code && measurement->transmission.harmonics > 0)
-    code = judge_load(measurement, recording, tracks, settings, error);
-  measurement->refused = eo_findings_worst(&measurement->findings) == EO_SEVERITY_REFUSED;
+  if (!code)
+    code = measure(measurement, &angles, recording, tracks, settings, progress, error);
+  measurement->refused = is_refused(measurement);
   eo_angles_done(&angles);
   return code;
 }

@@ -226,42 +226,32 @@ static enum eo_code run_fit(struct eo_order_fit *fit, struct eo_error *error)
 {
   eo_terms_init(&fit->terms, fit->settings->teeth, fit->result->harmonics, fit->turns, fit->start, fit->end);
   eo_beside_init(&fit->beside, fit->settings->teeth, fit->result->harmonics, fit->turns);
-  enum eo_code code = eo_order_fit_solve(fit, error);
-  if (!code)
-    code = eo_order_fit_settle_axis(fit, error);
+  EO_TRY(eo_order_fit_solve(fit, error));
+  EO_TRY(eo_order_fit_settle_axis(fit, error));
   eo_beside_init(&fit->beside, fit->settings->teeth, fit->result->harmonics, fit->turns);
-  if (!code)
-    code = eo_synchronous_new(&fit->synchronous, fit->result, fit->settings->teeth, fit->from, fit->turns, error);
-  if (!code)
-    code = eo_waterfall_new(&fit->waterfall, fit->result, fit->settings->teeth, fit->from, error);
-  return code ? code : eo_order_fit_each_row(fit, add_residual, "residual", error);
+  EO_TRY(eo_synchronous_new(&fit->synchronous, fit->result, fit->settings->teeth, fit->from, fit->turns, error));
+  EO_TRY(eo_waterfall_new(&fit->waterfall, fit->result, fit->settings->teeth, fit->from, error));
+  return eo_order_fit_each_row(fit, add_residual, "residual", error);
 }
 
 static enum eo_code measure(struct eo_order_fit *fit, struct eo_error *error)
 {
   struct eo_transmission *result = fit->result;
-  enum eo_code code = eo_parts_find(&result->parts, fit->angles, &fit->settings->part, fit->findings, fit->progress,
-                                    error);
-  if (code || refused(fit))
-    return code;
-  code = choose_rows(fit, error);
-  if (code)
-    return code;
+  EO_TRY(eo_parts_find(&result->parts, fit->angles, &fit->settings->part, fit->findings, fit->progress, error));
+  if (refused(fit))
+    return EO_OK;
+  EO_TRY(choose_rows(fit, error));
   measure_speed(fit);
   judge_axis(fit);
   if (refused(fit))
     return EO_OK;
-  code = run_fit(fit, error);
-  if (code)
-    return code;
+  EO_TRY(run_fit(fit, error));
   result->residual = sqrt(result->residual / (double)result->rows);
   eo_order_fit_read_lines(fit);
-  code = eo_synchronous_finish(fit->synchronous, result, error);
-  if (!code)
-    code = eo_waterfall_finish(fit->waterfall, result, error);
-  if (!code)
-    judge_result(fit);
-  return code;
+  EO_TRY(eo_synchronous_finish(fit->synchronous, result, error));
+  EO_TRY(eo_waterfall_finish(fit->waterfall, result, error));
+  judge_result(fit);
+  return EO_OK;
 }
 
 enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles,

@@ -349,50 +349,63 @@ static int usual_starts(int unknowns)
 /* The model error and the minima belong to each other: the one that leaves least says how good the model is. */
 static enum eo_code settle(struct eo_fit *fit, struct eo_minima *minima, double *room, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
   if (fit->settings->model_error > 0)
     return EO_OK;
   eo_fit_begin(fit, "fit: how good the model is", 0.6, 0.7, ROUNDS * minima->count * 3 * (fit->settings->unknowns + 1));
-  for (int i = 0; i < ROUNDS && !code; i++) {
-    code = find_model_error(fit, minima->minimum[0].x, room, error);
-    if (!code)
-      code = eo_fit_refine(fit, minima, error);
+  for (int i = 0; i < ROUNDS; i++) {
+    EO_TRY(find_model_error(fit, minima->minimum[0].x, room, error));
+    EO_TRY(eo_fit_refine(fit, minima, error));
   }
-  return code;
+  return EO_OK;
+}
+
+static enum eo_code find_and_judge(struct eo_fit *fit, struct eo_update *update, struct eo_minima *minima, double *room,
+                                   struct eo_error *error)
+{
+  double start[EO_UNKNOWNS];
+  int n = update->unknowns, starts = fit->settings->starts > 0 ? fit->settings->starts : usual_starts(n);
+  EO_TRY(eo_fit_search(fit, starts, minima, &update->before, error));
+  EO_TRY(settle(fit, minima, room, error));
+  for (int i = 0; i < n; i++)
+    start[i] = eo_fit_to_unit(&fit->settings->range[i], eo_unknown_get(fit->design, fit->settings->range[i].unknown));
+  EO_TRY(eo_fit_residuals(fit, start, room, error));
+  update->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
+  update->after = sqrt(minima->minimum[0].square / fit->residuals);
+  update->model_error = fit->model_error;
+  update->converged = minima->minimum[0].converged;
+  EO_TRY(judge(fit, update, minima, room, error));
+  double spent = fit->settings->model_error > 0 ? update->after * fit->model_error : fit->model_error;
+  update->poor = spent > POOR;
+  update->evaluations = fit->evaluations;
+  return EO_OK;
 }
 
 static enum eo_code search(struct eo_fit *fit, struct eo_update *update, struct eo_design *updated,
                            struct eo_error *error)
 {
-  int n = update->unknowns, starts = fit->settings->starts > 0 ? fit->settings->starts : usual_starts(n);
   struct eo_minima *minima = malloc(sizeof *minima);
-  double *room = malloc(sizeof *room * (size_t)(fit->residuals * (n + 1))), start[EO_UNKNOWNS];
-  enum eo_code code = minima && room ? eo_fit_search(fit, starts, minima, &update->before, error)
-                                     : eo_error_memory(error);
+  double *room = malloc(sizeof *room * (size_t)(fit->residuals * (update->unknowns + 1)));
+  enum eo_code code = minima && room ? find_and_judge(fit, update, minima, room, error) : eo_error_memory(error);
   if (!code)
-    code = settle(fit, minima, room, error);
-  for (int i = 0; i < n; i++)
-    start[i] = eo_fit_to_unit(&fit->settings->range[i], eo_unknown_get(fit->design, fit->settings->range[i].unknown));
-  if (!code)
-    code = eo_fit_residuals(fit, start, room, error);
-  if (!code) {
-    update->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
-    update->after = sqrt(minima->minimum[0].square / fit->residuals);
-    update->model_error = fit->model_error;
-    update->converged = minima->minimum[0].converged;
-    code = judge(fit, update, minima, room, error);
-  }
-  if (!code) {
-    double spent = fit->settings->model_error > 0 ? update->after * fit->model_error : fit->model_error;
-    update->poor = spent > POOR;
-    update->evaluations = fit->evaluations;
     eo_fit_set_trial(fit, minima->minimum[0].x);
-    if (updated)
-      *updated = fit->trial;
-  }
+  if (!code && updated)
+    *updated = fit->trial;
   free(minima);
   free(room);
   return code;
+}
+
+static enum eo_code run(struct eo_fit *fit, struct eo_update *update, struct eo_design *updated, struct eo_error *error)
+{
+  if (fit->count > EO_MOST_MEASURED)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are too many.", fit->count);
+  sort_measurements(fit);
+  EO_TRY(check(fit->settings, fit->count, fit->residuals, error));
+  fit->predicted = calloc((size_t)fit->residuals, sizeof *fit->predicted);
+  if (!fit->predicted)
+    return eo_error_memory(error);
+  EO_TRY(make_evaluators(fit, error));
+  return search(fit, update, updated, error);
 }
 
 enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair, const struct eo_design *design,
@@ -413,20 +426,7 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
   for (int i = 0; i < count; i++)
     fit->residuals += measured[i].harmonics;
   update->residuals = fit->residuals;
-  enum eo_code code = count > EO_MOST_MEASURED
-                          ? eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are too many.", count)
-                          : EO_OK;
-  if (!code)
-    sort_measurements(fit);
-  code = code ? code : check(settings, count, fit->residuals, error);
-  if (!code) {
-    fit->predicted = calloc((size_t)fit->residuals, sizeof *fit->predicted);
-    code = fit->predicted ? EO_OK : eo_error_memory(error);
-  }
-  if (!code)
-    code = make_evaluators(fit, error);
-  if (!code)
-    code = search(fit, update, updated, error);
+  enum eo_code code = run(fit, update, updated, error);
   for (int i = 0; i < fit->evaluators; i++)
     eo_evaluator_free(fit->evaluator[i]);
   free(fit->predicted);

@@ -18,30 +18,35 @@ struct pair {
   int time[2]; /* column of the times in each file; -1: none */
 };
 
+static enum eo_code look_for_time(struct eo_guess *guess, const char *chosen, int *column, struct eo_error *error)
+{
+  for (int c = 0; c < guess->columns; c++)
+    EO_TRY(eo_column_look(guess->recording, c, &guess->look[c], error));
+  if (chosen)
+    return strcmp(chosen, "none") ? eo_layout_chosen(guess, chosen, "/time", column, error) : EO_OK;
+  if (guess->columns <= 1 || guess->choice->sample_rate > 0)
+    return EO_OK;
+  eo_layout_mark_times(guess);
+  *column = eo_layout_pick_time(guess, guess->columns - 1);
+  if (*column < 0 && !(eo_recording_clock(guess->recording, 0).interval > 0) && guess->look[0].spread < 1e-3 &&
+      guess->look[0].step > 0 && !guess->look[0].resets && !guess->number[0])
+    *column = 0; /* the first of two columns */
+  return EO_OK;
+}
+
 /* The column of times in one file, as chosen or found. */
 static enum eo_code find_time(const struct eo_recording *recording, const struct eo_layout_choice *choice,
                               const char *chosen, int *column, struct eo_error *error)
 {
   static const struct eo_layout_choice none;
   struct eo_guess *guess = calloc(1, sizeof *guess);
-  enum eo_code code = guess ? EO_OK : eo_error_memory(error);
   *column = -1;
-  if (!code) {
-    guess->recording = recording;
-    guess->choice = choice ? choice : &none;
-    guess->columns = eo_recording_columns(recording);
-  }
-  for (int c = 0; !code && c < guess->columns; c++)
-    code = eo_column_look(recording, c, &guess->look[c], error);
-  if (!code && chosen && strcmp(chosen, "none"))
-    code = eo_layout_chosen(guess, chosen, "/time", column, error);
-  else if (!code && !chosen && guess->columns > 1 && !(guess->choice->sample_rate > 0)) {
-    eo_layout_mark_times(guess);
-    *column = eo_layout_pick_time(guess, guess->columns - 1);
-    if (*column < 0 && !(eo_recording_clock(recording, 0).interval > 0) && guess->look[0].spread < 1e-3 &&
-        guess->look[0].step > 0 && !guess->look[0].resets && !guess->number[0])
-      *column = 0; /* the first of two columns */
-  }
+  if (!guess)
+    return eo_error_memory(error);
+  guess->recording = recording;
+  guess->choice = choice ? choice : &none;
+  guess->columns = eo_recording_columns(recording);
+  enum eo_code code = look_for_time(guess, chosen, column, error);
   free(guess);
   return code;
 }

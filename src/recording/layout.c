@@ -339,26 +339,25 @@ static enum eo_code find_pulse_time(struct eo_guess *guess, struct eo_error *err
 /* Clocks and scales of the channels that were found. */
 static enum eo_code settle_channels(struct eo_guess *guess, struct eo_error *error)
 {
-  enum eo_code code = guess->kind == EO_LAYOUT_PULSES ? find_pulse_time(guess, error)
-                                                      : eo_layout_find_clocks(guess, error);
+  EO_TRY(guess->kind == EO_LAYOUT_PULSES ? find_pulse_time(guess, error) : eo_layout_find_clocks(guess, error));
   for (int member = 0; member < 2; member++)
     guess->increments[member] = are_increments(guess, member);
   note_source(guess);
-  if (!code && !guess->square)
-    code = settle(guess, error);
-  if (!code && !guess->square)
-    code = eo_layout_judge_speed(guess, error);
-  if (code || guess->kind == EO_LAYOUT_PULSES)
-    return code;
+  if (!guess->square) {
+    EO_TRY(settle(guess, error));
+    EO_TRY(eo_layout_judge_speed(guess, error));
+  }
+  if (guess->kind == EO_LAYOUT_PULSES)
+    return EO_OK;
   note_time(guess);
-  code = eo_layout_compare(guess, error);
-  if (!code && guess->together) /* a joint column of times is uneven by its nature */
-    code = eo_layout_make_even(guess, error);
+  EO_TRY(eo_layout_compare(guess, error));
+  if (guess->together) /* a joint column of times is uneven by its nature */
+    EO_TRY(eo_layout_make_even(guess, error));
   eo_layout_find_beside(guess);
   guess->tracks->time_column = guess->clock[0].column;
   guess->tracks->time_scale = guess->clock[0].column >= 0 ? guess->clock[0].scale : 1;
   guess->tracks->interval = guess->clock[0].interval;
-  return code;
+  return EO_OK;
 }
 
 static enum eo_code find(struct eo_guess *guess, struct eo_error *error)

@@ -150,28 +150,31 @@ static void set_tracks(struct eo_guess *guess, const struct encoder encoder[2])
   guess->kind = EO_LAYOUT_PULSES;
 }
 
-enum eo_code eo_layout_decode_squares(struct eo_guess *guess, const char *spool_directory, struct eo_recording **pulses,
-                                      struct eo_error *error)
+static enum eo_code decode(struct eo_guess *guess, struct encoder encoder[2], const char *spool_directory,
+                           struct eo_recording **pulses, struct eo_error *error)
 {
-  struct encoder encoder[2] = {0};
-  enum eo_code code = EO_OK;
-  for (int s = 0; s < 2 && !code; s++) {
+  for (int s = 0; s < 2; s++) {
     encoder[s].tracks = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
     for (int k = 0; k < encoder[s].tracks; k++) {
       int column = guess->tracks->channel[s].column[k];
       encoder[s].column[k] = column;
       encoder[s].middle[k] = (guess->look[column].low + guess->look[column].high) / 2;
     }
-    code = eo_recording_new(&encoder[s].pulses, 1, spool_directory, error);
+    EO_TRY(eo_recording_new(&encoder[s].pulses, 1, spool_directory, error));
   }
-  if (!code)
-    code = find_edges(guess, encoder, error);
-  for (int s = 0; s < 2 && !code; s++)
-    code = check(guess, &encoder[s], s, error);
-  if (!code)
-    code = join(encoder, spool_directory, pulses, error);
-  if (!code)
-    set_tracks(guess, encoder);
+  EO_TRY(find_edges(guess, encoder, error));
+  for (int s = 0; s < 2; s++)
+    EO_TRY(check(guess, &encoder[s], s, error));
+  EO_TRY(join(encoder, spool_directory, pulses, error));
+  set_tracks(guess, encoder);
+  return EO_OK;
+}
+
+enum eo_code eo_layout_decode_squares(struct eo_guess *guess, const char *spool_directory, struct eo_recording **pulses,
+                                      struct eo_error *error)
+{
+  struct encoder encoder[2] = {0};
+  enum eo_code code = decode(guess, encoder, spool_directory, pulses, error);
   eo_recording_free(encoder[0].pulses);
   eo_recording_free(encoder[1].pulses);
   return code;

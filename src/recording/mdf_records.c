@@ -436,23 +436,30 @@ static void compare_counts(struct eo_mdf *mdf, int first, int count)
   }
 }
 
+static enum eo_code find_records(struct eo_mdf *mdf, int64_t at, int number, int first, int count,
+                                 struct blocks *blocks, struct eo_error *error)
+{
+  if (at && count)
+    EO_TRY(add_blocks(mdf, at, 0, blocks, error));
+  EO_TRY(check_growth(mdf, blocks, error));
+  if (blocks->apart)
+    mdf->group[first].record = mdf->group[first].data;
+  bool plain = count == 1 && !mdf->group[first].variable;
+  for (int64_t i = 0; i < blocks->count; i++)
+    plain = plain && blocks->block[i].packing == PLAIN;
+  if (count > 1 && !number)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: records of %d kinds are mixed without a number.", count);
+  if (!blocks->length)
+    return EO_OK;
+  return plain ? keep_records(mdf, blocks, &mdf->group[first], number, error)
+               : sort_records(mdf, blocks, number, first, count, error);
+}
+
 enum eo_code eo_mdf_find_records(struct eo_mdf *mdf, int64_t at, int number, int first, int count,
                                  struct eo_error *error)
 {
   struct blocks blocks = {0};
-  enum eo_code code = at && count ? add_blocks(mdf, at, 0, &blocks, error) : EO_OK;
-  if (!code)
-    code = check_growth(mdf, &blocks, error);
-  if (blocks.apart)
-    mdf->group[first].record = mdf->group[first].data;
-  bool plain = count == 1 && !mdf->group[first].variable;
-  for (int64_t i = 0; i < blocks.count; i++)
-    plain = plain && blocks.block[i].packing == PLAIN;
-  if (!code && count > 1 && !number)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "MDF: records of %d kinds are mixed without a number.", count);
-  if (!code && blocks.length)
-    code = plain ? keep_records(mdf, &blocks, &mdf->group[first], number, error)
-                 : sort_records(mdf, &blocks, number, first, count, error);
+  enum eo_code code = find_records(mdf, at, number, first, count, &blocks, error);
   free(blocks.block);
   if (!code)
     compare_counts(mdf, first, count);

@@ -306,15 +306,28 @@ static enum eo_code take_no_rows(void *context, const double *rows, int64_t coun
   return EO_OK;
 }
 
+static enum eo_code read_unpacked(const char *path, const char *unpacked, const struct eo_reader_options *options,
+                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  char name[EO_RECORDING_NAME] = "";
+  struct eo_reader_options own = *options;
+  struct eo_series_sink sink = {take_name, take_no_rows, name};
+  struct sign sign = {0};
+  own.unpack_to = unpacked;
+  EO_TRY(eo_isolate_read(eo_archive_unpack, path, &own, &sink, notes, error));
+  EO_TRY(read_sign(unpacked, &sign, error));
+  if (sign.kind == EO_READER_ARCHIVE)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The zip file holds another zip file or a spreadsheet; unpack it.");
+  eo_notes_add(notes, "Read from \"%.60s\" in the archive.", name);
+  return read_kind(unpacked, &sign, options, recording, notes, error);
+}
+
 /* One file out of a zip, or one table out of a spreadsheet, is unpacked in a process of its own and then read like any
    other; archives in archives are not. */
 static enum eo_code read_archive(const char *path, const struct eo_reader_options *options,
                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
-  char unpacked[PATH_MAX], name[EO_RECORDING_NAME] = "";
-  struct eo_reader_options own = *options;
-  struct eo_series_sink sink = {take_name, take_no_rows, name};
-  struct sign sign = {0};
+  char unpacked[PATH_MAX];
   if (!options->spool_directory ||
       snprintf(unpacked, sizeof unpacked, "%s/unpacked-XXXXXX", options->spool_directory) >= (int)sizeof unpacked)
     return eo_error_set(error, EO_ERROR_INPUT, "", "There is no folder to unpack the zip file to.");
@@ -322,16 +335,7 @@ static enum eo_code read_archive(const char *path, const struct eo_reader_option
   if (file < 0)
     return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s.", options->spool_directory);
   close(file);
-  own.unpack_to = unpacked;
-  enum eo_code code = eo_isolate_read(eo_archive_unpack, path, &own, &sink, notes, error);
-  if (!code)
-    code = read_sign(unpacked, &sign, error);
-  if (!code && sign.kind == EO_READER_ARCHIVE)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The zip file holds another zip file or a spreadsheet; unpack it.");
-  if (!code) {
-    eo_notes_add(notes, "Read from \"%.60s\" in the archive.", name);
-    code = read_kind(unpacked, &sign, options, recording, notes, error);
-  }
+  enum eo_code code = read_unpacked(path, unpacked, options, recording, notes, error);
   unlink(unpacked);
   return code;
 }

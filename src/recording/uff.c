@@ -81,19 +81,14 @@ static enum eo_code read_text(struct uff *uff, const struct eo_uff_header *heade
   double *times = uff->batch, *ordinates = uff->batch + BATCH;
   for (int64_t first = 0; first < header->count; first += BATCH) {
     int64_t n = header->count - first < BATCH ? header->count - first : BATCH;
-    enum eo_code code = EO_OK;
-    for (int64_t i = 0; !code && i < n; i++) {
+    for (int64_t i = 0; i < n; i++) {
       if (!header->even)
-        code = next_number(&stream, first + i, &times[i], error);
-      if (!code)
-        code = next_number(&stream, first + i, &ordinates[i], error);
+        EO_TRY(next_number(&stream, first + i, &times[i], error));
+      EO_TRY(next_number(&stream, first + i, &ordinates[i], error));
     }
-    if (!code && time)
-      code = eo_recording_append(time, times, n, error);
-    if (!code)
-      code = eo_recording_append(column, ordinates, n, error);
-    if (code)
-      return code;
+    if (time)
+      EO_TRY(eo_recording_append(time, times, n, error));
+    EO_TRY(eo_recording_append(column, ordinates, n, error));
   }
   return EO_OK;
 }

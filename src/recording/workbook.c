@@ -321,6 +321,17 @@ static bool write_best(void *context, struct eo_archive *archive, const char *na
   return false;
 }
 
+/* Every sheet is looked at before the best and what stands beside it are written. */
+static enum eo_code write_sheets(struct workbook *workbook)
+{
+  struct eo_archive *archive = workbook->archive;
+  EO_TRY(eo_archive_visit(archive, look, workbook));
+  if (!workbook->most)
+    return eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
+  EO_TRY(eo_archive_visit(archive, write_facts, workbook));
+  return eo_archive_visit(archive, write_best, workbook);
+}
+
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
 {
   struct workbook *workbook = calloc(1, sizeof *workbook);
@@ -328,13 +339,7 @@ enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *nam
     return eo_error_memory(archive->error);
   workbook->archive = archive;
   workbook->out.file = file;
-  enum eo_code code = eo_archive_visit(archive, look, workbook);
-  if (!code && !workbook->most)
-    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
-  if (!code)
-    code = eo_archive_visit(archive, write_facts, workbook);
-  if (!code)
-    code = eo_archive_visit(archive, write_best, workbook);
+  enum eo_code code = write_sheets(workbook);
   const char *base = strrchr(workbook->best, '/');
   snprintf(name, size, "%s", base ? base + 1 : workbook->best);
   free(workbook->text);
