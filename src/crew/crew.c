@@ -202,19 +202,23 @@ static int find_room(struct course *course)
   return best;
 }
 
+/* Writes an item and gives it to a rank, or to a thread of this process. */
+static enum eo_code hand_over(struct course *course, int rank, struct eo_crew_parcel *parcel, struct eo_error *error)
+{
+  EO_TRY(course->task->write(course->task->context, course->next, &parcel->text, error));
+  if (parcel->text.failed)
+    return eo_error_memory(error);
+  if (!course->hands)
+    return eo_crew_send_parcel(course->crew, rank, EO_CREW_ITEM, parcel, error);
+  return eo_hands_give(course->hands, parcel) ? EO_OK : eo_error_memory(error);
+}
+
 static enum eo_code give(struct course *course, int rank, struct eo_error *error)
 {
   struct eo_crew_parcel parcel = {.order = course->crew->order_number, .item = course->next};
-  enum eo_code code = course->task->write(course->task->context, course->next, &parcel.text, error);
-  if (!code && parcel.text.failed)
-    code = eo_error_memory(error);
-  if (!code && course->hands)
-    code = eo_hands_give(course->hands, &parcel) ? EO_OK : eo_error_memory(error);
-  else if (!code)
-    code = eo_crew_send_parcel(course->crew, rank, EO_CREW_ITEM, &parcel, error);
+  enum eo_code code = hand_over(course, rank, &parcel, error);
   eo_text_done(&parcel.text);
-  if (code)
-    return code;
+  EO_TRY(code);
   course->next++;
   course->load[rank]++;
   course->flying++;
@@ -335,19 +339,21 @@ static void call_off(struct course *course)
       return;
 }
 
+static enum eo_code go_through(struct course *course, struct eo_error *error)
+{
+  while (course->lowest < course->task->items) {
+    bool there = false;
+    EO_TRY(give_all(course, error));
+    EO_TRY(collect(course, &there, error));
+    EO_TRY(take_all(course, error));
+    EO_TRY(watch(course, error));
+  }
+  return EO_OK;
+}
+
 static enum eo_code run_course(struct course *course, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  while (!code && course->lowest < course->task->items) {
-    bool there = false;
-    code = give_all(course, error);
-    if (!code)
-      code = collect(course, &there, error);
-    if (!code)
-      code = take_all(course, error);
-    if (!code)
-      code = watch(course, error);
-  }
+  enum eo_code code = go_through(course, error);
   if (!code)
     return EO_OK;
   call_off(course);

@@ -84,14 +84,25 @@ static enum eo_code take_letter(struct serving *serving, const struct eo_crew_le
 static enum eo_code answer(struct serving *serving, bool *busy, struct eo_error *error)
 {
   struct eo_crew_parcel parcel;
-  enum eo_code code = EO_OK;
-  while (!code && serving->hands && eo_hands_collect(serving->hands, 0, &parcel)) {
+  while (serving->hands && eo_hands_collect(serving->hands, 0, &parcel)) {
     parcel.order = serving->order;
-    code = eo_crew_send_parcel(serving->crew, 0, EO_CREW_ANSWER, &parcel, error);
+    enum eo_code code = eo_crew_send_parcel(serving->crew, 0, EO_CREW_ANSWER, &parcel, error);
     eo_text_done(&parcel.text);
+    EO_TRY(code);
     *busy = true;
   }
-  return code;
+  return EO_OK;
+}
+
+/* One letter, if there is one, and the answers that are ready. */
+static enum eo_code serve_once(struct serving *serving, bool *busy, struct eo_error *error)
+{
+  struct eo_crew_letter letter;
+  enum eo_code code = eo_crew_receive(serving->crew, busy, &letter, error);
+  if (!code && *busy)
+    code = take_letter(serving, &letter, error);
+  eo_text_done(&letter.text);
+  return code ? code : answer(serving, busy, error);
 }
 
 enum eo_code eo_crew_serve(const struct eo_crew *crew, const struct eo_crew_trade *const *trades,
@@ -100,14 +111,8 @@ enum eo_code eo_crew_serve(const struct eo_crew *crew, const struct eo_crew_trad
   struct serving serving = {.crew = crew, .trades = trades};
   enum eo_code code = EO_OK;
   for (int idle = 0; !code && !serving.home;) {
-    struct eo_crew_letter letter;
     bool busy = false;
-    code = eo_crew_receive(crew, &busy, &letter, error);
-    if (!code && busy)
-      code = take_letter(&serving, &letter, error);
-    eo_text_done(&letter.text);
-    if (!code)
-      code = answer(&serving, &busy, error);
+    code = serve_once(&serving, &busy, error);
     idle = busy ? 0 : idle + 1;
     if (!code && !busy)
       eo_crew_rest(idle);
