@@ -359,15 +359,14 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
 static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo_gear_pair *pair,
                                  struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < 2 && !code && shafts->enabled; i++)
+  for (int i = 0; i < 2 && shafts->enabled; i++) {
     if (!(shafts->bearing_position[i][EO_LEFT] < shafts->bearing_position[i][EO_RIGHT]))
       return eo_error_set(error, EO_ERROR_INPUT, i ? "/shafts/gear_left_bearing_mm" : "/shafts/pinion_left_bearing_mm",
                           "The left bearing at %.6g mm is not left of the right one at %.6g mm.",
                           1e3 * shafts->bearing_position[i][EO_LEFT], 1e3 * shafts->bearing_position[i][EO_RIGHT]);
-    else
-      code = check_shaft(shafts, pair, i, error);
-  return code;
+    EO_TRY(check_shaft(shafts, pair, i, error));
+  }
+  return EO_OK;
 }
 
 static enum eo_code check_objective(const struct eo_objective *objective, struct eo_error *error)
@@ -384,22 +383,15 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
 {
   EO_TRY(check_right_helix(&design->gear_pair, error));
   const struct eo_geometry right = eo_geometry_of_half(geometry, &design->gear_pair, EO_RIGHT);
-  enum eo_code code = check_right_half(&design->gear_pair, &right, error);
-  if (!code)
-    code = check_groove(&design->gear_pair, error);
-  for (int i = 0; i < 2 && !code; i++)
-    code = check_body(&design->gear_pair, geometry, i, error);
-  if (!code)
-    code = eo_modification_check(design, geometry, error);
-  if (!code)
-    code = check_resolution(&design->resolution, geometry, error);
-  if (!code && eo_gear_pair_is_uneven(&design->gear_pair))
-    code = check_resolution(&design->resolution, &right, error);
-  if (!code)
-    code = check_shafts(&design->shafts, &design->gear_pair, error);
-  if (!code)
-    code = check_objective(&design->objective, error);
-  if (!code)
-    code = eo_pitch_check(&design->pitch, geometry, design->resolution.positions, error);
-  return code;
+  EO_TRY(check_right_half(&design->gear_pair, &right, error));
+  EO_TRY(check_groove(&design->gear_pair, error));
+  for (int i = 0; i < 2; i++)
+    EO_TRY(check_body(&design->gear_pair, geometry, i, error));
+  EO_TRY(eo_modification_check(design, geometry, error));
+  EO_TRY(check_resolution(&design->resolution, geometry, error));
+  if (eo_gear_pair_is_uneven(&design->gear_pair))
+    EO_TRY(check_resolution(&design->resolution, &right, error));
+  EO_TRY(check_shafts(&design->shafts, &design->gear_pair, error));
+  EO_TRY(check_objective(&design->objective, error));
+  return eo_pitch_check(&design->pitch, geometry, design->resolution.positions, error);
 }

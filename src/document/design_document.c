@@ -261,35 +261,27 @@ enum eo_code eo_design_read(const char *text, size_t size, struct eo_design *des
     return error->code;
   enum eo_code code = decode(document, design, warnings, error);
   json_decref(document);
-  code = code ? code : eo_design_complete(design, geometry, error);
-  if (!code)
-    eo_design_note_findings(design, geometry, warnings);
-  return code;
+  EO_TRY(code);
+  EO_TRY(eo_design_complete(design, geometry, error));
+  eo_design_note_findings(design, geometry, warnings);
+  return EO_OK;
 }
 
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)
 {
   struct eo_design complete = *design;
   struct eo_geometry made;
-  enum eo_code code = eo_design_settle(&complete, error);
-  if (!code)
-    code = eo_geometry_init(&made, &complete.gear_pair, error);
-  if (code)
-    return code;
+  EO_TRY(eo_design_settle(&complete, error));
+  EO_TRY(eo_geometry_init(&made, &complete.gear_pair, error));
   eo_design_resolve(&complete, &made);
   eo_table_round_to_document(&eo_design_table, &complete);
-  code = eo_geometry_init(&made, &complete.gear_pair, error);
-  if (!code)
-    code = eo_design_check(&complete, &made, error);
-  if (!code)
-    code = eo_scatter_draw_pairs(&complete, error);
-  if (!code)
-    code = eo_objective_check(&complete, error);
-  if (!code) {
-    *design = complete;
-    *geometry = made;
-  }
-  return code;
+  EO_TRY(eo_geometry_init(&made, &complete.gear_pair, error));
+  EO_TRY(eo_design_check(&complete, &made, error));
+  EO_TRY(eo_scatter_draw_pairs(&complete, error));
+  EO_TRY(eo_objective_check(&complete, error));
+  *design = complete;
+  *geometry = made;
+  return EO_OK;
 }
 
 /* Without a key that came later and is not used: a design of before it stays the same one. New; NULL without memory. */

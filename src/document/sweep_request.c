@@ -96,24 +96,28 @@ static enum eo_code make_steps(struct eo_sweep_axes *axes, const struct eo_sweep
   return EO_OK;
 }
 
+static enum eo_code make_axes(struct eo_sweep_axes *axes, const struct eo_sweep_request *asked, struct eo_error *error)
+{
+  EO_TRY(make_axis(&asked->torque, &eo_unit_Nm, "/torque_Nm", &axes->torques, &axes->torque, error));
+  EO_TRY(make_axis(&asked->speed, &eo_unit_rpm, "/speed_rpm", &axes->speeds, &axes->speed, error));
+  EO_TRY(make_steps(axes, &asked->vary, error));
+  int first = axes->torques > 0 ? axes->torques : axes->steps;
+  if (!first && !axes->speeds)
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "",
+        "A sweep needs a range of torques, of another number, of speeds, or of speeds and one of them.");
+  if (first > 0 && axes->speeds > EO_SWEEP_MOST_POINTS / first)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "%d %s at %d speeds are more than the %d points that a sweep may have.", first,
+                        axes->torques > 0 ? "torques" : "values", axes->speeds, EO_SWEEP_MOST_POINTS);
+  return EO_OK;
+}
+
 enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *asked,
                                 struct eo_error *error)
 {
   *axes = (struct eo_sweep_axes){0};
-  enum eo_code code = make_axis(&asked->torque, &eo_unit_Nm, "/torque_Nm", &axes->torques, &axes->torque, error);
-  if (!code)
-    code = make_axis(&asked->speed, &eo_unit_rpm, "/speed_rpm", &axes->speeds, &axes->speed, error);
-  if (!code)
-    code = make_steps(axes, &asked->vary, error);
-  int first = axes->torques > 0 ? axes->torques : axes->steps;
-  if (!code && !first && !axes->speeds)
-    code =
-        eo_error_set(error, EO_ERROR_INPUT, "",
-                     "A sweep needs a range of torques, of another number, of speeds, or of speeds and one of them.");
-  if (!code && first > 0 && axes->speeds > EO_SWEEP_MOST_POINTS / first)
-    code = eo_error_set(error, EO_ERROR_INPUT, "",
-                        "%d %s at %d speeds are more than the %d points that a sweep may have.", first,
-                        axes->torques > 0 ? "torques" : "values", axes->speeds, EO_SWEEP_MOST_POINTS);
+  enum eo_code code = make_axes(axes, asked, error);
   if (code)
     eo_sweep_axes_done(axes);
   return code;

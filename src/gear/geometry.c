@@ -349,18 +349,15 @@ enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear
 {
   struct eo_geometry this_geometry = {0};
   set_basics(&this_geometry, pair);
-  enum eo_code code = set_working(&this_geometry, pair, error);
-  for (int i = 0; i < 2 && !code; i++)
-    code = set_root(&this_geometry, i, error);
-  if (!code)
-    shorten_tips(&this_geometry, pair);
-  if (!code)
-    code = set_path(&this_geometry, pair, error);
-  for (int i = 0; i < 2 && !code; i++)
-    code = check_tip(&this_geometry, i, pair, error);
-  if (!code)
-    *geometry = this_geometry;
-  return code;
+  EO_TRY(set_working(&this_geometry, pair, error));
+  for (int i = 0; i < 2; i++)
+    EO_TRY(set_root(&this_geometry, i, error));
+  shorten_tips(&this_geometry, pair);
+  EO_TRY(set_path(&this_geometry, pair, error));
+  for (int i = 0; i < 2; i++)
+    EO_TRY(check_tip(&this_geometry, i, pair, error));
+  *geometry = this_geometry;
+  return EO_OK;
 }
 
 double eo_geometry_radius_at(const struct eo_geometry *geometry, int member, double s)

@@ -71,17 +71,24 @@ static enum eo_code reserve(struct eo_pages *pages, struct eo_error *error)
   return EO_OK;
 }
 
+static enum eo_code fill(struct eo_pages *pages, struct page *page, const char *file, struct eo_text *text,
+                         struct eo_error *error)
+{
+  if (!page->path)
+    return eo_error_memory(error);
+  EO_TRY(reserve(pages, error));
+  EO_TRY(eo_text_read(text, file, MOST_OF_ONE, error));
+  pages->bytes += text->size;
+  if (pages->bytes > MOST_BYTES)
+    return eo_error_set(error, EO_ERROR_FILE, "", "The page's folder holds more than %d MiB.", MOST_BYTES >> 20);
+  return eo_resource_init(&page->resource, type_of(page->path), text, error);
+}
+
 static enum eo_code add(struct eo_pages *pages, const char *file, const char *path, struct eo_error *error)
 {
   struct eo_text text = {0};
   struct page page = {.path = strdup(path)};
-  enum eo_code code = page.path ? reserve(pages, error) : eo_error_memory(error);
-  if (!code)
-    code = eo_text_read(&text, file, MOST_OF_ONE, error);
-  if (!code && (pages->bytes += text.size) > MOST_BYTES)
-    code = eo_error_set(error, EO_ERROR_FILE, "", "The page's folder holds more than %d MiB.", MOST_BYTES >> 20);
-  if (!code)
-    code = eo_resource_init(&page.resource, type_of(path), &text, error);
+  enum eo_code code = fill(pages, &page, file, &text, error);
   eo_text_done(&text);
   if (code) {
     free(page.path);

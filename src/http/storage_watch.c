@@ -87,6 +87,15 @@ static void *work(void *context)
   return NULL;
 }
 
+static enum eo_code begin(struct eo_storage_watch *watch, const char *data, struct eo_error *error)
+{
+  EO_TRY(eo_store_open(&watch->store, data, EO_STORE_WRITE, error));
+  look(watch);
+  return pthread_create(&watch->thread, NULL, work, watch) == 0
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_MEMORY, "", "A thread cannot be started.");
+}
+
 enum eo_code eo_storage_watch_new(struct eo_storage_watch **result, const char *data, double spare,
                                   struct eo_error *error)
 {
@@ -94,13 +103,9 @@ enum eo_code eo_storage_watch_new(struct eo_storage_watch **result, const char *
   if (!watch)
     return eo_error_memory(error);
   watch->spare = spare;
-  enum eo_code code = eo_store_open(&watch->store, data, EO_STORE_WRITE, error);
   pthread_mutex_init(&watch->lock, NULL);
   pthread_cond_init(&watch->changed, NULL);
-  if (!code)
-    look(watch);
-  if (!code && pthread_create(&watch->thread, NULL, work, watch) != 0)
-    code = eo_error_set(error, EO_ERROR_MEMORY, "", "A thread cannot be started.");
+  enum eo_code code = begin(watch, data, error);
   if (!code) {
     *result = watch;
     return EO_OK;
