@@ -240,15 +240,13 @@ static enum eo_code solve_load(struct load_output *out, struct eo_stage_mesh *me
 {
   out->force = eo_stage_mesh_force(mesh, &given->mesh, k, &out->torque);
   eo_stage_mesh_solve(mesh, out->force);
-  enum eo_code code = eo_stage_columns(1, &out->transmission, mesh->pair->grid->positions, error);
-  if (!code)
-    code = read_end(&out->left, mesh, EO_LEFT, given->points, error);
+  EO_TRY(eo_stage_columns(1, &out->transmission, mesh->pair->grid->positions, error));
+  EO_TRY(read_end(&out->left, mesh, EO_LEFT, given->points, error));
   out->two = mesh->design.gear_pair.ends == 2;
-  if (!code && out->two)
-    code = read_end(&out->right, mesh, EO_RIGHT, given->points, error);
-  if (!code)
-    read_transmission(out, mesh);
-  return code;
+  if (out->two)
+    EO_TRY(read_end(&out->right, mesh, EO_RIGHT, given->points, error));
+  read_transmission(out, mesh);
+  return EO_OK;
 }
 
 static enum eo_code run(const void *in, void *out, struct eo_error *error)

@@ -143,14 +143,23 @@ static enum eo_code read_case(struct case_output *out, const struct eo_evaluatio
 
 static enum eo_code read_evaluation(struct output *out, const struct eo_evaluation *evaluation, struct eo_error *error)
 {
-  enum eo_code code = eo_stage_columns(1, &out->position, evaluation->positions, error);
-  for (int j = 0; j < evaluation->positions && !code; j++)
+  EO_TRY(eo_stage_columns(1, &out->position, evaluation->positions, error));
+  for (int j = 0; j < evaluation->positions; j++)
     out->position.value[j] = (double)j / evaluation->positions;
-  for (int k = 0; k < evaluation->cases && !code; k++) {
+  for (int k = 0; k < evaluation->cases; k++) {
     out->cases = k + 1;
-    code = read_case(&out->load_case[k], evaluation, k, error);
+    EO_TRY(read_case(&out->load_case[k], evaluation, k, error));
   }
-  return code;
+  return EO_OK;
+}
+
+static enum eo_code evaluate_with(struct eo_evaluator *evaluator, struct output *found, const struct input *given,
+                                  const struct eo_design *design, struct eo_error *error)
+{
+  const struct eo_evaluation *evaluation;
+  int want = (given->root ? EO_WANT_ROOT : 0) | (given->band ? EO_WANT_BAND : 0);
+  EO_TRY(eo_evaluator_run(evaluator, design, &given->scenario, want, &evaluation, error));
+  return read_evaluation(found, evaluation, error);
 }
 
 static enum eo_code evaluate(struct output *found, const struct input *given, const struct eo_design *design,
@@ -158,17 +167,12 @@ static enum eo_code evaluate(struct output *found, const struct input *given, co
 {
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  const struct eo_evaluation *evaluation;
   struct eo_pair_options options = eo_stage_pair_options(&given->kernel, given->pivot);
   options.impact_stations = given->impact_stations;
-  int want = (given->root ? EO_WANT_ROOT : 0) | (given->band ? EO_WANT_BAND : 0);
-  enum eo_code code = eo_pair_new(&pair, design, &options, NULL, error);
+  EO_TRY(eo_pair_new(&pair, design, &options, NULL, error));
+  enum eo_code code = eo_evaluator_new(&evaluator, pair, design->load_cases, error);
   if (!code)
-    code = eo_evaluator_new(&evaluator, pair, design->load_cases, error);
-  if (!code)
-    code = eo_evaluator_run(evaluator, design, &given->scenario, want, &evaluation, error);
-  if (!code)
-    code = read_evaluation(found, evaluation, error);
+    code = evaluate_with(evaluator, found, given, design, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return code;

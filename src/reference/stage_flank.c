@@ -81,16 +81,12 @@ static enum eo_code run_modification(const void *in, void *out, struct eo_error 
   struct eo_modification_shape shape;
   bool by_path = given->s.count > 0;
   int rows = by_path ? given->s.count : given->u.count;
-  enum eo_code code = check_profile(given, error);
-  if (!code && given->eta.count)
-    code = eo_stage_same_length(by_path ? &given->s : &given->u, by_path ? "/s_mm" : "/u_mm", &given->eta, "/eta_mm",
-                                error);
-  if (!code)
-    code = find_shape(given, &geometry, &shape, error);
-  if (!code)
-    code = eo_stage_columns(MODIFICATION_COLUMNS, found->column, rows, error);
-  if (code)
-    return code;
+  EO_TRY(check_profile(given, error));
+  if (given->eta.count)
+    EO_TRY(eo_stage_same_length(by_path ? &given->s : &given->u, by_path ? "/s_mm" : "/u_mm", &given->eta, "/eta_mm",
+                                error));
+  EO_TRY(find_shape(given, &geometry, &shape, error));
+  EO_TRY(eo_stage_columns(MODIFICATION_COLUMNS, found->column, rows, error));
   const struct eo_flank_modification *flank = &given->design.modification.flank[given->member][given->end];
   found->lead_coefficient = eo_modification_lead_coefficient(&geometry, flank->lead_crowning);
   for (int i = 0; i < rows; i++) {

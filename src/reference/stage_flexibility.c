@@ -229,6 +229,15 @@ static enum eo_code choose_places(struct eo_numbers *eta, const struct eo_number
   return given->count ? eo_stage_copy(eta, given->count, given->value, error) : eo_stage_copy(eta, 3, usual, error);
 }
 
+static enum eo_code deflect(struct output *found, const struct input *given, const struct eo_flexibility *flexibility,
+                            const struct eo_geometry *geometry, int layers, struct eo_error *error)
+{
+  found->report = *eo_flexibility_report(flexibility);
+  EO_TRY(choose_places(&found->eta, &given->eta, geometry->face_width, error));
+  EO_TRY(deflect_rows(found, given, flexibility, layers, geometry->face_width, error));
+  return deflect_points(found, given, flexibility, error);
+}
+
 static enum eo_code run(const void *in, void *out, struct eo_error *error)
 {
   const struct input *given = in;
@@ -236,24 +245,14 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   struct eo_design design = given->design;
   struct eo_geometry geometry;
   struct eo_flexibility *flexibility = NULL;
-  enum eo_code code = eo_stage_complete(&design, &geometry, EO_LEFT, error);
-  if (code)
-    return code;
+  EO_TRY(eo_stage_complete(&design, &geometry, EO_LEFT, error));
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
   for (int i = 0; i < 2; i++)
     found->bore_radius[i] = eo_flexibility_bore_radius(&settings, &geometry, &design.gear_pair, i);
   if (given->export)
-    code = export_mesh(given, &design, &geometry, &settings, error);
-  if (!code)
-    code = eo_stage_prepare(&design, &given->kernel, &flexibility, error);
-  if (!code) {
-    found->report = *eo_flexibility_report(flexibility);
-    code = choose_places(&found->eta, &given->eta, geometry.face_width, error);
-  }
-  if (!code)
-    code = deflect_rows(found, given, flexibility, settings.layers, geometry.face_width, error);
-  if (!code)
-    code = deflect_points(found, given, flexibility, error);
+    EO_TRY(export_mesh(given, &design, &geometry, &settings, error));
+  EO_TRY(eo_stage_prepare(&design, &given->kernel, &flexibility, error));
+  enum eo_code code = deflect(found, given, flexibility, &geometry, settings.layers, error);
   eo_flexibility_free(flexibility);
   return code;
 }

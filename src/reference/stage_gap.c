@@ -50,15 +50,10 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   struct output *found = out;
   struct eo_design design = given->design;
   struct eo_stage_field field;
-  enum eo_code code = eo_stage_same_length(&given->s, "/s_mm", &given->eta, "/eta_mm", error);
-  if (!code)
-    code = eo_stage_field_init(&field, &design, given->end, given->pivot, error);
-  if (!code)
-    code = eo_stage_columns(PLACE_COLUMNS, found->place, given->s.count, error);
-  if (!code)
-    code = eo_stage_columns(SLICE_COLUMNS, found->slice, given->phase.count, error);
-  if (code)
-    return code;
+  EO_TRY(eo_stage_same_length(&given->s, "/s_mm", &given->eta, "/eta_mm", error));
+  EO_TRY(eo_stage_field_init(&field, &design, given->end, given->pivot, error));
+  EO_TRY(eo_stage_columns(PLACE_COLUMNS, found->place, given->s.count, error));
+  EO_TRY(eo_stage_columns(SLICE_COLUMNS, found->slice, given->phase.count, error));
   found->datum = eo_gap_field_datum(&field.gap);
   for (int i = 0; i < given->s.count; i++) {
     double place[2];

@@ -96,19 +96,15 @@ enum eo_code eo_stage_mesh_init(struct eo_stage_mesh *mesh, const struct eo_stag
 {
   struct eo_geometry geometry;
   *mesh = (struct eo_stage_mesh){.design = input->design, .factor = input->compliance_factor};
-  enum eo_code code = eo_stage_complete(&mesh->design, &geometry, EO_LEFT, error);
-  if (!code)
-    code = check_phases(&input->phase, &mesh->design, &geometry, error);
-  if (!code)
-    code = make_pair(mesh, input, error);
-  for (int end = 0; end < mesh->design.gear_pair.ends && !code; end++)
-    code = set_end(mesh, end, error);
-  if (!code)
-    code = eo_loaded_workspace_new(&mesh->workspace, mesh->pair->grid, error);
-  if (!code)
-    mesh->stagger = (int)lround(mesh->design.alignment.stagger * mesh->pair->grid->positions) %
-                    mesh->pair->grid->positions;
-  return code;
+  EO_TRY(eo_stage_complete(&mesh->design, &geometry, EO_LEFT, error));
+  EO_TRY(check_phases(&input->phase, &mesh->design, &geometry, error));
+  EO_TRY(make_pair(mesh, input, error));
+  for (int end = 0; end < mesh->design.gear_pair.ends; end++)
+    EO_TRY(set_end(mesh, end, error));
+  EO_TRY(eo_loaded_workspace_new(&mesh->workspace, mesh->pair->grid, error));
+  mesh->stagger = (int)lround(mesh->design.alignment.stagger * mesh->pair->grid->positions) %
+                  mesh->pair->grid->positions;
+  return EO_OK;
 }
 
 void eo_stage_mesh_done(struct eo_stage_mesh *mesh)

@@ -287,31 +287,38 @@ static void check_transmission(const struct calculix *calculix, struct eo_case *
   eo_verify_member(calculix->v, block, "LTE_pp_sampled_um", high - low, 0, 2 * of_curve);
 }
 
+static enum eo_code check_contact(struct calculix *calculix, struct eo_case *block, const struct eo_pair *pair,
+                                  struct eo_evaluator *evaluator, const struct eo_design *design,
+                                  struct eo_error *error)
+{
+  const int n = design->resolution.positions;
+  const struct eo_evaluation *evaluation;
+  struct eo_case *share = eo_case_find(block, "share");
+  EO_TRY(eo_evaluator_contact(evaluator, design, &evaluation, error));
+  if (evaluation->load_case[0].contact_failures) {
+    eo_verify_diverged(calculix->v, block);
+    return EO_OK;
+  }
+  check_transmission(calculix, block, n, evaluation->load_case[0].transmission);
+  if (share)
+    eo_verify_size(calculix->v, share, n);
+  for (int j = 0; j < n && j < eo_case_size(share); j++)
+    check_shares(calculix, eo_case_at(share, j), pair, evaluation, j);
+  return check_prescribed(calculix, block, evaluator, pair, design, error);
+}
+
 static enum eo_code solve_block(struct calculix *calculix, struct eo_case *block, struct eo_design *design, int n,
                                 const double *phase, struct eo_error *error)
 {
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&design->resolution);
-  struct eo_pair_options options = {.grid = &grid, .phase = phase, .own_pivots = true};
+  const struct eo_pair_options options = {.grid = &grid, .phase = phase, .own_pivots = true};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  const struct eo_evaluation *evaluation;
-  struct eo_case *share = eo_case_find(block, "share");
   grid.positions = design->resolution.positions = n;
-  enum eo_code code = eo_pair_new(&pair, design, &options, NULL, error);
+  EO_TRY(eo_pair_new(&pair, design, &options, NULL, error));
+  enum eo_code code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_evaluator_new(&evaluator, pair, 1, error);
-  if (!code)
-    code = eo_evaluator_contact(evaluator, design, &evaluation, error);
-  if (!code && evaluation->load_case[0].contact_failures)
-    eo_verify_diverged(calculix->v, block);
-  else if (!code) {
-    check_transmission(calculix, block, n, evaluation->load_case[0].transmission);
-    if (share)
-      eo_verify_size(calculix->v, share, n);
-    for (int j = 0; j < n && j < eo_case_size(share); j++)
-      check_shares(calculix, eo_case_at(share, j), pair, evaluation, j);
-    code = check_prescribed(calculix, block, evaluator, pair, design, error);
-  }
+    code = check_contact(calculix, block, pair, evaluator, design, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return code;

@@ -337,6 +337,33 @@ static void check_measurement(struct eo_verification *verification, struct eo_ca
     check_numbers(verification, item, measurement);
 }
 
+/* What is read and measured of one file. */
+struct file {
+  struct eo_measurement *measurement;
+  struct eo_recording *recording;
+  struct eo_notes *notes;
+  char *path;
+};
+
+static enum eo_code measure_file(struct run *run, struct eo_case *item, const struct eo_measurement_settings *settings,
+                                 struct file *file, struct eo_error *error)
+{
+  struct eo_tracks tracks;
+  const struct eo_reader_options options = {.spool_directory = temporary_folder()};
+  file->measurement = calloc(1, sizeof *file->measurement);
+  file->notes = calloc(1, sizeof *file->notes);
+  if (!file->measurement || !file->notes || !file->path)
+    return eo_error_memory(error);
+  EO_TRY(eo_reader_read(file->path, &options, &file->recording, file->notes, error));
+  EO_TRY(find_tracks(run, item, &file->recording, file->notes, &tracks, error));
+  if (eo_case_faulty(item))
+    return EO_OK;
+  EO_TRY(eo_measurement_run(file->measurement, file->recording, &tracks, settings, NULL, error));
+  if (!eo_case_faulty(item))
+    check_measurement(run->v, item, file->measurement);
+  return EO_OK;
+}
+
 static enum eo_code run_file(void *context, struct eo_case *item, struct eo_error *error)
 {
   struct run *run = context;
@@ -346,32 +373,20 @@ static enum eo_code run_file(void *context, struct eo_case *item, struct eo_erro
   read_settings(item, &settings);
   if (eo_case_faulty(item))
     return EO_OK;
-  struct eo_measurement *measurement = calloc(1, sizeof *measurement);
-  struct eo_recording *recording = NULL;
-  struct eo_notes *notes = calloc(1, sizeof *notes);
-  struct eo_tracks tracks;
-  const struct eo_reader_options options = {.spool_directory = temporary_folder()};
-  char *path = eo_verify_path(run->v, name);
-  enum eo_code code = measurement && notes && path ? eo_reader_read(path, &options, &recording, notes, error)
-                                                   : eo_error_memory(error);
-  if (!code)
-    code = find_tracks(run, item, &recording, notes, &tracks, error);
-  if (!code && !eo_case_faulty(item))
-    code = eo_measurement_run(measurement, recording, &tracks, &settings, NULL, error);
-  if (!code && !eo_case_faulty(item))
-    check_measurement(run->v, item, measurement);
+  struct file file = {.path = eo_verify_path(run->v, name)};
+  enum eo_code code = measure_file(run, item, &settings, &file, error);
   if (code == EO_ERROR_INPUT && refusal_expected(item)) { /* a question instead of a number */
     eo_verify_uncompared(run->v, eo_case_find(item, "truth"), error->text);
     eo_verify_fact(run->v, item, "refused, as may be", true);
     eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel", 0.002);
     code = EO_OK;
   }
-  if (measurement)
-    eo_measurement_done(measurement);
-  eo_recording_free(recording);
-  free(path);
-  free(notes);
-  free(measurement);
+  if (file.measurement)
+    eo_measurement_done(file.measurement);
+  eo_recording_free(file.recording);
+  free(file.path);
+  free(file.notes);
+  free(file.measurement);
   return code;
 }
 

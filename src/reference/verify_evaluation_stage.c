@@ -82,37 +82,38 @@ static void compare_stage(struct eo_verification *verification, struct eo_case *
                     relative * fabs(wanted));
 }
 
+static enum eo_code check_stage(struct eo_verification *verification, struct eo_case *out, const struct stage *stage,
+                                const struct eo_geometry *geometry, const struct eo_design *design,
+                                struct eo_vibration_solver *solver, struct eo_error *error)
+{
+  struct eo_dynamics_parameters parameters;
+  struct eo_vibration tangent, secant;
+  EO_TRY(eo_dynamics_parameters_init(&parameters, geometry, design->gear_pair.ends, 0, &design->supports, false, 1,
+                                     error));
+  EO_TRY(eo_vibration_set_model(solver, &parameters, error));
+  EO_TRY(solve_stage(geometry, stage, design, false, solver, &tangent, error));
+  EO_TRY(solve_stage(geometry, stage, design, true, solver, &secant, error));
+  compare_stage(verification, out, "rms_n", &tangent, EO_READING_NORMAL);
+  compare_stage(verification, out, "rms_t", &tangent, EO_READING_TRANSVERSE);
+  compare_stage(verification, out, "rms_rot", &tangent, EO_READING_ROTATIONAL);
+  compare_stage(verification, out, "rms_n_secant", &secant, EO_READING_NORMAL);
+  return EO_OK;
+}
+
 enum eo_code eo_verify_stage_arrays(struct eo_verification *verification, struct eo_case *out, struct eo_case *item,
                                     const struct eo_geometry *geometry, const struct eo_design *design,
                                     struct eo_error *error)
 {
-  struct eo_dynamics_parameters parameters;
   struct eo_vibration_solver *solver = NULL;
-  struct eo_vibration tangent, secant;
   struct stage *stage = calloc(1, sizeof *stage);
-  enum eo_code code = stage ? EO_OK : eo_error_memory(error);
-  if (!code)
-    read_stage(item, stage);
-  if (code || eo_case_faulty(item)) {
-    free(stage);
-    return code;
-  }
-  code = eo_dynamics_parameters_init(&parameters, geometry, design->gear_pair.ends, 0, &design->supports, false, 1,
-                                     error);
-  if (!code)
+  if (!stage)
+    return eo_error_memory(error);
+  read_stage(item, stage);
+  enum eo_code code = EO_OK;
+  if (!eo_case_faulty(item))
     code = eo_vibration_new(&solver, design->resolution.harmonics, 0, error);
-  if (!code)
-    code = eo_vibration_set_model(solver, &parameters, error);
-  if (!code)
-    code = solve_stage(geometry, stage, design, false, solver, &tangent, error);
-  if (!code)
-    code = solve_stage(geometry, stage, design, true, solver, &secant, error);
-  if (!code) {
-    compare_stage(verification, out, "rms_n", &tangent, EO_READING_NORMAL);
-    compare_stage(verification, out, "rms_t", &tangent, EO_READING_TRANSVERSE);
-    compare_stage(verification, out, "rms_rot", &tangent, EO_READING_ROTATIONAL);
-    compare_stage(verification, out, "rms_n_secant", &secant, EO_READING_NORMAL);
-  }
+  if (solver)
+    code = check_stage(verification, out, stage, geometry, design, solver, error);
   eo_vibration_free(solver);
   free(stage);
   return code;

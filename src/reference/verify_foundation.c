@@ -83,22 +83,28 @@ static double edge_load(const struct rig *rig)
   return q[0] + (q[0] - q[1]) / 2;
 }
 
+enum { SPUR_CELLS = 160 };
+
+/* One pair of spur teeth, one position, springs all alike; the shafts are out of line by so much over the face. */
+static enum eo_code lean(struct rig *rig, double face_width, double stiffness, double line_load, double misalignment,
+                         struct eo_error *error)
+{
+  const double phase = 0;
+  struct eo_geometry geometry;
+  EO_TRY(spur_geometry(&geometry, face_width, error));
+  EO_TRY(init(rig, &geometry, 1, SPUR_CELLS, &phase, &stiffness, error));
+  if (rig->grid->points != SPUR_CELLS)
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "More than one pair of teeth is in contact at the pitch point.");
+  for (int i = 0; i < SPUR_CELLS; i++)
+    rig->gaps.gap[i] = misalignment * (rig->grid->position[0].point[i].eta / face_width + 0.5);
+  return solve(rig, line_load * face_width, error);
+}
+
 enum eo_code eo_verify_load_distribution(double stiffness, double line_load, double misalignment, double *factor,
                                          struct eo_error *error)
 {
-  enum { CELLS = 160 };
-  const double face_width = 40e-3, phase = 0;
-  struct eo_geometry geometry;
   struct rig rig = {0};
-  enum eo_code code = spur_geometry(&geometry, face_width, error);
-  if (!code)
-    code = init(&rig, &geometry, 1, CELLS, &phase, &stiffness, error);
-  if (!code && rig.grid->points != CELLS)
-    code = eo_error_set(error, EO_ERROR_NUMERIC, "", "More than one pair of teeth is in contact at the pitch point.");
-  for (int i = 0; i < CELLS && !code; i++)
-    rig.gaps.gap[i] = misalignment * (rig.grid->position[0].point[i].eta / face_width + 0.5);
-  if (!code)
-    code = solve(&rig, line_load * face_width, error);
+  enum eo_code code = lean(&rig, 40e-3, stiffness, line_load, misalignment, error);
   if (!code)
     *factor = edge_load(&rig) / line_load;
   done(&rig);

@@ -136,28 +136,40 @@ static enum eo_code check_response_indices(struct eo_verification *verification,
   return EO_OK;
 }
 
+/* Room of a response: what is drawn, and what comes of it. */
+struct drawn {
+  double *input; /* [FUNCTION_POINTS][inputs] */
+  double *value; /* [FUNCTION_POINTS] */
+};
+
+static enum eo_code check_drawn(struct eo_verification *verification, struct eo_case *item, struct eo_case *expected,
+                                struct eo_case *law, struct response *response, const struct drawn *drawn,
+                                struct eo_error *error)
+{
+  double coefficient[EO_BENCH_INPUTS];
+  struct eo_regression regression = {.coefficient = coefficient};
+  struct eo_case *standardised = eo_case_find(expected, "standardised_regression");
+  EO_TRY(draw_response(response, drawn->input, drawn->value, error));
+  struct eo_known_law known = {verification, FUNCTION_POINTS, drawn->value, 0};
+  EO_TRY(eo_verify_law(&known, law, error));
+  if (standardised) {
+    EO_TRY(eo_regression_run(&regression, FUNCTION_POINTS, response->inputs, drawn->input, drawn->value, error));
+    eo_verify_list(verification, standardised, response->inputs, coefficient, 1, 0, eo_index_tolerance);
+  }
+  return eo_case_find(expected, "sobol_first")
+             ? check_response_indices(verification, item, expected, response, drawn->input, drawn->value, error)
+             : EO_OK;
+}
+
 static enum eo_code check_response(struct eo_verification *verification, struct eo_case *item, struct eo_case *expected,
                                    struct eo_case *law, struct response *response, struct eo_error *error)
 {
-  double *input = malloc(sizeof *input * FUNCTION_POINTS * (size_t)(response->inputs + 1)),
-         coefficient[EO_BENCH_INPUTS];
-  if (!input)
+  struct drawn drawn = {.input = malloc(sizeof(double) * FUNCTION_POINTS * (size_t)(response->inputs + 1))};
+  if (!drawn.input)
     return eo_error_memory(error);
-  double *value = input + (size_t)FUNCTION_POINTS * (size_t)response->inputs;
-  struct eo_regression regression = {.coefficient = coefficient};
-  enum eo_code code = draw_response(response, input, value, error);
-  struct eo_known_law known = {verification, FUNCTION_POINTS, value, 0};
-  if (!code)
-    code = eo_verify_law(&known, law, error);
-  if (!code && eo_case_find(expected, "standardised_regression")) {
-    code = eo_regression_run(&regression, FUNCTION_POINTS, response->inputs, input, value, error);
-    if (!code)
-      eo_verify_list(verification, eo_case_find(expected, "standardised_regression"), response->inputs, coefficient, 1,
-                     0, eo_index_tolerance);
-  }
-  if (!code && eo_case_find(expected, "sobol_first"))
-    code = check_response_indices(verification, item, expected, response, input, value, error);
-  free(input);
+  drawn.value = drawn.input + (size_t)FUNCTION_POINTS * (size_t)response->inputs;
+  enum eo_code code = check_drawn(verification, item, expected, law, response, &drawn, error);
+  free(drawn.input);
   return code;
 }
 
