@@ -79,6 +79,20 @@ static int show(const struct request *request, json_t *result)
   return eo_app_print(&text);
 }
 
+/* The result, and its files where some are asked for. */
+static enum eo_code make(struct request *request, struct eo_watch *watch, struct eo_pair **pair, json_t **result,
+                         struct eo_error *error)
+{
+  enum eo_code code = prepare(request, &watch->progress, pair, error);
+  if (!code)
+    code = analyze(request, *pair, &watch->progress, result, error);
+  eo_watch_clear(watch);
+  if (watch->stopped)
+    return cancelled(error);
+  EO_TRY(code);
+  return request->csv ? save_files(*result, request, error) : EO_OK;
+}
+
 static int run_request(struct request *request)
 {
   struct eo_watch watch;
@@ -86,14 +100,7 @@ static int run_request(struct request *request)
   struct eo_pair *pair = NULL;
   json_t *result = NULL;
   eo_watch_start(&watch);
-  enum eo_code code = prepare(request, &watch.progress, &pair, &error);
-  if (!code)
-    code = analyze(request, pair, &watch.progress, &result, &error);
-  eo_watch_clear(&watch);
-  if (watch.stopped)
-    code = cancelled(&error);
-  if (!code && request->csv)
-    code = save_files(result, request, &error);
+  enum eo_code code = make(request, &watch, &pair, &result, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, result);
   eo_watch_end(&watch);
   json_decref(result);
@@ -101,24 +108,28 @@ static int run_request(struct request *request)
   return status;
 }
 
+static enum eo_code take_teeth(struct request *request, struct eo_text *text, json_t *table, struct eo_faults *faults,
+                               struct eo_error *error)
+{
+  enum { MOST_TABLE = 1 << 20 };
+  if (!faults || !table)
+    return eo_error_memory(error);
+  EO_TRY(eo_text_read(text, request->pitch, MOST_TABLE, error));
+  if (json_object_set_new(table, "csv", json_string(text->data)) != 0)
+    return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table is not text in UTF-8.");
+  eo_pitch_decode(table, &request->design.gear_pair, &request->design.pitch, faults);
+  EO_TRY(eo_faults_first(faults, error));
+  return eo_design_complete(&request->design, &request->geometry, error);
+}
+
 /* The deviations of a measured pair's teeth in place of those of the design. */
 static bool read_teeth(struct request *request, int *status)
 {
-  enum { MOST_TABLE = 1 << 20 };
   struct eo_text text = {0};
   struct eo_error error;
   struct eo_faults *faults = calloc(1, sizeof *faults);
   json_t *table = json_object();
-  enum eo_code code = faults && table ? eo_text_read(&text, request->pitch, MOST_TABLE, &error)
-                                      : eo_error_memory(&error);
-  if (!code && json_object_set_new(table, "csv", json_string(text.data)) != 0)
-    code = eo_error_set(&error, EO_ERROR_INPUT, NULL, "The table is not text in UTF-8.");
-  if (!code) {
-    eo_pitch_decode(table, &request->design.gear_pair, &request->design.pitch, faults);
-    code = eo_faults_first(faults, &error);
-  }
-  if (!code)
-    code = eo_design_complete(&request->design, &request->geometry, &error);
+  enum eo_code code = take_teeth(request, &text, table, faults, &error);
   *status = code ? eo_app_fail(request->pitch, &error) : EO_EXIT_DONE;
   eo_text_done(&text);
   json_decref(table);

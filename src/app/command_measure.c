@@ -84,33 +84,27 @@ static enum eo_code read_part(const char *part, const char *from, const char *to
     return eo_error_set(error, EO_ERROR_INPUT, "", "--part %.40s is neither \"whole\" nor a number from 1 to %d.", part,
                         EO_PARTS);
   choice->part = end ? (int)number : 0;
-  enum eo_code code = EO_OK;
   if (from && strcmp(from, "0") != 0)
-    code = read_positive("--from", from, &choice->from, error);
-  if (!code && to)
-    code = read_positive("--to", to, &choice->to, error);
-  if (!code && to && choice->to <= choice->from)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "--to %.40s s is not after --from %.40s s.", to, from);
-  return code;
+    EO_TRY(read_positive("--from", from, &choice->from, error));
+  if (!to)
+    return EO_OK;
+  EO_TRY(read_positive("--to", to, &choice->to, error));
+  return choice->to > choice->from
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "", "--to %.40s s is not after --from %.40s s.", to, from);
 }
 
 /* The options hold for every file; an entry of the list may say otherwise. */
 static enum eo_code set_usual(const struct request *request, struct entry *entry, struct eo_error *error)
 {
   int unmodified;
-  enum eo_code code = read_positive("--torque", request->torque, &entry->torque, error);
-  if (!code)
-    code = read_positive("--speed", request->speed, &entry->speed, error);
-  if (!code)
-    code = read_word("--label", request->label, label_words, 0, &unmodified, error);
-  if (!code)
-    code = read_word("--end", request->end, end_words, EO_RIGHT, &entry->end, error);
-  if (!code)
-    code = read_part(request->part, request->from, request->to, &entry->part, error);
-  if (!code && request->layout && !(entry->layout = load_json(request->layout, error)))
-    code = error->code;
-  if (code)
-    return code;
+  EO_TRY(read_positive("--torque", request->torque, &entry->torque, error));
+  EO_TRY(read_positive("--speed", request->speed, &entry->speed, error));
+  EO_TRY(read_word("--label", request->label, label_words, 0, &unmodified, error));
+  EO_TRY(read_word("--end", request->end, end_words, EO_RIGHT, &entry->end, error));
+  EO_TRY(read_part(request->part, request->from, request->to, &entry->part, error));
+  if (request->layout && !(entry->layout = load_json(request->layout, error)))
+    return error->code;
   entry->unmodified = unmodified == 1;
   entry->speed *= M_PI / 30;
   return EO_OK;
@@ -260,22 +254,28 @@ static enum eo_code measure_all(struct request *request, const struct eo_progres
   return EO_OK;
 }
 
+static enum eo_code predict(struct request *request, struct eo_pair **pair, struct eo_evaluator **evaluator,
+                            const struct eo_pair_options *options, const struct eo_progress *progress,
+                            struct eo_error *error)
+{
+  EO_TRY(eo_pair_new(pair, &request->design, options, progress, error));
+  EO_TRY(eo_evaluator_new(evaluator, *pair, 1, error));
+  EO_TRY(eo_comparison_run(&request->comparison, *evaluator, &request->design, request->measured_count,
+                           request->measured, progress, error));
+  return request->update
+             ? eo_update_run(&request->fit, *pair, &request->design, request->measured_count, request->measured,
+                             &request->update_settings, &request->updated, progress, error)
+             : EO_OK;
+}
+
 static enum eo_code compare(struct request *request, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
-  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
+  const struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
-  if (!code)
-    code = eo_evaluator_new(&evaluator, pair, 1, error);
-  if (!code)
-    code = eo_comparison_run(&request->comparison, evaluator, &request->design, request->measured_count,
-                             request->measured, progress, error);
-  if (!code && request->update)
-    code = eo_update_run(&request->fit, pair, &request->design, request->measured_count, request->measured,
-                         &request->update_settings, &request->updated, progress, error);
+  enum eo_code code = predict(request, &pair, &evaluator, &options, progress, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   eo_text_done(&directory);
@@ -331,6 +331,13 @@ static int show(struct request *request)
   return eo_app_print(&request->text);
 }
 
+static enum eo_code save(const struct request *request, struct eo_error *error)
+{
+  if (request->apply && request->comparison.count)
+    EO_TRY(save_design(request, error));
+  return request->csv ? save_csv(request, error) : EO_OK;
+}
+
 static int run_request(struct request *request)
 {
   struct eo_watch watch;
@@ -343,10 +350,8 @@ static int run_request(struct request *request)
   eo_watch_clear(&watch);
   if (watch.stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
-  if (!code && request->apply && request->comparison.count)
-    code = save_design(request, &error);
-  if (!code && request->csv)
-    code = save_csv(request, &error);
+  if (!code)
+    code = save(request, &error);
   int status = code ? eo_app_fail(failed_at, &error) : show(request);
   eo_watch_end(&watch);
   return status ? status : request->results ? EO_EXIT_DONE : EO_EXIT_INPUT;

@@ -113,6 +113,18 @@ static enum eo_code save_front(const struct request *request, const json_t *docu
   return code;
 }
 
+static enum eo_code search(struct request *request, const struct eo_study_plan *plan, struct eo_study_result *result,
+                           json_t **document, struct eo_error *error)
+{
+  EO_TRY(eo_study_run(plan, result, error));
+  EO_TRY(eo_study_document(plan, result, &request->warnings, document, error));
+  EO_TRY(save_front(request, *document, error));
+  eo_job_live_conclude(&request->note.live, result);
+  if (result->stopped != EO_STOP_CANCELLED)
+    request->note.live.fraction = 1;
+  return EO_OK;
+}
+
 static int run_study(struct request *request, const struct eo_pair *pair, struct eo_store *store)
 {
   const struct eo_study_plan plan = {.design = &request->design,
@@ -128,15 +140,7 @@ static int run_study(struct request *request, const struct eo_pair *pair, struct
   struct eo_study_result result;
   struct eo_error error;
   json_t *document = NULL;
-  enum eo_code code = eo_study_run(&plan, &result, &error);
-  if (!code)
-    code = eo_study_document(&plan, &result, &request->warnings, &document, &error);
-  if (!code)
-    code = save_front(request, document, &error);
-  if (!code)
-    eo_job_live_conclude(&request->note.live, &result);
-  if (!code && result.stopped != EO_STOP_CANCELLED)
-    request->note.live.fraction = 1;
+  enum eo_code code = search(request, &plan, &result, &document, &error);
   eo_work_note_end(&request->note, code, &error);
   eo_watch_clear(&request->watch);
   eo_study_result_done(&result);

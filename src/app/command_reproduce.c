@@ -42,35 +42,37 @@ static int show(const struct request *request, json_t *document)
   return eo_app_print(&text);
 }
 
+static enum eo_code reproduce(const struct request *request, const char *data, const char *cache,
+                              struct eo_watch *watch, json_t **document, struct eo_error *error)
+{
+  struct eo_store *store = NULL;
+  EO_TRY(eo_store_open(&store, data, EO_STORE_WRITE, error));
+  struct eo_reproduction_plan plan = {
+      .store = store, .cache_directory = cache, .threads = request->thread_count, .progress = &watch->progress};
+  eo_table_defaults(&eo_reproduction_order_table, &plan.order);
+  plan.order.quick = request->quick;
+  enum eo_code code = eo_reproduction_run(&plan, document, error);
+  eo_watch_clear(watch);
+  eo_store_close(store);
+  return code ? code : save(request, *document, error);
+}
+
 static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
   struct eo_text data = {0}, cache = {0};
-  struct eo_store *store = NULL;
   json_t *document = NULL;
   if (request->threads &&
       !eo_app_read_whole(request->threads, "--threads", 1, EO_MAX_THREADS, &request->thread_count, &error))
     return eo_app_fail(NULL, &error);
-  enum eo_code code = eo_app_data_directory(request->data, &data, &error);
-  if (!code)
-    code = eo_store_open(&store, data.data, EO_STORE_WRITE, &error);
-  bool keep = eo_app_cache_directory(request->data, &cache);
   eo_watch_start(&watch);
-  struct eo_reproduction_plan plan = {.store = store,
-                                      .cache_directory = keep ? cache.data : NULL,
-                                      .threads = request->thread_count,
-                                      .progress = &watch.progress};
-  eo_table_defaults(&eo_reproduction_order_table, &plan.order);
-  plan.order.quick = request->quick;
+  enum eo_code code = eo_app_data_directory(request->data, &data, &error);
+  bool keep = eo_app_cache_directory(request->data, &cache);
   if (!code)
-    code = eo_reproduction_run(&plan, &document, &error);
-  eo_watch_clear(&watch);
-  if (!code)
-    code = save(request, document, &error);
+    code = reproduce(request, data.data, keep ? cache.data : NULL, &watch, &document, &error);
   int status = code ? eo_app_fail(NULL, &error) : show(request, document);
   eo_watch_end(&watch);
-  eo_store_close(store);
   eo_text_done(&data);
   eo_text_done(&cache);
   return status;

@@ -97,27 +97,38 @@ static bool read_settings(struct request *request, const struct options *options
   return *status == EO_EXIT_DONE;
 }
 
-static enum eo_code respond(struct request *request, const struct eo_progress *progress,
+/* What the design does at that torque and speed. */
+static enum eo_code predict(const struct request *request, const struct eo_pair *pair,
                             struct eo_rig_prediction *prediction, struct eo_error *error)
+{
+  const struct eo_rig_request *rig = &request->rig;
+  struct eo_evaluator *evaluator = NULL;
+  EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
+  enum eo_code code = eo_prediction_run(prediction, evaluator, &request->design, rig->unmodified, rig->torque,
+                                        rig->speed, rig->end, rig->harmonics, error);
+  eo_evaluator_free(evaluator);
+  EO_TRY(code);
+  return prediction->valid
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
+                            rig->torque, rig->speed * 30 / M_PI);
+}
+
+static enum eo_code respond(struct request *request, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
-  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
+  const struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
   struct eo_pair *pair = NULL;
-  struct eo_evaluator *evaluator = NULL;
+  struct eo_rig_prediction prediction;
   enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
-  if (!code)
-    code = eo_evaluator_new(&evaluator, pair, 1, error);
-  if (!code)
-    code = eo_prediction_run(prediction, evaluator, &request->design, request->rig.unmodified, request->rig.torque,
-                             request->rig.speed, request->rig.end, request->rig.harmonics, error);
-  if (!code && !prediction->valid)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
-                        request->rig.torque, request->rig.speed * 30 / M_PI);
-  eo_evaluator_free(evaluator);
-  eo_pair_free(pair);
   eo_text_done(&directory);
-  return code;
+  EO_TRY(code);
+  code = predict(request, pair, &prediction, error);
+  eo_pair_free(pair);
+  EO_TRY(code);
+  eo_rig_set_pair(&request->rig, &request->geometry, &request->design.supports, &prediction);
+  return eo_synthetic_check(&request->rig.synthetic, error);
 }
 
 /* Beside the file and then in its place, so that nobody finds half of it. */
@@ -157,24 +168,21 @@ static enum eo_code write_truth(const struct request *request, struct eo_error *
   return code;
 }
 
+static enum eo_code make(struct request *request, const struct eo_progress *progress, struct eo_error *error)
+{
+  EO_TRY(respond(request, progress, error));
+  EO_TRY(write_file(request, progress, error));
+  return request->truth ? write_truth(request, error) : EO_OK;
+}
+
 static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
-  struct eo_rig_prediction prediction;
-  enum eo_code code = eo_rig_complete(&request->rig, &request->design, &error);
-  if (code)
+  if (eo_rig_complete(&request->rig, &request->design, &error))
     return eo_app_fail(request->settings, &error);
   eo_watch_start(&watch);
-  code = respond(request, &watch.progress, &prediction, &error);
-  if (!code) {
-    eo_rig_set_pair(&request->rig, &request->geometry, &request->design.supports, &prediction);
-    code = eo_synthetic_check(&request->rig.synthetic, &error);
-  }
-  if (!code)
-    code = write_file(request, &watch.progress, &error);
-  if (!code && request->truth)
-    code = write_truth(request, &error);
+  enum eo_code code = make(request, &watch.progress, &error);
   eo_watch_clear(&watch);
   if (watch.stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");

@@ -291,9 +291,23 @@ static enum eo_code write_table(struct request *request, const struct eo_variant
   return EO_OK;
 }
 
-static int show(struct request *request, int64_t job, const struct eo_variant_result *result)
+static enum eo_code write(struct request *request, int64_t job, const struct eo_variant_query *query,
+                          const struct eo_variant_result *result, struct eo_text *text, struct eo_error *error)
 {
   struct eo_variant_table table;
+  bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
+  EO_TRY(eo_variant_table_init(&table, request->store, job, query, error));
+  if (result && people)
+    summarise(result, text);
+  enum eo_code code = write_table(request, &table, query, text, error);
+  if (!code && people && !request->csv && table.count < table.fits)
+    eo_text_print(text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
+  eo_variant_table_done(&table);
+  return code;
+}
+
+static int show(struct request *request, int64_t job, const struct eo_variant_result *result)
+{
   struct eo_error error;
   struct eo_text text = {0};
   int limit = request->json || request->csv ? -1 : SHOWN;
@@ -301,15 +315,7 @@ static int show(struct request *request, int64_t job, const struct eo_variant_re
   if (request->limit && !eo_app_read_whole(request->limit, "--limit", 1, EO_STUDY_MOST_ROWS, &limit, &error))
     return eo_app_fail(NULL, &error);
   query.most = limit;
-  bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
-  enum eo_code code = eo_variant_table_init(&table, request->store, job, &query, &error);
-  if (!code && result && people)
-    summarise(result, &text);
-  if (!code)
-    code = write_table(request, &table, &query, &text, &error);
-  if (!code && people && !request->csv && table.count < table.fits)
-    eo_text_print(&text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
-  eo_variant_table_done(&table);
+  enum eo_code code = write(request, job, &query, result, &text, &error);
   if (!code)
     return eo_app_print(&text);
   eo_text_done(&text);

@@ -125,6 +125,16 @@ static enum eo_code run_pairs(struct request *request, const struct eo_progress 
   return code;
 }
 
+static enum eo_code make(struct request *request, struct eo_scatter_run *run, struct eo_tolerance_report **report,
+                         struct eo_error *error)
+{
+  const struct eo_progress *progress = &request->watch.progress;
+  EO_TRY(eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, error));
+  EO_TRY(eo_tolerance_check_limits(&request->design, error));
+  EO_TRY(run_pairs(request, progress, run, error));
+  return eo_tolerance_report_new(report, &request->design, &request->scatter, run, request->assumed, progress, error);
+}
+
 static int run_request(struct request *request)
 {
   struct eo_watch *watch = &request->watch;
@@ -132,14 +142,7 @@ static int run_request(struct request *request)
   struct eo_scatter_run run = {0};
   struct eo_tolerance_report *report = NULL;
   eo_watch_start(watch);
-  enum eo_code code = eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, &error);
-  if (!code)
-    code = eo_tolerance_check_limits(&request->design, &error);
-  if (!code)
-    code = run_pairs(request, &watch->progress, &run, &error);
-  if (!code)
-    code = eo_tolerance_report_new(&report, &request->design, &request->scatter, &run, request->assumed,
-                                   &watch->progress, &error);
+  enum eo_code code = make(request, &run, &report, &error);
   eo_watch_clear(watch);
   if (watch->stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.%s",
@@ -192,23 +195,29 @@ static enum eo_code run_job(struct request *request, struct eo_tolerance_outcome
   return code;
 }
 
-static enum eo_code find_job(struct request *request, struct eo_error *error)
+static enum eo_code open_store(struct request *request, struct eo_error *error)
 {
-  int job;
-  enum eo_job_outcome outcome;
   struct eo_text directory = {0};
-  if (!eo_app_read_whole(request->work, "--work", 1, INT32_MAX, &job, error))
-    return error->code;
   enum eo_code code = eo_app_data_directory(request->data, &directory, error);
   if (!code)
     code = eo_store_open(&request->note.store, directory.data, EO_STORE_WRITE, error);
   eo_text_done(&directory);
-  if (!code)
-    code = eo_queue_find(request->note.store, job, take_job, request, &outcome, error);
-  if (!code && outcome != EO_JOB_OUTCOME_DONE)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
-  request->note.job = code ? 0 : job;
   return code;
+}
+
+static enum eo_code find_job(struct request *request, struct eo_error *error)
+{
+  int job;
+  enum eo_job_outcome outcome;
+  request->note.job = 0;
+  if (!eo_app_read_whole(request->work, "--work", 1, INT32_MAX, &job, error))
+    return error->code;
+  EO_TRY(open_store(request, error));
+  EO_TRY(eo_queue_find(request->note.store, job, take_job, request, &outcome, error));
+  if (outcome != EO_JOB_OUTCOME_DONE)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %d.", job);
+  request->note.job = job;
+  return EO_OK;
 }
 
 static int work(struct request *request)
