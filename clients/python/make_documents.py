@@ -38,7 +38,8 @@ def type_of(schema):
     if kinds == "array":
         return f"Sequence[{type_of(schema.get('items', {}))}]"
     if kinds == "object":
-        return "Mapping[str, Any]"
+        others = schema.get("additionalProperties")
+        return f"Mapping[str, {type_of(others) if isinstance(others, dict) else 'Any'}]"
     return PLAIN.get(kinds, "Any")
 
 

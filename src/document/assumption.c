@@ -14,7 +14,8 @@ struct assumption {
 
 static const struct eo_outline_row assumption_rows[] = {
     EO_KEY("key", "text", "JSON pointer of the key that was not stated", EO_AT(struct assumption, key)),
-    EO_KEY("value", "any", "what was taken, as the document says it; null: it follows from each load case",
+    EO_KEY("value", "number|flag|text|[number]|{any}?",
+           "what was taken, as the document says it; null: it follows from each load case",
            EO_AT(struct assumption, value)),
     EO_KEY("rule", "text", "by which rule, or from where", EO_AT(struct assumption, rule)),
 };

@@ -10,6 +10,7 @@
 static const struct eo_unit unit_us = {"us", "us", 1e6, true}, unit_mV = {"mV", "mV", 1e3, true},
                             unit_V = {"V", "V", 1, false};
 
+enum { MOST_ORDERS = 8 };                                       /* of which the truth tells */
 static const double SPEED_CHANGES = 0.02, TORQUE_CHANGES = 0.1; /* relative, over the recording: said by a finding */
 
 static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts",     "sine-cosine",
@@ -219,28 +220,46 @@ enum eo_code eo_rig_write(const struct eo_rig_request *request, const struct eo_
   return EO_OK;
 }
 
-static json_t *column(int count, const double *value)
-{
-  return eo_json_reals(count, value, 1, NULL, EO_DIGITS_NUMBER);
-}
+/* What the recording holds of each mesh order. */
+struct truth {
+  double speed;
+  int orders;
+  double amplitude[EO_SYNTHETIC_ORDERS];    /* um */
+  double acceleration[EO_SYNTHETIC_ORDERS]; /* m/s2 */
+  double rms[EO_SYNTHETIC_ORDERS];          /* m/s2, of the orders up to this one */
+  struct eo_series amplitudes, accelerations, sums;
+};
 
-static json_t *encode_truth(const struct eo_synthetic *synthetic, int orders)
+#define OF_TRUTH(member) EO_AT(struct truth, member)
+static const struct eo_outline_row speed_rows[] = {
+    EO_KEY("mean_rpm", "number", "of the pinion", .unit = &eo_unit_rpm, OF_TRUTH(speed)),
+};
+static const struct eo_outline_row order_rows[] = {
+    EO_KEY("line_amp_um", "[number]", "of each mesh order", OF_TRUTH(amplitudes)),
+    EO_KEY("line_acc", "[number]", "of each mesh order, m/s2", OF_TRUTH(accelerations)),
+    EO_KEY("rms_by_H", "[number]", "of the orders up to each, m/s2", OF_TRUTH(sums)),
+};
+static const struct eo_outline speed_outline = EO_OUTLINE("RigSpeed", speed_rows),
+                               order_outline = EO_OUTLINE("RigOrders", order_rows);
+
+static json_t *encode_truth(const struct eo_synthetic *synthetic)
 {
-  double amplitude[EO_SYNTHETIC_ORDERS], acceleration[EO_SYNTHETIC_ORDERS], rms[EO_SYNTHETIC_ORDERS];
+  struct truth truth = {.speed = eo_synthetic_speed(synthetic),
+                        .orders = synthetic->orders < MOST_ORDERS ? synthetic->orders : MOST_ORDERS};
   struct eo_object object = eo_object_open();
-  double speed = eo_synthetic_speed(synthetic);
   char key[40];
-  for (int h = 1; h <= orders; h++) {
-    amplitude[h - 1] = 1e6 * cabs(synthetic->order[h - 1]);
-    acceleration[h - 1] = cabs(synthetic->order[h - 1]) * pow(h * synthetic->teeth[EO_PINION] * speed, 2);
-    rms[h - 1] = eo_synthetic_rms(synthetic, h);
+  for (int h = 1; h <= truth.orders; h++) {
+    truth.amplitude[h - 1] = 1e6 * cabs(synthetic->order[h - 1]);
+    truth.acceleration[h - 1] = cabs(synthetic->order[h - 1]) * pow(h * synthetic->teeth[EO_PINION] * truth.speed, 2);
+    truth.rms[h - 1] = eo_synthetic_rms(synthetic, h);
   }
-  snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
-  eo_object_put(&object, "mean_rpm", eo_json_quantity(speed, &eo_unit_rpm));
-  eo_object_put(&object, key, eo_json_quantity(rms[orders - 1], NULL));
-  eo_object_put(&object, "line_amp_um", column(orders, amplitude));
-  eo_object_put(&object, "line_acc", column(orders, acceleration));
-  eo_object_put(&object, "rms_by_H", column(orders, rms));
+  truth.amplitudes = eo_series_of(truth.orders, truth.amplitude, EO_DIGITS_NUMBER);
+  truth.accelerations = eo_series_of(truth.orders, truth.acceleration, EO_DIGITS_NUMBER);
+  truth.sums = eo_series_of(truth.orders, truth.rms, EO_DIGITS_NUMBER);
+  snprintf(key, sizeof key, "rms_mesh_lines_H%d", truth.orders); /* a key that says of how many orders */
+  eo_outline_put(&object, &speed_outline, &truth);
+  eo_object_put(&object, key, eo_json_quantity(truth.rms[truth.orders - 1], NULL));
+  eo_outline_put(&object, &order_outline, &truth);
   return eo_object_close(&object);
 }
 
@@ -252,42 +271,98 @@ static const char *expected_finding(enum eo_synthetic_fault fault)
   return expected[fault];
 }
 
+static json_t *list_findings(const struct eo_synthetic *synthetic)
+{
+  struct eo_object list = eo_list_open();
+  const char *fault = expected_finding(synthetic->fault);
+  if (fault || synthetic->wrapped)
+    eo_list_add(&list, json_string(fault ? fault : "wrapped"));
+  if (eo_synthetic_swing(synthetic) > SPEED_CHANGES || synthetic->rest[0] > 0 || synthetic->rest[1] > 0 ||
+      synthetic->turn_back || synthetic->run_up > 0)
+    eo_list_add(&list, json_string("unsteady"));
+  if (synthetic->torque != 0 && fabs(synthetic->torque_change) > TORQUE_CHANGES)
+    eo_list_add(&list, json_string("torque"));
+  return eo_object_close(&list);
+}
+
+static json_t *write_count(const void *source)
+{
+  (void)source;
+  return json_string("count");
+}
+
+/* What the file cannot say of its encoders. */
+struct stated_layout {
+  json_t *lines;
+  bool counted;
+};
+
+static const struct eo_outline_row stated_rows[] = {
+    EO_KEY("lines", "[integer]", "per turn of the pinion's and the gear's encoder", EO_AT(struct stated_layout, lines)),
+    EO_KEY("unit", "text", "count: they are counts since the row before", .when = "of increments", .write = write_count,
+           EO_IF(struct stated_layout, counted)),
+};
+static const struct eo_outline stated_outline = EO_OUTLINE("RigLayout", stated_rows);
+
+static json_t *encode_layout(const struct eo_synthetic *synthetic)
+{
+  bool increments = synthetic->output == EO_SYNTHETIC_INCREMENTS;
+  int per_line = synthetic->output == EO_SYNTHETIC_COUNTS || increments ? synthetic->interpolation : 1;
+  const struct stated_layout layout = {
+      json_pack("[i, i]", synthetic->lines[EO_PINION] * per_line, synthetic->lines[EO_GEAR] * per_line), increments};
+  return eo_outline_encode(&stated_outline, &layout);
+}
+
+/* The file of the case. */
+struct recorded {
+  const char *file;
+  json_t *truth, *findings, *layout;
+  double tolerance;
+  bool with_layout;
+};
+
+#define OF_RECORDED(member) EO_AT(struct recorded, member)
+static const struct eo_outline_row recorded_rows[] = {
+    EO_KEY("file", "text", "beside this one", OF_RECORDED(file)),
+    EO_KEY("truth", "{any}", "speed and mesh orders", OF_RECORDED(truth)),
+    EO_KEY("tolerance_rms_rel", "number", "of the RMS", OF_RECORDED(tolerance)),
+    EO_KEY("expected_findings", "[text]", "what has to be found in it", OF_RECORDED(findings)),
+    EO_KEY("layout", "object", "what it cannot say of its encoders", .when = "but of angles",
+           .outline = &stated_outline, OF_RECORDED(layout), EO_IF(struct recorded, with_layout)),
+};
+static const struct eo_outline recorded_outline = EO_OUTLINE("RigFile", recorded_rows);
+
+struct rig_case {
+  const char *kind;
+  json_t *teeth, *base_radius, *files;
+};
+
+#define OF_CASE(member) EO_AT(struct rig_case, member)
+static const struct eo_outline_row case_rows[] = {
+    EO_KEY("kind", "text", "of the case file", OF_CASE(kind)),
+    EO_KEY("teeth", "[integer]", "of the pinion and the gear", OF_CASE(teeth)),
+    EO_KEY("base_radius_mm", "[number]", "of the pinion and the gear", OF_CASE(base_radius)),
+    EO_KEY("files", "[object]", "one", .outline = &recorded_outline, OF_CASE(files)),
+};
+static const struct eo_outline case_outline = EO_OUTLINE("RigCase", case_rows);
+
 json_t *eo_rig_truth(const struct eo_rig_request *request, const char *file)
 {
   const struct eo_synthetic *synthetic = &request->synthetic;
-  struct eo_object top = eo_object_open(), entry = eo_object_open();
-  json_t *findings = json_array(), *files = json_array(), *radii = json_array(), *teeth = json_array();
-  int orders = synthetic->orders < 8 ? synthetic->orders : 8;
-  const char *fault = expected_finding(synthetic->fault);
-  if (fault)
-    entry.failed = json_array_append_new(findings, json_string(fault)) != 0;
-  else if (synthetic->wrapped)
-    entry.failed = json_array_append_new(findings, json_string("wrapped")) != 0;
-  if (eo_synthetic_swing(synthetic) > SPEED_CHANGES || synthetic->rest[0] > 0 || synthetic->rest[1] > 0 ||
-      synthetic->turn_back || synthetic->run_up > 0)
-    entry.failed = json_array_append_new(findings, json_string("unsteady")) != 0 || entry.failed;
-  if (synthetic->torque != 0 && fabs(synthetic->torque_change) > TORQUE_CHANGES)
-    entry.failed = json_array_append_new(findings, json_string("torque")) != 0 || entry.failed;
-  for (int i = 0; i < 2; i++)
-    top.failed = json_array_append_new(radii, eo_json_real(synthetic->base_radius[i], &eo_unit_mm)) ||
-                 json_array_append_new(teeth, json_integer(synthetic->teeth[i])) || top.failed;
-  eo_object_put(&entry, "file", json_string(file));
-  eo_object_put(&entry, "truth", encode_truth(synthetic, orders));
-  eo_object_put(&entry, "tolerance_rms_rel", eo_json_quantity(0.01, NULL));
-  eo_object_put(&entry, "expected_findings", findings);
-  if (synthetic->output != EO_SYNTHETIC_ANGLES) {
-    bool counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
-    int per_line = counted ? synthetic->interpolation : 1;
-    json_t *layout = json_pack("{s:[i,i]}", "lines", synthetic->lines[EO_PINION] * per_line,
-                               synthetic->lines[EO_GEAR] * per_line);
-    if (synthetic->output == EO_SYNTHETIC_INCREMENTS)
-      entry.failed = json_object_set_new(layout, "unit", json_string("count")) != 0 || entry.failed;
-    eo_object_put(&entry, "layout", layout);
-  }
-  top.failed = json_array_append_new(files, eo_object_close(&entry)) != 0 || top.failed;
-  eo_object_put(&top, "kind", json_string("encoder"));
-  eo_object_put(&top, "teeth", teeth);
-  eo_object_put(&top, "base_radius_mm", radii);
-  eo_object_put(&top, "files", files);
-  return eo_object_close(&top);
+  bool angles = synthetic->output == EO_SYNTHETIC_ANGLES;
+  struct eo_object files = eo_list_open();
+  const struct recorded recorded = {.file = file,
+                                    .truth = encode_truth(synthetic),
+                                    .findings = list_findings(synthetic),
+                                    .layout = angles ? NULL : encode_layout(synthetic),
+                                    .tolerance = 0.01,
+                                    .with_layout = !angles};
+  eo_list_add(&files, eo_outline_encode(&recorded_outline, &recorded));
+  const struct rig_case rig_case = {
+      .kind = "encoder",
+      .teeth = json_pack("[i, i]", synthetic->teeth[EO_PINION], synthetic->teeth[EO_GEAR]),
+      .base_radius = json_pack("[o, o]", eo_json_real(synthetic->base_radius[EO_PINION], &eo_unit_mm),
+                               eo_json_real(synthetic->base_radius[EO_GEAR], &eo_unit_mm)),
+      .files = eo_object_close(&files)};
+  return eo_outline_encode(&case_outline, &rig_case);
 }

@@ -5,10 +5,10 @@
    outline. A document that several threads write has an outline for each part, and one of all that includes them.
 
    shape: number, integer, flag, text, word (one of words), any, object (of outline, of table, or `name`), [array],
-   one|or another; `?` behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit,
-   NaN as null; of an empty text? and a negative word? it is null too; `integer` of a double member is its whole number.
-   A writer fills a struct of its own with what the rows name, numbers and curves and parts that others made, and has it
-   written. */
+   {object whose keys are data}, one|or another; `?` behind any of them: or null. Numbers are written with
+   EO_DIGITS_NUMBER digits in the row's unit, NaN as null; of an empty text? and a negative word? it is null too;
+   `integer` of a double member is its whole number. A writer fills a struct of its own with what the rows name, numbers
+   and curves and parts that others made, and has it written. */
 #ifndef EASEOFF_FORMAT_OUTLINE_H
 #define EASEOFF_FORMAT_OUTLINE_H
 

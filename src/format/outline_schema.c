@@ -46,13 +46,21 @@ static json_t *read_plain(const char **at, const struct eo_outline_row *row)
 
 static json_t *read_shape(const char **at, const struct eo_outline_row *row);
 
+/* What stands between brackets: an array of it, or an object whose keys are data. */
+static json_t *read_inner(const char **at, const struct eo_outline_row *row, bool array)
+{
+  json_t *schema = read_shape(at, row);
+  if (!schema || !take(at, array ? "]" : "}")) {
+    json_decref(schema);
+    return NULL;
+  }
+  return json_pack("{s:s, s:o}", "type", array ? "array" : "object", array ? "items" : "additionalProperties", schema);
+}
+
 static json_t *read_one(const char **at, const struct eo_outline_row *row)
 {
-  json_t *schema = NULL;
-  if (!take(at, "["))
-    schema = read_plain(at, row);
-  else if ((schema = read_shape(at, row)))
-    schema = take(at, "]") ? json_pack("{s:s, s:o}", "type", "array", "items", schema) : (json_decref(schema), NULL);
+  bool array = take(at, "[");
+  json_t *schema = array || take(at, "{") ? read_inner(at, row, array) : read_plain(at, row);
   return schema && take(at, "?") ? json_pack("{s:[o, {s:s}]}", "anyOf", schema, "type", "null") : schema;
 }
 

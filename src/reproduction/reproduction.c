@@ -8,6 +8,7 @@
 
 #include "document/examples.h"
 #include "document/design_document.h"
+#include "document/made_check_document.h"
 #include "format/json.h"
 #include "format/outline.h"
 #include "evaluation/analysis.h"
@@ -85,14 +86,13 @@ static enum eo_code analyse_variant(struct reproduction *reproduction, struct eo
     design->resolution.mesh_law = EO_LAW_SECANT;
   enum eo_code code = eo_analysis_run(analysis, design,
                                       law == LAW_OURS ? EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES : 0, error);
-  if (!code) {
-    memcpy(reproduction->raw[law][variant], analysis->evaluation->objective, sizeof reproduction->raw[law][variant]);
-    reproduction->value[law][variant] = analysis->value;
-  }
   if (!code && law == LAW_OURS && !(reproduction->result[variant] = eo_result_encode(analysis, design, NULL)))
     code = eo_error_memory(error);
   free(design);
-  return code;
+  EO_TRY(code);
+  memcpy(reproduction->raw[law][variant], analysis->evaluation->objective, sizeof reproduction->raw[law][variant]);
+  reproduction->value[law][variant] = analysis->value;
+  return EO_OK;
 }
 
 static enum eo_code analyse(struct reproduction *reproduction, struct eo_error *error)
@@ -106,24 +106,41 @@ static enum eo_code analyse(struct reproduction *reproduction, struct eo_error *
   return code;
 }
 
-static json_t *encode_summary(const struct reproduction *reproduction)
+static const char *const laws[] = {"tangent", "secant", NULL};
+
+/* One design under one law. */
+struct summary {
+  int variant, law;
+  struct eo_objective_value value;
+  json_t *cases;
+};
+
+static const struct eo_outline_row summary_rows[] = {
+    EO_KEY("design", "word", "which of them", .words = eo_reproduction_variant, EO_AT(struct summary, variant)),
+    EO_KEY("mesh_law", "word", "tangent: ours; secant: the paper's", .words = laws, EO_AT(struct summary, law)),
+    {.outline = &eo_outline_value, EO_AT(struct summary, value)},
+    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case,
+           EO_AT(struct summary, cases)),
+};
+static const struct eo_outline summary_outline = EO_OUTLINE("ReproducedResult", summary_rows);
+
+static json_t *encode_summary(const struct reproduction *reproduction, int law, int variant)
 {
-  static const char *const laws[LAWS] = {"tangent", "secant"};
-  json_t *array = json_array();
+  struct eo_object cases = eo_list_open();
+  for (int k = 0; k < TORQUES; k++)
+    eo_list_add(&cases,
+                eo_result_raw_case(&reproduction->design[variant]->load_case[k], &reproduction->raw[law][variant][k]));
+  const struct summary summary = {variant, law, reproduction->value[law][variant], eo_object_close(&cases)};
+  return eo_outline_encode(&summary_outline, &summary);
+}
+
+static json_t *encode_summaries(const struct reproduction *reproduction)
+{
+  struct eo_object list = eo_list_open();
   for (int law = 0; law < LAWS; law++)
-    for (int i = 0; i < VARIANTS && array; i++) {
-      struct eo_object object = eo_object_open();
-      json_t *cases = json_array();
-      eo_object_put(&object, "design", json_string(eo_reproduction_variant[i]));
-      eo_object_put(&object, "mesh_law", json_string(laws[law]));
-      eo_outline_put(&object, &eo_outline_value, &reproduction->value[law][i]);
-      for (int k = 0; k < TORQUES; k++)
-        json_array_append_new(
-            cases, eo_result_raw_case(&reproduction->design[i]->load_case[k], &reproduction->raw[law][i][k]));
-      eo_object_put(&object, "load_cases", cases);
-      json_array_append_new(array, eo_object_close(&object));
-    }
-  return array;
+    for (int i = 0; i < VARIANTS; i++)
+      eo_list_add(&list, encode_summary(reproduction, law, i));
+  return eo_object_close(&list);
 }
 
 /* What is written: what others made is taken over. */
@@ -146,16 +163,21 @@ static const struct eo_outline_row document_rows[] = {
     EO_KEY("quick", "flag", "a tenth of the generations, a coarser sweep", EO_AT(struct document, quick)),
     EO_KEY("design", "object", "the paper's pair, every default resolved", .table = &eo_design_table,
            .name = "ResolvedDesign", EO_AT(struct document, design)),
-    EO_KEY("table_3", "any", "rows: parameter, printed and our own", EO_AT(struct document, table_3)),
-    EO_KEY("results", "any", "rows: design, mesh law, objectives, load cases", EO_AT(struct document, results)),
-    EO_KEY("comparisons", "any", "rows: a printed number, ours, whether trend and value agree",
+    EO_KEY("table_3", "[object]", "parameters of the optimal modification, printed and our own",
+           .outline = &eo_reproduction_parameter_outline, EO_AT(struct document, table_3)),
+    EO_KEY("results", "[object]", "every design under both mesh laws", .outline = &summary_outline,
+           EO_AT(struct document, results)),
+    EO_KEY("comparisons", "[object]", "the paper's numbers and ours", .outline = &eo_reproduction_comparison_outline,
            EO_AT(struct document, comparisons)),
-    EO_KEY("optimizations", "any", "rows: case, algorithm, objectives, what it took, variables",
+    EO_KEY("optimizations", "[object]", "both cases with each algorithm", .outline = &eo_reproduction_run_outline,
            EO_AT(struct document, optimizations)),
-    EO_KEY("figures", "any", "rows: number, title, axes, series", EO_AT(struct document, figures)),
-    EO_KEY("sensitivity", "any", "rows: one assumption changed", EO_AT(struct document, sensitivity)),
-    EO_KEY("as_made", "any", "the optima on the same pairs as made", EO_AT(struct document, as_made)),
-    EO_KEY("readings", "any", "rows: what the paper leaves open, what was assumed", EO_AT(struct document, readings)),
+    EO_KEY("figures", "[object]", "the data of each", .outline = &eo_reproduction_figure_outline,
+           EO_AT(struct document, figures)),
+    EO_KEY("sensitivity", "[object]", "one assumption changed at a time",
+           .outline = &eo_reproduction_assumption_outline, EO_AT(struct document, sensitivity)),
+    EO_KEY("as_made", "object", "the optima on the same pairs as made", .outline = &eo_made_check_outline,
+           EO_AT(struct document, as_made)),
+    EO_KEY("readings", "[text]", "what the paper leaves open and what was assumed", EO_AT(struct document, readings)),
     EO_KEY("run", "object", "how long it took", .outline = &run_outline, EO_AT(struct document, run)),
 };
 const struct eo_outline eo_reproduction_outline = EO_OUTLINE("Reproduction", document_rows);
@@ -166,7 +188,7 @@ static json_t *encode(const struct reproduction *reproduction, json_t *sensitivi
                                     .quick = reproduction->plan->order.quick,
                                     .design = eo_design_encode(reproduction->design[UNMODIFIED]),
                                     .table_3 = eo_reproduction_table(reproduction),
-                                    .results = encode_summary(reproduction),
+                                    .results = encode_summaries(reproduction),
                                     .comparisons = eo_reproduction_comparisons(reproduction),
                                     .optimizations = json_incref(reproduction->optimizations),
                                     .figures = json_incref(reproduction->figures),

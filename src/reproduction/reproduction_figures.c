@@ -9,19 +9,59 @@
 #include "format/json.h"
 #include "evaluation/design_sweep.h"
 
-json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
-                               bool from_zero)
+struct series {
+  const char *name;
+  bool dots;
+  struct eo_series x, y;
+};
+
+static const struct eo_outline_row series_rows[] = {
+    EO_KEY("name", "text", "for people", EO_AT(struct series, name)),
+    EO_KEY("dots", "flag", "points of their own, no curve", EO_AT(struct series, dots)),
+    EO_KEY("x", "[number]", "in the unit of x_label", EO_AT(struct series, x)),
+    EO_KEY("y", "[number?]", "in the unit of y_label; null: not known", EO_AT(struct series, y)),
+};
+static const struct eo_outline series_outline = EO_OUTLINE("FigureSeries", series_rows);
+
+struct drawn {
+  struct figure figure;
+  json_t *series;
+};
+
+static const struct eo_outline_row figure_rows[] = {
+    EO_KEY("number", "text", "of the paper", EO_AT(struct drawn, figure.number)),
+    EO_KEY("title", "text", "for people", EO_AT(struct drawn, figure.title)),
+    EO_KEY("x_label", "text", "quantity and unit", EO_AT(struct drawn, figure.x_label)),
+    EO_KEY("y_label", "text", "quantity and unit", EO_AT(struct drawn, figure.y_label)),
+    EO_KEY("from_zero", "flag", "the y axis begins at 0", EO_AT(struct drawn, figure.from_zero)),
+    EO_KEY("series", "[object]", "curves, and points", .outline = &series_outline, EO_AT(struct drawn, series)),
+};
+const struct eo_outline eo_reproduction_figure_outline = EO_OUTLINE("ReproducedFigure", figure_rows);
+
+struct figure eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
+                                     bool from_zero)
 {
-  return json_pack("{s:s, s:s, s:s, s:s, s:b, s:[]}", "number", number, "title", title, "x_label", x_label, "y_label",
-                   y_label, "from_zero", from_zero, "series");
+  return (struct figure){number, title, x_label, y_label, from_zero, eo_list_open()};
 }
 
-void eo_reproduction_series(json_t *figure, const char *name, int count, const double *x, const double *y, bool dots)
+void eo_reproduction_series(struct figure *figure, const char *name, int count, const double *x, const double *y,
+                            bool dots)
 {
-  json_t *series = json_pack("{s:s, s:b, s:o, s:o}", "name", name, "dots", dots, "x",
-                             eo_json_reals(count, x, 1, NULL, EO_DIGITS_CURVE), "y",
-                             eo_json_reals(count, y, 1, NULL, EO_DIGITS_CURVE));
-  json_array_append_new(json_object_get(figure, "series"), series);
+  const struct series series = {name, dots, eo_series_of(count, x, EO_DIGITS_CURVE),
+                                eo_series_of(count, y, EO_DIGITS_CURVE)};
+  eo_list_add(&figure->list, eo_outline_encode(&series_outline, &series));
+}
+
+enum eo_code eo_reproduction_add_figures(struct reproduction *reproduction, int count, struct figure *figure,
+                                         struct eo_error *error)
+{
+  bool failed = false;
+  for (int i = 0; i < count; i++) {
+    const struct drawn drawn = {figure[i], eo_object_close(&figure[i].list)};
+    json_t *document = eo_outline_encode(&eo_reproduction_figure_outline, &drawn);
+    failed = json_array_append_new(reproduction->figures, document) != 0 || failed;
+  }
+  return failed ? eo_error_memory(error) : EO_OK;
 }
 
 static const double RPM = M_PI / 30;
@@ -99,26 +139,31 @@ static enum eo_code sweep(struct reproduction *reproduction, const struct grid *
   return code;
 }
 
-static void add_torques(struct reproduction *reproduction, const struct grid *grid,
-                        const struct curves curves[VARIANTS], const struct curves paper_law[2])
+static enum eo_code add_torques(struct reproduction *reproduction, const struct grid *grid,
+                                const struct curves curves[VARIANTS], const struct curves paper_law[2],
+                                struct eo_error *error)
 {
-  json_t *eight = eo_reproduction_figure("8", "Loaded transmission error, peak to peak", "torque, N m", "um", true);
-  json_t *nine = eo_reproduction_figure("9", "Entering meshing impact force", "torque, N m", "N", true);
-  json_t *seventeen = eo_reproduction_figure("17", "RMS of the vibration acceleration at 2000 rpm (theory)",
-                                             "torque, N m", "m/s2", true);
+  struct figure figure[3] = {
+      eo_reproduction_figure("8", "Loaded transmission error, peak to peak", "torque, N m", "um", true),
+      eo_reproduction_figure("9", "Entering meshing impact force", "torque, N m", "N", true),
+      eo_reproduction_figure("17", "RMS of the vibration acceleration at 2000 rpm (theory)", "torque, N m", "m/s2",
+                             true)};
+  const struct {
+    const char *name;
+    const struct curves *curves;
+  } of_rms[5] = {{"unmodified", &curves[UNMODIFIED]},
+                 {"Table 3, case A", &curves[PAPER_A]},
+                 {"our optimum, A", &curves[OWN_A]},
+                 {"unmodified, secant", &paper_law[0]},
+                 {"case A, secant", &paper_law[1]}};
   for (int i = 0; i < VARIANTS; i++) {
-    eo_reproduction_series(eight, eo_reproduction_variant[i], grid->torques, grid->torque_axis, curves[i].transmission,
-                           false);
-    eo_reproduction_series(nine, eo_reproduction_variant[i], grid->torques, grid->torque_axis, curves[i].impact, false);
+    const char *name = eo_reproduction_variant[i];
+    eo_reproduction_series(&figure[0], name, grid->torques, grid->torque_axis, curves[i].transmission, false);
+    eo_reproduction_series(&figure[1], name, grid->torques, grid->torque_axis, curves[i].impact, false);
   }
-  eo_reproduction_series(seventeen, "unmodified", grid->torques, grid->torque_axis, curves[UNMODIFIED].rms, false);
-  eo_reproduction_series(seventeen, "Table 3, case A", grid->torques, grid->torque_axis, curves[PAPER_A].rms, false);
-  eo_reproduction_series(seventeen, "our optimum, A", grid->torques, grid->torque_axis, curves[OWN_A].rms, false);
-  eo_reproduction_series(seventeen, "unmodified, secant", grid->torques, grid->torque_axis, paper_law[0].rms, false);
-  eo_reproduction_series(seventeen, "case A, secant", grid->torques, grid->torque_axis, paper_law[1].rms, false);
-  json_array_append_new(reproduction->figures, eight);
-  json_array_append_new(reproduction->figures, nine);
-  json_array_append_new(reproduction->figures, seventeen);
+  for (int i = 0; i < 5; i++)
+    eo_reproduction_series(&figure[2], of_rms[i].name, grid->torques, grid->torque_axis, of_rms[i].curves->rms, false);
+  return eo_reproduction_add_figures(reproduction, 3, figure, error);
 }
 
 static void judge_torques(struct reproduction *reproduction, const struct grid *grid,
@@ -138,47 +183,54 @@ static void judge_torques(struct reproduction *reproduction, const struct grid *
     reproduction->torques_better[j] = (double)quieter[j] / grid->torques;
 }
 
+static enum eo_code draw_torques(struct reproduction *reproduction, const struct grid *grid,
+                                 struct curves curves[VARIANTS], struct curves paper_law[2], struct eo_error *error)
+{
+  for (int i = PAPER_A; i < VARIANTS; i++)
+    EO_TRY(sweep(reproduction, grid, i, false, EO_LAW_TANGENT, &curves[i], i == PAPER_A ? &curves[UNMODIFIED] : NULL,
+                 error));
+  EO_TRY(sweep(reproduction, grid, PAPER_A, false, EO_LAW_SECANT, &paper_law[1], &paper_law[0], error));
+  judge_torques(reproduction, grid, curves, paper_law);
+  return add_torques(reproduction, grid, curves, paper_law, error);
+}
+
 static enum eo_code over_torque(struct reproduction *reproduction, const struct grid *grid, struct eo_error *error)
 {
-  struct curves *curves = calloc(VARIANTS + 2, sizeof *curves), *paper_law = curves + VARIANTS;
-  enum eo_code code = curves ? EO_OK : eo_error_memory(error);
-  for (int i = PAPER_A; i < VARIANTS && !code; i++)
-    code = sweep(reproduction, grid, i, false, EO_LAW_TANGENT, &curves[i], i == PAPER_A ? &curves[UNMODIFIED] : NULL,
-                 error);
-  if (!code)
-    code = sweep(reproduction, grid, PAPER_A, false, EO_LAW_SECANT, &paper_law[1], &paper_law[0], error);
-  if (!code) {
-    add_torques(reproduction, grid, curves, paper_law);
-    judge_torques(reproduction, grid, curves, paper_law);
-  }
+  struct curves *curves = calloc(VARIANTS + 2, sizeof *curves);
+  if (!curves)
+    return eo_error_memory(error);
+  enum eo_code code = draw_torques(reproduction, grid, curves, curves + VARIANTS, error);
   free(curves);
   return code;
+}
+
+static enum eo_code draw_speeds(struct reproduction *reproduction, const struct grid *grid, struct curves curves[5],
+                                struct eo_error *error)
+{
+  static const char *const name[5] = {"unmodified", "Table 3, case A", "our optimum, A", "unmodified, secant",
+                                      "case A, secant"};
+  int better = 0;
+  EO_TRY(sweep(reproduction, grid, PAPER_A, true, EO_LAW_TANGENT, &curves[1], &curves[0], error));
+  EO_TRY(sweep(reproduction, grid, OWN_A, true, EO_LAW_TANGENT, &curves[2], NULL, error));
+  EO_TRY(sweep(reproduction, grid, PAPER_A, true, EO_LAW_SECANT, &curves[4], &curves[3], error));
+  for (int i = 0; i < grid->speeds; i++)
+    better += curves[1].rms[i] < curves[0].rms[i];
+  for (int i = 0; i < 2; i++)
+    reproduction->speed_slope[i] = curves[i].rms[grid->speeds - 1] / curves[i].rms[0];
+  reproduction->speeds_better = (double)better / grid->speeds;
+  struct figure figure = eo_reproduction_figure("18", "RMS of the vibration acceleration at 828 N m (theory)",
+                                                "speed, rpm", "m/s2", true);
+  for (int i = 0; i < 5; i++)
+    eo_reproduction_series(&figure, name[i], grid->speeds, grid->speed_axis, curves[i].rms, false);
+  return eo_reproduction_add_figures(reproduction, 1, &figure, error);
 }
 
 static enum eo_code over_speed(struct reproduction *reproduction, const struct grid *grid, struct eo_error *error)
 {
   struct curves *curves = calloc(5, sizeof *curves);
-  enum eo_code code = curves ? sweep(reproduction, grid, PAPER_A, true, EO_LAW_TANGENT, &curves[1], &curves[0], error)
-                             : eo_error_memory(error);
-  if (!code)
-    code = sweep(reproduction, grid, OWN_A, true, EO_LAW_TANGENT, &curves[2], NULL, error);
-  if (!code)
-    code = sweep(reproduction, grid, PAPER_A, true, EO_LAW_SECANT, &curves[4], &curves[3], error);
-  if (!code) {
-    static const char *const name[5] = {"unmodified", "Table 3, case A", "our optimum, A", "unmodified, secant",
-                                        "case A, secant"};
-    json_t *figure = eo_reproduction_figure("18", "RMS of the vibration acceleration at 828 N m (theory)", "speed, rpm",
-                                            "m/s2", true);
-    int better = 0;
-    for (int i = 0; i < 5; i++)
-      eo_reproduction_series(figure, name[i], grid->speeds, grid->speed_axis, curves[i].rms, false);
-    for (int i = 0; i < grid->speeds; i++)
-      better += curves[1].rms[i] < curves[0].rms[i];
-    for (int i = 0; i < 2; i++)
-      reproduction->speed_slope[i] = curves[i].rms[grid->speeds - 1] / curves[i].rms[0];
-    reproduction->speeds_better = (double)better / grid->speeds;
-    json_array_append_new(reproduction->figures, figure);
-  }
+  if (!curves)
+    return eo_error_memory(error);
+  enum eo_code code = draw_speeds(reproduction, grid, curves, error);
   free(curves);
   return code;
 }
@@ -197,13 +249,13 @@ static int read_column(const json_t *array, double *value)
 }
 
 /* The paper's mean of the left and right part. */
-static void add_vibration(struct reproduction *reproduction, int k, const char *number)
+static enum eo_code add_vibration(struct reproduction *reproduction, int k, const char *number, struct eo_error *error)
 {
   char title[100];
   double x[SAMPLES], left[SAMPLES], right[SAMPLES];
   snprintf(title, sizeof title, "Relative vibration acceleration, %.0f N m, mean of both ends",
            reproduction->design[UNMODIFIED]->load_case[k].torque);
-  json_t *figure = eo_reproduction_figure(number, title, "mesh cycle", "m/s2", false);
+  struct figure figure = eo_reproduction_figure(number, title, "mesh cycle", "m/s2", false);
   for (int i = 0; i < VARIANTS; i++) {
     const json_t *value =
         json_object_get(json_array_get(json_object_get(reproduction->result[i], "load_cases"), (size_t)k), "vibration");
@@ -212,14 +264,15 @@ static void add_vibration(struct reproduction *reproduction, int k, const char *
     read_column(eo_json_find(value, "right/history/normal_m_per_s2"), right);
     for (int j = 0; j < count; j++)
       left[j] = 0.5 * (left[j] + right[j]);
-    eo_reproduction_series(figure, eo_reproduction_variant[i], count, x, left, false);
+    eo_reproduction_series(&figure, eo_reproduction_variant[i], count, x, left, false);
   }
-  json_array_append_new(reproduction->figures, figure);
+  return eo_reproduction_add_figures(reproduction, 1, &figure, error);
 }
 
-static void add_root(struct reproduction *reproduction, int variant, const char *number, const char *title)
+static enum eo_code add_root(struct reproduction *reproduction, int variant, const char *number, const char *title,
+                             struct eo_error *error)
 {
-  json_t *figure = eo_reproduction_figure(number, title, "mesh cycle of one tooth", "MPa", true);
+  struct figure figure = eo_reproduction_figure(number, title, "mesh cycle of one tooth", "MPa", true);
   for (int k = 0; k < TORQUES; k++) {
     char name[60];
     double x[SAMPLES], y[SAMPLES];
@@ -228,29 +281,23 @@ static void add_root(struct reproduction *reproduction, int variant, const char 
     int count = read_column(json_object_get(root, "position"), x);
     read_column(json_object_get(root, "history_MPa"), y);
     snprintf(name, sizeof name, "%.0f N m", reproduction->design[variant]->load_case[k].torque);
-    eo_reproduction_series(figure, name, count, x, y, false);
+    eo_reproduction_series(&figure, name, count, x, y, false);
   }
-  json_array_append_new(reproduction->figures, figure);
+  return eo_reproduction_add_figures(reproduction, 1, &figure, error);
 }
 
 enum eo_code eo_reproduction_figures(struct reproduction *reproduction, struct eo_error *error)
 {
   struct grid grid;
   lay_out(reproduction, &grid);
-  enum eo_code code = eo_reproduction_report(reproduction, "figures over torque", 0.86, error);
-  if (!code)
-    code = over_torque(reproduction, &grid, error);
-  if (!code)
-    code = eo_reproduction_report(reproduction, "figures over speed", 0.9, error);
-  if (!code)
-    code = over_speed(reproduction, &grid, error);
-  if (code)
-    return code;
-  add_vibration(reproduction, 0, "10");
-  add_vibration(reproduction, 1, "11");
-  add_vibration(reproduction, 2, "12");
-  add_root(reproduction, UNMODIFIED, "14", "Root bending stress of the unmodified pinion");
-  add_root(reproduction, PAPER_A, "15", "Root bending stress of the pinion of Table 3, case A");
-  add_root(reproduction, OWN_A, "15 a", "Root bending stress of the pinion of our optimum, case A");
-  return EO_OK;
+  EO_TRY(eo_reproduction_report(reproduction, "figures over torque", 0.86, error));
+  EO_TRY(over_torque(reproduction, &grid, error));
+  EO_TRY(eo_reproduction_report(reproduction, "figures over speed", 0.9, error));
+  EO_TRY(over_speed(reproduction, &grid, error));
+  EO_TRY(add_vibration(reproduction, 0, "10", error));
+  EO_TRY(add_vibration(reproduction, 1, "11", error));
+  EO_TRY(add_vibration(reproduction, 2, "12", error));
+  EO_TRY(add_root(reproduction, UNMODIFIED, "14", "Root bending stress of the unmodified pinion", error));
+  EO_TRY(add_root(reproduction, PAPER_A, "15", "Root bending stress of the pinion of Table 3, case A", error));
+  return add_root(reproduction, OWN_A, "15 a", "Root bending stress of the pinion of our optimum, case A", error);
 }

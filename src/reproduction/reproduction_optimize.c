@@ -10,13 +10,19 @@
 
 enum { ALGORITHMS = 3 };
 static const enum eo_algorithm algorithms[ALGORITHMS] = {EO_FPGA, EO_GA, EO_CREDIBILITY_GA};
-static const char *const case_names[CASES] = {"A", "B"};
+static const char *const case_names[] = {"A", "B", NULL};
 static const double FIRST = 0.03, LAST = 0.85; /* of the whole work */
 
 struct run {
   struct reproduction *r;
   int step;
   char what[60];
+};
+
+/* Figure 13, and the best rank of each case. */
+struct drawing {
+  double best[CASES];
+  struct figure figure[1 + CASES]; /* part of the fitness computed; convergence of each case */
 };
 
 static int watch(void *context, const struct eo_study_report *report)
@@ -48,33 +54,66 @@ static void set_up(const struct reproduction *reproduction, struct eo_design *de
   search->true_evaluations = algorithm < 2 ? 0 : eo_reproduction_budget(reproduction);
 }
 
-static json_t *encode_run(const struct eo_study_result *result, const char *case_name, const char *algorithm)
+/* A search as it is written. */
+struct search_row {
+  int which;
+  const char *algorithm;
+  struct eo_objective_value value;
+  int true_evaluations, individuals;
+  double pfc; /* per cent */
+  const struct eo_study_result *result;
+};
+
+static json_t *write_variables(const void *source)
 {
+  const struct eo_study_result *result = ((const struct search_row *)source)->result;
   struct eo_object object = eo_object_open();
-  json_t *values = json_object(), *best = json_array();
-  bool there = result->best.there;
-  for (int i = 0; i < result->space.count && there; i++) {
+  for (int i = 0; i < result->space.count && result->best.there; i++) {
     char name[80];
     eo_study_variable_name(&result->space.variable[i], name, sizeof name);
-    json_object_set_new(values, name,
-                        json_real(eo_study_variable_value(&result->space.variable[i], &result->best.modification)));
+    eo_object_put(&object, name,
+                  json_real(eo_study_variable_value(&result->space.variable[i], &result->best.modification)));
   }
-  for (int i = 0; i < result->generations; i++)
-    json_array_append_new(best, eo_json_quantity(result->generation[i].best, NULL));
-  eo_object_put(&object, "case", json_string(case_name));
-  eo_object_put(&object, "algorithm", json_string(algorithm));
-  eo_outline_put(&object, &eo_outline_value, &result->best.value);
-  eo_object_put(&object, "true_evaluations", json_integer(result->true_evaluations));
-  eo_object_put(&object, "individuals", json_integer(result->individuals));
-  eo_object_put(&object, "pfc_percent", eo_json_quantity(100. * result->true_evaluations / result->individuals, NULL));
-  eo_object_put(&object, "variables", values);
-  eo_object_put(&object, "best_by_generation", best);
   return eo_object_close(&object);
 }
 
+static json_t *write_best(const void *source)
+{
+  const struct eo_study_result *result = ((const struct search_row *)source)->result;
+  struct eo_object list = eo_list_open();
+  for (int i = 0; i < result->generations; i++)
+    eo_list_add(&list, eo_json_quantity(result->generation[i].best, NULL));
+  return eo_object_close(&list);
+}
+
+#define OF_SEARCH(member) EO_AT(struct search_row, member)
+static const struct eo_outline_row search_rows[] = {
+    EO_KEY("case", "word", "A: both ends alike; B: each its own", .words = case_names, OF_SEARCH(which)),
+    EO_KEY("algorithm", "text", "fpga and ga are the paper's, the other ours", OF_SEARCH(algorithm)),
+    {.outline = &eo_outline_value, OF_SEARCH(value)},
+    EO_KEY("true_evaluations", "integer", "of the model", OF_SEARCH(true_evaluations)),
+    EO_KEY("individuals", "integer", "of all generations", OF_SEARCH(individuals)),
+    EO_KEY("pfc_percent", "number?", "the part of them that was truly evaluated", OF_SEARCH(pfc)),
+    EO_KEY("variables", "{number}", "of the best, by the name of each", .write = write_variables),
+    EO_KEY("best_by_generation", "[number?]", "J; null: none was found yet", .write = write_best),
+};
+const struct eo_outline eo_reproduction_run_outline = EO_OUTLINE("ReproducedSearch", search_rows);
+
+static json_t *encode_run(const struct eo_study_result *result, int which, const char *algorithm)
+{
+  const struct search_row row = {.which = which,
+                                 .algorithm = algorithm,
+                                 .value = result->best.value,
+                                 .true_evaluations = result->true_evaluations,
+                                 .individuals = result->individuals,
+                                 .pfc = 100. * result->true_evaluations / result->individuals,
+                                 .result = result};
+  return eo_outline_encode(&eo_reproduction_run_outline, &row);
+}
+
 /* PFC so far and best J over true evaluations, generation by generation. */
-static enum eo_code plot(const struct eo_study_result *result, const char *name, json_t *pfc, json_t *convergence,
-                         struct eo_error *error)
+static enum eo_code plot(const struct eo_study_result *result, const char *name, struct figure *pfc,
+                         struct figure *convergence, struct eo_error *error)
 {
   size_t n = (size_t)result->generations;
   double *column = calloc(4 * n + 1, sizeof *column);
@@ -98,16 +137,38 @@ static enum eo_code plot(const struct eo_study_result *result, const char *name,
   return EO_OK;
 }
 
-static enum eo_code study(struct run *run, int which, int algorithm, double *best, json_t *pfc, json_t *convergence,
-                          struct eo_error *error)
+/* What a search is kept as: its row, its curves, its best. */
+static enum eo_code keep(struct run *run, int which, int algorithm, const struct eo_study_result *result,
+                         struct drawing *drawing, struct eo_error *error)
 {
   struct reproduction *reproduction = run->r;
-  struct eo_design *own = reproduction->design[which == CASE_A ? OWN_A : OWN_B], *design = malloc(sizeof *design);
+  const char *name = eo_optimizer_algorithm_name(algorithms[algorithm]);
+  char text[60];
+  if (result->stopped == EO_STOP_CANCELLED)
+    return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+  if (json_array_append_new(reproduction->optimizations, encode_run(result, which, name)))
+    return eo_error_memory(error);
+  snprintf(text, sizeof text, "%s, %s", case_names[which], name);
+  EO_TRY(plot(result, text, algorithm == 0 ? &drawing->figure[0] : NULL, &drawing->figure[1 + which], error));
+  if (algorithm < 2)
+    reproduction->evaluations[which][algorithm] = result->true_evaluations;
+  if (algorithm == 0)
+    reproduction->pfc[which] = 100. * result->true_evaluations / result->individuals;
+  if (result->best.there && result->best.rank < drawing->best[which]) {
+    drawing->best[which] = result->best.rank;
+    reproduction->design[which == CASE_A ? OWN_A : OWN_B]->modification = result->best.modification;
+  }
+  return EO_OK;
+}
+
+static enum eo_code study(struct run *run, int which, int algorithm, struct drawing *drawing, struct eo_error *error)
+{
+  struct reproduction *reproduction = run->r;
+  struct eo_design *design = malloc(sizeof *design);
   struct eo_study_result result;
-  char name[60];
   if (!design)
     return eo_error_memory(error);
-  *design = *own;
+  *design = *reproduction->design[which == CASE_A ? OWN_A : OWN_B];
   design->modification = reproduction->design[UNMODIFIED]->modification;
   set_up(reproduction, design, algorithm);
   const struct eo_study_plan plan = {.design = design,
@@ -119,49 +180,41 @@ static enum eo_code study(struct run *run, int which, int algorithm, double *bes
                                      .context = run};
   snprintf(run->what, sizeof run->what, "case %s, %s", case_names[which],
            eo_optimizer_algorithm_name(algorithms[algorithm]));
-  snprintf(name, sizeof name, "%s, %s", case_names[which], eo_optimizer_algorithm_name(algorithms[algorithm]));
   enum eo_code code = eo_study_run(&plan, &result, error);
-  if (!code && result.stopped == EO_STOP_CANCELLED)
-    code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-  if (!code &&
-      json_array_append_new(reproduction->optimizations,
-                            encode_run(&result, case_names[which], eo_optimizer_algorithm_name(algorithms[algorithm]))))
-    code = eo_error_memory(error);
   if (!code)
-    code = plot(&result, name, algorithm == 0 ? pfc : NULL, convergence, error);
-  if (!code && algorithm < 2)
-    reproduction->evaluations[which][algorithm] = result.true_evaluations;
-  if (!code && algorithm == 0)
-    reproduction->pfc[which] = 100. * result.true_evaluations / result.individuals;
-  if (!code && result.best.there && result.best.rank < *best) {
-    *best = result.best.rank;
-    own->modification = result.best.modification;
-  }
+    code = keep(run, which, algorithm, &result, drawing, error);
   eo_study_result_done(&result);
   free(design);
   return code;
 }
 
-enum eo_code eo_reproduction_optimize(struct reproduction *reproduction, struct eo_error *error)
+static enum eo_code study_all(struct run *run, struct drawing *drawing, struct eo_error *error)
+{
+  for (int which = 0; which < CASES; which++)
+    for (int algorithm = 0; algorithm < ALGORITHMS; algorithm++, run->step++)
+      EO_TRY(study(run, which, algorithm, drawing, error));
+  return EO_OK;
+}
+
+static enum eo_code add_figures(struct reproduction *reproduction, struct drawing *drawing, struct eo_error *error)
 {
   static const double printed[CASES] = {39.67, 33.25};
-  struct run run = {.r = reproduction};
   double generations = eo_reproduction_generations(reproduction) - 1;
-  json_t *pfc = eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %",
-                                       true);
-  json_t *convergence[CASES] = {
-      eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
-      eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)};
-  enum eo_code code = EO_OK;
-  for (int which = 0; which < CASES; which++) {
-    double best = INFINITY;
-    for (int algorithm = 0; algorithm < ALGORITHMS && !code; algorithm++, run.step++)
-      code = study(&run, which, algorithm, &best, pfc, convergence[which], error);
-  }
-  eo_reproduction_series(pfc, "printed, A", 1, &generations, &printed[0], true);
-  eo_reproduction_series(pfc, "printed, B", 1, &generations, &printed[1], true);
-  json_array_append_new(reproduction->figures, pfc);
-  for (int which = 0; which < CASES; which++)
-    json_array_append_new(reproduction->figures, convergence[which]);
-  return code;
+  eo_reproduction_series(&drawing->figure[0], "printed, A", 1, &generations, &printed[0], true);
+  eo_reproduction_series(&drawing->figure[0], "printed, B", 1, &generations, &printed[1], true);
+  return eo_reproduction_add_figures(reproduction, 1 + CASES, drawing->figure, error);
+}
+
+enum eo_code eo_reproduction_optimize(struct reproduction *reproduction, struct eo_error *error)
+{
+  struct run run = {.r = reproduction};
+  struct drawing drawing = {
+      .best = {INFINITY, INFINITY},
+      .figure = {
+          eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %", true),
+          eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
+          eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)}};
+  enum eo_code code = study_all(&run, &drawing, error);
+  enum eo_code end = add_figures(reproduction, &drawing, code ? NULL : error);
+  return code ? code : end;
 }

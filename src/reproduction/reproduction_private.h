@@ -4,6 +4,7 @@
 #define EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
 
 #include "document/result_private.h"
+#include "format/object.h"
 #include "reproduction/reproduction.h"
 #include "study/study.h"
 
@@ -12,7 +13,7 @@ enum { CASE_A, CASE_B, CASES };
 enum { LAW_OURS, LAW_PAPER, LAWS }; /* tangent, secant */
 enum { TORQUES = 3 };
 
-extern const char *const eo_reproduction_variant[VARIANTS];
+extern const char *const eo_reproduction_variant[VARIANTS + 1]; /* ends with NULL */
 
 struct reproduction {
   const struct eo_reproduction_plan *plan;
@@ -52,14 +53,30 @@ enum eo_code eo_reproduction_made(struct reproduction *reproduction, struct eo_e
 /* Figures 8 to 12, 14, 15, 17 and 18. */
 enum eo_code eo_reproduction_figures(struct reproduction *reproduction, struct eo_error *error);
 
-/* A figure without series; a series on it. x, y: [count]. Both may be given a NULL figure. */
-json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
-                               bool from_zero);
-void eo_reproduction_series(json_t *figure, const char *name, int count, const double *x, const double *y, bool dots);
+/* A figure while its series come: begun, one series after the other, then added to the document. */
+struct figure {
+  const char *number, *title, *x_label, *y_label;
+  bool from_zero;        /* the y axis */
+  struct eo_object list; /* of series */
+};
+struct figure eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
+                                     bool from_zero);
+void eo_reproduction_series(struct figure *figure, const char *name, int count, const double *x, const double *y,
+                            bool dots); /* x, y: [count] */
+/* So many of them, which are ended, whatever comes of it. */
+enum eo_code eo_reproduction_add_figures(struct reproduction *reproduction, int count, struct figure *figure,
+                                         struct eo_error *error);
 
 json_t *eo_reproduction_table(const struct reproduction *reproduction); /* Table 3 */
 json_t *eo_reproduction_comparisons(const struct reproduction *reproduction);
 json_t *eo_reproduction_readings(void);
+
+/* Rows of the document's arrays. */
+extern const struct eo_outline eo_reproduction_parameter_outline;  /* of Table 3 */
+extern const struct eo_outline eo_reproduction_comparison_outline; /* a printed number and ours */
+extern const struct eo_outline eo_reproduction_run_outline;        /* an optimization */
+extern const struct eo_outline eo_reproduction_figure_outline;
+extern const struct eo_outline eo_reproduction_assumption_outline; /* one of the sensitivity */
 
 /* One assumption changed at a time; NULL on failure, with the code. */
 enum eo_code eo_reproduction_sensitivity(struct reproduction *reproduction, json_t **rows, struct eo_error *error);

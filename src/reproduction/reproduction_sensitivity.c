@@ -140,60 +140,84 @@ static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_des
   return code;
 }
 
+/* An alternative as it is written; at the three torques. */
+struct sensitivity_row {
+  const char *assumption, *value;
+  struct eo_series rms[2], impact[2];                        /* unmodified, case A */
+  struct eo_series less_rms, less_transmission, less_impact; /* per cent */
+  double objective;
+};
+
+#define OF_ROW(member) EO_AT(struct sensitivity_row, member)
+static const struct eo_outline_row sensitivity_rows[] = {
+    EO_KEY("assumption", "text", "what is changed", OF_ROW(assumption)),
+    EO_KEY("value", "text", "to what; empty: as assumed", OF_ROW(value)),
+    EO_KEY("rms_unmodified_m_per_s2", "[number?]", "at the three torques, as all below; null: there is no vibration",
+           OF_ROW(rms[0])),
+    EO_KEY("rms_case_a_m_per_s2", "[number?]", "of Table 3, case A", OF_ROW(rms[1])),
+    EO_KEY("impact_unmodified_N", "[number?]", "entering impact", OF_ROW(impact[0])),
+    EO_KEY("impact_case_a_N", "[number?]", "of Table 3, case A", OF_ROW(impact[1])),
+    EO_KEY("rms_reduction_percent", "[number?]", "by case A", OF_ROW(less_rms)),
+    EO_KEY("lte_reduction_percent", "[number?]", "of the loaded transmission error", OF_ROW(less_transmission)),
+    EO_KEY("impact_reduction_percent", "[number?]", "of the entering impact", OF_ROW(less_impact)),
+    EO_KEY("J_case_a", "number?", "related to the unmodified pair", OF_ROW(objective)),
+};
+const struct eo_outline eo_reproduction_assumption_outline = EO_OUTLINE("ReproducedAssumption", sensitivity_rows);
+
 static json_t *encode_row(const struct alternative *alternative, const struct eo_design *design,
                           const struct eo_objective_case raw[2][TORQUES])
 {
-  struct eo_object object = eo_object_open();
   struct eo_objective_value value;
-  json_t *unmodified = json_array(), *modified = json_array(), *reduction = json_array(), *transmission = json_array(),
-         *impact = json_array();
-  json_t *force[2] = {json_array(), json_array()};
+  double rms[2][TORQUES], impact[2][TORQUES], less[3][TORQUES];
+  struct sensitivity_row row = {.assumption = alternative->assumption, .value = alternative->value};
   eo_objective_value(&design->objective, TORQUES, design->load_case, raw[1], raw[0], false, &value);
   for (int k = 0; k < TORQUES; k++) {
-    json_array_append_new(unmodified, eo_json_quantity(raw[0][k].failed ? NAN : raw[0][k].rms, NULL));
-    json_array_append_new(modified, eo_json_quantity(raw[1][k].failed ? NAN : raw[1][k].rms, NULL));
-    json_array_append_new(reduction, eo_json_quantity(100 * (1 - raw[1][k].rms / raw[0][k].rms), NULL));
-    json_array_append_new(transmission,
-                          eo_json_quantity(100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak), NULL));
-    for (int i = 0; i < 2; i++)
-      json_array_append_new(force[i], eo_json_quantity(raw[i][k].impact, NULL));
-    json_array_append_new(impact, eo_json_quantity(100 * (1 - raw[1][k].impact / raw[0][k].impact), NULL));
+    for (int i = 0; i < 2; i++) {
+      rms[i][k] = raw[i][k].failed ? NAN : raw[i][k].rms;
+      impact[i][k] = raw[i][k].impact;
+    }
+    less[0][k] = 100 * (1 - raw[1][k].rms / raw[0][k].rms);
+    less[1][k] = 100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak);
+    less[2][k] = 100 * (1 - raw[1][k].impact / raw[0][k].impact);
   }
-  eo_object_put(&object, "assumption", json_string(alternative->assumption));
-  eo_object_put(&object, "value", json_string(alternative->value));
-  eo_object_put(&object, "rms_unmodified_m_per_s2", unmodified);
-  eo_object_put(&object, "rms_case_a_m_per_s2", modified);
-  eo_object_put(&object, "impact_unmodified_N", force[0]);
-  eo_object_put(&object, "impact_case_a_N", force[1]);
-  eo_object_put(&object, "rms_reduction_percent", reduction);
-  eo_object_put(&object, "lte_reduction_percent", transmission);
-  eo_object_put(&object, "impact_reduction_percent", impact);
-  eo_object_put(&object, "J_case_a", eo_json_quantity(value.objective, NULL));
-  return eo_object_close(&object);
+  for (int i = 0; i < 2; i++) {
+    row.rms[i] = eo_series_of(TORQUES, rms[i], EO_DIGITS_NUMBER);
+    row.impact[i] = eo_series_of(TORQUES, impact[i], EO_DIGITS_NUMBER);
+  }
+  row.less_rms = eo_series_of(TORQUES, less[0], EO_DIGITS_NUMBER);
+  row.less_transmission = eo_series_of(TORQUES, less[1], EO_DIGITS_NUMBER);
+  row.less_impact = eo_series_of(TORQUES, less[2], EO_DIGITS_NUMBER);
+  row.objective = value.objective;
+  return eo_outline_encode(&eo_reproduction_assumption_outline, &row);
+}
+
+static enum eo_code compare(struct reproduction *reproduction, const struct alternative *alternative,
+                            struct eo_design *design, struct eo_evaluator *evaluator, json_t *rows,
+                            struct eo_error *error)
+{
+  struct eo_objective_case raw[2][TORQUES];
+  for (int i = 0; i < 2; i++) {
+    design->modification = reproduction->design[i ? PAPER_A : UNMODIFIED]->modification;
+    EO_TRY(evaluate(evaluator, design, alternative->compliance, raw[i], error));
+  }
+  json_t *row = encode_row(alternative, design, (const struct eo_objective_case(*)[TORQUES])raw);
+  return json_array_append_new(rows, row) ? eo_error_memory(error) : EO_OK;
 }
 
 /* The pair at hand where it serves, else one made for this alternative. */
 static enum eo_code try_alternative(struct reproduction *reproduction, const struct alternative *alternative,
                                     struct eo_design *design, json_t *rows, struct eo_error *error)
 {
-  struct eo_objective_case raw[2][TORQUES];
   const struct eo_pair_options options = {.cache_directory = reproduction->plan->cache_directory};
   struct eo_pair *own = NULL;
   struct eo_evaluator *evaluator = NULL;
-  enum eo_code code = EO_OK;
   *design = *reproduction->design[UNMODIFIED];
   alternative->apply(design);
   if (!eo_pair_serves(reproduction->pair, design))
-    code = eo_pair_new(&own, design, &options, NULL, error);
+    EO_TRY(eo_pair_new(&own, design, &options, NULL, error));
+  enum eo_code code = eo_evaluator_new(&evaluator, own ? own : reproduction->pair, TORQUES, error);
   if (!code)
-    code = eo_evaluator_new(&evaluator, own ? own : reproduction->pair, TORQUES, error);
-  for (int i = 0; i < 2 && !code; i++) {
-    design->modification = reproduction->design[i ? PAPER_A : UNMODIFIED]->modification;
-    code = evaluate(evaluator, design, alternative->compliance, raw[i], error);
-  }
-  if (!code &&
-      json_array_append_new(rows, encode_row(alternative, design, (const struct eo_objective_case(*)[TORQUES])raw)))
-    code = eo_error_memory(error);
+    code = compare(reproduction, alternative, design, evaluator, rows, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(own);
   return code;

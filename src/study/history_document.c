@@ -7,6 +7,7 @@
 
 #include "format/digits.h"
 #include "format/json.h"
+#include "document/design_document.h"
 #include "document/search_space.h"
 #include "document/result_private.h"
 #include "format/text_table.h"
@@ -210,8 +211,10 @@ static const struct eo_outline_row evaluation_rows[] = {
     EO_KEY("outcome", "word", "how it ended", .words = eo_store_outcomes, OF_EVALUATION(stored.outcome)),
     EO_KEY("reason", "text", "empty when it converged", OF_EVALUATION(stored.reason)),
     EO_KEY("cost_s", "number?", "computing time, s", OF_EVALUATION(stored.cost)),
-    EO_KEY("modification", "any", "as in a design", OF_EVALUATION(modification)),
-    EO_KEY("scenarios", "any", "raw numbers of every load case, scenario by scenario", OF_EVALUATION(scenarios)),
+    EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table,
+           .name = "SparseModification", .sparse = true, OF_EVALUATION(modification)),
+    EO_KEY("scenarios", "[[object]]", "raw numbers of every load case, scenario by scenario",
+           .outline = &eo_outline_raw_case, OF_EVALUATION(scenarios)),
 };
 static const struct eo_outline evaluation_outline = EO_OUTLINE("ProblemRow", evaluation_rows);
 
@@ -219,7 +222,7 @@ struct written_rows {
   json_t *problem, *rows;
 };
 static const struct eo_outline_row problem_row_rows[] = {
-    EO_KEY("problem", "any", "what its evaluations have in common, as it is hashed",
+    EO_KEY("problem", "{any}", "what its evaluations have in common, as it is hashed",
            EO_AT(struct written_rows, problem)),
     EO_KEY("rows", "[object]", "every true evaluation", .outline = &evaluation_outline,
            EO_AT(struct written_rows, rows)),

@@ -199,7 +199,7 @@ static const struct eo_outline_row item_rows[] = {
     EO_KEY("outcome", "word", "refused: such a design cannot be, `reason` says why", .words = eo_store_outcomes,
            OF_ROW(row.outcome)),
     EO_KEY("reason", "text", "empty when it converged", OF_ROW(row.reason)),
-    EO_KEY("values", "[any]", "of the keys; null: as the design has it", OF_ROW(values)),
+    EO_KEY("values", "[number|text|flag?]", "of the keys; null: as the design has it", OF_ROW(values)),
     EO_KEY("numbers", "[number?]", "of the columns", OF_ROW(numbers)),
 };
 static const struct eo_outline item_outline = EO_OUTLINE("StudyRow", item_rows);

@@ -48,7 +48,8 @@ static bool has_type(const char *type, const json_t *value)
 static bool fits_object(const json_t *root, const json_t *schema, const json_t *value, const char *path,
                         struct schema_fault *fault)
 {
-  const json_t *properties = json_object_get(schema, "properties"), *required;
+  const json_t *properties = json_object_get(schema, "properties"), *required,
+               *others = json_object_get(schema, "additionalProperties"); /* where keys are data */
   const char *key;
   json_t *member;
   size_t i;
@@ -61,6 +62,8 @@ static bool fits_object(const json_t *root, const json_t *schema, const json_t *
   {
     const json_t *inner = json_object_get(properties, key);
     snprintf(longer, sizeof longer, "%.200s/%.80s", path, key);
+    if (!inner && json_is_object(others))
+      inner = others;
     if (!inner)
       return misfit(fault, longer, "a key that the schema does not know");
     json_object_set_new((json_t *)inner, SCHEMA_SEEN, json_true());

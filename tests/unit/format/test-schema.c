@@ -255,6 +255,19 @@ static void check_required_keys(void)
   }
 }
 
+/* expected: NULL: the shape is none. */
+static void check_shape(const char *shape, const char *expected)
+{
+  const struct eo_outline_row rows[] = {EO_KEY("a", shape, "a row")};
+  const struct eo_outline outline = EO_OUTLINE("Shape", rows);
+  json_t *schemas = json_object(), *wanted = expected ? json_loads(expected, 0, NULL) : NULL;
+  bool good = eo_outline_add_schemas(&outline, schemas);
+  const json_t *properties = json_object_get(json_object_get(schemas, "Shape"), "properties");
+  ok(expected ? good && wanted && json_equal(json_object_get(properties, "a"), wanted) : !good, "the shape %s", shape);
+  json_decref(schemas);
+  json_decref(wanted);
+}
+
 static void check_outline_schema(void)
 {
   json_t *
@@ -274,11 +287,13 @@ static void check_outline_schema(void)
   ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected), "an outline as JSON Schema");
   json_decref(schemas);
   json_decref(expected);
-  static const struct eo_outline_row wrong_rows[] = {EO_KEY("a", "[text", "no end")};
-  static const struct eo_outline wrong = EO_OUTLINE("Wrong", wrong_rows);
-  schemas = json_object();
-  ok(!eo_outline_add_schemas(&wrong, schemas), "a shape that is none");
-  json_decref(schemas);
+  check_shape("[text", NULL);
+  check_shape("{number", NULL);
+  check_shape("{number]", NULL);
+  check_shape("number}", NULL);
+  check_shape("{[number?]}?", "{\"anyOf\":[{\"type\":\"object\",\"additionalProperties\":{\"type\":\"array\",\"items\":"
+                              "{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}]}}},{\"type\":\"null\"}],"
+                              "\"description\":\"a row\"}");
 }
 
 static void check_taking(void)
