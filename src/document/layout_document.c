@@ -11,151 +11,58 @@
 static const char *const kinds[] = {"guess", "angles", "sine-cosine", "pulses", NULL};
 static const char *const units[] = {"guess", "deg", "rad", "turn", "count", NULL};
 static const char *const times[] = {"s", "ms", "us", "ns", "min", "d", NULL};
-static const char *const member_key[2] = {"pinion", "gear"};
+static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400}; /* s, of each of times */
 
-static int choice_of(const json_t *value, const char *const *choices, const char *pointer, struct eo_faults *faults)
-{
-  const char *text = json_string_value(value);
-  if (!value)
-    return 0;
-  for (int i = 0; text && choices[i]; i++)
-    if (strcmp(text, choices[i]) == 0)
-      return i;
-  eo_faults_add(faults, pointer, "\"%.40s\" is not known here; \"%s\", \"%s\", ... are.", text ? text : "(no text)",
-                choices[0], choices[1]);
-  return 0;
-}
-
-/* A name or a number as text in `room`; NULL when there is none. */
-static const char *column_of(const json_t *value, char *room, const char *pointer, struct eo_faults *faults)
-{
-  if (!value || json_is_null(value))
-    return NULL;
-  if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= EO_RECORDING_COLUMNS)
-    snprintf(room, EO_RECORDING_NAME, "%d", (int)json_integer_value(value));
-  else if (json_is_string(value) && json_string_length(value) > 0 && json_string_length(value) < EO_RECORDING_NAME)
-    snprintf(room, EO_RECORDING_NAME, "%s", json_string_value(value));
-  else {
-    eo_faults_add(faults, pointer, "A column is given by its name or by its number from 1.");
-    return NULL;
-  }
-  return room;
-}
-
-static void read_columns(const json_t *columns, struct eo_layout_request *request, struct eo_faults *faults)
-{
-  const char *key;
-  json_t *value;
-  if (columns && !json_is_object(columns))
-    eo_faults_add(faults, "/columns", "The columns are an object with \"pinion\" and \"gear\".");
-  json_object_foreach((json_t *)columns, key, value)
-  {
-    char pointer[120];
-    int member = strcmp(key, member_key[0]) == 0 ? 0 : strcmp(key, member_key[1]) == 0 ? 1 : -1;
-    snprintf(pointer, sizeof pointer, "/columns/%.80s", key);
-    if (member < 0) {
-      eo_faults_add(faults, pointer, "Unknown key in the columns.");
-    } else if (json_is_array(value)) {
-      if (json_array_size(value) != 2)
-        eo_faults_add(faults, pointer, "Raw tracks are two columns, sine and cosine.");
-      for (size_t k = 0; k < 2; k++)
-        request->choice.column[member][k] = column_of(json_array_get(value, k), request->name[1 + 2 * member + (int)k],
-                                                      pointer, faults);
-    } else {
-      request->choice.column[member][0] = column_of(value, request->name[1 + 2 * member], pointer, faults);
-    }
-  }
-}
-
-static double positive(const json_t *value, const char *pointer, struct eo_faults *faults)
-{
-  if (!value || json_is_null(value))
-    return 0;
-  if (json_is_number(value) && json_number_value(value) > 0 && json_number_value(value) < 1e12)
-    return json_number_value(value);
-  eo_faults_add(faults, pointer, "A positive number is wanted.");
-  return 0;
-}
-
-static void read_lines(const json_t *lines, double target[2], struct eo_faults *faults)
-{
-  bool pair = json_is_array(lines) && json_array_size(lines) == 2;
-  if (json_is_array(lines) && !pair)
-    eo_faults_add(faults, "/lines", "Lines are one number or two, pinion and gear.");
-  else
-    for (size_t i = 0; i < 2; i++)
-      target[i] = positive(pair ? json_array_get(lines, i) : lines, "/lines", faults);
-}
-
-/* The column of the times, or the pinion's and the gear's; their unit as a word or as seconds. */
-static void read_time(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults)
-{
-  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
-  const json_t *time = json_object_get(document, "time"), *unit = json_object_get(document, "time_unit");
-  if (json_is_array(time) && json_array_size(time) != 2)
-    eo_faults_add(faults, "/time", "Times are one column or two, the pinion's and the gear's.");
-  else if (json_is_array(time)) {
-    request->choice.time = column_of(json_array_get(time, 0), request->name[0], "/time", faults);
-    request->choice.gear_time = column_of(json_array_get(time, 1), request->name[5], "/time", faults);
-  } else
-    request->choice.time = column_of(time, request->name[0], "/time", faults);
-  if (json_is_number(unit))
-    request->choice.time_scale = positive(unit, "/time_unit", faults);
-  else if (unit)
-    request->choice.time_scale = time_scale[choice_of(unit, times, "/time_unit", faults)];
-}
-
-/* What can be asked for. */
-static const struct eo_outline_row asked_columns_rows[] = {
-    EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
-    EO_KEY("gear", "any", "of the gear", .when = "where it is chosen"),
+static const struct eo_field column_fields[] = {
+    EO_NAMES(struct eo_layout_request, column[EO_PINION], "pinion", EO_RECORDING_COLUMNS, "guessed",
+             "column of the pinion's encoder by its name or its number from 1; raw tracks: sine and cosine"),
+    EO_NAMES(struct eo_layout_request, column[EO_GEAR], "gear", EO_RECORDING_COLUMNS, "guessed",
+             "the same of the gear's encoder"),
 };
-static const struct eo_outline asked_columns = EO_OUTLINE("AskedColumns", asked_columns_rows);
+static const struct eo_table column_table = EO_TABLE("the columns", struct eo_layout_request, column_fields);
 
-static const struct eo_outline_row asked_layout_rows[] = {
-    EO_KEY("kind", "text", "of the recording", .when = "where it is chosen"),
-    EO_KEY("unit", "text", "of the angles", .when = "where it is chosen"),
-    EO_KEY("time", "any", "column of the time", .when = "where it is chosen"),
-    EO_KEY("time_unit", "text", "of the time", .when = "where it is chosen"),
-    EO_KEY("columns", "object", "of the channels", .when = "where it is chosen", .outline = &asked_columns),
-    EO_KEY("sample_rate_Hz", "number?", "samples per second", .when = "where it is chosen"),
-    EO_KEY("lines", "any", "of the encoders", .when = "where it is chosen"),
+static const struct eo_field asked_fields[] = {
+    EO_CHOICE(struct eo_layout_request, choice.kind, "kind", kinds, EO_LAYOUT_GUESS_KIND, "what the columns hold"),
+    EO_CHOICE(struct eo_layout_request, choice.unit, "unit", units, EO_LAYOUT_GUESS_UNIT, "of the angles"),
+    EO_NAMES(struct eo_layout_request, time, "time", EO_RECORDING_COLUMNS, "guessed",
+             "column of the times, the pinion's and the gear's where each has its own; none: no column holds them"),
+    EO_NUMBER_WORDED(struct eo_layout_request, choice.time_scale, "time_unit", NULL, 1e-15, 1e12, times, time_scale,
+                     "guessed", "of the times, a word or seconds"),
+    EO_NUMBER_DERIVED(struct eo_layout_request, choice.sample_rate, "sample_rate_Hz", &eo_unit_Hz, 1e-9, 1e12,
+                      "guessed", "rows per second, where no column holds the time"),
+    EO_NUMBERS(struct eo_layout_request, choice.lines, "lines", 2, NULL, 1e-9, 1e12, EO_FIELD_NULLABLE | EO_FIELD_ALONE,
+               NULL, "guessed",
+               "counts, sine periods or pulses per turn of both encoders, or of the pinion's and the gear's"),
+    EO_GROUP("columns", &column_table, "where each encoder is"),
 };
-const struct eo_outline eo_asked_layout_outline = EO_OUTLINE("AskedLayout", asked_layout_rows);
+const struct eo_table eo_asked_layout_table = EO_TABLE("a layout", struct eo_layout_request, asked_fields);
 
-static bool is_asked_key(const char *key)
+static const char *name_of(const char *name)
 {
-  const struct eo_outline_row *row;
-  for (int i = 0; (row = eo_outline_at(&eo_asked_layout_outline, i)); i++)
-    if (strcmp(key, row->key) == 0)
-      return true;
-  return false;
+  return *name ? name : NULL;
+}
+
+static double stated(double number)
+{
+  return isnan(number) ? 0 : number;
 }
 
 void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults)
 {
-  const char *key;
-  json_t *value;
+  struct eo_layout_choice *choice = &request->choice;
   memset(request, 0, sizeof *request);
   if (!document || json_is_null(document))
     return;
-  if (!json_is_object(document)) {
-    eo_faults_add(faults, "", "A layout is a JSON object.");
-    return;
+  eo_table_decode(&eo_asked_layout_table, document, NULL, request, faults);
+  choice->time = name_of(request->time[EO_PINION]);
+  choice->gear_time = name_of(request->time[EO_GEAR]);
+  choice->time_scale = stated(choice->time_scale);
+  choice->sample_rate = stated(choice->sample_rate);
+  for (int i = 0; i < 2; i++) {
+    choice->lines[i] = stated(choice->lines[i]);
+    for (int k = 0; k < 2; k++)
+      choice->column[i][k] = name_of(request->column[i][k]);
   }
-  json_object_foreach((json_t *)document, key, value)
-  {
-    char pointer[120];
-    snprintf(pointer, sizeof pointer, "/%.80s", key);
-    if (!is_asked_key(key))
-      eo_faults_add(faults, pointer, "Unknown key in a layout.");
-  }
-  request->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);
-  request->choice.unit = (enum eo_layout_unit)choice_of(json_object_get(document, "unit"), units, "/unit", faults);
-  read_time(document, request, faults);
-  request->choice.sample_rate = positive(json_object_get(document, "sample_rate_Hz"), "/sample_rate_Hz", faults);
-  read_lines(json_object_get(document, "lines"), request->choice.lines, faults);
-  read_columns(json_object_get(document, "columns"), request, faults);
 }
 
 static enum eo_layout_unit unit_of(const struct eo_track_channel *channel)
@@ -224,7 +131,6 @@ static json_t *encode_time(const struct eo_track_source source[2])
 
 json_t *eo_layout_encode(const struct eo_tracks *tracks)
 {
-  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
   const struct eo_track_channel *channel = tracks->channel;
   const struct eo_track_source *source = tracks->source;
   bool angles = channel[0].track == EO_TRACK_ANGLE;

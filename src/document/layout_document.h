@@ -11,19 +11,19 @@
 
 #include "format/faults.h"
 #include "format/outline.h"
+#include "format/table.h"
 #include "recording/layout.h"
 
 struct eo_layout_request {
   struct eo_layout_choice choice;
-  char name[6][EO_RECORDING_NAME]; /* what the names of choice point to: time, member by member, the gear's time */
+  char time[2][EO_RECORDING_NAME];      /* what the names of choice point to: [member] */
+  char column[2][2][EO_RECORDING_NAME]; /* [member] */
 };
+extern const struct eo_table eo_asked_layout_table;
 
 /* Fills *request, which must stay where it is while choice is used; NULL or null: everything is guessed. Unknown keys
    are faults. */
 void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults);
-
-/* What it may say; its keys are those that are known here. */
-extern const struct eo_outline eo_asked_layout_outline;
 
 extern const struct eo_outline eo_layout_outline;
 

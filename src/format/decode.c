@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,22 +19,6 @@ static void set_text(char *target, int size, const char *value)
   strncpy(target, value, (size_t)size - 1);
 }
 
-static void default_numbers(const struct eo_field *field, double *value)
-{
-  for (int i = 0; i < field->count; i++)
-    value[i] = field->fallbacks ? eo_unit_in(field->unit, field->fallbacks[i]) : NAN;
-}
-
-static void default_rows(const struct eo_field *field, void *target)
-{
-  char *row = member(target, field);
-  for (int i = 0; i < field->count; i++)
-    eo_table_defaults(field->table, row + (size_t)i * field->table->size);
-  if (field->row_count)
-    memcpy(row, field->rows, (size_t)field->row_count * field->table->size);
-  *(int *)((char *)target + field->count_offset) = field->row_count;
-}
-
 static bool may_be_null(const struct eo_field *field)
 {
   return field->flags & EO_FIELD_NULLABLE;
@@ -44,55 +29,6 @@ static void set_present(const struct eo_field *field, void *target, bool present
 {
   if (may_be_null(field))
     *(int *)((char *)target + field->count_offset) = present;
-}
-
-static void default_field(const struct eo_field *field, void *target)
-{
-  void *place = member(target, field);
-  switch (field->kind) {
-  case EO_FIELD_NUMBER:
-    *(double *)place = eo_unit_in(field->unit, field->fallback);
-    break;
-  case EO_FIELD_INTEGER:
-  case EO_FIELD_CHOICE:
-    *(int *)place = isnan(field->fallback) ? 0 : (int)field->fallback;
-    break;
-  case EO_FIELD_SEED:
-    *(uint64_t *)place = (uint64_t)field->fallback;
-    break;
-  case EO_FIELD_FLAG:
-    *(bool *)place = field->fallback != 0;
-    break;
-  case EO_FIELD_TEXT:
-    set_text(place, field->count, field->fallback_text ? field->fallback_text : "");
-    break;
-  case EO_FIELD_NUMBERS:
-    default_numbers(field, place);
-    break;
-  case EO_FIELD_OBJECT:
-    eo_table_defaults(field->table, place);
-    set_present(field, target, false);
-    break;
-  case EO_FIELD_LIST:
-    default_rows(field, target);
-    break;
-  case EO_FIELD_SERIES:
-    *(struct eo_numbers *)place = (struct eo_numbers){0};
-    break;
-  case EO_FIELD_MATRIX:
-    *(struct eo_matrix *)place = (struct eo_matrix){0};
-    break;
-  case EO_FIELD_DOCUMENT:
-    *(const json_t **)place = NULL;
-    break;
-  }
-}
-
-void eo_table_defaults(const struct eo_table *table, void *target)
-{
-  for (int i = 0; i < table->count; i++)
-    if (!(table->field[i].flags & EO_FIELD_ELSEWHERE))
-      default_field(&table->field[i], target);
 }
 
 static const char *type_name(const json_t *value)
@@ -170,6 +106,20 @@ static int read_choice(const json_t *value, const struct eo_field *field, const 
   return -1;
 }
 
+/* A string of `least` bytes or more into as many as there is room for. */
+static void read_string(const json_t *value, double least, int room, const struct eo_path *path, char *place,
+                        struct eo_faults *faults)
+{
+  if (json_string_length(value) >= (size_t)room)
+    eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value),
+                 room - 1);
+  else if ((double)json_string_length(value) < least)
+    eo_faults_at(faults, path, "A string of %zu bytes is shorter than the %.0f needed.", json_string_length(value),
+                 least);
+  else
+    set_text(place, room, json_string_value(value));
+}
+
 static void decode_text(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place,
                         struct eo_faults *faults)
 {
@@ -179,14 +129,51 @@ static void decode_text(const struct eo_field *field, const json_t *value, const
       set_text(place, field->count, field->choices[choice]);
   } else if (!json_is_string(value))
     eo_faults_at(faults, path, "Must be a string, not %s.", type_name(value));
-  else if (json_string_length(value) >= (size_t)field->count)
-    eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value),
-                 field->count - 1);
-  else if ((double)json_string_length(value) < field->low)
-    eo_faults_at(faults, path, "A string of %zu bytes is shorter than the %.0f needed.", json_string_length(value),
-                 field->low);
   else
-    set_text(place, field->count, json_string_value(value));
+    read_string(value, field->low, field->count, path, place, faults);
+}
+
+/* A number, or a word that stands for one. */
+static void decode_number(const struct eo_field *field, const json_t *value, const struct eo_path *path, double *place,
+                          struct eo_faults *faults)
+{
+  double number;
+  if (field->choices && json_is_string(value)) {
+    int choice = read_choice(value, field, path, faults);
+    if (choice >= 0)
+      *place = eo_unit_in(field->unit, field->fallbacks[choice]);
+  } else if (read_real(value, field, field->low, field->high, path, faults, &number))
+    *place = eo_unit_in(field->unit, number);
+}
+
+static void decode_name(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place,
+                        struct eo_faults *faults)
+{
+  double number;
+  if (json_is_string(value))
+    read_string(value, 1, field->room, path, place, faults);
+  else if (!json_is_number(value))
+    eo_faults_at(faults, path, "Must be a name or a number from %.0f, not %s.", field->low, type_name(value));
+  else if (read_whole(value, field, field->low, field->high, path, faults, &number))
+    snprintf(place, (size_t)field->room, "%.0f", number);
+}
+
+static void decode_names(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place,
+                         struct eo_faults *faults)
+{
+  if (!json_is_array(value)) {
+    decode_name(field, value, path, place, faults);
+    return;
+  }
+  if (json_array_size(value) != (size_t)field->count)
+    eo_faults_at(faults, path, "Must be one name or number, or an array of %d, not of %zu.", field->count,
+                 json_array_size(value));
+  for (int i = 0; i < field->count && json_array_size(value) == (size_t)field->count; i++) {
+    const json_t *name = json_array_get(value, (size_t)i);
+    struct eo_path element = {path, NULL, i};
+    if (!json_is_null(name))
+      decode_name(field, name, &element, place + (size_t)i * (size_t)field->room, faults);
+  }
 }
 
 /* Numbers of an array; low and high per number. Returns false when one was wrong. */
@@ -197,7 +184,9 @@ static bool read_numbers(const json_t *value, const struct eo_field *field, doub
   for (int i = 0; i < count; i++) {
     struct eo_path element = {path, NULL, i};
     double outside;
-    if (read_real(json_array_get(value, (size_t)i), field, low, high, &element, faults, &outside))
+    if (field->flags & EO_FIELD_ALONE && json_is_null(json_array_get(value, (size_t)i)))
+      number[i] = NAN;
+    else if (read_real(json_array_get(value, (size_t)i), field, low, high, &element, faults, &outside))
       number[i] = eo_unit_in(field->unit, outside);
     else
       good = false;
@@ -213,7 +202,12 @@ static bool read_numbers(const json_t *value, const struct eo_field *field, doub
 static void decode_numbers(const struct eo_field *field, const json_t *value, const struct eo_path *path, double *place,
                            struct eo_faults *faults)
 {
-  if (!json_is_array(value) || json_array_size(value) != (size_t)field->count)
+  double alone;
+  if (field->flags & EO_FIELD_ALONE && json_is_number(value)) {
+    if (read_real(value, field, field->low, field->high, path, faults, &alone))
+      for (int i = 0; i < field->count; i++)
+        place[i] = eo_unit_in(field->unit, alone);
+  } else if (!json_is_array(value) || json_array_size(value) != (size_t)field->count)
     eo_faults_at(faults, path, "Must be an array of %d numbers, not %s%s.", field->count, type_name(value),
                  json_is_array(value) ? " of another length" : "");
   else
@@ -300,6 +294,8 @@ static void decode_null(const struct eo_field *field, void *target)
       ((double *)place)[i] = NAN;
   else if (field->kind == EO_FIELD_OBJECT)
     set_present(field, target, false);
+  else if (field->kind == EO_FIELD_NAMES)
+    memset(place, 0, (size_t)field->count * (size_t)field->room);
 }
 
 static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
@@ -314,8 +310,7 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
   }
   switch (field->kind) {
   case EO_FIELD_NUMBER:
-    if (read_real(value, field, field->low, field->high, path, faults, &number))
-      *(double *)place = eo_unit_in(field->unit, number);
+    decode_number(field, value, path, place, faults);
     break;
   case EO_FIELD_INTEGER:
     if (read_whole(value, field, field->low, field->high, path, faults, &number))
@@ -360,6 +355,9 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
       *(const json_t **)place = value;
     else
       eo_faults_at(faults, path, "Must be an object, not %s.", type_name(value));
+    break;
+  case EO_FIELD_NAMES:
+    decode_names(field, value, path, place, faults);
     break;
   }
 }

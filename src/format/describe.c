@@ -25,6 +25,10 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
   switch (field->kind) {
   case EO_FIELD_NUMBER:
     describe_range(field, field->low, field->high, text);
+    if (field->choices)
+      eo_text_add(text, " | ");
+    if (field->choices)
+      describe_choices(field, text);
     break;
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
@@ -43,7 +47,7 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
     describe_choices(field, text);
     break;
   case EO_FIELD_NUMBERS:
-    eo_text_print(text, "%d numbers, ", field->count);
+    eo_text_print(text, field->flags & EO_FIELD_ALONE ? "one number or %d, " : "%d numbers, ", field->count);
     describe_range(field, field->low, field->high, text);
     break;
   case EO_FIELD_SERIES:
@@ -58,6 +62,9 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
   case EO_FIELD_OBJECT:
   case EO_FIELD_DOCUMENT:
     eo_text_add(text, "object");
+    break;
+  case EO_FIELD_NAMES:
+    eo_text_print(text, "one or %d names, or numbers %.0f .. %.0f", field->count, field->low, field->high);
     break;
   case EO_FIELD_LIST:
     eo_text_print(text, "array of %.0f .. %.0f objects", field->low, field->high);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "format/object.h"
 #include "format/table.h"
 
 static const void *member(const void *source, const struct eo_field *field)
@@ -49,6 +50,22 @@ static json_t *encode_matrix(const struct eo_field *field, const struct eo_matri
   return rows;
 }
 
+/* What is not stated is null; nothing: null in place of them all. */
+static json_t *encode_names(const struct eo_field *field, const char *name)
+{
+  struct eo_object list = eo_list_open();
+  bool stated = false;
+  for (int i = 0; i < field->count; i++, name += field->room) {
+    eo_list_add(&list, *name ? json_string(name) : json_null());
+    stated = stated || *name;
+  }
+  json_t *names = eo_object_close(&list);
+  if (stated)
+    return names;
+  json_decref(names);
+  return json_null();
+}
+
 static json_t *encode_field(const struct eo_field *field, const void *source)
 {
   const void *place = member(source, field);
@@ -80,6 +97,8 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
     return encode_matrix(field, place);
   case EO_FIELD_DOCUMENT:
     return *(json_t *const *)place ? json_incref(*(json_t *const *)place) : json_null();
+  case EO_FIELD_NAMES:
+    return encode_names(field, place);
   }
   return NULL;
 }
@@ -186,6 +205,7 @@ static void settle_field(const struct eo_field *field, void *target)
   case EO_FIELD_TEXT:
   case EO_FIELD_CHOICE:
   case EO_FIELD_DOCUMENT:
+  case EO_FIELD_NAMES:
     break;
   }
 }

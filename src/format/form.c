@@ -11,7 +11,7 @@ static const char *const kinds[] = {
     [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
     [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",   [EO_FIELD_LIST] = "list",
     [EO_FIELD_SERIES] = "series",   [EO_FIELD_MATRIX] = "matrix",   [EO_FIELD_DOCUMENT] = "document",
-    [EO_FIELD_DOCUMENT + 1] = NULL,
+    [EO_FIELD_NAMES] = "names",     [EO_FIELD_NAMES + 1] = NULL,
 };
 
 /* A field as it is written. Ends of ranges: NAN where there is none. */

@@ -80,7 +80,7 @@ static void put_number(struct eo_object *object, const struct eo_field *field, d
 static json_t *number_items(const struct eo_field *field, double low, double high, bool input)
 {
   struct eo_object object = eo_object_open();
-  put_number(&object, field, low, high, !input, input);
+  put_number(&object, field, low, high, !input || field->flags & EO_FIELD_ALONE, input);
   return eo_object_close(&object);
 }
 
@@ -104,6 +104,56 @@ static void put_array(struct eo_object *object, const struct eo_field *field, js
   eo_object_put(object, "items", items);
   put_bound(object, "minItems", low);
   put_bound(object, "maxItems", high);
+}
+
+static json_t *array_schema(const struct eo_field *field, json_t *items)
+{
+  struct eo_object object = eo_object_open();
+  put_array(&object, field, items, field->count, field->count);
+  return eo_object_close(&object);
+}
+
+/* A number, or a word that stands for one. */
+static void put_worded(struct eo_object *object, const struct eo_field *field, bool nullable, bool input)
+{
+  struct eo_object number = eo_object_open();
+  put_number(&number, field, field->low, field->high, nullable, input);
+  eo_object_put(object, "anyOf",
+                json_pack("[o, {s:s, s:o}]", eo_object_close(&number), "type", "string", "enum",
+                          eo_schema_texts(field->choices)));
+}
+
+/* One number, or as many as the field has. */
+static void put_numbers(struct eo_object *object, const struct eo_field *field, bool input)
+{
+  json_t *items = number_items(field, field->low, field->high, input);
+  if (!(field->flags & EO_FIELD_ALONE)) {
+    put_array(object, field, items, field->count, field->count);
+    return;
+  }
+  struct eo_object number = eo_object_open();
+  put_number(&number, field, field->low, field->high, false, input);
+  eo_object_put(object, "anyOf", json_pack("[o, o]", eo_object_close(&number), array_schema(field, items)));
+}
+
+static json_t *name_schema(const struct eo_field *field, bool nullable)
+{
+  struct eo_object text = eo_object_open(), number = eo_object_open();
+  put_type(&text, "string", nullable);
+  eo_object_put(&text, "minLength", json_integer(1));
+  eo_object_put(&text, "maxLength", json_integer(field->room - 1));
+  put_type(&number, "integer", false);
+  put_bound(&number, "minimum", field->low);
+  put_bound(&number, "maximum", field->high);
+  return json_pack("[o, o]", eo_object_close(&text), eo_object_close(&number));
+}
+
+/* One name, or as many as the field has. */
+static void put_names(struct eo_object *object, const struct eo_field *field)
+{
+  json_t *choices = name_schema(field, false), *items = json_pack("{s:o}", "anyOf", name_schema(field, true));
+  object->failed = json_array_append_new(choices, array_schema(field, items)) != 0 || object->failed;
+  eo_object_put(object, "anyOf", choices);
 }
 
 static void put_object(struct eo_object *object, const struct eo_table *table, bool nullable, bool input);
@@ -138,6 +188,11 @@ static void put_constraints(struct eo_object *object, const struct eo_field *fie
   bool nullable = field->flags & EO_FIELD_NULLABLE || (!input && field->kind == EO_FIELD_NUMBER);
   switch (field->kind) {
   case EO_FIELD_NUMBER:
+    if (field->choices)
+      put_worded(object, field, nullable, input);
+    else
+      put_number(object, field, field->low, field->high, nullable, input);
+    break;
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
     put_number(object, field, field->low, field->high, nullable, input);
@@ -150,7 +205,10 @@ static void put_constraints(struct eo_object *object, const struct eo_field *fie
     put_text(object, field);
     break;
   case EO_FIELD_NUMBERS:
-    put_array(object, field, number_items(field, field->low, field->high, input), field->count, field->count);
+    put_numbers(object, field, input);
+    break;
+  case EO_FIELD_NAMES:
+    put_names(object, field);
     break;
   case EO_FIELD_SERIES:
     put_array(object, field, number_items(field, field->series_low, field->series_high, input),

@@ -29,6 +29,7 @@ enum eo_field_kind {
   EO_FIELD_MATRIX,   /* struct eo_matrix */
   EO_FIELD_DOCUMENT, /* const json_t *: an object that somebody else reads, borrowed from what is decoded; NULL: absent
                       */
+  EO_FIELD_NAMES,    /* char[count][room]: names; a whole number from low to high is one in digits */
 };
 
 enum {
@@ -41,6 +42,8 @@ enum {
   EO_FIELD_WHOLE = 32,      /* NUMBER, SERIES: whole numbers alone */
   EO_FIELD_ENTRY = 64,      /* read and never written: another way to say what a key beside it holds */
   EO_FIELD_ELSEWHERE = 128, /* other code reads and writes it: here it is known and described alone */
+  EO_FIELD_ALONE = 256,     /* NUMBERS, NAMES, nullable: one that is in no array stands for all numbers, for the first
+                               name; null in an array is a number or a name that is not stated */
 };
 
 /* A list of numbers of any length. */
@@ -68,11 +71,12 @@ struct eo_field {
   double low, high; /* inclusive, in the document's unit; of a LIST, SERIES or MATRIX: number of rows; see `series_*`;
                        TEXT: low is the least number of bytes */
   double fallback;  /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
-  const double *fallbacks;    /* NUMBERS: [count]; NULL: null */
+  const double *fallbacks;    /* NUMBERS: [count]; NULL: null. NUMBER with choices: what each of them stands for */
   const char *fallback_text;  /* TEXT */
-  const char *const *choices; /* CHOICE, TEXT: ends with NULL */
+  const char *const *choices; /* CHOICE, TEXT: ends with NULL. NUMBER: words that may stand for numbers */
   const char *document;       /* DOCUMENT: name of its schema */
-  int count;                  /* NUMBERS: how many; TEXT: bytes; LIST: capacity */
+  int count;                  /* NUMBERS, NAMES: how many; TEXT: bytes; LIST: capacity */
+  int room;                   /* NAMES: bytes of each */
   size_t count_offset;        /* LIST: int, number of rows; nullable OBJECT: int, 1 when it is there, 0 for null */
   const void *rows;           /* LIST: default rows, [row_count] structs */
   int row_count;
@@ -144,6 +148,13 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                                    \
     .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
     .low = low_, .high = high_, .fallback = NAN, .derived = derived_, .help = help_                                    \
+  }
+/* ... for some values of which there are words. */
+#define EO_NUMBER_WORDED(type, member, key_, unit_, low_, high_, words_, numbers_, derived_, help_)                    \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
+    .low = low_, .high = high_, .fallback = NAN, .choices = words_, .fallbacks = numbers_, .derived = derived_,        \
+    .help = help_                                                                                                      \
   }
 /* Another way to say what a key beside it holds. */
 #define EO_NUMBER_ENTRY(type, member, key_, states_, unit_, low_, high_, help_)                   \
@@ -218,6 +229,13 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                                \
     .key = key_, .kind = EO_FIELD_TEXT, .flags = EO_FIELD_NULLABLE | (flags_), .offset = offsetof(type, member),   \
     .count = sizeof((type *)0)->member, .choices = choices_, .states = states_, .derived = derived_, .help = help_ \
+  }
+/* One name, or as many as the member has. */
+#define EO_NAMES(type, member, key_, high_, derived_, help_)                                              \
+  {                                                                                                       \
+    .key = key_, .kind = EO_FIELD_NAMES, .flags = EO_FIELD_NULLABLE | EO_FIELD_ALONE,                     \
+    .offset = offsetof(type, member), .low = 1, .high = high_, .room = sizeof((type *)0)->member[0],      \
+    .count = sizeof((type *)0)->member / sizeof((type *)0)->member[0], .derived = derived_, .help = help_ \
   }
 /* An object of its own, which the schema names. */
 #define EO_DOCUMENT(type, member, key_, document_, flags_, help_)                                                     \

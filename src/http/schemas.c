@@ -116,8 +116,6 @@ json_t *eo_openapi_schemas(const struct eo_route *const *routes)
               add_orders(schemas, routes);
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
-  good = good &&
-         json_object_set_new(json_object_get(schemas, "AskedLayout"), "additionalProperties", json_false()) == 0;
   good = good && json_object_set_new(schemas, "FitOrder", fit_order()) == 0;
   if (good)
     return schemas;

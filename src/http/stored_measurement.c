@@ -41,8 +41,8 @@ static const struct eo_outline_row storage_rows[] = {
     EO_KEY("design", "integer", "number of the design", OF_STORAGE(design)),
     EO_KEY("created", "text", "date and time, UTC", OF_STORAGE(created)),
     EO_KEY("stated_speed_rpm", "number?", "as it was said", .unit = &eo_unit_rpm, OF_STORAGE(speed)),
-    EO_KEY("asked_layout", "object?", "as it was asked for", .outline = &eo_asked_layout_outline,
-           .write = write_layout),
+    EO_KEY("asked_layout", "object?", "as it was asked for", .table = &eo_asked_layout_table, .name = "AskedLayout",
+           .sparse = true, .write = write_layout),
     EO_KEY("files", "[object]", "as they came", .outline = &file_outline, EO_ROWS_AT(struct storage, file, files)),
 };
 const struct eo_outline eo_outline_stored = EO_OUTLINE("Stored", storage_rows);

@@ -271,6 +271,9 @@ static bool same(const struct eo_table *table, const char *a, const char *b)
     case EO_FIELD_TEXT:
       equal = strcmp(x, y) == 0;
       break;
+    case EO_FIELD_NAMES:
+      equal = memcmp(x, y, (size_t)field->count * (size_t)field->room) == 0;
+      break;
     case EO_FIELD_NUMBERS:
       equal = isnan(*(const double *)x) ? isnan(*(const double *)y)
                                         : same_bits(x, y, (size_t)field->count * sizeof(double));
@@ -400,6 +403,8 @@ static json_t *random_value(const struct eo_field *field)
     return json_string(choices             ? field->choices[(int)(choices * uniform())]
                        : field->count < 40 ? "cd25"
                                            : "Stirnradgetriebe \xc3\xa4\xe2\x82\xac \"x\" \\ \n");
+  case EO_FIELD_NAMES:
+    return json_integer((json_int_t)field->low);
   case EO_FIELD_CHOICE:
     return json_string(field->choices[(int)(choices * uniform())]);
   case EO_FIELD_NUMBERS:

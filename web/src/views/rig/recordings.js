@@ -125,10 +125,11 @@ class LayoutForm {
         .map(part => part.trim())
         .filter(Boolean)
         .map(column);
-    if (this.kind.value) layout.kind = this.kind.value;
-    if (this.unit.value) layout.unit = this.unit.value;
+    if (this.kind.value) layout.kind = /** @type {Api.AskedLayout['kind']} */ (this.kind.value);
+    if (this.unit.value) layout.unit = /** @type {Api.AskedLayout['unit']} */ (this.unit.value);
     if (this.time.value.trim()) layout.time = column(this.time.value.trim());
-    if (this.timeUnit.value) layout.time_unit = this.timeUnit.value;
+    if (this.timeUnit.value)
+      layout.time_unit = /** @type {Api.AskedLayout['time_unit']} */ (this.timeUnit.value);
     const rate = parseNumber(this.rate.value);
     if (rate !== undefined) layout.sample_rate_Hz = rate;
     for (const [member, field] of /** @type {[Page.Member, HTMLInputElement][]} */ ([
