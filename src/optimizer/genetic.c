@@ -99,15 +99,12 @@ static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error
   if (!genetic->x || !genetic->parents || !genetic->fitness || !genetic->parent_fitness || !genetic->credibility ||
       !genetic->row || !genetic->kind || !genetic->order)
     return eo_error_memory(error);
-  enum eo_code code = eo_optimizer_reserve_batch(optimizer, optimizer->settings.population + 1, error);
-  if (code == EO_OK)
-    code = eo_history_init(&genetic->history, optimizer->settings.variables, 1024, error);
-  for (int row = 0; row < optimizer->archive.count && code == EO_OK; row++)
-    code = remember_true(optimizer, row, error);
-  if (code == EO_OK)
-    eo_random_points(genetic->x, optimizer->settings.population, optimizer->settings.variables,
-                     optimizer->settings.seed);
-  return code;
+  EO_TRY(eo_optimizer_reserve_batch(optimizer, optimizer->settings.population + 1, error));
+  EO_TRY(eo_history_init(&genetic->history, optimizer->settings.variables, 1024, error));
+  for (int row = 0; row < optimizer->archive.count; row++)
+    EO_TRY(remember_true(optimizer, row, error));
+  eo_random_points(genetic->x, optimizer->settings.population, optimizer->settings.variables, optimizer->settings.seed);
+  return EO_OK;
 }
 
 /* Asks for individual i, if the budget allows. */
@@ -188,24 +185,22 @@ static enum eo_code decide_batch(struct eo_optimizer *optimizer, struct eo_error
 static enum eo_code decide_in_sequence(struct eo_optimizer *optimizer, struct eo_error *error)
 {
   struct genetic *genetic = optimizer->state;
-  enum eo_code code = EO_OK;
-  while (genetic->cursor < optimizer->settings.population && optimizer->batch_count == 0 && code == EO_OK &&
-         !genetic->cut) {
-    code = decide(optimizer, genetic->cursor, error);
+  while (genetic->cursor < optimizer->settings.population && optimizer->batch_count == 0 && !genetic->cut) {
+    EO_TRY(decide(optimizer, genetic->cursor, error));
     if (genetic->cut)
       break;
-    if (code == EO_OK && optimizer->batch_count == 0) {
+    if (optimizer->batch_count == 0) {
       if (genetic->row[genetic->cursor] >= 0)
         genetic->fitness[genetic->cursor] = fitness_of_row(optimizer, genetic->row[genetic->cursor]);
-      code = remember(optimizer, genetic->cursor, error);
+      EO_TRY(remember(optimizer, genetic->cursor, error));
     }
     genetic->cursor++;
   }
-  if (code == EO_OK && optimizer->batch_count == 0 && genetic->predicts && optimizer->settings.verify) {
+  if (optimizer->batch_count == 0 && genetic->predicts && optimizer->settings.verify) {
     verify_best_prediction(optimizer);
     genetic->verifying = optimizer->batch_count > 0;
   }
-  return code;
+  return EO_OK;
 }
 
 /* (H4), then (H5). */
@@ -287,26 +282,24 @@ static enum eo_code close_generation(struct eo_optimizer *optimizer, struct eo_e
 static enum eo_code finish_batch_order(struct eo_optimizer *optimizer, struct eo_error *error)
 {
   struct genetic *genetic = optimizer->state;
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < genetic->cursor && code == EO_OK; i++) {
+  for (int i = 0; i < genetic->cursor; i++) {
     if (genetic->row[i] >= 0)
       genetic->fitness[i] = fitness_of_row(optimizer, genetic->row[i]);
-    code = remember(optimizer, i, error);
+    EO_TRY(remember(optimizer, i, error));
   }
-  return code == EO_OK ? close_generation(optimizer, error) : code;
+  return close_generation(optimizer, error);
 }
 
 static enum eo_code propose(struct eo_optimizer *optimizer, struct eo_error *error)
 {
   const struct genetic *genetic = optimizer->state;
   const bool sequential = genetic->predicts && optimizer->settings.decision_order == EO_ORDER_SEQUENTIAL;
-  enum eo_code code = EO_OK;
-  while (!optimizer->finished && optimizer->batch_count == 0 && code == EO_OK) {
-    code = sequential ? decide_in_sequence(optimizer, error) : decide_batch(optimizer, error);
-    if (code == EO_OK && optimizer->batch_count == 0)
-      code = sequential ? close_generation(optimizer, error) : finish_batch_order(optimizer, error);
+  while (!optimizer->finished && optimizer->batch_count == 0) {
+    EO_TRY(sequential ? decide_in_sequence(optimizer, error) : decide_batch(optimizer, error));
+    if (optimizer->batch_count == 0)
+      EO_TRY(sequential ? close_generation(optimizer, error) : finish_batch_order(optimizer, error));
   }
-  return code;
+  return EO_OK;
 }
 
 static enum eo_code absorb_in_sequence(struct eo_optimizer *optimizer, struct eo_error *error)

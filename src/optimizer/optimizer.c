@@ -126,21 +126,24 @@ enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x
   return code;
 }
 
+static enum eo_code fill_batch(struct eo_optimizer *optimizer, struct eo_error *error)
+{
+  if (!optimizer->started) {
+    optimizer->started = true;
+    EO_TRY(optimizer->algorithm->start(optimizer, error));
+  }
+  if (!optimizer->finished)
+    EO_TRY(optimizer->algorithm->propose(optimizer, error));
+  return eo_archive_reserve(&optimizer->archive, optimizer->batch_count, error);
+}
+
 enum eo_code eo_optimizer_ask(struct eo_optimizer *optimizer, struct eo_batch *batch, struct eo_error *error)
 {
   if (optimizer->told_count < optimizer->batch_count)
     return eo_error_set(error, EO_ERROR_INPUT, "", "%d of %d candidates of the last batch were not told.",
                         optimizer->batch_count - optimizer->told_count, optimizer->batch_count);
   optimizer->batch_count = optimizer->told_count = optimizer->prediction_count = 0;
-  enum eo_code code = EO_OK;
-  if (!optimizer->started) {
-    optimizer->started = true;
-    code = optimizer->algorithm->start(optimizer, error);
-  }
-  if (code == EO_OK && !optimizer->finished)
-    code = optimizer->algorithm->propose(optimizer, error);
-  if (code == EO_OK)
-    code = eo_archive_reserve(&optimizer->archive, optimizer->batch_count, error);
+  enum eo_code code = fill_batch(optimizer, error);
   if (code != EO_OK) {
     optimizer->finished = true;
     optimizer->batch_count = 0;

@@ -180,27 +180,30 @@ static enum eo_code run_points(const struct input *given, struct output *found, 
   return code;
 }
 
-static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end,
-                                 struct eo_error *error)
+static enum eo_code compute_history(struct eo_root_history *history, struct eo_root_loads *loads,
+                                    struct eo_root_workspace **workspace, const struct eo_stage_mesh *mesh, int member,
+                                    int end, struct eo_error *error)
 {
   const struct eo_pair *pair = mesh->pair;
   struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+  EO_TRY(eo_root_workspace_new(workspace, pair->root, 1, error));
+  EO_TRY(eo_root_loads_init(loads, pair->root, 1, error));
+  EO_TRY(eo_root_history_init(history, pair->grid, error));
+  eo_root_loads_find(loads, pair->root, &mesh->end[end]);
+  eo_root_history_compute(history, *workspace, &root, member, loads);
+  return EO_OK;
+}
+
+static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end,
+                                 struct eo_error *error)
+{
   struct eo_root_workspace *workspace = NULL;
   struct eo_root_loads loads = {0};
   struct eo_root_history history = {0};
-  enum eo_code code = eo_root_workspace_new(&workspace, pair->root, 1, error);
-  if (!code)
-    code = eo_root_loads_init(&loads, pair->root, 1, error);
-  if (!code)
-    code = eo_root_history_init(&history, pair->grid, error);
-  if (!code) {
-    eo_root_loads_find(&loads, pair->root, &mesh->end[end]);
-    eo_root_history_compute(&history, workspace, &root, member, &loads);
-  }
+  enum eo_code code = compute_history(&history, &loads, &workspace, mesh, member, end, error);
   eo_root_loads_done(&loads);
   eo_root_workspace_free(workspace);
-  if (code)
-    return code;
+  EO_TRY(code);
   out->maximum = history.maximum;
   out->arc = history.arc;
   out->eta = history.eta;

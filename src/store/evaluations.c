@@ -244,11 +244,9 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
     read_head(&statement, &found);
     snprintf(digest, sizeof digest, "%s", eo_column_text(&statement, 4));
   }
-  enum eo_code code = eo_statement_end(&statement, error);
-  if (!code && found.id)
-    code = read_verified(store, &found, digest, error);
-  if (code)
-    return code;
+  EO_TRY(eo_statement_end(&statement, error));
+  if (found.id)
+    EO_TRY(read_verified(store, &found, digest, error));
   found.modification = row->modification;
   *row = found;
   return EO_OK;
@@ -281,20 +279,19 @@ enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct 
 
 static enum eo_code add_values(struct eo_store *store, const struct eo_stored_evaluation *row, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
+  for (int i = 0; i < row->scenarios * row->cases; i++) {
     const struct eo_objective_case *objective_case = &row->raw[i];
     double curve[LONG_CURVE];
     const size_t size = pack_curve(objective_case, curve);
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+    EO_TRY(EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                             "innrrrrrrrnrrrrb", row->id, i / row->cases, i % row->cases, objective_case->peak_to_peak,
                             objective_case->impact, objective_case->rms, objective_case->contact_pressure,
                             objective_case->root_stress, objective_case->edge_load_share, objective_case->contact_loss,
                             (int)objective_case->failed, objective_case->flank_safety, objective_case->root_safety,
                             objective_case->film_ratio, objective_case->contact_temperature,
-                            size > 0 ? (const void *)curve : NULL, size);
+                            size > 0 ? (const void *)curve : NULL, size));
   }
-  return code;
+  return EO_OK;
 }
 
 /* What is not finite is stored as NULL and read back as NaN: the check sum has to see the same. */
