@@ -26,6 +26,7 @@ enum eo_code eo_pair_log_hash(const struct eo_design *design, char hash[EO_HASH_
     own->tolerance.pairs = 1;
   memset(own->tolerance.limit, 0, sizeof own->tolerance.limit);
   own->tolerance.limits = 0;
+  own->tolerance.method = EO_SCATTER_AUTO;
   enum eo_code code = eo_design_hash(own, hash, error);
   free(own);
   return code;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "document/result_private.h"
+#include "evaluation/scatter_levels.h"
 #include "format/json.h"
 #include "format/object.h"
 #include "format/text_table.h"
@@ -69,8 +70,8 @@ static const struct eo_outline influence_outline = EO_OUTLINE("ScatterInfluence"
 
 struct output {
   const char *key;
-  int load_case, rows, largest;
-  double nominal, mean, deviation, r2, r2_adjusted, q2, residual;
+  int load_case, rows, full, largest;
+  double nominal, mean, deviation, coarse_error, r2, r2_adjusted, q2, residual;
   struct eo_series mean_interval, deviation_interval;
   struct histogram histogram;
   json_t *percentiles, *influences;
@@ -80,6 +81,13 @@ static const struct eo_outline_row output_rows[] = {
     EO_KEY("key", "text", "what is counted; the unit stands in it", EO_AT(struct output, key)),
     EO_KEY("load_case", "integer", "from 1", EO_AT(struct output, load_case)),
     EO_KEY("rows", "integer", "pairs that have this number", EO_AT(struct output, rows)),
+    EO_KEY("full_rows", "integer", "of them computed in full; the others are completed from the coarse grid",
+           EO_AT(struct output, full)),
+    EO_KEY(
+        "coarse_error", "number?",
+        "root mean square error of what the coarse grid says of pairs that are in full, each left out, in the output's "
+        "unit; null: every pair is in full",
+        EO_AT(struct output, coarse_error)),
     EO_KEY("nominal", "number?", "of the design as drawn", EO_AT(struct output, nominal)),
     EO_KEY("mean", "number", "over the pairs", EO_AT(struct output, mean)),
     EO_KEY("mean_interval", "[number]", "95 %, bootstrap", EO_AT(struct output, mean_interval)),
@@ -96,7 +104,7 @@ static const struct eo_outline_row output_rows[] = {
            EO_AT(struct output, residual)),
     EO_KEY("influences", "[object]", "inputs, those that decide first", .outline = &influence_outline,
            EO_AT(struct output, influences)),
-    EO_KEY("largest_pair", "integer", "number of the pair with the largest value, from 1",
+    EO_KEY("largest_pair", "integer", "number of the pair with the largest value, of those in full, from 1",
            EO_AT(struct output, largest)),
 };
 static const struct eo_outline output_outline = EO_OUTLINE("ScatterOutput", output_rows);
@@ -152,7 +160,7 @@ static const struct eo_outline worst_outline = EO_OUTLINE("ScatterWorst", worst_
 struct tolerance {
   const char *program;
   char hash[EO_HASH_LENGTH + 1];
-  int pairs, failed, bounded;
+  int pairs, full, failed, bounded;
   json_t *design, *inputs, *outputs, *yields, *correlation, *worst, *warnings;
 };
 
@@ -162,6 +170,10 @@ static const struct eo_outline_row tolerance_rows[] = {
            EO_AT(struct tolerance, design)),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design", EO_AT(struct tolerance, hash)),
     EO_KEY("pairs", "integer", "drawn", EO_AT(struct tolerance, pairs)),
+    EO_KEY("full_pairs", "integer",
+           "of them computed in full; the others on a coarse grid and completed, with what that leaves open in every "
+           "interval",
+           EO_AT(struct tolerance, full)),
     EO_KEY("failed", "integer", "of them without a converged contact at the first load case",
            EO_AT(struct tolerance, failed)),
     EO_KEY("bounded", "integer", "drawn values that met a bound of their key and were put there",
@@ -173,7 +185,8 @@ static const struct eo_outline_row tolerance_rows[] = {
            EO_AT(struct tolerance, yields)),
     EO_KEY("correlation", "object", "between the numbers of one load case", .outline = &correlation_outline,
            EO_AT(struct tolerance, correlation)),
-    EO_KEY("worst", "object", "the worst pair", .outline = &worst_outline, EO_AT(struct tolerance, worst)),
+    EO_KEY("worst", "object", "the worst pair, of those in full", .outline = &worst_outline,
+           EO_AT(struct tolerance, worst)),
     EO_KEY("warnings", "[text]", "in plain words", EO_AT(struct tolerance, warnings)),
 };
 const struct eo_outline eo_tolerance_outline = EO_OUTLINE("Tolerance", tolerance_rows);
@@ -237,6 +250,8 @@ static json_t *encode_output(const struct eo_tolerance_report *report, const str
       .key = tolerance_case->scalar->key,
       .load_case = tolerance_case->load_case + 1,
       .rows = found->rows,
+      .full = found->full,
+      .coarse_error = found->coarse_error,
       .nominal = tolerance_case->nominal,
       .mean = found->summary.mean,
       .mean_interval = eo_series_of(2, found->mean_interval, EO_DIGITS_NUMBER),
@@ -361,8 +376,11 @@ static const char assumed_text[] =
 static json_t *encode_warnings(const struct eo_tolerance_report *report, const struct eo_warnings *warnings)
 {
   struct eo_object list = eo_list_open();
+  char note[EO_COMPLETION_NOTE];
   if (report->assumed)
     eo_list_add(&list, json_string(assumed_text));
+  if (eo_tolerance_completion_note(report, note))
+    eo_list_add(&list, json_string(note));
   for (int i = 0; warnings && i < warnings->count; i++)
     eo_list_add(&list, json_string(warnings->text[i]));
   return eo_object_close(&list);
@@ -372,6 +390,7 @@ json_t *eo_tolerance_encode(const struct eo_tolerance_report *report, const stru
 {
   struct tolerance view = {.program = PACKAGE_STRING,
                            .pairs = report->run->pairs,
+                           .full = eo_scatter_full_pairs(report->run),
                            .failed = report->failed,
                            .bounded = report->run->bounded};
   if (eo_design_hash(report->design, view.hash, NULL))
@@ -452,6 +471,7 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
                                         "90 %",   "95 %", "99 %",    "95 % lies in", "R2",  "Q2",  "decides most"};
   enum { COLUMNS = sizeof heading / sizeof *heading };
   struct eo_text_table sheet;
+  char note[EO_COMPLETION_NOTE];
   print_inputs(report, text);
   eo_text_add(text, "\n");
   eo_text_table_init(&sheet, COLUMNS, heading);
@@ -467,30 +487,8 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
     eo_text_print(text, "%d drawn values met a bound of their key and were put there.\n", report->run->bounded);
   if (report->assumed)
     eo_text_print(text, "note: %s\n", assumed_text);
+  if (eo_tolerance_completion_note(report, note))
+    eo_text_print(text, "note: %s\n", note);
   for (int i = 0; warnings && i < warnings->count; i++)
     eo_text_print(text, "note: %s\n", warnings->text[i]);
-}
-
-void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text)
-{
-  const struct eo_scatter_run *run = report->run;
-  eo_text_add(text, "pair");
-  for (int i = 0; i < run->inputs; i++)
-    eo_text_print(text, ",%s", report->scatter->input[i].key);
-  for (int i = 0; i < run->outputs; i++)
-    eo_text_print(text, ",load_cases.%d.%s", i % run->cases + 1, eo_scalar_at(i / run->cases)->key);
-  eo_text_add(text, "\r\n");
-  for (int pair = 0; pair < run->pairs; pair++) {
-    eo_text_print(text, "%d", pair + 1);
-    for (int i = 0; i < run->inputs; i++)
-      eo_text_print(text, ",%.12g", run->input[(size_t)pair * (size_t)run->inputs + (size_t)i]);
-    for (int i = 0; i < run->outputs; i++) {
-      double value = run->output[(size_t)pair * (size_t)run->outputs + (size_t)i];
-      if (isfinite(value))
-        eo_text_print(text, ",%.12g", value);
-      else
-        eo_text_add(text, ",");
-    }
-    eo_text_add(text, "\r\n");
-  }
 }

@@ -60,7 +60,12 @@ void eo_tolerance_write(const struct eo_tolerance_report *report, const struct e
 void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct eo_warnings *warnings,
                           struct eo_text *text);
 
-/* A line for each pair: number, inputs, outputs. */
+/* What is to be said where pairs were not computed in full: how many, and how far off the others are; false: all were.
+ */
+enum { EO_COMPLETION_NOTE = 480 };
+bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char note[EO_COMPLETION_NOTE]);
+
+/* A line for each pair that is in full: number, inputs, outputs. */
 void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text);
 
 /* What can be told before any pair is computed. Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "document/tolerance_document.h"
+#include "evaluation/scatter_levels.h"
 #include "tolerance/response_surface.h"
 
 struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tolerance_settings)
@@ -18,7 +19,8 @@ struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tol
 
 double eo_tolerance_memory(const struct eo_design *design, const struct eo_scatter *scatter)
 {
-  double pairs = design->tolerance.pairs, numbers = 2. * eo_scatter_outputs(design) + 2. * scatter->inputs + 2;
+  double pairs = design->tolerance.pairs, levels = eo_scatter_is_coarse_first(design) ? 2 : 1,
+         numbers = (1 + levels) * eo_scatter_outputs(design) + 2. * scatter->inputs + 2;
   return sizeof(double) * pairs * numbers + eo_surface_memory(design->tolerance.pairs, scatter->inputs);
 }
 
@@ -63,13 +65,34 @@ static double beyond(const struct eo_scatter_run *run, const struct eo_tolerance
   return worst;
 }
 
-static void set_share(struct eo_yield_row *row, int inside, int pairs)
+/* rows: as many pairs in full as leave the share as open; pairs where they all are. */
+static void set_share(struct eo_yield_row *row, int inside, int pairs, int rows)
 {
+  int as_open = rows < pairs ? (int)lround((double)inside / pairs * rows) : inside;
   row->inside = inside;
   row->pairs = pairs;
   row->fraction = (double)inside / pairs;
-  row->exact = eo_clopper_pearson(inside, pairs, 0.95);
-  row->wilson = eo_wilson(inside, pairs, 0.95);
+  row->exact = eo_clopper_pearson(as_open, rows, 0.95);
+  row->wilson = eo_wilson(as_open, rows, 0.95);
+}
+
+/* Of a limit at the load cases that it is for: those of the one that is most open. */
+static enum eo_code rows_as_open(const struct eo_tolerance_report *report, const struct eo_tolerance_limit *limit,
+                                 int *rows, struct eo_error *error)
+{
+  const struct eo_scatter_run *run = report->run;
+  const struct eo_completion completion = eo_scatter_completion(run, report->design);
+  *rows = run->pairs;
+  for (int k = 0; run->coarse && k < run->cases; k++) {
+    struct eo_doubt doubt;
+    if (limit->load_case != 0 && limit->load_case != k + 1)
+      continue;
+    EO_TRY(
+        eo_completion_share(&completion, eo_scalar_find(limit->output) * run->cases + k, limit->most, &doubt, error));
+    if (doubt.rows < *rows)
+      *rows = doubt.rows > 2 ? (int)doubt.rows : 2;
+  }
+  return EO_OK;
 }
 
 static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_error *error)
@@ -88,15 +111,20 @@ static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_e
     inside[tolerance_settings->limits] += all;
   }
   report->yields = tolerance_settings->limits > 0 ? tolerance_settings->limits + 1 : 0;
+  int fewest = run->pairs;
   for (int i = 0; i < report->yields; i++) {
     struct eo_yield_row *row = &report->yield[i];
+    int rows = fewest;
+    if (i < tolerance_settings->limits)
+      EO_TRY(rows_as_open(report, &tolerance_settings->limit[i], &rows, error));
+    fewest = rows < fewest ? rows : fewest;
     *row = (struct eo_yield_row){.most = NAN};
     if (i < tolerance_settings->limits) {
       memcpy(row->output, tolerance_settings->limit[i].output, sizeof row->output);
       row->load_case = tolerance_settings->limit[i].load_case;
       row->most = tolerance_settings->limit[i].most;
     }
-    set_share(row, inside[i], run->pairs);
+    set_share(row, inside[i], run->pairs, rows);
   }
   return EO_OK;
 }
@@ -130,7 +158,7 @@ static void find_worst(struct eo_tolerance_report *report)
   for (int pair = 0; pair < report->run->pairs; pair++) {
     double own = badness(report, pair, &limit);
     report->failed += isnan(value_at(report->run, pair, swing, 0));
-    if (own > worst) {
+    if (report->run->full[pair] && own > worst) {
       worst = own;
       report->worst = pair;
       name = limit >= 0 ? report->design->tolerance.limit[limit].output : "peak_to_peak_um";
@@ -155,6 +183,7 @@ static enum eo_code report_outputs(struct eo_tolerance_report *report, const str
   const struct eo_scatter_run *run = report->run;
   struct eo_moments moments[EO_MAX_SCATTER_INPUTS];
   bool independent = eo_scatter_is_independent(report->scatter);
+  const struct eo_completion completion = eo_scatter_completion(run, report->design);
   for (int i = 0; i < run->inputs; i++)
     moments[i] = eo_scatter_moments(report->scatter, i);
   report->output = calloc((size_t)run->outputs, sizeof *report->output);
@@ -167,8 +196,12 @@ static enum eo_code report_outputs(struct eo_tolerance_report *report, const str
     *output = (struct eo_tolerance_case){
         .scalar = eo_scalar_at(i / run->cases), .load_case = i % run->cases, .nominal = run->nominal[i]};
     report->outputs++; /* so that it is freed */
+    struct eo_report_completion completed = {.completion = &completion, .output = i};
+    if (run->coarse)
+      completed.completed = run->completed[i];
     EO_TRY(eo_output_report_make(&output->report, run->pairs, run->inputs, run->input, run->output + i, run->outputs,
-                                 independent ? moments : NULL, report->design->tolerance.seed, error));
+                                 independent ? moments : NULL, report->design->tolerance.seed,
+                                 run->coarse ? &completed : NULL, error));
     if (output->report.rows > 0)
       continue;
     eo_output_report_done(&output->report);
@@ -208,4 +241,58 @@ void eo_tolerance_report_free(struct eo_tolerance_report *report)
     eo_output_report_done(&report->output[i].report);
   free(report->output);
   free(report);
+}
+
+/* The worst error of an output over the load cases. */
+static double largest_error(const struct eo_tolerance_report *report, const char *key)
+{
+  double largest = NAN;
+  for (int i = 0; i < report->outputs; i++)
+    if (strcmp(report->output[i].scalar->key, key) == 0)
+      largest = fmax(largest, report->output[i].report.coarse_error);
+  return largest;
+}
+
+bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char note[EO_COMPLETION_NOTE])
+{
+  const struct eo_scatter_run *run = report->run;
+  char rms[60] = "";
+  double error = largest_error(report, "rms_m_per_s2");
+  if (!run->coarse)
+    return false;
+  if (isfinite(error))
+    snprintf(rms, sizeof rms, ", the RMS acceleration by %.2g m/s2", error);
+  snprintf(
+      note, EO_COMPLETION_NOTE,
+      "%d of %d pairs were computed in full, the others on a coarse grid and corrected by these: a pair's "
+      "peak-to-peak error is off by %.2g um%s (root mean square of pairs left out, worst load case). The intervals "
+      "have this in them; the method \"full\" computes every pair.",
+      eo_scatter_full_pairs(run), run->pairs, largest_error(report, "peak_to_peak_um"), rms);
+  return true;
+}
+
+void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text)
+{
+  const struct eo_scatter_run *run = report->run;
+  eo_text_add(text, "pair");
+  for (int i = 0; i < run->inputs; i++)
+    eo_text_print(text, ",%s", report->scatter->input[i].key);
+  for (int i = 0; i < run->outputs; i++)
+    eo_text_print(text, ",load_cases.%d.%s", i % run->cases + 1, eo_scalar_at(i / run->cases)->key);
+  eo_text_add(text, "\r\n");
+  for (int pair = 0; pair < run->pairs; pair++) {
+    if (!run->full[pair])
+      continue;
+    eo_text_print(text, "%d", pair + 1);
+    for (int i = 0; i < run->inputs; i++)
+      eo_text_print(text, ",%.12g", run->input[(size_t)pair * (size_t)run->inputs + (size_t)i]);
+    for (int i = 0; i < run->outputs; i++) {
+      double value = run->output[(size_t)pair * (size_t)run->outputs + (size_t)i];
+      if (isfinite(value))
+        eo_text_print(text, ",%.12g", value);
+      else
+        eo_text_add(text, ",");
+    }
+    eo_text_add(text, "\r\n");
+  }
 }

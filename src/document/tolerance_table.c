@@ -8,6 +8,7 @@
 static const char *const presets[] = {"as_stated", "iso_class", "ground", "as_measured", NULL};
 static const char *const editions[] = {"1995", "1995_exact", "2013", NULL};
 static const char *const samplings[] = {"sobol", "latin", "random", NULL};
+static const char *const methods[] = {"auto", "full", "coarse_first", NULL};
 static const char *const kinds[] = {"normal", "uniform", "values", "fixed_sum", NULL};
 
 static const struct eo_field row[] = {
@@ -61,6 +62,11 @@ static const struct eo_field tolerance[] = {
     EO_INTEGER(struct eo_tolerance_settings, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, 1000, "how many are drawn"),
     EO_CHOICE(struct eo_tolerance_settings, sampling, "sampling", samplings, EO_SAMPLING_SOBOL,
               "scrambled Sobol points, a Latin hypercube, or independent draws"),
+    EO_CHOICE(
+        struct eo_tolerance_settings, method, "method", methods, EO_SCATTER_AUTO,
+        "full: every pair as an analysis computes it; coarse_first: every pair on a coarse grid, and in full those "
+        "that show what this leaves open and those by which the 95 % percentiles are decided; auto: coarse_first "
+        "from 500 pairs on, without root stress and with halves that are alike"),
     {.key = "seed",
      .kind = EO_FIELD_SEED,
      .offset = offsetof(struct eo_tolerance_settings, seed),

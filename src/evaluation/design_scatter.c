@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "evaluation/scatter_levels.h"
 
 struct eo_scatter_bench {
   const struct eo_design *nominal; /* borrowed, like the scatter */
@@ -83,7 +84,12 @@ enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *
 struct work {
   struct eo_scatter_run *run;
   const struct eo_scatter_plan *plan;
-  struct eo_scatter_bench *bench[EO_MAX_THREADS];
+  const struct eo_progress *progress;
+  int threads;
+  struct eo_scatter_bench *bench[EO_MAX_THREADS], *coarse_bench[EO_MAX_THREADS]; /* owned */
+  struct eo_design *coarse;                                                      /* the design at that level; owned */
+  struct eo_pair *coarse_pair;                                                   /* owned */
+  const struct eo_scatter_stage *stage;
   pthread_mutex_t keeping;
 };
 
@@ -98,17 +104,35 @@ static enum eo_code keep(struct work *work, int pair, const double *output, doub
   return code;
 }
 
-static enum eo_code run_pair(void *context, int thread, int pair, struct eo_error *error)
+static enum eo_code run_pair(void *context, int thread, int item, struct eo_error *error)
 {
   struct work *work = context;
   struct eo_scatter_run *run = work->run;
-  double *output = run->output + (size_t)pair * (size_t)run->outputs;
+  int pair = work->stage->pair[item];
+  const double *input = run->input + (size_t)pair * (size_t)run->inputs;
+  size_t row = (size_t)pair * (size_t)run->outputs;
   const struct eo_scatter_log *log = &work->plan->log;
-  if (log->find && log->find(log->context, pair, output))
+  if (work->stage->coarse)
+    return eo_scatter_bench_run(work->coarse_bench[thread], input, run->coarse + row, error);
+  if (log->find && log->find(log->context, pair, run->output + row))
     return EO_OK;
   double start = eo_clock_thread_seconds();
-  EO_TRY(eo_scatter_bench_run(work->bench[thread], run->input + (size_t)pair * (size_t)run->inputs, output, error));
-  return keep(work, pair, output, eo_clock_thread_seconds() - start, error);
+  EO_TRY(eo_scatter_bench_run(work->bench[thread], input, run->output + row, error));
+  return keep(work, pair, run->output + row, eo_clock_thread_seconds() - start, error);
+}
+
+static enum eo_code run_stage(void *context, const struct eo_scatter_stage *stage, struct eo_error *error)
+{
+  struct work *work = context;
+  work->stage = stage;
+  return eo_parallel_run(&(struct eo_parallel){.threads = work->threads < stage->count ? work->threads : stage->count,
+                                               .work = run_pair,
+                                               .context = work,
+                                               .progress = work->progress,
+                                               .what = EO_SCATTER_PROGRESS,
+                                               .first = stage->first,
+                                               .last = stage->last},
+                         stage->count, error);
 }
 
 static enum eo_code allocate(struct eo_scatter_run *run, const struct eo_design *design,
@@ -123,7 +147,16 @@ static enum eo_code allocate(struct eo_scatter_run *run, const struct eo_design 
   run->input = malloc(sizeof *run->input * pairs * (size_t)run->inputs);
   run->output = malloc(sizeof *run->output * pairs * (size_t)run->outputs);
   run->nominal = malloc(sizeof *run->nominal * (size_t)run->outputs);
-  return run->input && run->output && run->nominal ? EO_OK : eo_error_memory(error);
+  run->full = malloc(sizeof *run->full * pairs);
+  if (!run->input || !run->output || !run->nominal || !run->full)
+    return eo_error_memory(error);
+  for (size_t i = 0; i < pairs; i++)
+    run->full[i] = true;
+  if (!eo_scatter_is_coarse_first(design))
+    return EO_OK;
+  run->coarse = malloc(sizeof *run->coarse * pairs * (size_t)run->outputs);
+  run->completed = calloc((size_t)run->outputs, sizeof *run->completed);
+  return run->coarse && run->completed ? EO_OK : eo_error_memory(error);
 }
 
 enum eo_code eo_scatter_run_draw(struct eo_scatter_run *run, const struct eo_design *design,
@@ -143,39 +176,53 @@ enum eo_code eo_scatter_run_draw(struct eo_scatter_run *run, const struct eo_des
   return code;
 }
 
-/* The nominal pair first, then all. */
-static enum eo_code run_all(struct work *work, int threads, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code make_benches(struct work *work, const struct eo_pair *pair, const struct eo_design *design,
+                                 const struct eo_scatter *scatter, struct eo_error *error)
 {
-  struct eo_scatter_run *run = work->run;
-  EO_TRY(eo_scatter_bench_run(work->bench[0], NULL, run->nominal, error));
-  return eo_parallel_run(&(struct eo_parallel){.threads = threads,
-                                               .work = run_pair,
-                                               .context = work,
-                                               .progress = progress,
-                                               .what = EO_SCATTER_PROGRESS,
-                                               .first = 0,
-                                               .last = 1},
-                         run->pairs, error);
+  const struct eo_scatter_plan *plan = work->plan;
+  for (int i = 0; i < work->threads; i++)
+    EO_TRY(eo_scatter_bench_new(&work->bench[i], pair, design, scatter, plan->vibration, plan->root_stress, error));
+  if (!work->run->coarse)
+    return EO_OK;
+  work->coarse = malloc(sizeof *work->coarse);
+  if (!work->coarse)
+    return eo_error_memory(error);
+  eo_scatter_make_coarse(work->coarse, design);
+  EO_TRY(eo_scatter_coarse_pair(&work->coarse_pair, pair, design, work->progress, error));
+  for (int i = 0; i < work->threads; i++)
+    EO_TRY(eo_scatter_bench_new(&work->coarse_bench[i], work->coarse_pair, work->coarse, scatter, plan->vibration,
+                                plan->root_stress, error));
+  return EO_OK;
 }
 
+static void work_done(struct work *work)
+{
+  for (int i = 0; i < EO_MAX_THREADS; i++) {
+    eo_scatter_bench_free(work->bench[i]);
+    eo_scatter_bench_free(work->coarse_bench[i]);
+  }
+  eo_pair_free(work->coarse_pair);
+  free(work->coarse);
+  pthread_mutex_destroy(&work->keeping);
+}
+
+/* The nominal pair first, then all. */
 enum eo_code eo_scatter_run_pairs(struct eo_scatter_run *run, const struct eo_pair *pair,
                                   const struct eo_design *design, const struct eo_scatter *scatter,
                                   const struct eo_scatter_plan *plan, const struct eo_progress *progress,
                                   struct eo_error *error)
 {
-  struct work work = {.run = run, .plan = plan};
-  int threads = plan->threads ? plan->threads : eo_parallel_cores();
+  struct work work = {.run = run, .plan = plan, .progress = progress};
   EO_TRY(eo_scatter_run_draw(run, design, scatter, plan, error));
+  work.threads = plan->threads ? plan->threads : eo_parallel_cores();
+  work.threads = work.threads < plan->pairs ? work.threads : plan->pairs;
   pthread_mutex_init(&work.keeping, NULL);
-  threads = threads < plan->pairs ? threads : plan->pairs;
-  enum eo_code code = EO_OK;
-  for (int i = 0; !code && i < threads; i++)
-    code = eo_scatter_bench_new(&work.bench[i], pair, design, scatter, plan->vibration, plan->root_stress, error);
+  enum eo_code code = make_benches(&work, pair, design, scatter, error);
   if (!code)
-    code = run_all(&work, threads, progress, error);
-  for (int i = 0; i < threads; i++)
-    eo_scatter_bench_free(work.bench[i]);
-  pthread_mutex_destroy(&work.keeping);
+    code = eo_scatter_bench_run(work.bench[0], NULL, run->nominal, error);
+  if (!code)
+    code = eo_scatter_run_levels(run, design, run_stage, &work, error);
+  work_done(&work);
   return code;
 }
 
@@ -186,5 +233,8 @@ void eo_scatter_run_done(struct eo_scatter_run *run)
   free(run->input);
   free(run->output);
   free(run->nominal);
+  free(run->full);
+  free(run->coarse);
+  free(run->completed);
   *run = (struct eo_scatter_run){0};
 }

@@ -4,6 +4,7 @@
 #define EASEOFF_EVALUATION_DESIGN_SCATTER_H
 
 #include "evaluation/scalar.h"
+#include "tolerance/completion.h"
 #include "tolerance/scatter.h"
 
 enum { EO_SCATTER_MOST_PAIRS = 100000 };
@@ -32,7 +33,10 @@ struct eo_scatter_run {
   int pairs, inputs, cases, scalars, outputs, bounded; /* bounded: draws that met a bound of their key */
   double *input;                                       /* [pairs][inputs], in the units of the keys */
   double *output;                                      /* [pairs][outputs], in the units of the scalars; NaN: none */
-  double *nominal;                                     /* [outputs], of the design itself */
+  bool *full;     /* [pairs]: computed as an analysis does; the others are completed: tolerance/completion.h */
+  double *coarse; /* [pairs][outputs]; NULL: every pair is in full */
+  struct eo_completed *completed; /* [outputs]; with coarse */
+  double *nominal;                /* [outputs], of the design itself */
 };
 
 /* Numbers of a row of the design. */
@@ -51,8 +55,9 @@ enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *
                                   struct eo_error *error);
 void eo_scatter_bench_free(struct eo_scatter_bench *bench); /* NULL is fine */
 
-/* Draws the pairs and makes room for their rows, which whoever evaluates them fills in. Errors: EO_ERROR_INPUT
-   (pairs), memory. eo_scatter_run_done() also after an error. */
+/* Draws the pairs and makes room for their rows, which whoever evaluates them fills in: all are said to be in full,
+   unless the design is coarse first (scatter_levels.h). Errors: EO_ERROR_INPUT (pairs), memory. eo_scatter_run_done()
+   also after an error. */
 enum eo_code eo_scatter_run_draw(struct eo_scatter_run *run, const struct eo_design *design,
                                  const struct eo_scatter *scatter, const struct eo_scatter_plan *plan,
                                  struct eo_error *error);

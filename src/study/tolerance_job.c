@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "document/pair_log.h"
-#include "evaluation/evaluator.h"
+#include "evaluation/scatter_levels.h"
 #include "format/json.h"
 #include "store/jobs.h"
 #include "store/lock.h"
@@ -30,7 +30,7 @@ struct run {
   struct eo_tolerance_outcome *outcome;
   struct eo_stored_job row;
   struct eo_scatter scatter;
-  bool assumed;
+  bool assumed, coarse_first;
   int pairs, outputs, swing; /* swing: which of the outputs a pair that converged has */
   int64_t columns;
   char of[EO_HASH_LENGTH + 1]; /* the design and its scatter: what all rows belong to */
@@ -42,12 +42,15 @@ struct run {
   int waiting_count, waiting_room;
   struct waiting *writing;            /* those that the thread that writes has taken */
   double started, computing, written; /* ms of the clock */
+  double fraction;                    /* coarse first: of the run */
   struct eo_error fault;              /* of writing, where it could not be told at once */
 };
 
 static double milliseconds_left(const struct run *run, double now)
 {
   const struct eo_tolerance_outcome *outcome = run->outcome;
+  if (run->coarse_first)
+    return run->fraction > 0 ? (now - run->computing) * (1 - run->fraction) / run->fraction : NAN;
   if (!(run->computing > 0) || !outcome->computed)
     return NAN;
   return (now - run->computing) * (outcome->pairs - outcome->done) / outcome->computed;
@@ -63,7 +66,8 @@ static int report(struct run *run, const char *what)
                                                  .pairs = outcome->pairs,
                                                  .done = outcome->done,
                                                  .known = outcome->known,
-                                                 .fraction = (double)outcome->done / outcome->pairs,
+                                                 .fraction = run->coarse_first ? run->fraction
+                                                                               : (double)outcome->done / outcome->pairs,
                                                  .seconds = 1e-3 * (now - run->started),
                                                  .seconds_left = 1e-3 * milliseconds_left(run, now),
                                                  .what = what};
@@ -318,7 +322,7 @@ static enum eo_code flush(struct run *run, bool now, struct eo_error *error)
 static int watch(void *context, const char *what, double fraction)
 {
   struct run *run = context;
-  (void)fraction;
+  run->fraction = fraction;
   if (flush(run, false, &run->fault))
     return 1; /* told when the work has stopped */
   return report(run, what);
@@ -395,6 +399,7 @@ static struct run *run_new(const struct eo_tolerance_job *job, struct eo_toleran
   run->outcome = outcome;
   run->pairs = job->design->tolerance.pairs;
   run->outputs = eo_scatter_outputs(job->design);
+  run->coarse_first = eo_scatter_is_coarse_first(job->design);
   run->swing = eo_scalar_find("peak_to_peak_um") * job->design->load_cases;
   run->started = run->written = eo_clock_milliseconds();
   pthread_mutex_init(&run->mutex, NULL);

@@ -43,8 +43,8 @@ struct eo_tolerance_outcome {
 enum eo_code eo_tolerance_job_run(const struct eo_tolerance_job *job, struct eo_tolerance_outcome *outcome,
                                   struct eo_error *error);
 
-/* The pairs of a job that is done as a table, a line for each. Errors: EO_ERROR_INPUT (a pair is missing), memory, of
-   the history. */
+/* The pairs of a job that is done as a table, a line for each that was computed in full. Errors: EO_ERROR_INPUT (a pair
+   is missing), memory, of the history. */
 enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, const struct eo_design *design,
                                   struct eo_text *text, struct eo_error *error);
 

@@ -20,7 +20,8 @@ static enum eo_code take_row(void *context, const struct eo_stored_variant *row,
     return EO_OK;
   memcpy(table->rows.output + (size_t)row->ordinal * (size_t)table->rows.outputs, row->number,
          sizeof *row->number * (size_t)table->rows.outputs);
-  table->there++;
+  table->there += !table->rows.full[row->ordinal];
+  table->rows.full[row->ordinal] = true;
   return EO_OK;
 }
 
@@ -33,9 +34,11 @@ enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, const str
   enum eo_code code = scatter ? eo_scatter_of_design(scatter, design, true, NULL, error) : eo_error_memory(error);
   if (!code)
     code = eo_scatter_run_draw(&table.rows, design, scatter, &plan, error);
+  for (int i = 0; i < table.rows.pairs && !code; i++)
+    table.rows.full[i] = false;
   if (!code)
     code = eo_store_each_variant(store, job, -1, table.rows.outputs, take_row, &table, error);
-  if (!code && table.there < table.rows.pairs)
+  if (!code && !table.rows.coarse && table.there < table.rows.pairs)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The job has %d of its %d pairs.", table.there, table.rows.pairs);
   const struct eo_tolerance_report report = {.design = design, .scatter = scatter, .run = &table.rows};
   if (!code)
@@ -69,7 +72,7 @@ void eo_tolerance_job_conclude(struct eo_job_live *live, const struct eo_toleran
 {
   count(live, outcome->pairs, outcome->done, outcome->known);
   snprintf(live->what, sizeof live->what, "%d of %d pairs as made", outcome->done, outcome->pairs);
-  live->fraction = (double)outcome->done / outcome->pairs;
+  live->fraction = outcome->cancelled ? (double)outcome->done / outcome->pairs : 1;
   live->seconds = outcome->seconds;
   live->seconds_left = outcome->cancelled ? NAN : 0;
 }

@@ -5,19 +5,36 @@
 
 #include "tolerance/distribution.h"
 
-/* Terms from the mode outwards would save little: n is some thousands. */
+static double binomial_term(int n, int k, double p)
+{
+  return exp(lgamma(n + 1.) - lgamma(k + 1.) - lgamma(n - k + 1.) + k * log(p) + (n - k) * log1p(-p));
+}
+
+/* Terms from k away from the mode, where each is smaller than the one before it: the lower tail, or 1 less the upper
+   one. */
 double eo_binomial_probability(int n, int k, double p)
 {
-  double sum = 0;
+  double sum = 0, term;
   if (k < 0)
     return 0;
   if (k >= n || p <= 0)
     return 1;
   if (p >= 1)
     return 0;
-  for (int i = 0; i <= k; i++)
-    sum += exp(lgamma(n + 1.) - lgamma(i + 1.) - lgamma(n - i + 1.) + i * log(p) + (n - i) * log1p(-p));
-  return fmin(sum, 1);
+  if (k < n * p) {
+    term = binomial_term(n, k, p);
+    for (int i = k; i >= 0 && term > sum * 1e-18; i--) {
+      sum += term;
+      term *= i * (1 - p) / ((n - i + 1.) * p);
+    }
+    return fmin(sum, 1);
+  }
+  term = binomial_term(n, k + 1, p);
+  for (int i = k + 1; i <= n && term > sum * 1e-18; i++) {
+    sum += term;
+    term *= (n - i) * p / ((i + 1.) * (1 - p));
+  }
+  return fmax(1 - sum, 0);
 }
 
 /* The least k with P(X <= k) >= share. */

@@ -19,8 +19,9 @@ struct rows {
 };
 
 static enum eo_code collect(struct rows *rows, struct eo_output_report *report, int pairs, const double *input,
-                            const double *output, int stride, struct eo_error *error)
+                            const double *output, int stride, const bool *full, struct eo_error *error)
 {
+  double largest = -INFINITY;
   size_t n = (size_t)pairs, k = (size_t)rows->inputs;
   rows->input = malloc(sizeof *rows->input * n * (k + 2));
   if (!rows->input)
@@ -32,16 +33,13 @@ static enum eo_code collect(struct rows *rows, struct eo_output_report *report, 
     if (!isfinite(value))
       continue;
     memcpy(rows->input + (size_t)rows->count * k, input + i * k, sizeof *input * k);
-    if (rows->count == 0 || value > rows->output[report->largest])
-      report->largest = rows->count;
+    if (!full || full[i]) {
+      report->full++;
+      report->largest = value > largest ? (int)i : report->largest;
+      largest = fmax(largest, value);
+    }
     rows->output[rows->count++] = value;
   }
-  /* from the number of the row back to that of the pair */
-  for (int i = 0, row = 0; i < pairs; i++)
-    if (isfinite(output[(size_t)i * (size_t)stride]) && row++ == report->largest) {
-      report->largest = i;
-      break;
-    }
   memcpy(rows->sorted, rows->output, sizeof *rows->output * (size_t)rows->count);
   eo_sort_numbers(rows->count, rows->sorted);
   return EO_OK;
@@ -56,6 +54,49 @@ struct eo_report_percentile eo_report_percentile_of(int rows, const double *sort
                                        .value = eo_percentile(rows, sorted, percent),
                                        .low = ranks.low >= 1 ? sorted[ranks.low - 1] : NAN,
                                        .high = ranks.high <= rows ? sorted[ranks.high - 1] : NAN};
+}
+
+/* The same of completed values, with the interval of as many pairs in full as would leave it as open. */
+static enum eo_code completed_percentile(const struct rows *rows, const struct eo_report_completion *completion,
+                                         double percent, struct eo_report_percentile *found, struct eo_error *error)
+{
+  struct eo_doubt doubt;
+  EO_TRY(eo_completion_doubt(completion->completion, completion->output, percent, &doubt, NULL, error));
+  int of = doubt.rows > 2 ? (int)doubt.rows : 2;
+  struct eo_rank_interval ranks = eo_order_statistic_ranks(of, percent / 100, 0.95);
+  *found = (struct eo_report_percentile){percent, doubt.value, NAN, NAN};
+  if (ranks.low >= 1)
+    found->low = eo_percentile(rows->count, rows->sorted, 100. * (ranks.low - 1) / (of - 1));
+  if (ranks.high <= of)
+    found->high = eo_percentile(rows->count, rows->sorted, 100. * (ranks.high - 1) / (of - 1));
+  return EO_OK;
+}
+
+/* What the line and those beside it leave open of a mean, over what the pairs themselves do: theory (A13). */
+static double widening(const struct eo_output_report *report)
+{
+  double completed = 1 - (double)report->full / report->rows, own = report->coarse_error / report->summary.deviation;
+  return report->full < report->rows && isfinite(own)
+             ? sqrt(1 + completed * completed * own * own * report->rows / report->full)
+             : 1;
+}
+
+static void widen(double about, double by, double interval[2])
+{
+  interval[0] = about - by * (about - interval[0]);
+  interval[1] = about + by * (interval[1] - about);
+}
+
+static enum eo_code complete(const struct rows *rows, struct eo_output_report *report,
+                             const struct eo_report_completion *completion, struct eo_error *error)
+{
+  report->coarse_error = completion->completed.error;
+  for (int i = 0; i < EO_REPORT_PERCENTS; i++)
+    EO_TRY(completed_percentile(rows, completion, percents[i], &report->percentile[i], error));
+  double by = widening(report);
+  widen(report->summary.mean, by, report->mean_interval);
+  widen(report->summary.deviation, by, report->deviation_interval);
+  return EO_OK;
 }
 
 static enum eo_code describe(const struct rows *rows, struct eo_output_report *report, uint64_t seed,
@@ -149,19 +190,23 @@ static enum eo_code find_influences(const struct rows *rows, struct eo_output_re
 
 enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, int inputs, const double *input,
                                    const double *output, int stride, const struct eo_moments *moments, uint64_t seed,
-                                   struct eo_error *error)
+                                   const struct eo_report_completion *completion, struct eo_error *error)
 {
   struct rows rows = {.inputs = inputs};
-  *report = (struct eo_output_report){.inputs = inputs, .r2 = NAN, .r2_adjusted = NAN, .q2 = NAN, .residual = NAN};
+  *report = (struct eo_output_report){
+      .inputs = inputs, .coarse_error = NAN, .r2 = NAN, .r2_adjusted = NAN, .q2 = NAN, .residual = NAN};
   report->influence = malloc(sizeof *report->influence * (size_t)inputs);
   if (!report->influence)
     return eo_error_memory(error);
   for (int i = 0; i < inputs; i++)
     report->influence[i] = (struct eo_report_influence){i, NAN, NAN, NAN};
-  enum eo_code code = collect(&rows, report, pairs, input, output, stride, error);
+  enum eo_code code = collect(&rows, report, pairs, input, output, stride,
+                              completion ? completion->completion->full : NULL, error);
   report->rows = rows.count;
   if (!code && rows.count > 0)
     code = describe(&rows, report, seed, error);
+  if (!code && rows.count > 0 && completion)
+    code = complete(&rows, report, completion, error);
   if (!code && report->varies)
     code = find_influences(&rows, report, moments, error);
   free(rows.input);

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "tolerance/completion.h"
 #include "tolerance/distribution.h"
 #include "tolerance/statistics.h"
 
@@ -25,13 +26,22 @@ struct eo_report_influence {
   double coefficient, first, total;
 };
 
+/* Where the pairs are completed: by what, the output's number there, and what came of it. */
+struct eo_report_completion {
+  const struct eo_completion *completion;
+  int output;
+  struct eo_completed completed;
+};
+
 struct eo_output_report {
-  int rows; /* pairs that have the number; the rest did not converge */
+  int rows;            /* pairs that have the number; the rest did not converge */
+  int full;            /* of them computed in full */
+  double coarse_error; /* of struct eo_completed; NaN: all pairs are in full */
   struct eo_summary summary;
   double mean_interval[2], deviation_interval[2]; /* 95 %, bootstrap */
   struct eo_report_percentile percentile[EO_REPORT_PERCENTS];
   int count[EO_REPORT_BINS]; /* equal parts from least to largest */
-  int largest;               /* pair */
+  int largest;               /* pair, of those in full */
   bool varies;
   double r2, r2_adjusted; /* of the linear regression; NaN: none */
   double q2, residual;    /* of the quadratic surface, each row left out once; NaN: none */
@@ -42,10 +52,11 @@ struct eo_output_report {
 };
 
 /* input[pairs][inputs]; output: every stride-th value, NaN where there is none. moments: of independent inputs; NULL:
-   they are not independent, so there is no surface. Errors: memory. */
+   they are not independent, so there is no surface. completion: NULL where all pairs are in full; intervals have in
+   them what it leaves open. Errors: memory. */
 enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, int inputs, const double *input,
                                    const double *output, int stride, const struct eo_moments *moments, uint64_t seed,
-                                   struct eo_error *error);
+                                   const struct eo_report_completion *completion, struct eo_error *error);
 void eo_output_report_done(struct eo_output_report *report);
 
 #endif

@@ -19,6 +19,14 @@ enum eo_scatter_preset {
   EO_SCATTER_AS_MEASURED, /* nowhere; every row has values */
 };
 
+/* How the pairs are computed. */
+enum eo_scatter_method {
+  EO_SCATTER_AUTO,         /* coarse first from EO_COARSE_FIRST_FROM pairs on, where it can be */
+  EO_SCATTER_FULL,         /* every pair in full */
+  EO_SCATTER_COARSE_FIRST, /* all coarsely, those that decide in full */
+};
+enum { EO_COARSE_FIRST_FROM = 500 };
+
 enum eo_scatter_kind { EO_SCATTER_NORMAL, EO_SCATTER_UNIFORM, EO_SCATTER_VALUES, EO_SCATTER_FIXED_SUM };
 
 /* Deviations of one input from its nominal value, in the unit of its key; `*` in the key stands for every name. */
@@ -45,6 +53,7 @@ struct eo_tolerance_settings {
   int grade;   /* class of 2013, grade of 1995 */
   int pairs;
   int sampling; /* enum eo_sampling */
+  int method;   /* enum eo_scatter_method */
   uint64_t seed;
   bool vibration, root_stress;
   int rows;
