@@ -289,10 +289,14 @@ const struct eo_command eo_command_tolerance = {
     "1328-1:2013 is taken.\n"
     "Percentiles come with the interval in which they lie with 95 %. R2 says how much of the variance the inputs "
     "explain linearly,\n"
-    "Q2 how much a quadratic surface does for pairs that it was not fitted to. --worst writes the worst pair as a "
-    "design, --csv a line\n"
-    "per pair. --keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work "
-    "unless --threads\n"
-    "says otherwise; the numbers do not depend on it. --work N works on that job of a server's "
-    "queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    "Q2 how much a quadratic surface does for pairs that it was not fitted to. From 500 pairs on all are computed on a "
+    "coarse grid, and\n"
+    "in full those that decide: a note says how many and how far the others are off, every interval has it in it; "
+    "\"method\": \"full\" in\n"
+    "the block computes all in full. --worst writes the worst pair as a design, --csv a line per pair in full. --keep "
+    "FILE keeps every\n"
+    "pair as it is computed: the same command goes on from there. All cores work unless --threads says otherwise; the "
+    "numbers do not\n"
+    "depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n",
     run};

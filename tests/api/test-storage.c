@@ -69,7 +69,7 @@ static bool start_with_disk(void)
 static bool order_pairs(void)
 {
   json_t *own = coarse_document("ga", 10), *order = json_pack("{s:s, s:o}", "kind", "tolerance", "design", own);
-  json_object_set_new(own, "tolerance", json_pack("{s:i}", "pairs", 100000));
+  json_object_set_new(own, "tolerance", json_pack("{s:i,s:s}", "pairs", 100000, "method", "full"));
   char *text = json_dumps(order, JSON_COMPACT), type[100];
   bool taken = status_of("POST", API "/jobs", text, type, sizeof type) == 202;
   free(text);

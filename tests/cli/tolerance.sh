@@ -78,6 +78,35 @@ result $? "every pair once in the file"
 tolerance --pairs 24 --json --keep "$folder/cut"
 same "$folder/out" "$folder/one.json" "and from the file alone"
 
+# ---- coarse first: most pairs on a coarse grid, those that decide in full ----
+
+write_design '{"preset": "iso_class", "class": 5, "method": "coarse_first", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
+tolerance --pairs 200 --json --threads 1 --keep "$folder/first" --csv "$folder/first.csv"
+cp "$folder/out" "$folder/first.json"
+tolerance --pairs 200 --json --threads 3
+same "$folder/out" "$folder/first.json" "coarse first: the same bytes with 3 threads"
+full=$("$numbers" "$folder/out" /full_pairs | tr -d "[] ")
+[ "$full" -ge 64 ] && [ "$full" -lt 200 ] && [ "$(grep -c ';$' "$folder/first")" -eq "$full" ] && [ "$(wc -l <"$folder/first.csv")" -eq $((full + 1)) ]
+result $? "$full of 200 pairs in full, a row and a line for each"
+head -n 40 "$folder/first" >"$folder/cut"
+tolerance --pairs 200 --json --keep "$folder/cut"
+same "$folder/out" "$folder/first.json" "coarse first: the same bytes after a stop"
+"$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs 200 >"$folder/out" 2>"$folder/err"
+grep -q "note: $full of 200 pairs were computed in full" "$folder/out"
+result $? "and says so"
+write_design '{"preset": "iso_class", "class": 5, "method": "full", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
+tolerance --pairs 200 --json --keep "$folder/first"
+[ "$(grep -c ';$' "$folder/first")" -eq 200 ]
+result $? "all in full goes on from those"
+cp "$folder/out" "$folder/all.json"
+cp "$folder/first.json" "$folder/out"
+near "95 % of the swing" /outputs/0/percentiles/7/value "$folder/all.json" /outputs/0/percentiles/7/value 0.02 relative
+near "median of the swing" /outputs/0/percentiles/4/value "$folder/all.json" /outputs/0/percentiles/4/value 0.02 relative
+near "95 % of the RMS acceleration" /outputs/15/percentiles/7/value "$folder/all.json" /outputs/15/percentiles/7/value 0.02 relative
+near "the yield" /yields/1/fraction "$folder/all.json" /yields/1/fraction 0.02 absolute
+near "the worst pair" /worst/pair "$folder/all.json" /worst/pair 0 absolute
+write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
+
 # ---- and for MPI ranks, where mpirun is ----
 
 # pid of a rank; empty: it is not there yet
@@ -111,6 +140,10 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
     same "$folder/out" "$folder/one.json" "the same bytes with $ranks ranks"
     same "$folder/ranks.csv" "$folder/one.csv" "and the same lines"
   done
+  write_design '{"preset": "iso_class", "class": 5, "method": "coarse_first", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
+  ranked 3 --pairs 200 --json
+  same "$folder/out" "$folder/first.json" "coarse first: the same bytes with 3 ranks"
+  write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
   ranked 2 --pairs 24 --json --threads 2 --cache "$folder/node"
   same "$folder/out" "$folder/one.json" "the same bytes with threads of a rank, and a folder of pairs of its own"
   [ -n "$(ls "$folder/node")" ]

@@ -137,8 +137,7 @@ static void test_rounds(void)
      "half known: %.3f, of all %.3f, %d in full", found.percentile, found.of_all, found.in_full);
   found = run(EO_SCATTER_AUTO, unknown);
   ok(fabs(found.percentile / found.of_all - 1) < 0.025 && found.in_full > PAIRS / 2,
-     "a coarse level that knows nothing: %.3f, of all %.3f, %d in full", found.percentile, found.of_all,
-     found.in_full);
+     "a coarse level that knows nothing: %.3f, of all %.3f, %d in full", found.percentile, found.of_all, found.in_full);
   found = run(EO_SCATTER_AUTO, broken);
   close_to(found.percentile, found.of_all, 1e-12, "pairs without a coarse number are computed");
   ok(found.in_full <= 76, "with %d in full", found.in_full);

@@ -108,8 +108,8 @@ static double size(int i)
   return fabs(x[i]);
 }
 
-/* What is beside the coarse numbers has a deviation of 0.3: of many draws, 95 % of all is as far off as is said, and the
-   values spread as all do, which those on the line alone would not. */
+/* What is beside the coarse numbers has a deviation of 0.3: of many draws, 95 % of all is as far off as is said, and
+   the values spread as all do, which those on the line alone would not. */
 static void test_noise(void)
 {
   enum { DRAWS = 60 };
@@ -159,8 +159,8 @@ static void test_quadratic(void)
   eo_completion_doubt(&completion, 0, 50, &doubt, NULL, &error);
   close_to(doubt.value, 0.454936423119572, 0.03, "its median");
   eo_completion_share(&completion, 0, 3.841458820694124, &doubt, &error);
-  ok(fabs(doubt.value - 0.95) < 0.01 && doubt.rows < PAIRS && doubt.rows > 100, "share below it: %.3f, as of %.0f pairs",
-     doubt.value, doubt.rows);
+  ok(fabs(doubt.value - 0.95) < 0.01 && doubt.rows < PAIRS && doubt.rows > 100,
+     "share below it: %.3f, as of %.0f pairs", doubt.value, doubt.rows);
 }
 
 /* The interval of a report has in it what is open, and is that of the ranks when all are in full. */

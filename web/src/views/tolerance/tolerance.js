@@ -14,12 +14,13 @@ import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
 const MADE = ['preset', 'class', 'edition'];
-const DRAWN = ['pairs', 'sampling', 'seed', 'vibration', 'root_stress'];
+const DRAWN = ['pairs', 'method', 'sampling', 'seed', 'vibration', 'root_stress'];
 const LOOKS = {
   preset: { label: 'Scatter' },
   class: { label: 'Tolerance class' },
   edition: { label: 'ISO 1328-1 of' },
   pairs: { label: 'Pairs drawn' },
+  method: { label: 'Computed' },
   vibration: { label: 'with their vibration' },
   root_stress: { label: 'with their root stress' },
 };
