@@ -192,6 +192,6 @@ const struct eo_route eo_routes_tolerance[] = {
      .aside = true,
      .query = {EO_UNITS_QUERY},
      .summary =
-         "The pairs of a tolerance analysis that is done as CSV, a line for each: `easeoff tolerance --csv`. 409 "
-         "while it is not."},
+         "The pairs of a tolerance analysis that is done as CSV, a line for each that was computed in full: `easeoff "
+         "tolerance --csv`. 409 while it is not."},
     {0}};
