@@ -66,7 +66,7 @@ static const struct eo_field tolerance[] = {
         struct eo_tolerance_settings, method, "method", methods, EO_SCATTER_AUTO,
         "full: every pair as an analysis computes it; coarse_first: every pair on a coarse grid, and in full those "
         "that show what this leaves open and those by which the 95 % percentiles are decided; auto: coarse_first "
-        "from 500 pairs on, without root stress and with halves that are alike"),
+        "from 500 pairs on, on 48 mesh positions or more, without root stress and with halves that are alike"),
     {.key = "seed",
      .kind = EO_FIELD_SEED,
      .offset = offsetof(struct eo_tolerance_settings, seed),

@@ -24,8 +24,8 @@ bool eo_scatter_is_coarse_first(const struct eo_design *design)
   const struct eo_tolerance_settings *settings = &design->tolerance;
   bool can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) &&
              settings->pairs >= 2 * (FIRST_IN_FULL + MORE_IN_FULL);
-  return can && (settings->method == EO_SCATTER_COARSE_FIRST ||
-                 (settings->method == EO_SCATTER_AUTO && settings->pairs >= EO_COARSE_FIRST_FROM));
+  bool pays = settings->pairs >= EO_COARSE_FIRST_FROM && design->resolution.positions >= 2 * COARSE_POSITIONS;
+  return can && (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && pays));
 }
 
 static void at_most(int *value, int most)

@@ -21,7 +21,7 @@ enum eo_scatter_preset {
 
 /* How the pairs are computed. */
 enum eo_scatter_method {
-  EO_SCATTER_AUTO,         /* coarse first from EO_COARSE_FIRST_FROM pairs on, where it can be */
+  EO_SCATTER_AUTO,         /* coarse first from EO_COARSE_FIRST_FROM pairs on, where it can be and saves much */
   EO_SCATTER_FULL,         /* every pair in full */
   EO_SCATTER_COARSE_FIRST, /* all coarsely, those that decide in full */
 };

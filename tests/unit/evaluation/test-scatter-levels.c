@@ -147,6 +147,9 @@ static void test_method(void)
 {
   struct eo_design design = design_of(EO_SCATTER_AUTO), coarse;
   ok(eo_scatter_is_coarse_first(&design), "600 pairs are coarse first");
+  design.resolution.positions = 32;
+  ok(!eo_scatter_is_coarse_first(&design), "on a grid that is hardly finer all are in full");
+  design.resolution.positions = 64;
   design.tolerance.pairs = EO_COARSE_FIRST_FROM - 1;
   ok(!eo_scatter_is_coarse_first(&design), "fewer are in full");
   design.tolerance.method = EO_SCATTER_COARSE_FIRST;
