@@ -14,11 +14,11 @@
 enum { PAIRS = 600 };
 
 /* Response of a swing to two standard normal inputs, at a level. */
-typedef double response(const struct eo_scatter_run *run, int pair, bool coarse);
+typedef double response_function(const struct eo_scatter_run *run, int pair, bool coarse);
 
 struct bench {
   struct eo_scatter_run *run;
-  response *swing;
+  response_function *swing;
   int stages, in_full, twice;
   bool seen[PAIRS];
 };
@@ -97,7 +97,7 @@ struct found {
   int in_full;
 };
 
-static struct found run(int method, response *swing)
+static struct found run(int method, response_function *swing)
 {
   static struct eo_scatter scatter;
   static double sorted[2][PAIRS];
