@@ -75,7 +75,7 @@ static enum eo_code weigh_points(struct eo_root_tables *tables, int member, stru
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *position = &grid->position[j];
     for (int i = 0; i < position->points; i++) {
-      size_t row = (size_t)(position->first + i);
+      size_t row = (size_t)position->first + (size_t)i;
       eo_root_modes_own(modes, &position->point[i], tables->own[member] + row * stride);
       if (far)
         eo_root_modes_remote(modes, &position->point[i], tables->remote[member] + row * far);

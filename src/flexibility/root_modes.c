@@ -298,7 +298,8 @@ void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *fo
 void eo_root_modes_pass(const struct eo_root_modes *modes, int ahead_by, int count, const float *remote,
                         float *coefficient)
 {
-  size_t distance = (size_t)(ahead_by + modes->reach), size = (size_t)modes->remote_rank * (size_t)modes->rank_stride;
+  long size = (long)modes->remote_rank * modes->rank_stride;
+  int distance = ahead_by + modes->reach;
   modes->gram->multiply(count, modes->remote_rank, modes->rank_stride, remote, modes->remote_stride,
                         modes->passed + distance * size, modes->rank_stride, true, coefficient, modes->rank_stride);
 }
