@@ -4,7 +4,7 @@
 #define EASEOFF_EVALUATION_DESIGN_SCATTER_H
 
 #include "evaluation/scalar.h"
-#include "tolerance/completion.h"
+#include "tolerance/pair_completion.h"
 #include "tolerance/scatter.h"
 
 enum { EO_SCATTER_MOST_PAIRS = 100000 };
@@ -33,7 +33,7 @@ struct eo_scatter_run {
   int pairs, inputs, cases, scalars, outputs, bounded; /* bounded: draws that met a bound of their key */
   double *input;                                       /* [pairs][inputs], in the units of the keys */
   double *output;                                      /* [pairs][outputs], in the units of the scalars; NaN: none */
-  bool *full;     /* [pairs]: computed as an analysis does; the others are completed: tolerance/completion.h */
+  bool *full;     /* [pairs]: computed as an analysis does; the others are completed: tolerance/pair_completion.h */
   double *coarse; /* [pairs][outputs]; NULL: every pair is in full */
   struct eo_completed *completed; /* [outputs]; with coarse */
   double *nominal;                /* [outputs], of the design itself */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
-#include "tolerance/completion.h"
+#include "tolerance/pair_completion.h"
 #include "tolerance/distribution.h"
 #include "tolerance/statistics.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "support/tap.h"
-#include "tolerance/completion.h"
+#include "tolerance/pair_completion.h"
 #include "tolerance/distribution.h"
 #include "tolerance/output_report.h"
 #include "tolerance/pair_sampler.h"

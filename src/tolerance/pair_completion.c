@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tolerance/completion.h"
+#include "tolerance/pair_completion.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -146,6 +146,7 @@ enum eo_code eo_completion_fill(const struct eo_completion *completion, int outp
       continue;
     int first = nearest(&donors, coarse, &count);
     struct eo_random random = eo_random_at(completion->seed, STREAM_COMPLETION, (uint64_t)output, (uint64_t)pair);
+    /* theory (A11) */
     *own = line_at(&donors, coarse) + donors.donor[first + eo_random_index(random, 0, count)].beside;
   }
   donors_done(&donors);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers of many pairs of which few are computed in full and all coarsely: what the others are taken for, how far that
    leaves a percentile in doubt, and which pairs to compute in full next: theory (A11), (A12). */
-#ifndef EASEOFF_TOLERANCE_COMPLETION_H
-#define EASEOFF_TOLERANCE_COMPLETION_H
+#ifndef EASEOFF_TOLERANCE_PAIR_COMPLETION_H
+#define EASEOFF_TOLERANCE_PAIR_COMPLETION_H
 
 #include <stdbool.h>
 #include <stdint.h>
