@@ -97,23 +97,6 @@ static bool read_settings(struct request *request, const struct options *options
   return *status == EO_EXIT_DONE;
 }
 
-/* What the design does at that torque and speed. */
-static enum eo_code predict(const struct request *request, const struct eo_pair *pair,
-                            struct eo_rig_prediction *prediction, struct eo_error *error)
-{
-  const struct eo_rig_request *rig = &request->rig;
-  struct eo_evaluator *evaluator = NULL;
-  EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
-  enum eo_code code = eo_prediction_run(prediction, evaluator, &request->design, rig->unmodified, rig->torque,
-                                        rig->speed, rig->end, rig->harmonics, error);
-  eo_evaluator_free(evaluator);
-  EO_TRY(code);
-  return prediction->valid
-             ? EO_OK
-             : eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
-                            rig->torque, rig->speed * 30 / M_PI);
-}
-
 static enum eo_code respond(struct request *request, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_text directory = {0};
@@ -124,7 +107,7 @@ static enum eo_code respond(struct request *request, const struct eo_progress *p
   enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
   eo_text_done(&directory);
   EO_TRY(code);
-  code = predict(request, pair, &prediction, error);
+  code = eo_rig_predict(&request->rig, pair, &request->design, &prediction, error);
   eo_pair_free(pair);
   EO_TRY(code);
   eo_rig_set_pair(&request->rig, &request->geometry, &request->design.supports, &prediction);

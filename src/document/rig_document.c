@@ -131,6 +131,22 @@ enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_des
   return EO_OK;
 }
 
+enum eo_code eo_rig_predict(const struct eo_rig_request *request, const struct eo_pair *pair,
+                            const struct eo_design *design, struct eo_rig_prediction *prediction,
+                            struct eo_error *error)
+{
+  struct eo_evaluator *evaluator = NULL;
+  EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
+  enum eo_code code = eo_prediction_run(prediction, evaluator, design, request->unmodified, request->torque,
+                                        request->speed, request->end, request->harmonics, error);
+  eo_evaluator_free(evaluator);
+  EO_TRY(code);
+  return prediction->valid
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
+                            request->torque, request->speed * 30 / M_PI);
+}
+
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry,
                      const struct eo_supports *supports, const struct eo_rig_prediction *prediction)
 {

@@ -34,6 +34,12 @@ extern const struct eo_table eo_rig_table;
    contradict each other). */
 enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_design *design, struct eo_error *error);
 
+/* What the design does at the torque and speed of a complete request. Errors: those of eo_prediction_run();
+   EO_ERROR_INPUT (no periodic vibration there). */
+enum eo_code eo_rig_predict(const struct eo_rig_request *request, const struct eo_pair *pair,
+                            const struct eo_design *design, struct eo_rig_prediction *prediction,
+                            struct eo_error *error);
+
 /* The pair and the response into request->synthetic. */
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry,
                      const struct eo_supports *supports, const struct eo_rig_prediction *prediction);

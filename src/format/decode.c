@@ -298,6 +298,23 @@ static void decode_null(const struct eo_field *field, void *target)
     memset(place, 0, (size_t)field->count * (size_t)field->room);
 }
 
+static void decode_flag(const json_t *value, const struct eo_path *path, bool *flag, struct eo_faults *faults)
+{
+  if (json_is_boolean(value))
+    *flag = json_is_true(value);
+  else
+    eo_faults_at(faults, path, "Must be true or false, not %s.", type_name(value));
+}
+
+static void decode_document(const json_t *value, const struct eo_path *path, const json_t **document,
+                            struct eo_faults *faults)
+{
+  if (json_is_object(value))
+    *document = value;
+  else
+    eo_faults_at(faults, path, "Must be an object, not %s.", type_name(value));
+}
+
 static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
                          struct eo_faults *faults)
 {
@@ -321,10 +338,7 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
       *(uint64_t *)place = (uint64_t)number;
     break;
   case EO_FIELD_FLAG:
-    if (json_is_boolean(value))
-      *(bool *)place = json_is_true(value);
-    else
-      eo_faults_at(faults, path, "Must be true or false, not %s.", type_name(value));
+    decode_flag(value, path, place, faults);
     break;
   case EO_FIELD_TEXT:
     decode_text(field, value, path, place, faults);
@@ -351,10 +365,7 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
     decode_matrix(field, value, path, place, faults);
     break;
   case EO_FIELD_DOCUMENT:
-    if (json_is_object(value))
-      *(const json_t **)place = value;
-    else
-      eo_faults_at(faults, path, "Must be an object, not %s.", type_name(value));
+    decode_document(value, path, place, faults);
     break;
   case EO_FIELD_NAMES:
     decode_names(field, value, path, place, faults);

@@ -215,27 +215,11 @@ enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, cons
   return eo_error_memory(error);
 }
 
-/* What the design does at that torque and speed. */
-static enum eo_code predict(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design,
-                            struct eo_rig_prediction *prediction, struct eo_error *error)
-{
-  struct eo_evaluator *evaluator = NULL;
-  EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
-  enum eo_code code = eo_prediction_run(prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed,
-                                        rig->end, rig->harmonics, error);
-  eo_evaluator_free(evaluator);
-  EO_TRY(code);
-  return prediction->valid
-             ? EO_OK
-             : eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
-                            rig->torque, rig->speed * 30 / M_PI);
-}
-
 static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design,
                             struct eo_error *error)
 {
   struct eo_rig_prediction prediction;
-  EO_TRY(predict(rig, pair, design, &prediction, error));
+  EO_TRY(eo_rig_predict(rig, pair, design, &prediction, error));
   eo_rig_set_pair(rig, &pair->geometry, &design->supports, &prediction);
   EO_TRY(eo_synthetic_check(&rig->synthetic, error));
   return eo_synthetic_rows(&rig->synthetic) <= EO_RIG_MOST_ROWS
