@@ -296,10 +296,11 @@ static enum eo_code write(struct request *request, int64_t job, const struct eo_
 {
   struct eo_variant_table table;
   bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
-  EO_TRY(eo_variant_table_init(&table, request->store, job, query, error));
-  if (result && people)
+  enum eo_code code = eo_variant_table_init(&table, request->store, job, query, error);
+  if (!code && result && people)
     summarise(result, text);
-  enum eo_code code = write_table(request, &table, query, text, error);
+  if (!code)
+    code = write_table(request, &table, query, text, error);
   if (!code && people && !request->csv && table.count < table.fits)
     eo_text_print(text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
   eo_variant_table_done(&table);
