@@ -120,12 +120,13 @@ static bool take_index(struct eo_tdms_reader *reader, struct eo_tdms_channel *ch
     return false;
   uint64_t count = eo_bytes_64(p, reader->big);
   uint64_t size = (uint64_t)eo_tdms_type_size(type) * count;
-  if (length == 28 && (p = eo_tdms_take(reader, 8)))
+  bool texts = type == EO_TDMS_STRING; /* their size follows; some writers leave it out of the length */
+  if ((texts || length == 28) && (p = eo_tdms_take(reader, 8)))
     size = eo_bytes_64(p, reader->big);
   if (!p)
     return false;
   if (count > INT64_MAX / 32 || size > INT64_MAX / 32 || dimension != 1 ||
-      (type != EO_TDMS_STRING && !eo_tdms_type_size(type)) || (type == EO_TDMS_STRING) != (length == 28)) {
+      (!texts && (!eo_tdms_type_size(type) || length == 28))) {
     eo_error_set(reader->error, EO_ERROR_INPUT, "",
                  "TDMS: the channel at byte %lld has %llu values of type 0x%x in %u dimensions; that is not read.",
                  (long long)at, (unsigned long long)count, type, dimension);

@@ -119,15 +119,16 @@ static bool ends_at(const struct uff *uff, int64_t at)
   return text[i] == '-' && text[i + 1] == '1' && !isdigit((unsigned char)text[i + 2]);
 }
 
-/* The bytes of a binary data set: as stated, or, where the writer left them at 0, by the number of values. */
+/* The bytes of a binary data set: as stated, or, where the writer left them at 0 or miscounted, so that the set ends
+   elsewhere, by the number of values. */
 static int64_t count_bytes(const struct uff *uff, const struct eo_uff_header *header)
 {
-  int64_t size = header->type == 4 ? 8 : 4, single = header->count * (4 + size), equal = header->count * 2 * size;
-  if (header->bytes > 0)
+  int64_t size = header->type == 4 ? 8 : 4, at = uff->lines.at;
+  int64_t wide = header->count * (header->even ? size : 2 * size), narrow = header->count * (4 + size);
+  bool by_values = ends_at(uff, at + wide), by_single = !header->even && ends_at(uff, at + narrow);
+  if (header->bytes > 0 && (ends_at(uff, at + header->bytes) || (!by_values && !by_single)))
     return header->bytes;
-  if (header->even)
-    return header->count * size;
-  return ends_at(uff, uff->lines.at + equal) && !ends_at(uff, uff->lines.at + single) ? equal : single;
+  return by_single || (!by_values && !header->even) ? narrow : wide;
 }
 
 /* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */

@@ -218,6 +218,33 @@ static void test_types(void)
   }
 }
 
+/* A channel of texts before one of numbers. Their size follows their count; some writers do not count it in the length
+   of the index. */
+static void test_texts(uint64_t length)
+{
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 2, 4);
+  put_string(&w, "/'g'/'state'");
+  put_index(STRING, 2);
+  size_t end = w.size;
+  w.size -= 20;
+  put_number(&w, length, 4);
+  w.size = end;
+  put_number(&w, 11, 8); /* two ends of texts, three characters */
+  put_number(&w, 0, 4);
+  put_string(&w, "/'g'/'c'");
+  put_index(DOUBLE, 2);
+  put_number(&w, 0, 4);
+  end_metadata();
+  put_number(&w, 2, 4);
+  put_number(&w, 3, 4);
+  put_bytes(&w, "abc", 3);
+  put_double(&w, 1.5);
+  put_double(&w, -2.5);
+  check_typed(1.5, -2.5, length == 28 ? "texts beside numbers" : "texts whose size the index does not count");
+}
+
 static void test_scaled(void)
 {
   w.size = 0;
@@ -364,6 +391,8 @@ int main(void)
   test_kind(BIG, "big-endian, contiguous");
   test_kind(BIG | INTERLEAVED, "big-endian, interleaved");
   test_types();
+  test_texts(28);
+  test_texts(20);
   test_scaled();
   test_damage();
   test_paths();

@@ -172,6 +172,23 @@ static void replace(const char *from, const char *to)
   write_bytes(w.bytes, w.size);
 }
 
+/* Writers state no number of bytes, or forget those of the abscissa: the number of values and the end tell. */
+static void test_miscounted(int even, int counted)
+{
+  char stated[16], miscounted[16];
+  snprintf(stated, sizeof stated, "%12d", (even ? 8 : 12) * COUNT);
+  snprintf(miscounted, sizeof miscounted, "%12d", counted);
+  w.size = 0;
+  put_binary_set("Pinion", pinion, 4, even, 0);
+  put_binary_set("Gear", gear, 4, even, 0);
+  replace(stated, miscounted);
+  replace(stated, miscounted);
+  if (even)
+    check_even("binary, even, bytes miscounted");
+  else
+    check_uneven("binary, uneven, bytes miscounted");
+}
+
 static void test_faults(void)
 {
   struct eo_notes notes = {0};
@@ -207,7 +224,8 @@ static void test_faults(void)
   w.size = 0;
   put_binary_set("Pinion", pinion, 4, 1, 0);
   replace("        8000", "        7000");
-  refused("has 7000 bytes for 1000 values", "too few bytes for the values");
+  replace("      1000", "      1001");
+  refused("has 7000 bytes for 1001 values", "too few bytes for the values");
   w.size = 0;
   put_binary_set("Pinion", pinion, 4, 1, 0);
   replace("58b     1     2", "58b     1     3");
@@ -231,6 +249,10 @@ int main(void)
   fixture_open();
   test_text();
   test_binary();
+  test_miscounted(1, 0);
+  test_miscounted(0, 0);
+  test_miscounted(1, 4 * COUNT);
+  test_miscounted(0, 8 * COUNT);
   test_faults();
   return fixture_close();
 }
