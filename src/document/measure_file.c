@@ -28,6 +28,15 @@ static enum eo_code below_layout(enum eo_code code, struct eo_error *error)
   return code;
 }
 
+/* What the readers noted is part of why nothing came of a file: a channel that was left out may be an encoder's. */
+static enum eo_code with_notes(enum eo_code code, const struct eo_notes *notes, int count, struct eo_error *error)
+{
+  size_t used = code == EO_ERROR_INPUT && error ? strlen(error->text) : sizeof error->text;
+  for (int i = 0; i < count && used + strlen(notes->text[i]) + 2 <= sizeof error->text; i++)
+    used += (size_t)sprintf(error->text + used, " %s", notes->text[i]);
+  return code;
+}
+
 static enum eo_code read_recordings(struct work *work, const struct eo_measure_request *request,
                                     const struct eo_progress *progress, struct eo_error *error)
 {
@@ -67,10 +76,13 @@ static enum eo_code measure(struct work *work, const struct eo_measure_request *
   }
   eo_layout_decode(request->layout, &work->layout, &work->faults);
   EO_TRY(below_layout(eo_faults_first(&work->faults, error), error));
-  EO_TRY(read_recordings(work, request, progress, error));
-  EO_TRY(below_layout(eo_layout_find(&work->recording, &work->layout.choice, &pair, request->spool_directory,
-                                     &work->tracks, &work->notes, error),
-                      error));
+  enum eo_code code = read_recordings(work, request, progress, error);
+  int read = work->notes.count;
+  if (!code)
+    code = below_layout(eo_layout_find(&work->recording, &work->layout.choice, &pair, request->spool_directory,
+                                       &work->tracks, &work->notes, error),
+                        error);
+  EO_TRY(with_notes(code, &work->notes, read, error));
   return eo_measurement_run(&work->measurement, work->recording, &work->tracks, &settings, progress, error);
 }
 

@@ -28,6 +28,9 @@ static const struct {
     {"d day days tag tage", EO_QUANTITY_TIME, 86400},
     {"deg degs degree degrees grad altgrad winkelgrad degre degres grado grados gradi grau graus \xc2\xb0",
      EO_QUANTITY_ANGLE, DEGREE},
+    {"degca cad \xc2\xb0"
+     "ca degkw gradkw \xc2\xb0kw", /* of a crank */
+     EO_QUANTITY_ANGLE, DEGREE},
     {"rad rads radian radians radiant", EO_QUANTITY_ANGLE, 1},
     {"mrad millirad milliradian milliradians", EO_QUANTITY_ANGLE, 1e-3},
     {"urad microrad microradian microradians mikrorad", EO_QUANTITY_ANGLE, 1e-6},

@@ -78,6 +78,13 @@ static void test_units(void)
   unit("\xc2\xb5rad", EO_QUANTITY_ANGLE, 1e-6);
   unit("\xce\xbcrad", EO_QUANTITY_ANGLE, 1e-6);
   unit("\xb0", EO_QUANTITY_ANGLE, degree);
+  unit("\xc2\xb0"
+       "CA",
+       EO_QUANTITY_ANGLE, degree);
+  unit("degKW", EO_QUANTITY_ANGLE, degree);
+  unit("\xc2\xb0"
+       "C",
+       EO_QUANTITY_OTHER, 1);
   unit("gon", EO_QUANTITY_ANGLE, M_PI / 200);
   unit("kS/s", EO_QUANTITY_FREQUENCY, 1e3);
   unit("U/min", EO_QUANTITY_SPEED, M_PI / 30);
