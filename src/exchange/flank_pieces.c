@@ -166,19 +166,63 @@ static int add_turns(const struct eo_flank_pieces *pieces, int band, int most, d
   return count;
 }
 
+static bool same_fold(struct eo_flank_fold a, struct eo_flank_fold b)
+{
+  return a.lost == b.lost && a.part == b.part;
+}
+
+/* Where an end of the flank begins to fold, or a piece to be lost in it, between two rows. */
+static double find_fold(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int count, int which,
+                        double low, double high)
+{
+  enum { HALVINGS = 40 };
+  struct eo_flank_fold first = eo_flank_fold_at(pieces, piece, count, which, low);
+  for (int i = 0; i < HALVINGS; i++) {
+    double middle = (low + high) / 2;
+    *(same_fold(eo_flank_fold_at(pieces, piece, count, which, middle), first) ? &low : &high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/* Adds where that is within a band; returns how many there are now. */
+static int add_folds(const struct eo_flank_pieces *pieces, int band, int most, double *at, int count)
+{
+  struct eo_flank_piece piece[EO_FLANK_LINES];
+  int own = list_pieces(pieces, band, piece);
+  double from = pieces->y[band], row = (pieces->y[band + 1] - from) / EO_FLANK_ROWS;
+  for (int which = 0; which < 2; which++) {
+    struct eo_flank_fold before = eo_flank_fold_at(pieces, piece, own, which, from);
+    for (int r = 1; r <= EO_FLANK_ROWS; r++) {
+      struct eo_flank_fold fold = eo_flank_fold_at(pieces, piece, own, which, from + r * row);
+      if (!same_fold(fold, before) && count < most)
+        at[count++] = find_fold(pieces, piece, own, which, from + (r - 1) * row, from + r * row);
+      before = fold;
+    }
+  }
+  return count;
+}
+
+/* A corner between a piece that is lost and one that folds back itself is lost, too. */
 static void cut_band(struct eo_flank_pieces *pieces, int band)
 {
   struct eo_flank_piece piece[EO_FLANK_LINES];
   int count = list_pieces(pieces, band, piece);
+  double middle = (pieces->y[band] + pieces->y[band + 1]) / 2;
+  const struct eo_flank_fold root = eo_flank_fold_at(pieces, piece, count, 0, middle),
+                             tip = eo_flank_fold_at(pieces, piece, count, 1, middle);
+  int first = root.lost, last = count - 1 - tip.lost;
   for (int i = 0; i < count; i++) {
-    bool last = i + 1 == count;
+    piece[i].lost = i < first || i > last;
     piece[i].direct = eo_flank_stands_still(pieces, &piece[i]);
-    piece[i].swept[1] = !last && eo_flank_is_swept(pieces, &piece[i], &piece[i + 1]);
+    piece[i].swept[1] = i + 1 < count && eo_flank_is_swept(pieces, &piece[i], &piece[i + 1]);
     add_piece(pieces, &piece[i]);
     if (!piece[i].swept[1])
       continue;
     piece[i + 1].swept[0] = true;
-    add_piece(pieces, &(struct eo_flank_piece){band, {piece[i].line[1], piece[i].line[1]}, {false, false}, true});
+    add_piece(pieces, &(struct eo_flank_piece){.band = band,
+                                               .line = {piece[i].line[1], piece[i].line[1]},
+                                               .lost = i < first - !root.part || i > last - tip.part,
+                                               .direct = true});
   }
 }
 
@@ -198,7 +242,7 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
   int ends = list_ends(pieces, at);
   set_bands(pieces, ends, at);
   for (int band = 0; band < pieces->bands; band++)
-    ends = add_turns(pieces, band, MOST_ENDS, at, ends);
+    ends = add_folds(pieces, band, MOST_ENDS, at, add_turns(pieces, band, MOST_ENDS, at, ends));
   set_bands(pieces, ends, at);
   for (int band = 0; band < pieces->bands; band++)
     cut_band(pieces, band);

@@ -2,8 +2,9 @@
 /* A flank as the rack generates it, cut into smooth pieces. Where the slope of the modification jumps (a linear
    relief's start, the border of a grid or of a corner relief) the rack has a corner, and either both sides generate
    beyond each other: their pieces end where they cross; or neither reaches the other: between them lies what the corner
-   itself sweeps, a narrow piece of its own, tangent to both. A band ends where one turns into the other. Bands of y,
-   lines of u across them. */
+   itself sweeps, a narrow piece of its own, tangent to both. A band ends where one turns into the other. Near the base
+   circle a steep relief turns the flank back from its root end on; the rack cuts that away with what it generates
+   behind the fold, so the flank begins there. Bands of y, lines of u across them. */
 #ifndef EASEOFF_EXCHANGE_FLANK_PIECES_H
 #define EASEOFF_EXCHANGE_FLANK_PIECES_H
 
@@ -20,6 +21,7 @@ struct eo_flank_line {
 struct eo_flank_piece {
   int band, line[2];
   bool swept[2]; /* what lies beyond each end is a swept corner */
+  bool lost;     /* at an end of the flank and folded back: nothing of it is left */
   bool direct; /* u goes evenly from end to end: near the base circle the flank stands still; else the place on it does
                 */
 };
@@ -48,8 +50,8 @@ struct eo_flank_row {
   double place[2]; /* the places on the unmodified flank on whose normals these points lie, as u, m */
 };
 
-/* Point (m) and unit normal (may be NULL), out of the tooth, of piece k of tooth 0 in the frame of eo_tooth_point(); a:
-   from root to tip, b: from low y to high. */
+/* Point (m) and unit normal (may be NULL), out of the tooth, of piece k, which is not lost, of tooth 0 in the frame of
+   eo_tooth_point(); a: from root to tip, b: from low y to high. */
 void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo_flank_row *row, double a, double b,
                           double point[3], double normal[3]);
 

@@ -59,6 +59,15 @@ double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_fl
 bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
                        const struct eo_flank_piece *above);
 
+/* How an end of the flank (0: root, 1: tip) folds at y: how many of the band's pieces [count] are folded back there as
+   a whole, and whether the next one is in part. */
+struct eo_flank_fold {
+  int lost;
+  bool part;
+};
+struct eo_flank_fold eo_flank_fold_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                                      int count, int which, double y);
+
 /* The ends at y of a piece that no corner sweeps. Both are the same where nothing of it is left. */
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
                       struct eo_flank_row *row);

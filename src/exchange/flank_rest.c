@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "gear/surface.h"
 
@@ -144,25 +145,60 @@ static double lowest_at(const struct section *section, double roll)
   return lowest;
 }
 
+/* How far a straight way between two points of one row, with normals, is off one that bends evenly; along the helix the
+   points may lie apart. */
+static double off_between(const struct involute *involute, double from[2][3], double to[2][3])
+{
+  const double twist = involute->sense * involute->turn, helix[3] = {twist * from[0][1], -twist * from[0][0], 1};
+  double along = 0, across = 0, length = 0, turn = 0;
+  for (int i = 0; i < 3; i++)
+    along += (to[0][i] - from[0][i]) * helix[i] / (1 + helix[0] * helix[0] + helix[1] * helix[1]);
+  for (int i = 0; i < 3; i++) {
+    double way = to[0][i] - from[0][i] - along * helix[i], change = to[1][i] - from[1][i];
+    across += way * from[1][i];
+    length += way * way;
+    turn += change * change;
+  }
+  return fabs(across) + sqrt(length * turn) / 8;
+}
+
+/* Of one row: b of a band. */
+static double row_error(const struct eo_flank_pieces *pieces, const struct involute *involute,
+                        const struct section *section, int band, double b)
+{
+  static const double places[] = {0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1};
+  enum { PLACES = sizeof places / sizeof *places };
+  double largest = 0, here[2][3], end[2][3] = {{0}};
+  bool begun = false;
+  for (int k = 0; k < pieces->count; k++) {
+    struct eo_flank_row row = {.b = -1};
+    if (pieces->piece[k].band != band || pieces->piece[k].lost)
+      continue;
+    for (int n = 0; n < PLACES; n++) {
+      eo_flank_piece_point(pieces, k, &row, places[n], b, here[0], here[1]);
+      struct foot foot = foot_of(involute, here[0]);
+      largest = fmax(largest, fabs(foot.height - lowest_at(section, foot.roll)));
+      if (n == 0 && begun)
+        largest = fmax(largest, off_between(involute, end, here));
+    }
+    memcpy(end, here, sizeof end);
+    begun = true;
+  }
+  return largest;
+}
+
 double eo_flank_rest_error(const struct eo_flank_pieces *pieces)
 {
-  static const double rows[] = {0.003, 0.2, 0.5, 0.8, 0.997}, places[] = {0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1};
-  enum { ROWS = sizeof rows / sizeof *rows, PLACES = sizeof places / sizeof *places };
+  static const double rows[] = {0.003, 0.2, 0.5, 0.8, 0.997};
+  enum { ROWS = sizeof rows / sizeof *rows };
   struct involute involute = involute_of(pieces);
   struct section section;
-  double largest = 0, point[3];
+  double largest = 0;
   for (int i = 0; i < pieces->bands * ROWS; i++) {
     int band = i / ROWS;
     double b = rows[i % ROWS];
     make_section(pieces, &involute, pieces->y[band] + b * (pieces->y[band + 1] - pieces->y[band]), &section);
-    for (int k = 0; k < pieces->count; k++) {
-      struct eo_flank_row row = {.b = -1};
-      for (int n = 0; n < PLACES && pieces->piece[k].band == band; n++) {
-        eo_flank_piece_point(pieces, k, &row, places[n], b, point, NULL);
-        struct foot foot = foot_of(&involute, point);
-        largest = fmax(largest, fabs(foot.height - lowest_at(&section, foot.roll)));
-      }
-    }
+    largest = fmax(largest, row_error(pieces, &involute, &section, band, b));
   }
   return largest;
 }

@@ -7,7 +7,8 @@
 
 #include "exchange/flank_pieces.h"
 
-/* How far points of the pieces are from what the rack leaves, along the normal, at most, m. */
+/* How far points of the pieces are from what the rack leaves, along the normal, and pieces from each other, at most, m.
+ */
 double eo_flank_rest_error(const struct eo_flank_pieces *pieces);
 
 #endif

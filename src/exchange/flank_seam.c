@@ -36,10 +36,17 @@ static void look_at(const struct eo_flank_pieces *pieces, const struct eo_flank_
   side[1] = (struct side){pieces, *above, frame, y, end, start, eo_flank_line_at(pieces, above->line[1], y), 1};
 }
 
-/* How much of a step along u the flank goes on towards the tip; below 0 it folds. */
+/* The step at which a side is looked at; it stays on one that is short. */
+static double step_of(const struct side *side)
+{
+  return fmin(EO_FLANK_STEP, fabs(side->far - side->own) / 4);
+}
+
+/* How much of a step along u, away from the line, the flank goes on towards the tip; below 0 it folds. */
 static double progress_at(const struct side *side, double u)
 {
-  return (spot_at(side, u + EO_FLANK_STEP / 2).ahead - spot_at(side, u - EO_FLANK_STEP / 2).ahead) / EO_FLANK_STEP;
+  double step = side->outwards * step_of(side);
+  return (spot_at(side, u + step).ahead - spot_at(side, u).ahead) / step;
 }
 
 /* From the line to where the flank goes on towards the tip; where it never does, the side's other end, beyond which it
@@ -49,14 +56,16 @@ static double beyond_fold(const struct side *side)
 {
   enum { HALVINGS = 40 };
   const double least = 0.02;
-  double from = 0, to = 0;
+  double from = 0, to = 0, last = fabs(side->far - side->own) - step_of(side);
+  if (!(last > 0))
+    return side->far;
   if (progress_at(side, side->own) >= least)
     return side->line;
   while (progress_at(side, side->own + side->outwards * to) < least) {
-    from = to;
-    to = fmax(2 * to, 4 * EO_FLANK_STEP);
-    if (to > fabs(side->far - side->own))
+    if (to >= last)
       return side->far;
+    from = to;
+    to = fmin(fmax(2 * to, 4 * EO_FLANK_STEP), last);
   }
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (from + to) / 2;
@@ -66,48 +75,64 @@ static double beyond_fold(const struct side *side)
   return side->own + side->outwards * to;
 }
 
-/* The u of a side, from `start` on outwards, whose point lies that far ahead. */
+/* The u of a side, from `start` on outwards, whose point lies that far ahead; where there is none, the last one before
+   the side folds. */
 static double find_ahead(const struct side *side, double start, double ahead)
 {
-  double u = start, step = side->outwards * EO_FLANK_STEP; /* away from the fold */
-  for (int i = 0; i < 2 * EO_FLANK_STEPS; i++) {
+  double u = start, good = start, bad = side->outwards > 0 ? INFINITY : -INFINITY,
+         step = side->outwards * EO_FLANK_STEP;
+  for (int i = 0; i < 3 * EO_FLANK_STEPS && fabs(bad - good) > EO_FLANK_NEAR; i++) {
     double here = spot_at(side, u).ahead, off = here - ahead, rate = (spot_at(side, u + step).ahead - here) / step;
-    if (fabs(off) < EO_FLANK_NEAR || !(rate > 1e-3))
+    *(rate > 1e-3 ? &good : &bad) = u;
+    if (u == bad && u == start)
       break;
-    u -= off / rate;
+    if (u == good && fabs(off) < EO_FLANK_NEAR)
+      break;
+    if (u == good) { /* beside a fold the rate is next to nothing */
+      double most = 2 * fabs(u - start) + 16 * EO_FLANK_STEP;
+      u -= fmin(fmax(off / rate, -most), most);
+    }
     u = side->outwards > 0 ? fmax(u, start) : fmin(u, start);
+    if (side->outwards * (bad - u) <= 0)
+      u = (good + bad) / 2;
   }
-  return u;
+  return good;
+}
+
+/* How far out of the tooth the side below lies at u above the other at the same place; own[2]: u on each. */
+static double gap_at(const struct side side[2], const double start[2], double u, double own[2])
+{
+  struct spot here = spot_at(&side[0], u);
+  own[0] = u;
+  own[1] = find_ahead(&side[1], start[1], here.ahead);
+  return here.above - spot_at(&side[1], own[1]).above;
 }
 
 /* Where the sides of a line cross: own[2], u on each. Between the place where the side above begins and the one where
-   the side below ends, beyond their folds; false: they do not overlap, or do not cross there. */
+   the side below ends, beyond their folds; false: they do not overlap, or do not cross there. Where the side below
+   folds back before the other begins and lies above it even there, nothing of it is left: the fold. */
 static bool find_crossing(const struct side side[2], double own[2])
 {
   enum { ROUNDS = 60 };
   double start[2] = {beyond_fold(&side[0]), beyond_fold(&side[1])}, at[2], off[2];
-  struct spot end = spot_at(&side[0], start[0]), first = spot_at(&side[1], start[1]);
-  if (!(end.ahead > first.ahead))
+  double first = spot_at(&side[1], start[1]).ahead;
+  if (!(spot_at(&side[0], start[0]).ahead > first))
     return false;
-  at[0] = find_ahead(&side[0], start[0], first.ahead);
+  at[0] = find_ahead(&side[0], start[0], first);
   at[1] = start[0];
-  off[0] = spot_at(&side[0], at[0]).above - first.above;
-  off[1] = end.above - spot_at(&side[1], find_ahead(&side[1], start[1], end.ahead)).above;
+  off[1] = gap_at(side, start, at[1], own);
+  off[0] = gap_at(side, start, at[0], own);
   if (off[0] * off[1] > 0)
-    return false;
-  own[0] = start[0];
-  own[1] = start[1];
+    return off[0] > 0 && at[0] > side[0].far && at[0] < side[0].own &&
+           spot_at(&side[0], at[0]).ahead - first > EO_FLANK_STEP;
   for (int i = 0; i < ROUNDS && fabs(at[1] - at[0]) > EO_FLANK_NEAR; i++) { /* false position (Illinois), and halves */
-    double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]);
-    own[0] = at[0] + share * (at[1] - at[0]);
-    struct spot here = spot_at(&side[0], own[0]);
-    own[1] = find_ahead(&side[1], start[1], here.ahead);
-    double here_off = here.above - spot_at(&side[1], own[1]).above;
-    if (fabs(here_off) < EO_FLANK_NEAR / 100)
+    double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]),
+           u = at[0] + share * (at[1] - at[0]), here = gap_at(side, start, u, own);
+    if (fabs(here) < EO_FLANK_NEAR / 100)
       return true;
-    int same = here_off * off[0] > 0 ? 0 : 1;
-    at[same] = own[0];
-    off[same] = here_off;
+    int same = here * off[0] > 0 ? 0 : 1;
+    at[same] = u;
+    off[same] = here;
     off[1 - same] /= 2;
   }
   return true;
@@ -136,12 +161,13 @@ bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_fla
   return largest > EO_FLANK_SAG;
 }
 
-/* The piece of the band before (-1) or after (+1) one, NULL: none. */
+/* The piece of the band before (-1) or after (+1) one of which something is left, NULL: none. */
 static const struct eo_flank_piece *next_to(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
                                             int direction)
 {
   const struct eo_flank_piece *next = piece + direction;
-  while (next >= pieces->piece && next < pieces->piece + pieces->count && next->line[0] == next->line[1])
+  while (next >= pieces->piece && next < pieces->piece + pieces->count &&
+         (next->lost || next->line[0] == next->line[1]))
     next += direction;
   bool there = next >= pieces->piece && next < pieces->piece + pieces->count && next->band == piece->band;
   return there ? next : NULL;
@@ -179,28 +205,73 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
   return meeting;
 }
 
-/* An end of a piece: where it meets its neighbour, or the one behind it where nothing is left of the neighbour. */
-static void find_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which, double y,
-                     struct eo_flank_row *row)
+/* An end of a piece at y: u, and the place on the unmodified flank. */
+struct end {
+  double own, place;
+};
+
+/* Where a piece meets its neighbour towards the tip (1) or the root (0), or the one behind it (NULL: none) where
+   nothing is left of the neighbour. */
+static struct end end_at_neighbour(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which,
+                                   const struct eo_flank_piece *next, const struct eo_flank_piece *behind, double y)
 {
   int direction = which ? 1 : -1, mine = which ? 0 : 1;
-  const struct eo_flank_piece *next = next_to(pieces, piece, direction), *behind;
-  struct eo_surface_point point;
-  if (!next) {
-    row->own[which] = eo_flank_line_at(pieces, piece->line[which], y);
-    eo_flank_piece_at(pieces, piece, row->own[which], y, &point);
-    row->place[which] = eo_flank_find_place(pieces, point.position, row->own[which], y);
-    return;
-  }
   struct meeting here = which ? meet(pieces, piece, next, y) : meet(pieces, next, piece, y);
-  behind = next_to(pieces, next, direction);
   if (behind) {
     struct meeting there = which ? meet(pieces, next, behind, y) : meet(pieces, behind, next, y);
     if (direction * (there.own[mine] - here.own[1 - mine]) < 0)
       here = which ? meet(pieces, piece, behind, y) : meet(pieces, behind, piece, y);
   }
-  row->own[which] = here.own[mine];
-  row->place[which] = here.place[mine];
+  return (struct end){here.own[mine], here.place[mine]};
+}
+
+/* A piece seen from an end of the flank. */
+static struct side from_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which,
+                            double y)
+{
+  double end = eo_flank_line_at(pieces, piece->line[which], y);
+  return (struct side){pieces,
+                       *piece,
+                       eo_flank_frame_at(pieces, end, y),
+                       y,
+                       end,
+                       end,
+                       eo_flank_line_at(pieces, piece->line[1 - which], y),
+                       which ? -1 : 1};
+}
+
+struct eo_flank_fold eo_flank_fold_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
+                                      int count, int which, double y)
+{
+  struct eo_flank_fold fold = {0};
+  int inwards = which ? -1 : 1;
+  for (const struct eo_flank_piece *own = piece + (which ? count - 1 : 0); fold.lost < count - 1; own += inwards) {
+    struct side side = from_end(pieces, own, which, y);
+    double start = beyond_fold(&side), end = side.far;
+    if (start != side.far)
+      end = end_at_neighbour(pieces, own, 1 - which, own + inwards, fold.lost < count - 2 ? own + 2 * inwards : NULL, y)
+                .own;
+    fold.part = start != side.own;
+    if (!fold.part || inwards * (end - start) > 0)
+      break;
+    fold.lost++;
+  }
+  return fold;
+}
+
+/* An end of a piece that has a neighbour there, or behind its fold at an end of the flank. */
+static struct end find_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which,
+                           double y)
+{
+  int direction = which ? 1 : -1;
+  const struct eo_flank_piece *next = next_to(pieces, piece, direction);
+  if (next)
+    return end_at_neighbour(pieces, piece, which, next, next_to(pieces, next, direction), y);
+  struct side side = from_end(pieces, piece, which, y);
+  double own = beyond_fold(&side);
+  struct eo_surface_point point;
+  eo_flank_piece_at(pieces, piece, own, y, &point);
+  return (struct end){own, eo_flank_find_place(pieces, point.position, own, y)};
 }
 
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
@@ -208,8 +279,15 @@ void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flan
 {
   const struct eo_flank_piece *before = next_to(pieces, piece, -1), *after = next_to(pieces, piece, 1);
   row->maker = piece;
-  for (int which = 0; which < 2; which++)
-    find_end(pieces, piece, which, y, row);
+  if (piece->lost) {
+    row->own[0] = row->own[1] = row->place[0] = row->place[1] = eo_flank_line_at(pieces, piece->line[1], y);
+    return;
+  }
+  for (int which = 0; which < 2; which++) {
+    struct end end = find_end(pieces, piece, which, y);
+    row->own[which] = end.own;
+    row->place[which] = end.place;
+  }
   if (row->own[1] > row->own[0] && (piece->direct || row->place[1] > row->place[0]))
     return;
   if (before && after) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One member as STEP (ISO 10303-21 with the schema of AP242): open shells of B-spline faces, one face per smooth piece,
-   within 5 nm of what the rack leaves; a comment in the file names what is further off and by how much: reliefs that
-   fold a flank, so that the rack cuts away what it has made, leave edges that no smooth piece has. Neighbours have
-   common edges where their sides are one curve. Lengths in mm, frame as in tooth.h. */
+   within 5 nm of what the rack leaves, also where reliefs fold a flank and the rack cuts away what it has made; a
+   comment in the file names what is further off and by how much. Neighbours have common edges where their sides are one
+   curve. Lengths in mm, frame as in tooth.h. */
 #ifndef EASEOFF_EXCHANGE_STEP_H
 #define EASEOFF_EXCHANGE_STEP_H
 

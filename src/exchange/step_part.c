@@ -24,7 +24,7 @@ static void piece_point(const void *context, double p, double q, double point[3]
   const struct eo_step_face *face = &part->face[piece->number];
   double own = part->flipped ? 1 - p : p;
   if (part->flank) {
-    eo_flank_piece_point(&part->pieces, piece->number, piece->row, own, q, point, normal);
+    eo_flank_piece_point(&part->pieces, face->i, piece->row, own, q, point, normal);
     return;
   }
   const double *from = &part->at[0][face->i], *to = &part->at[1][face->j];
@@ -51,11 +51,17 @@ static bool points_in(const struct eo_step_part *part)
   return cross < 0;
 }
 
+/* Of every piece of which something is left. */
 static void set_flank_faces(struct eo_step_part *part)
 {
-  for (int k = 0; k < part->faces; k++) {
+  part->faces = 0;
+  for (int k = 0; k < part->pieces.count; k++) {
     const struct eo_flank_piece *piece = &part->pieces.piece[k];
-    struct eo_step_face *face = &part->face[k];
+    struct eo_step_face *face = &part->face[part->faces];
+    if (piece->lost)
+      continue;
+    part->faces++;
+    face->i = k;
     face->group[0] = piece->line[0] * EO_FLANK_LINES + piece->line[1];
     face->group[1] = piece->band;
     if (piece->line[0] == piece->line[1])
@@ -111,7 +117,7 @@ static bool fit_face(struct eo_step_part *part, int number, bool wide[2][EO_STEP
 /* Where points on the flank are no good parameters, those of the rack may be. */
 static bool fit_evenly(struct eo_step_part *part, int number, bool wide[2][EO_STEP_GROUPS][EO_PATCH_MOST])
 {
-  bool *direct = &part->pieces.piece[number].direct, before = *direct;
+  bool *direct = &part->pieces.piece[part->face[number].i].direct, before = *direct;
   double error = part->face[number].error;
   *direct = true;
   bool fitted = fit_face(part, number, wide);

@@ -15,7 +15,7 @@ enum { EO_STEP_SIDES = 4 };
 /* A smooth piece. Its sides: along p at q = 0, along q at p = 1, along p at q = 1, along q at p = 0; its corners (0,
    0), (1, 0), (1, 1), (0, 1). */
 struct eo_step_face {
-  int i, j;                  /* what is no flank: the piece along p and along q */
+  int i, j;                  /* of a flank its piece; else the piece along p and along q */
   int group[2];              /* pieces that share a number of points along p, along q */
   int edge[EO_STEP_SIDES];   /* numbers in the part; -1: the side is one point */
   int vertex[EO_STEP_SIDES]; /* numbers in the part */

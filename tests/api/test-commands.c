@@ -11,7 +11,7 @@ static const char folded[] =
     "{\"gear_pair\": {\"pinion_teeth\": 23, \"gear_teeth\": 61, \"normal_module_mm\": 5, \"helix_angle_deg\": 26, "
     "\"face_width_mm\": 60}, \"load_cases\": [{\"torque_Nm\": 500, \"speed_rpm\": 1500}], \"modification\": "
     "{\"pinion\": "
-    "{\"left\": {\"root_relief_um\": 60, \"root_relief_start_mm\": 3.5, \"root_relief_shape\": \"exponent\", "
+    "{\"left\": {\"root_relief_um\": 400, \"root_relief_start_mm\": 3.5, \"root_relief_shape\": \"exponent\", "
     "\"root_relief_exponent\": 1.2}}}}";
 static char *coarse, *order, *named, *sweep, *vary, *vary_pair, *pairs, *many_pairs, *tolerance_order, *limited, *spur,
     *stages, *study, *once_more, *other_paper;

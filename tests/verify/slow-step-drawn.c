@@ -129,6 +129,8 @@ static double distance_from_pieces(const struct eo_tooth *tooth, bool coast, con
   double nearest = INFINITY, point[3];
   eo_flank_pieces_init(&flank, tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE);
   for (int k = 0; k < flank.count; k++) {
+    if (flank.piece[k].lost)
+      continue;
     struct eo_flank_row row = {.b = -1};
     double at[2] = {0.5, 0.5}, best = INFINITY;
     for (double step = 0.25; step > 1e-7;) {
@@ -189,9 +191,8 @@ static void check_loaded(int index, int member, bool folded)
   remove_mesh(folder);
   for (int end = 0; end < ends; end++)
     eo_tooth_done(&tooth[end]);
-  ok(nodes > 100 && (largest <= allowed || folded),
-     "pair %d, %s: OpenCASCADE meshes it; %d nodes within %.2g nm, %d above 10 nm%s", index, member ? "gear" : "pinion",
-     nodes, 1e9 * largest, off, folded ? ", folded by a relief" : "");
+  ok(nodes > 100 && largest <= allowed, "pair %d, %s: OpenCASCADE meshes it; %d nodes within %.2g nm, %d above 10 nm%s",
+     index, member ? "gear" : "pinion", nodes, 1e9 * largest, off, folded ? ", folded by a relief" : "");
 }
 
 static void leave(const char *folder, int index)
@@ -224,8 +225,8 @@ int main(int argc, char **argv)
       struct eo_text text = {0};
       eo_step_write(&design, &geometry, member, false, &text);
       double stated = text.failed ? INFINITY : stated_deviation(text.data, &folded[member]);
-      ok(stated <= 1e9 * allowed || folded[member], "pair %d, %s: %zu kB, at most %.3g nm off%s", index,
-         member ? "gear" : "pinion", text.size / 1000, fmax(5, stated), folded[member] ? ", folded by a relief" : "");
+      ok(stated <= 1e9 * allowed, "pair %d, %s: %zu kB, at most %.3g nm off%s", index, member ? "gear" : "pinion",
+         text.size / 1000, fmax(5, stated), folded[member] ? ", folded by a relief" : "");
       eo_text_done(&text);
       fflush(stdout);
     }

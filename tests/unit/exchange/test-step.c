@@ -300,10 +300,10 @@ static void check_loaded(const char *name, int member)
 
 /* Pieces of a flank with kinks lie on the surface that eo_tooth_point() has, what corners of the rack sweep between
    its sides; the file says of no part that it is further off than allowed. */
-static void check_pieces(const char *what, bool folds)
+static void check_pieces(const char *what, bool folds, bool begins_behind)
 {
   double largest = 0, gap = 0, rest = 0, point[3], next[3], normal[3];
-  int swept = 0, pieces = 0;
+  int swept = 0, pieces = 0, behind = 0;
   for (int member = 0; member < 2; member++)
     for (int coast = 0; coast < 2; coast++) {
       static struct eo_flank_pieces flank;
@@ -315,6 +315,8 @@ static void check_pieces(const char *what, bool folds)
         const struct eo_flank_piece *piece = &flank.piece[k];
         struct eo_flank_row row = {.b = -1}, other = {.b = -1};
         bool corner = piece->line[0] == piece->line[1];
+        if (piece->lost)
+          continue;
         swept += corner;
         pieces++;
         for (int i = 0; i < 9 && !corner && !folds; i++) { /* a way to the nearest point does not lead over a fold */
@@ -323,6 +325,7 @@ static void check_pieces(const char *what, bool folds)
         }
         for (int i = 0; i <= 4 && k + 1 < flank.count && piece[1].band == piece->band; i++) {
           eo_flank_piece_point(&flank, k, &row, 1, 0.1 + 0.2 * i, point, normal);
+          behind += (k == 0 || piece[-1].lost) && row.own[0] > flank.u[0] + 1e-6;
           eo_flank_piece_point(&flank, k + 1, &other, 0, 0.1 + 0.2 * i, next, NULL);
           gap = fmax(gap, fabs((next[0] - point[0]) * normal[0] + (next[1] - point[1]) * normal[1] +
                                (next[2] - point[2]) * normal[2]));
@@ -332,6 +335,7 @@ static void check_pieces(const char *what, bool folds)
     }
   ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, within %.2g nm of the exact flank", what, pieces, swept,
      1e9 * largest);
+  ok((behind > 0) == begins_behind, "%s: %d rows begin behind a fold at the root", what, behind);
   ok(rest < 2e-9, "%s: pieces are what the rack leaves, within %.2g nm", what, 1e9 * rest);
   ok(gap < allowed / 2, "%s: pieces meet within %.2g nm, normal", what, 1e9 * gap);
   for (int member = 0; member < 2; member++) {
@@ -347,11 +351,12 @@ static void check_pieces(const char *what, bool folds)
 /* Kinks of every kind. */
 static void check_kinks(const char *name)
 {
-  for (int kind = 0; kind < 6; kind++) {
+  for (int kind = 0; kind < 7; kind++) {
     char what[100];
     struct eo_error error;
-    static const char *const kinds[6] = {"linear reliefs", "linear reliefs and end reliefs", "corner relief", "grid",
-                                         "corner reliefs", "grid whose border turns"};
+    static const char *const kinds[7] = {
+        "linear reliefs", "linear reliefs and end reliefs", "corner relief",           "grid",
+        "corner reliefs", "grid whose border turns",        "a root relief that folds"};
     static const double u[3] = {-0.6e-3, 0, 0.9e-3}, y[3] = {-4e-3, 0, 5e-3},
                         delta[9] = {1e-6, 2e-6, 3e-6, 0, 1e-6, 2e-6, 3e-6, 4e-6, 5e-6},
                         border[9] = {4e-6, 0, -4e-6, 0, 0, 0, -5e-6, 1e-6, 5e-6};
@@ -381,6 +386,12 @@ static void check_kinks(const char *name)
         flank->triangular[EO_ROOT_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){8e-6, 2e-3, 11e-3, 1};
         flank->triangular[EO_TIP_SIDE][EO_LEADING_SIDE] = (struct eo_triangular_relief){9e-6, 5e-3, 9e-3, 1};
       }
+      if (kind == 6) {
+        flank->shape = EO_RELIEF_EXPONENT;
+        flank->exponent[EO_ROOT_SIDE] = 3;
+        flank->root_relief = 25e-6 * geometry.normal_module / 1e-3;
+        flank->root_relief_start = 1.5e-3;
+      }
       const struct eo_flank_grid turning = {.u_knots = 3, .y_knots = 3, .u = u, .y = y, .delta = border};
       if (kind == 5 &&
           eo_flank_grids_put(&design.grids, (enum eo_flank_side)(i / 4), i / 2 % 2, i % 2, &turning, &error))
@@ -390,7 +401,7 @@ static void check_kinks(const char *name)
       flank->twist = kind == 2 ? 3e-6 : 0;
     }
     snprintf(what, sizeof what, "%s, %s", name, kinds[kind]);
-    check_pieces(what, kind == 4);
+    check_pieces(what, kind == 4 || kind == 6, kind == 6);
   }
 }
 
