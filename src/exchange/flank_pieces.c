@@ -134,6 +134,41 @@ static int list_pieces(const struct eo_flank_pieces *pieces, int band, struct eo
   return count;
 }
 
+/* u in the middle of where a piece turns back at y and goes on again; NaN: nowhere, or from its end on. */
+static double find_fold_within(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y)
+{
+  enum { STEPS = 200 };
+  double low = eo_flank_line_at(pieces, piece->line[0], y), high = eo_flank_line_at(pieces, piece->line[1], y),
+         step = (high - low) / STEPS, before = -INFINITY;
+  struct eo_flank_frame frame = eo_flank_frame_at(pieces, (low + high) / 2, y);
+  int turned = 0; /* the first step of those that lead back */
+  for (int i = 0; i <= STEPS; i++) {
+    struct eo_surface_point point;
+    eo_flank_piece_at(pieces, piece, low + i * step, y, &point);
+    double ahead = eo_flank_ahead(&frame, point.position);
+    bool back = ahead < before;
+    if (!back && turned > 1)
+      return low + (turned - 1 + i - 1) * step / 2;
+    turned = !back ? 0 : turned ? turned : i;
+    before = ahead;
+  }
+  return NAN;
+}
+
+/* A line within such a fold, so that its sides are pieces, which cross. */
+static void add_fold_lines(struct eo_flank_pieces *pieces)
+{
+  for (int band = 0; band < pieces->bands; band++) {
+    struct eo_flank_piece piece[EO_FLANK_LINES];
+    int count = list_pieces(pieces, band, piece);
+    for (int i = 0; i < count; i++) {
+      double u = find_fold_within(pieces, &piece[i], (pieces->y[band] + pieces->y[band + 1]) / 2);
+      if (isfinite(u))
+        add_line(pieces, u, 0);
+    }
+  }
+}
+
 /* Where pieces that overlap begin to lie apart, between two rows. */
 static double find_turn(const struct eo_flank_pieces *pieces, const struct eo_flank_piece side[2], double low,
                         double high)
@@ -240,6 +275,9 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
   find_lines(pieces);
   double at[MOST_ENDS];
   int ends = list_ends(pieces, at);
+  set_bands(pieces, ends, at);
+  add_fold_lines(pieces);
+  ends = list_ends(pieces, at);
   set_bands(pieces, ends, at);
   for (int band = 0; band < pieces->bands; band++)
     ends = add_folds(pieces, band, MOST_ENDS, at, add_turns(pieces, band, MOST_ENDS, at, ends));

@@ -129,7 +129,7 @@ static void make_section(const struct eo_flank_pieces *pieces, const struct invo
 /* The least height at a roll length; NAN beyond the flank's ends. */
 static double lowest_at(const struct section *section, double roll)
 {
-  const double same = 1e-9; /* m */
+  const double same = 2e-8; /* m: where slopes are steep an end lies so far from the last place */
   double lowest = NAN;
   for (int end = 0; end < 2; end++) {
     const struct foot *foot = &section->at[end ? section->count - 1 : 0];
