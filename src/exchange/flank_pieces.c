@@ -300,11 +300,12 @@ void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo
                           double point[3], double normal[3])
 {
   const struct eo_flank_piece *piece = &pieces->piece[k];
+  const double least = 1e-9; /* where a band ends both of what it and the next have are near */
   bool corner = piece->line[0] == piece->line[1];
-  double from = pieces->y[piece->band], y = from + b * (pieces->y[piece->band + 1] - from);
+  double from = pieces->y[piece->band], width = pieces->y[piece->band + 1] - from, y = from + b * width;
   struct eo_surface_point generated;
   if (row->b != b)
-    eo_flank_ends_at(pieces, corner ? piece - 1 : piece, y, row);
+    eo_flank_ends_at(pieces, corner ? piece - 1 : piece, from + fmin(fmax(b, least), 1 - least) * width, row);
   row->b = b;
   if (corner)
     swept_point(pieces, piece, row, a, y, &generated);

@@ -178,6 +178,18 @@ struct meeting {
   double own[2], place[2];
 };
 
+/* Where one of two pieces is the flank's last and folded back as a whole the other ends behind its own fold. */
+static bool find_lost(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
+                      const struct eo_flank_piece *above, const struct side side[2], double own[2])
+{
+  double start[2] = {beyond_fold(&side[0]), beyond_fold(&side[1])};
+  bool lost[2] = {start[0] == side[0].far && !next_to(pieces, below, -1),
+                  start[1] == side[1].far && !next_to(pieces, above, 1)};
+  for (int k = 0; k < 2; k++)
+    own[k] = lost[k] ? side[k].own : start[k];
+  return lost[0] != lost[1];
+}
+
 /* Where they cross. Else each ends at its line; where what lies between is no more than nothing, in the middle of it.
  */
 static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
@@ -188,7 +200,7 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
   struct side side[2];
   look_at(pieces, below, above, y, side);
   bool corner = below->swept[1] && next_to(pieces, below, 1) == above,
-       crossing = !corner && find_crossing(side, meeting.own);
+       crossing = !corner && (find_lost(pieces, below, above, side, meeting.own) || find_crossing(side, meeting.own));
   for (int k = 0; k < 2; k++) {
     struct eo_surface_point point;
     if (!crossing)
