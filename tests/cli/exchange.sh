@@ -120,7 +120,7 @@ prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
 test ! -s "$folder/err"
 result $? "there is nothing to say about it"
 echo '{"gear_pair": {"pinion_teeth": 23, "gear_teeth": 61, "normal_module_mm": 5, "helix_angle_deg": 26, "face_width_mm": 60},
-  "load_cases": [{"torque_Nm": 500, "speed_rpm": 1500}], "modification": {"pinion": {"left": {"root_relief_um": 60,
+  "load_cases": [{"torque_Nm": 500, "speed_rpm": 1500}], "modification": {"pinion": {"left": {"root_relief_um": 400,
   "root_relief_start_mm": 3.5, "root_relief_shape": "exponent", "root_relief_exponent": 1.2}}}}' >"$folder/folded.json"
 run 0 "a flank that its relief folds" "$EASEOFF" export "$folder/folded.json" --format step-pinion
 says "drive flank of the left end, where reliefs fold it: up to "
