@@ -228,39 +228,51 @@ void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2])
     }
 }
 
+/* Where the teeth touch at every position. */
+static enum eo_code fill_positions(struct eo_contact_grid *grid, const struct eo_material *material,
+                                   const struct eo_contact_grid_settings *settings, const double *phase,
+                                   struct eo_gap_field *field, struct eo_error *error)
+{
+  const struct eo_flank_modification none = {0};
+  struct stretch stretch[3];
+  int stretches = list_stretches(&grid->geometry, settings, stretch);
+  eo_gap_field_init(field, &grid->geometry, &none, &none, EO_RIGHT, 0, 0, 0, grid->corner);
+  for (int i = 0; i < grid->positions; i++) {
+    struct eo_contact_position *position = &grid->position[i];
+    position->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
+    EO_TRY(fill_position(position, field, material, stretch, stretches, error));
+    scale_law(position, grid->compliance_scale);
+    position->first = grid->points;
+    grid->points += position->points;
+    grid->most_points = position->points > grid->most_points ? position->points : grid->most_points;
+  }
+  return EO_OK;
+}
+
+/* compliance: [most_points * most_points], written to. */
+static enum eo_code factor_positions(struct eo_contact_grid *grid, struct eo_kernel kernel, double *compliance,
+                                     const struct eo_progress *progress, struct eo_error *error)
+{
+  for (int i = 0; i < grid->positions; i++) {
+    EO_TRY(factor_position(&grid->position[i], kernel, compliance, error));
+    grid->most_rank = grid->position[i].rank > grid->most_rank ? grid->position[i].rank : grid->most_rank;
+    if (eo_progress_report(progress, "contact grid", (i + 1.0) / grid->positions))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "Cancelled.");
+  }
+  return EO_OK;
+}
+
 static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_material *material,
                               const struct eo_contact_grid_settings *settings, const double *phase,
                               struct eo_kernel kernel, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_gap_field *field = malloc(sizeof *field);
-  struct stretch stretch[3];
-  int stretches = list_stretches(&grid->geometry, settings, stretch);
-  const struct eo_flank_modification none = {0};
-  double *compliance = NULL;
-  enum eo_code code = EO_OK;
-  if (!field)
-    return eo_error_memory(error);
-  eo_gap_field_init(field, &grid->geometry, &none, &none, EO_RIGHT, 0, 0, 0, grid->corner);
-  for (int i = 0; i < grid->positions && !code; i++) {
-    struct eo_contact_position *position = &grid->position[i];
-    position->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
-    code = fill_position(position, field, material, stretch, stretches, error);
-    if (!code)
-      scale_law(position, grid->compliance_scale);
-    position->first = grid->points;
-    grid->points += position->points;
-    grid->most_points = position->points > grid->most_points ? position->points : grid->most_points;
-  }
-  if (!code && !(compliance = malloc(sizeof *compliance * (size_t)grid->most_points * (size_t)grid->most_points)))
-    code = eo_error_memory(error);
-  for (int i = 0; i < grid->positions && !code; i++) {
-    code = factor_position(&grid->position[i], kernel, compliance, error);
-    grid->most_rank = grid->position[i].rank > grid->most_rank ? grid->position[i].rank : grid->most_rank;
-    if (!code && eo_progress_report(progress, "contact grid", (i + 1.0) / grid->positions))
-      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Cancelled.");
-  }
-  free(compliance);
+  enum eo_code code = field ? fill_positions(grid, material, settings, phase, field, error) : eo_error_memory(error);
   free(field);
+  EO_TRY(code);
+  double *compliance = malloc(sizeof *compliance * (size_t)grid->most_points * (size_t)grid->most_points);
+  code = compliance ? factor_positions(grid, kernel, compliance, progress, error) : eo_error_memory(error);
+  free(compliance);
   return code;
 }
 

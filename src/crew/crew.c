@@ -48,26 +48,31 @@ static enum eo_code compare(const struct eo_crew *crew, int rank, struct eo_erro
                       rank, other->kernel, other->blas, own->kernel, own->blas);
 }
 
+static enum eo_code hear_one(struct eo_crew *crew, int *heard, int *idle, struct eo_error *error)
+{
+  struct eo_crew_letter letter;
+  bool there = false;
+  enum eo_code code = eo_crew_receive(crew, &there, &letter, error);
+  if (!code && there && letter.tag == EO_CREW_HELLO && letter.text.size == sizeof crew->member[0]) {
+    memcpy(&crew->member[letter.from], letter.text.data, sizeof crew->member[0]);
+    ++*heard;
+  }
+  eo_text_done(&letter.text);
+  *idle = there ? 0 : *idle + 1;
+  return code;
+}
+
 /* Rank 0 hears from every other one. */
 static enum eo_code meet(struct eo_crew *crew, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  for (int heard = 1, idle = 0; !code && heard < crew->size;) {
-    struct eo_crew_letter letter;
-    bool there = false;
-    code = eo_crew_receive(crew, &there, &letter, error);
-    if (!code && there && letter.tag == EO_CREW_HELLO && letter.text.size == sizeof crew->member[0]) {
-      memcpy(&crew->member[letter.from], letter.text.data, sizeof crew->member[0]);
-      heard++;
-    }
-    eo_text_done(&letter.text);
-    idle = there ? 0 : idle + 1;
-    if (!code && !there)
+  for (int heard = 1, idle = 0; heard < crew->size;) {
+    EO_TRY(hear_one(crew, &heard, &idle, error));
+    if (idle > 0)
       eo_crew_rest(idle);
   }
-  for (int rank = 1; !code && rank < crew->size; rank++)
-    code = compare(crew, rank, error);
-  return code;
+  for (int rank = 1; rank < crew->size; rank++)
+    EO_TRY(compare(crew, rank, error));
+  return EO_OK;
 }
 
 static enum eo_code say_hello(struct eo_crew *crew, struct eo_error *error)

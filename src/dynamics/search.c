@@ -261,25 +261,24 @@ static void free_search(struct search *search)
 static enum eo_code search_from(struct search *search, const struct eo_vibration *found, double *unstable,
                                 struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
   bool balanced = found->outcome != EO_VIBRATION_NOT_CONVERGED;
   if (balanced) {
+    enum eo_code code = EO_OK;
     double multiplier = largest_multiplier(search, error, &code);
+    EO_TRY(code);
     *unstable = multiplier > 1 + margin ? multiplier : 0;
   }
-  if (!code && balanced && *unstable > 0)
-    code = follow_balance(search, found, false, error);
-  if (!code)
-    code = follow_static(search, error);
-  if (!code && balanced && *unstable == 0 && !is_known(search, found)) {
+  if (balanced && *unstable > 0)
+    EO_TRY(follow_balance(search, found, false, error));
+  EO_TRY(follow_static(search, error));
+  if (balanced && *unstable == 0 && !is_known(search, found)) {
     struct eo_vibration again;
-    code = eo_vibration_solve(search->solver, search->load, EO_START_COLD, &again, error);
-    if (!code && again.outcome != EO_VIBRATION_NOT_CONVERGED)
-      code = follow_balance(search, &again, true, error);
+    EO_TRY(eo_vibration_solve(search->solver, search->load, EO_START_COLD, &again, error));
+    if (again.outcome != EO_VIBRATION_NOT_CONVERGED)
+      EO_TRY(follow_balance(search, &again, true, error));
   }
-  if (!code)
-    code = follow_speed(search, -1, error);
-  return code ? code : follow_speed(search, +1, error);
+  EO_TRY(follow_speed(search, -1, error));
+  return follow_speed(search, +1, error);
 }
 
 /* found: by harmonic balance, which the solver still holds. */

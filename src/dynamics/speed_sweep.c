@@ -34,25 +34,25 @@ enum eo_code eo_vibration_follow(struct eo_vibration_solver *solver, int count, 
                                  const struct eo_vibration *alone, int direction, struct eo_vibration *result,
                                  struct eo_error *error)
 {
-  enum eo_code code = check_speeds(count, load, error);
   bool separated = false, holds = false; /* at the neighbour; the solver holds its stable solution */
-  for (int step = 0, before = 0; step < count && !code; step++) {
+  EO_TRY(check_speeds(count, load, error));
+  for (int step = 0, before = 0; step < count; step++) {
     int i = direction > 0 ? step : count - 1 - step;
     struct eo_vibration again;
     if (separated && !holds)
-      code = eo_vibration_solve(solver, &load[before], EO_START_COLD, &again, error);
-    if (separated && !code)
-      code = eo_vibration_solve(solver, &load[i], EO_START_WARM, &result[i], error);
-    holds = separated && !code && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
+      EO_TRY(eo_vibration_solve(solver, &load[before], EO_START_COLD, &again, error));
+    if (separated)
+      EO_TRY(eo_vibration_solve(solver, &load[i], EO_START_WARM, &result[i], error));
+    holds = separated && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
     if (!holds)
       result[i] = alone[i];
-    if (!code && result[i].outcome == EO_VIBRATION_CONTACT_LOST)
-      code = keep_stable(solver, &load[i], holds, &result[i], error);
+    if (result[i].outcome == EO_VIBRATION_CONTACT_LOST)
+      EO_TRY(keep_stable(solver, &load[i], holds, &result[i], error));
     separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
     holds = solver->solved;
     before = i;
   }
-  return code;
+  return EO_OK;
 }
 
 static enum eo_code solve_alone(struct eo_vibration_solver *solver, int count, const struct eo_vibration_case *load,
@@ -67,6 +67,18 @@ static enum eo_code solve_alone(struct eo_vibration_solver *solver, int count, c
   return code;
 }
 
+/* at: [count] cases, alone: [count] what they are without a neighbour. */
+static enum eo_code sweep_both_ways(struct eo_vibration_solver *solver, const struct eo_vibration_case *at, int count,
+                                    struct eo_vibration *alone, struct eo_vibration *up, struct eo_vibration *down,
+                                    const struct eo_progress *progress, struct eo_error *error)
+{
+  EO_TRY(check_speeds(count, at, error));
+  EO_TRY(solve_alone(solver, count, at, alone, progress, error));
+  if (up)
+    EO_TRY(eo_vibration_follow(solver, count, at, alone, +1, up, error));
+  return down ? eo_vibration_follow(solver, count, at, alone, -1, down, error) : EO_OK;
+}
+
 enum eo_code eo_vibration_sweep(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, int count,
                                 const double *speed, struct eo_vibration *up, struct eo_vibration *down,
                                 const struct eo_progress *progress, struct eo_error *error)
@@ -74,19 +86,12 @@ enum eo_code eo_vibration_sweep(struct eo_vibration_solver *solver, const struct
   size_t n = count > 0 ? (size_t)count : 1;
   struct eo_vibration_case *at = calloc(n, sizeof *at);
   struct eo_vibration *alone = calloc(n, sizeof *alone);
-  enum eo_code code = at && alone ? EO_OK : eo_error_memory(error);
-  for (int i = 0; i < count && !code; i++) {
+  for (int i = 0; i < count && at; i++) {
     at[i] = *load;
     at[i].speed = speed[i];
   }
-  if (!code)
-    code = check_speeds(count, at, error);
-  if (!code)
-    code = solve_alone(solver, count, at, alone, progress, error);
-  if (!code && up)
-    code = eo_vibration_follow(solver, count, at, alone, +1, up, error);
-  if (!code && down)
-    code = eo_vibration_follow(solver, count, at, alone, -1, down, error);
+  enum eo_code code = at && alone ? sweep_both_ways(solver, at, count, alone, up, down, progress, error)
+                                  : eo_error_memory(error);
   free(at);
   free(alone);
   return code;

@@ -290,29 +290,37 @@ static bool separates(const struct job *job, const struct eo_vibration *alone)
   return lost && job->design->resolution.solver != EO_SOLVER_TIME_INTEGRATION;
 }
 
-static enum eo_code solve_branch(void *context, int thread, int item, struct eo_error *error)
+/* load, followed: [speeds], room to work. */
+static enum eo_code follow_branch(struct job *job, struct worker *worker, int item, struct eo_vibration_case *load,
+                                  struct eo_vibration *followed, struct eo_error *error)
 {
-  struct job *job = context;
   struct eo_sweep *sweep = job->sweep;
-  struct worker *worker = &job->worker[thread];
   int problem = item / EO_SWEEP_DIRECTIONS, direction = item % EO_SWEEP_DIRECTIONS;
   size_t speeds = (size_t)sweep->speeds, first = (size_t)(problem % sweep->torques) * speeds;
   const struct eo_vibration *alone = job->alone + (size_t)problem * speeds;
   struct eo_sweep_point *point = sweep->point[problem / sweep->torques][direction] + first;
-  bool sound = sweep->at_torque[problem / sweep->torques][problem % sweep->torques].contact_failures == 0;
+  bool sound = sweep->at_torque[problem / sweep->torques][problem % sweep->torques].contact_failures == 0,
+       follow = separates(job, alone);
+  for (int j = 0; j < sweep->speeds; j++)
+    load[j] = case_at(job, &job->problem[problem], sweep->speed[j], point[j].impact);
+  if (follow) {
+    EO_TRY(take_model(job, worker, problem, error));
+    EO_TRY(eo_vibration_follow(worker->solver, sweep->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed,
+                               error));
+  }
+  for (int j = 0; j < sweep->speeds; j++)
+    read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
+  return EO_OK;
+}
+
+static enum eo_code solve_branch(void *context, int thread, int item, struct eo_error *error)
+{
+  struct job *job = context;
+  size_t speeds = (size_t)job->sweep->speeds;
   struct eo_vibration_case *load = calloc(speeds, sizeof *load);
   struct eo_vibration *followed = calloc(speeds, sizeof *followed);
-  enum eo_code code = load && followed ? EO_OK : eo_error_memory(error);
-  for (int j = 0; j < sweep->speeds && !code; j++)
-    load[j] = case_at(job, &job->problem[problem], sweep->speed[j], point[j].impact);
-  bool follow = !code && separates(job, alone);
-  if (follow)
-    code = take_model(job, worker, problem, error);
-  if (follow && !code)
-    code = eo_vibration_follow(worker->solver, sweep->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed,
-                               error);
-  for (int j = 0; j < sweep->speeds && !code; j++)
-    read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
+  enum eo_code code = load && followed ? follow_branch(job, &job->worker[thread], item, load, followed, error)
+                                       : eo_error_memory(error);
   free(load);
   free(followed);
   return code;
@@ -412,26 +420,28 @@ static enum eo_code find_crossings(struct eo_sweep *sweep, int teeth, int orders
   return EO_OK;
 }
 
+static enum eo_code fill_sweep(struct job *job, const struct eo_sweep_plan *plan, const struct eo_progress *progress,
+                               struct eo_error *error)
+{
+  const struct eo_design *design = job->design;
+  EO_TRY(make_sweep(job->sweep, design, plan, error));
+  EO_TRY(make_job(job, error));
+  EO_TRY(run_job(job, progress, error));
+  EO_TRY(find_crossings(job->sweep, job->pair->geometry.teeth[EO_PINION], design->resolution.te_harmonics, error));
+  compare_branches(job->sweep);
+  return EO_OK;
+}
+
 enum eo_code eo_sweep_run(struct eo_sweep *sweep, const struct eo_pair *pair, const struct eo_design *design,
                           const struct eo_sweep_plan *plan, const struct eo_progress *progress, struct eo_error *error)
 {
   struct job job = {.sweep = sweep, .pair = pair, .design = design, .step = plan->steps ? plan->step : NULL};
   *sweep = (struct eo_sweep){0};
-  enum eo_code code = check_plan(plan, error);
-  if (code)
-    return code;
+  EO_TRY(check_plan(plan, error));
   job.threads = plan->threads < 1                ? eo_parallel_cores()
                 : plan->threads > EO_MAX_THREADS ? EO_MAX_THREADS
                                                  : plan->threads;
-  code = make_sweep(sweep, design, plan, error);
-  if (!code)
-    code = make_job(&job, error);
-  if (!code)
-    code = run_job(&job, progress, error);
-  if (!code)
-    code = find_crossings(sweep, pair->geometry.teeth[EO_PINION], design->resolution.te_harmonics, error);
-  if (!code)
-    compare_branches(sweep);
+  enum eo_code code = fill_sweep(&job, plan, progress, error);
   done_job(&job);
   return code;
 }

@@ -23,32 +23,34 @@ static double pitch_deflection(const struct eo_flexibility *flexibility, int mem
   return sum;
 }
 
+static enum eo_code prepare_flexibility(struct eo_pair *pair, const struct eo_pair_options *options,
+                                        const struct eo_progress *progress, struct eo_error *error)
+{
+  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&pair->resolution);
+  EO_TRY(eo_flexibility_prepare(&pair->geometry, &pair->gear_pair, &pair->material, &settings, options->cache_directory,
+                                progress, &pair->flexibility, error));
+  pair->kernel = eo_flexibility_kernel(pair->flexibility);
+  for (int member = 0; member < 2; member++) {
+    pair->pitch_deflection[member] = pitch_deflection(pair->flexibility, member, pair->geometry.face_width);
+    EO_TRY(eo_root_modes_new(&pair->root_modes[member], pair->flexibility, member, error));
+  }
+  return EO_OK;
+}
+
 static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options,
                             const struct eo_progress *progress, struct eo_error *error)
 {
-  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&pair->resolution);
   struct eo_contact_grid_settings grid = options->grid ? *options->grid : eo_contact_grid_default(&pair->resolution);
-  enum eo_code code = EO_OK;
   pair->kernel = options->kernel;
-  if (!pair->kernel.evaluate) {
-    code = eo_flexibility_prepare(&pair->geometry, &pair->gear_pair, &pair->material, &settings,
-                                  options->cache_directory, progress, &pair->flexibility, error);
-    if (code)
-      return code;
-    pair->kernel = eo_flexibility_kernel(pair->flexibility);
-    for (int member = 0; member < 2; member++)
-      pair->pitch_deflection[member] = pitch_deflection(pair->flexibility, member, pair->geometry.face_width);
-    for (int member = 0; member < 2 && !code; member++)
-      code = eo_root_modes_new(&pair->root_modes[member], pair->flexibility, member, error);
-  }
-  if (!code)
-    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
-                               progress, error);
-  for (int side = 0; side < 2 && !code; side++)
+  if (!pair->kernel.evaluate)
+    EO_TRY(prepare_flexibility(pair, options, progress, error));
+  EO_TRY(eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
+                             progress, error));
+  for (int side = 0; side < 2; side++)
     pair->grid->corner[side].rule = options->tilt_rule;
-  if (!code && pair->flexibility)
-    code = eo_root_tables_new(&pair->root, pair->grid, (const struct eo_root_modes *const *)pair->root_modes, error);
-  return code;
+  return pair->flexibility
+             ? eo_root_tables_new(&pair->root, pair->grid, (const struct eo_root_modes *const *)pair->root_modes, error)
+             : EO_OK;
 }
 
 /* Half of the way of a preparation that makes both halves, one after the other. */

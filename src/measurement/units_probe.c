@@ -102,27 +102,39 @@ static int open_units(enum eo_track_doubt doubt, struct unit unit[UNITS])
   return n;
 }
 
+/* Reads the rows: what is left of the path difference in column 2, without its slow part. */
+static enum eo_code fill_probe(struct probe *probe, const struct eo_angles *angles,
+                               const struct eo_transmission_settings *settings, struct eo_error *error)
+{
+  EO_TRY(eo_angles_read(angles, 0, probe->rows, probe->row[0], error));
+  for (int i = 0; i < probe->rows; i++)
+    probe->row[i][2] = settings->base_radius[EO_GEAR] * probe->row[i][2] -
+                       settings->base_radius[EO_PINION] * probe->row[i][1];
+  return flatten(probe, error);
+}
+
+/* A recording that is too short as it is read does not speak against that. */
+static double most_seen(const struct probe *probe, const struct eo_transmission_settings *settings,
+                        enum eo_track_doubt doubt)
+{
+  struct unit unit[UNITS];
+  double seen[UNITS];
+  int best = 0, units = open_units(doubt, unit);
+  for (int i = 0; i < units; i++) {
+    seen[i] = lines_seen(probe, settings->teeth, unit[i].factor);
+    best = fmax(seen[i], 0) > fmax(seen[best], 0) ? i : best;
+  }
+  return seen[best] > (isnan(seen[0]) ? 2 : 1) * LEAST_SEEN ? unit[best].factor : NAN;
+}
+
 enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
                             enum eo_track_doubt doubt, double *factor, struct eo_error *error)
 {
-  struct unit unit[UNITS];
   struct probe probe = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
-  double seen[UNITS];
-  int best = 0, units = open_units(doubt, unit);
   probe.row = malloc(sizeof *probe.row * (size_t)probe.rows);
-  enum eo_code code = probe.row ? eo_angles_read(angles, 0, probe.rows, probe.row[0], error) : eo_error_memory(error);
-  for (int i = 0; i < probe.rows && !code; i++)
-    probe.row[i][2] = settings->base_radius[EO_GEAR] * probe.row[i][2] -
-                      settings->base_radius[EO_PINION] * probe.row[i][1];
+  enum eo_code code = probe.row ? fill_probe(&probe, angles, settings, error) : eo_error_memory(error);
   if (!code)
-    code = flatten(&probe, error);
-  for (int i = 0; i < units && !code; i++) {
-    seen[i] = lines_seen(&probe, settings->teeth, unit[i].factor);
-    best = fmax(seen[i], 0) > fmax(seen[best], 0) ? i : best;
-  }
-  /* A recording that is too short as it is read does not speak against that. */
-  if (!code)
-    *factor = seen[best] > (isnan(seen[0]) ? 2 : 1) * LEAST_SEEN ? unit[best].factor : NAN;
+    *factor = most_seen(&probe, settings, doubt);
   free(probe.row);
   return code;
 }

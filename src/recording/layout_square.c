@@ -103,34 +103,39 @@ static enum eo_code check(const struct eo_guess *guess, const struct encoder *en
   return EO_OK;
 }
 
+/* Edges of both, side by side; the shorter one ends in NaN. */
+static enum eo_code append_edges(struct eo_recording *out, const struct encoder encoder[2], int64_t first, int64_t n,
+                                 struct eo_error *error)
+{
+  double column[BLOCK], rows[2 * BLOCK];
+  for (int s = 0; s < 2; s++) {
+    int64_t left = encoder[s].edges - first, got = left < 0 ? 0 : left < n ? left : n;
+    if (got)
+      EO_TRY(eo_recording_read(encoder[s].pulses, first, got, column, error));
+    for (int64_t i = 0; i < n; i++)
+      rows[2 * i + s] = i < got ? column[i] : NAN;
+  }
+  return eo_recording_append(out, rows, n, error);
+}
+
 static enum eo_code join(const struct encoder encoder[2], const char *spool_directory, struct eo_recording **pulses,
                          struct eo_error *error)
 {
-  double column[BLOCK], rows[2 * BLOCK];
   struct eo_recording *out = NULL;
   int64_t most = encoder[0].edges > encoder[1].edges ? encoder[0].edges : encoder[1].edges;
   enum eo_code code = eo_recording_new(&out, 2, spool_directory, error);
-  for (int64_t first = 0; !code && first < most; first += BLOCK) {
-    int64_t n = most - first < BLOCK ? most - first : BLOCK;
-    for (int s = 0; s < 2 && !code; s++) {
-      int64_t left = encoder[s].edges - first, got = left < 0 ? 0 : left < n ? left : n;
-      if (got)
-        code = eo_recording_read(encoder[s].pulses, first, got, column, error);
-      for (int64_t i = 0; i < n; i++)
-        rows[2 * i + s] = i < got ? column[i] : NAN;
-    }
-    if (!code)
-      code = eo_recording_append(out, rows, n, error);
+  for (int64_t first = 0; !code && first < most; first += BLOCK)
+    code = append_edges(out, encoder, first, most - first < BLOCK ? most - first : BLOCK, error);
+  if (code) {
+    eo_recording_free(out);
+    return code;
   }
-  for (int s = 0; s < 2 && !code; s++) {
+  for (int s = 0; s < 2; s++) {
     eo_recording_set_column(out, s, s ? "gear" : "pinion", "s");
     eo_recording_set_length(out, s, encoder[s].edges);
   }
-  if (code)
-    eo_recording_free(out);
-  else
-    *pulses = out;
-  return code;
+  *pulses = out;
+  return EO_OK;
 }
 
 static void set_tracks(struct eo_guess *guess, const struct encoder encoder[2])

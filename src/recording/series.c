@@ -114,13 +114,10 @@ static enum eo_code copy_block(const struct eo_series_file *file, const int *cho
   return EO_OK;
 }
 
-static enum eo_code copy_all(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
-                             const struct eo_series_sink *sink, struct eo_error *error)
+/* The chosen series; where one is the time of another its new number is told. */
+static void choose_columns(const struct eo_series_file *file, const int *chosen, int count, struct eo_series *column)
 {
-  struct eo_series *column = malloc((size_t)count * sizeof *column);
-  double *values = malloc(BLOCK * sizeof *values * (size_t)(count + 1));
-  enum eo_code code = column && values ? EO_OK : eo_error_memory(error);
-  for (int c = 0; !code && c < count; c++) {
+  for (int c = 0; c < count; c++) {
     column[c] = file->series[chosen[c]];
     int time = column[c].clock.column;
     column[c].clock.column = -1;
@@ -128,14 +125,31 @@ static enum eo_code copy_all(const struct eo_series_file *file, const int *chose
       if (chosen[k] == time)
         column[c].clock.column = k;
   }
-  if (!code)
-    code = sink->begin(sink->context, column, count, error);
-  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+}
+
+/* values: [BLOCK][count + 1], room to work. */
+static enum eo_code copy_columns(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                                 const struct eo_series *column, double *values, const struct eo_series_sink *sink,
+                                 struct eo_error *error)
+{
+  EO_TRY(sink->begin(sink->context, column, count, error));
+  for (int64_t first = 0; first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = copy_block(file, chosen, count, first, n, values, values + BLOCK, error);
-    if (!code)
-      code = sink->rows(sink->context, values + BLOCK, n, error);
+    EO_TRY(copy_block(file, chosen, count, first, n, values, values + BLOCK, error));
+    EO_TRY(sink->rows(sink->context, values + BLOCK, n, error));
   }
+  return EO_OK;
+}
+
+static enum eo_code copy_all(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                             const struct eo_series_sink *sink, struct eo_error *error)
+{
+  struct eo_series *column = malloc((size_t)count * sizeof *column);
+  double *values = malloc(BLOCK * sizeof *values * (size_t)(count + 1));
+  if (column)
+    choose_columns(file, chosen, count, column);
+  enum eo_code code = column && values ? copy_columns(file, chosen, count, rows, column, values, sink, error)
+                                       : eo_error_memory(error);
   free(column);
   free(values);
   return code;

@@ -233,6 +233,17 @@ struct finds {
   double *number; /* [MOST_FOUND][columns]; owned */
 };
 
+/* A row of an earlier study, or of a search. */
+static enum eo_code find_row(struct variant_study *study, const struct known *known, const json_t *values,
+                             struct found *found, bool *there, struct eo_error *error)
+{
+  EO_TRY(eo_variant_hash(study->run->plan, values, found->hash, error));
+  if (known->rows)
+    EO_TRY(eo_store_find_variant(study->run->store, &found->row, error));
+  *there = found->row.id != 0;
+  return *there || !known->history ? EO_OK : find_in_history(study, values, &found->row, there, error);
+}
+
 static enum eo_code look_up_one(struct variant_study *study, const struct known *known, int variant,
                                 struct finds *finds, bool *there, struct eo_error *error)
 {
@@ -245,12 +256,8 @@ static enum eo_code look_up_one(struct variant_study *study, const struct known 
                                  .columns = study->columns,
                                  .numbers = study->scalars.count,
                                  .number = finds->number + (size_t)finds->count * (size_t)study->scalars.count};
-  enum eo_code code = values ? eo_variant_hash(study->run->plan, values, found->hash, error) : eo_error_memory(error);
-  if (!code && known->rows)
-    code = eo_store_find_variant(study->run->store, &found->row, error);
-  *there = !code && found->row.id;
-  if (!code && !*there && known->history)
-    code = find_in_history(study, values, &found->row, there, error);
+  *there = false;
+  enum eo_code code = values ? find_row(study, known, values, found, there, error) : eo_error_memory(error);
   json_decref(values);
   finds->count += !code && *there;
   return code;
