@@ -291,18 +291,27 @@ static enum eo_code write_table(struct request *request, const struct eo_variant
   return EO_OK;
 }
 
+/* The rows that are asked for; people see what was done before them, and what they do not show. */
+static enum eo_code write_rows(struct request *request, const struct eo_variant_table *table,
+                               const struct eo_variant_query *query, const struct eo_variant_result *result,
+                               struct eo_text *text, struct eo_error *error)
+{
+  bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
+  if (result && people)
+    summarise(result, text);
+  EO_TRY(write_table(request, table, query, text, error));
+  if (people && !request->csv && table->count < table->fits)
+    eo_text_print(text, "%d rows more: --limit, --csv FILE or --json.\n", table->fits - table->count);
+  return EO_OK;
+}
+
 static enum eo_code write(struct request *request, int64_t job, const struct eo_variant_query *query,
                           const struct eo_variant_result *result, struct eo_text *text, struct eo_error *error)
 {
   struct eo_variant_table table;
-  bool people = !request->json && (!request->csv || strcmp(request->csv, "-") != 0);
   enum eo_code code = eo_variant_table_init(&table, request->store, job, query, error);
-  if (!code && result && people)
-    summarise(result, text);
   if (!code)
-    code = write_table(request, &table, query, text, error);
-  if (!code && people && !request->csv && table.count < table.fits)
-    eo_text_print(text, "%d rows more: --limit, --csv FILE or --json.\n", table.fits - table.count);
+    code = write_rows(request, &table, query, result, text, error);
   eo_variant_table_done(&table);
   return code;
 }

@@ -18,7 +18,7 @@ struct run {
   const struct eo_oscillator *oscillator;
   const struct eo_cycle *cycle;
   double period;
-  const double *origin; /* [n] */
+  const double *origin; /* [2 n], displacements, of which the motion is told apart, and speeds at the start */
 };
 
 /* Prescribed motion and its rate at one phase; the mean is left out. */
@@ -203,32 +203,37 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
   return code;
 }
 
+static enum eo_code integrate(struct eo_ode *ode, struct run *run, const struct eo_integration_options *options,
+                              struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
+{
+  const struct eo_oscillator *oscillator = run->oscillator;
+  int n = oscillator->n;
+  double y[2 * EO_MAX_COORDINATES], tolerance[2 * EO_MAX_COORDINATES];
+  for (int i = 0; i < n; i++) {
+    y[i] = 0;
+    y[n + i] = run->origin[n + i] * run->period;
+  }
+  set_tolerances(run, options->relative_tolerance, tolerance);
+  const struct eo_ode_problem problem = {.function = slope_of,
+                                         .jacobian = jacobian_of,
+                                         .context = run,
+                                         .relative_tolerance = options->relative_tolerance,
+                                         .absolute_tolerance = tolerance,
+                                         .max_step = longest_step(run->cycle, oscillator->ends)};
+  EO_TRY(eo_ode_start(ode, &problem, 0, y, error));
+  EO_TRY(run_periods(ode, run, options, y, result, progress, error));
+  result->steps = eo_ode_steps(ode);
+  return EO_OK;
+}
+
 enum eo_code eo_integrate(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle,
                           const struct eo_integration_options *options, const double *start,
                           struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
 {
-  int n = oscillator->n;
   struct run run = {oscillator, cycle, 2 * M_PI / cycle->frequency, start};
-  double y[2 * EO_MAX_COORDINATES], tolerance[2 * EO_MAX_COORDINATES];
   struct eo_ode *ode = NULL;
-  for (int i = 0; i < n; i++) {
-    y[i] = 0;
-    y[n + i] = start[n + i] * run.period;
-  }
-  set_tolerances(&run, options->relative_tolerance, tolerance);
-  const struct eo_ode_problem problem = {.function = slope_of,
-                                         .jacobian = jacobian_of,
-                                         .context = &run,
-                                         .relative_tolerance = options->relative_tolerance,
-                                         .absolute_tolerance = tolerance,
-                                         .max_step = longest_step(cycle, oscillator->ends)};
-  enum eo_code code = eo_ode_new(&ode, 2 * n, error);
-  if (!code)
-    code = eo_ode_start(ode, &problem, 0, y, error);
-  if (!code)
-    code = run_periods(ode, &run, options, y, result, progress, error);
-  if (!code)
-    result->steps = eo_ode_steps(ode);
+  EO_TRY(eo_ode_new(&ode, 2 * oscillator->n, error));
+  enum eo_code code = integrate(ode, &run, options, result, progress, error);
   eo_ode_free(ode);
   return code;
 }

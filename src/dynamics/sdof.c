@@ -161,31 +161,35 @@ static int note_passage(void *context, const struct eo_branch_point *point)
   return 0;
 }
 
+static enum eo_code follow_from(struct setup *setup, const struct eo_sdof *sdof, double low, double high,
+                                eo_branch_visit *visit, void *context, struct eo_error *error)
+{
+  struct eo_balance_report report;
+  struct eo_branch_options options = eo_branch_defaults;
+  enum eo_branch_end end;
+  double x[2 * TERMS];
+  EO_TRY(balance_at(setup, false, x, &report, error));
+  if (!report.converged)
+    return eo_error_set(error, EO_ERROR_NUMERIC, "",
+                        "No periodic response was found at the frequency %g where the branch starts.", low);
+  options.low = low * 0.999;
+  options.high = high;
+  options.size = sdof->mean_force;
+  options.longest_step = 0.04;
+  return eo_branch_follow(setup->balance, &setup->oscillator, &setup->cycle, x, 1, &options, visit, context, &end,
+                          error);
+}
+
 /* The branch starts where the response is small: at low frequency the alternating force vanishes. */
 static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, eo_branch_visit *visit, void *context,
                            struct eo_error *error)
 {
   struct setup setup;
   struct eo_sdof at = *sdof;
-  struct eo_balance_report report;
-  double x[2 * TERMS];
   at.frequency = low;
   enum eo_code code = make_setup(&setup, &at, BRANCH_HARMONICS, BRANCH_SAMPLES, error);
   if (!code)
-    code = balance_at(&setup, false, x, &report, error);
-  if (!code && !report.converged)
-    code = eo_error_set(error, EO_ERROR_NUMERIC, "",
-                        "No periodic response was found at the frequency %g where the branch starts.", low);
-  if (!code) {
-    struct eo_branch_options options = eo_branch_defaults;
-    enum eo_branch_end end;
-    options.low = low * 0.999;
-    options.high = high;
-    options.size = sdof->mean_force;
-    options.longest_step = 0.04;
-    code = eo_branch_follow(setup.balance, &setup.oscillator, &setup.cycle, x, 1, &options, visit, context, &end,
-                            error);
-  }
+    code = follow_from(&setup, sdof, low, high, visit, context, error);
   free_setup(&setup);
   return code;
 }
@@ -213,22 +217,28 @@ static enum eo_code solve_by_branch(const struct eo_sdof *sdof, enum eo_sdof_sta
   return code;
 }
 
+static enum eo_code solve(struct setup *setup, const struct eo_sdof *sdof, enum eo_sdof_start start,
+                          const double state[2], struct eo_sdof_response *response, struct eo_error *error)
+{
+  double x[2 * TERMS] = {0};
+  if (start != EO_SDOF_STATE)
+    return solve_by_branch(sdof, start, setup, response, error);
+  EO_TRY(guess_from_state(setup, state, x, error));
+  return finish(setup, true, x, response, error);
+}
+
 enum eo_code eo_sdof_solve(const struct eo_sdof *sdof, enum eo_sdof_start start, const double state[2],
                            struct eo_sdof_response *response, struct eo_error *error)
 {
   struct setup setup;
-  double x[2 * TERMS] = {0};
   struct eo_sdof_response found = {0};
   enum eo_code code = make_setup(&setup, sdof, HARMONICS, SAMPLES, error);
-  if (!code && start == EO_SDOF_STATE)
-    code = guess_from_state(&setup, state, x, error);
   if (!code)
-    code = start == EO_SDOF_STATE ? finish(&setup, true, x, &found, error)
-                                  : solve_by_branch(sdof, start, &setup, &found, error);
+    code = solve(&setup, sdof, start, state, &found, error);
   free_setup(&setup);
-  if (!code)
-    *response = found;
-  return code;
+  EO_TRY(code);
+  *response = found;
+  return EO_OK;
 }
 
 /* What the visitor remembers between two points. */

@@ -308,43 +308,56 @@ static void keep_alone(struct eo_vibration *result)
   result->state[0].contact_loss = worse_loss(result);
 }
 
+/* The multiplier of the state that the solver holds. */
+static enum eo_code find_multiplier(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
+                                    struct eo_vibration *found, struct eo_error *error)
+{
+  struct eo_cycle cycle;
+  EO_TRY(eo_vibration_prepare(solver, load, &cycle, error));
+  return eo_floquet_attached(&solver->model.oscillator, &cycle, solver->harmonics, solver->x, &found->multiplier,
+                             error);
+}
+
 enum eo_code eo_vibration_settle(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                  struct eo_vibration *result, struct eo_error *error)
 {
   struct eo_vibration found;
-  struct eo_cycle cycle;
-  enum eo_code code = eo_vibration_solve(solver, load, EO_START_COLD, &found, error);
-  if (!code && found.outcome == EO_VIBRATION_CONVERGED) {
-    code = eo_vibration_prepare(solver, load, &cycle, error);
-    if (!code)
-      code = eo_floquet_attached(&solver->model.oscillator, &cycle, solver->harmonics, solver->x, &found.multiplier,
-                                 error);
-    if (!code && !(found.multiplier > 1 + margin)) {
-      keep_alone(&found);
-      *result = found;
-      return EO_OK;
-    }
-  }
-  return code ? code : search_states(solver, load, &found, result, error);
+  EO_TRY(eo_vibration_solve(solver, load, EO_START_COLD, &found, error));
+  if (found.outcome != EO_VIBRATION_CONVERGED)
+    return search_states(solver, load, &found, result, error);
+  EO_TRY(find_multiplier(solver, load, &found, error));
+  if (found.multiplier > 1 + margin)
+    return search_states(solver, load, &found, result, error);
+  keep_alone(&found);
+  *result = found;
+  return EO_OK;
 }
 
 enum eo_code eo_vibration_settle_integrated(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                             struct eo_vibration *result, struct eo_error *error)
 {
-  enum eo_code code = eo_vibration_integrate(solver, load, NULL, result, NULL, error);
   struct eo_vibration balance;
-  struct eo_cycle cycle;
-  if (!code && result->outcome == EO_VIBRATION_CONVERGED) {
-    code = eo_vibration_prepare(solver, load, &cycle, error);
-    if (!code)
-      code = eo_floquet_attached(&solver->model.oscillator, &cycle, solver->harmonics, solver->x, &result->multiplier,
-                                 error);
+  EO_TRY(eo_vibration_integrate(solver, load, NULL, result, NULL, error));
+  if (result->outcome == EO_VIBRATION_CONVERGED) {
+    EO_TRY(find_multiplier(solver, load, result, error));
     keep_alone(result);
-    return code;
+    return EO_OK;
   }
-  if (!code)
-    code = eo_vibration_solve(solver, load, EO_START_COLD, &balance, error);
-  return code ? code : search_states(solver, load, &balance, result, error);
+  EO_TRY(eo_vibration_solve(solver, load, EO_START_COLD, &balance, error));
+  return search_states(solver, load, &balance, result, error);
+}
+
+static enum eo_code keep_stable(struct search *search, struct eo_vibration_solver *solver,
+                                const struct eo_vibration_case *load, struct eo_vibration *result,
+                                struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  EO_TRY(begin_search(search, solver, load, error));
+  double multiplier = result->multiplier = largest_multiplier(search, error, &code);
+  if (code || !(multiplier > 1 + margin))
+    return code;
+  EO_TRY(follow_balance(search, result, false, error));
+  return end_search(search, multiplier, result, error);
 }
 
 enum eo_code eo_vibration_keep_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
@@ -353,15 +366,7 @@ enum eo_code eo_vibration_keep_stable(struct eo_vibration_solver *solver, const 
   struct search *search = malloc(sizeof *search);
   if (!search)
     return eo_error_memory(error);
-  enum eo_code code = begin_search(search, solver, load, error);
-  if (!code)
-    result->multiplier = largest_multiplier(search, error, &code);
-  const double multiplier = result->multiplier;
-  if (!code && multiplier > 1 + margin) {
-    code = follow_balance(search, result, false, error);
-    if (!code)
-      code = end_search(search, multiplier, result, error);
-  }
+  enum eo_code code = keep_stable(search, solver, load, result, error);
   free_search(search);
   free(search);
   return code;
