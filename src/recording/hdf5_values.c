@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/hdf5_private.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,38 @@ static bool read_ahead(const struct eo_hdf5 *hdf5, struct eo_hdf5_channel *chann
   return true;
 }
 
+/* The first way of packing of a data set that is not built in, by its name and number; "" when there is none. */
+static void find_packing(hid_t set, char *packing, size_t size)
+{
+  hid_t list = H5Dget_create_plist(set);
+  int count = list < 0 ? 0 : H5Pget_nfilters(list);
+  *packing = '\0';
+  for (int i = 0; i < count && !*packing; i++) {
+    char name[48] = "";
+    unsigned flags;
+    size_t values = 0;
+    H5Z_filter_t filter = H5Pget_filter2(list, (unsigned)i, &flags, &values, NULL, sizeof name, name, NULL);
+    if (filter > 0 && H5Zfilter_avail(filter) <= 0)
+      snprintf(packing, size, "%.40s%sfilter %d", name, *name ? ", " : "", (int)filter);
+  }
+  H5Pclose(list);
+}
+
+static enum eo_code refuse_values(const struct eo_hdf5 *hdf5, int series, int64_t first, struct eo_error *error)
+{
+  char packing[80];
+  const char *name = eo_tree_series(hdf5->tree)[series].name;
+  find_packing(hdf5->channel[series].set, packing, sizeof packing);
+  if (*packing)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "HDF5: \"%s\" is packed in a way (%s) that is not read; save it with gzip (zlib) or without "
+                        "compression.",
+                        name, packing);
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged.", name,
+                      (long long)first);
+}
+
 enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t count, double *values,
                             struct eo_error *error)
 {
@@ -58,10 +91,7 @@ enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t co
                   ? read_ahead(hdf5, channel, first, count, eo_tree_series(hdf5->tree)[series].length, values)
                   : read_stored(channel, first, count, values);
   if (!good)
-    return eo_error_set(
-        error, EO_ERROR_INPUT, "",
-        "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
-        eo_tree_series(hdf5->tree)[series].name, (long long)first);
+    return refuse_values(hdf5, series, first, error);
   for (int64_t i = 0; i < count; i++)
     values[i] = eo_tree_value(hdf5->tree, series, values[i]);
   return EO_OK;

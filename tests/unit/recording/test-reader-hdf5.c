@@ -156,6 +156,29 @@ static void test_one_chunk(void)
   ok(one < 3 * many + 0.2, "one chunk takes %.2f s of a processor, chunks of 10000 rows %.2f s", one, many);
 }
 
+static size_t pass_on(unsigned flags, size_t count, const unsigned values[], size_t bytes, size_t *room, void **data)
+{
+  return (void)flags, (void)count, (void)values, (void)room, (void)data, bytes;
+}
+
+/* Values packed by a filter of another library (h5py: lzf, PyTables: blosc) are refused by its name. */
+static void test_packing(void)
+{
+  enum { FILTER = 32000 };
+  hsize_t count = COUNT, chunk = 1000;
+  const H5Z_class2_t packing = {H5Z_CLASS_T_VERS, FILTER, 1, 1, "packer", NULL, NULL, pass_on};
+  hid_t list = H5Pcreate(H5P_DATASET_CREATE), file = open_file();
+  H5Zregister(&packing);
+  H5Pset_chunk(list, 1, &chunk);
+  H5Pset_shuffle(list);
+  H5Pset_filter(list, FILTER, 0, 0, NULL);
+  H5Dclose(put(file, "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, list));
+  H5Fclose(file);
+  H5Pclose(list);
+  H5Zunregister(FILTER);
+  refused("\"pinion\" is packed in a way (packer, filter 32000) that is not read", "an unknown filter");
+}
+
 static void test_hostile(void)
 {
   struct eo_error error;
@@ -210,6 +233,7 @@ int main(void)
   test_channels();
   test_table();
   test_one_chunk();
+  test_packing();
   test_hostile();
   return fixture_close();
 }
