@@ -230,14 +230,32 @@ static enum eo_code prepare_tracks(struct eo_angles_maker *maker, struct eo_angl
   return code;
 }
 
+/* Moves the samples in the times that are asked for to the front and returns their number. */
+static int keep_asked(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_sample *sample, int count)
+{
+  int kept = 0;
+  if (!maker->origin_known && count)
+    angles->origin = sample->time;
+  maker->origin_known = maker->origin_known || count;
+  for (int i = 0; i < count; i++) {
+    double time = sample[i].time - angles->origin;
+    if (time >= maker->asked->from && !(maker->asked->to > 0 && time > maker->asked->to))
+      sample[kept++] = sample[i];
+  }
+  return kept;
+}
+
 static enum eo_code convert_rows(struct eo_angles_maker *maker, struct eo_angles *angles, double (*out)[3],
                                  struct eo_error *error)
 {
   const double rows = (double)(maker->scan->rows ? maker->scan->rows : 1);
   int written = 0;
   for (int count = 1; count;) {
-    EO_TRY(eo_sampler_next(&maker->sampler, maker->sample + maker->held, &count, error));
-    maker->held += count;
+    struct eo_sample *samples = maker->sample + maker->held;
+    EO_TRY(eo_sampler_next(&maker->sampler, samples, &count, error));
+    int kept = keep_asked(maker, angles, samples, count);
+    eo_resampled_note(maker, samples, kept);
+    maker->held += kept;
     if (eo_progress_report(maker->progress, "angles", (double)maker->sampler.next / rows))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
     EO_TRY(eo_jumps_pass_on(maker, angles, count == 0, out, &written, error));
@@ -291,6 +309,7 @@ static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
     advance = fabs(angles->rate[0]) * angles->interval * EO_SAMPLER_BLOCK;
   angles->ratio_tolerance = fmax(1e-6, 0.02 / fmax(advance, 0.1));
   eo_jumps_judge(maker, angles);
+  eo_resampled_judge(maker);
 }
 
 /* What the columns are found to hold, before they are read once more as angles. */
@@ -322,8 +341,8 @@ static enum eo_code make(struct eo_angles_maker *maker, struct eo_angles *angles
 }
 
 enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
-                            const struct eo_tracks *tracks, const char *spool_directory, struct eo_findings *findings,
-                            const struct eo_progress *progress, struct eo_error *error)
+                            const struct eo_tracks *tracks, const struct eo_times *asked, const char *spool_directory,
+                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles_maker *maker = calloc(1, sizeof *maker);
   memset(angles, 0, sizeof *angles);
@@ -336,6 +355,7 @@ enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording 
   angles->interpolated = tracks->interpolated;
   maker->recording = recording;
   maker->tracks = tracks;
+  maker->asked = asked;
   maker->findings = findings;
   maker->progress = progress;
   enum eo_code code = make(maker, angles, spool_directory, error);

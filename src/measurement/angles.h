@@ -7,10 +7,16 @@
 
 #include "measurement/scan.h"
 
+/* Times of a recording that are asked for, s after its first row; to 0: until the end. */
+struct eo_times {
+  double from, to;
+};
+
 struct eo_angles {
   struct eo_recording
       *series; /* owned, [rows][3]: t in s, angles in rad as the channels gave them; NULL after a refusal */
   int64_t rows;
+  double origin;                /* s, time of the recording's first row */
   int from[2];                  /* [member]: channel it is taken from */
   double factor[2];             /* [member]: of that channel's angle */
   double interval;              /* usual step of time, s */
@@ -25,11 +31,12 @@ struct eo_angles {
   bool units_in_doubt;                  /* one channel is in degrees, the other in radians, and it is open which */
 };
 
-/* spool_directory: see eo_recording_new(). Findings are added; a refusal leaves angles->series NULL and is no error.
-   Errors: memory, files, cancelled. eo_angles_done() also after an error. */
+/* asked: what lies outside is not judged either. spool_directory: see eo_recording_new(). Findings are added; a refusal
+   leaves angles->series NULL and is no error. Errors: memory, files, cancelled. eo_angles_done() also after an error.
+ */
 enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
-                            const struct eo_tracks *tracks, const char *spool_directory, struct eo_findings *findings,
-                            const struct eo_progress *progress, struct eo_error *error);
+                            const struct eo_tracks *tracks, const struct eo_times *asked, const char *spool_directory,
+                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error);
 void eo_angles_done(struct eo_angles *angles);
 
 /* rows[count][3]: t in s, pinion and gear angle in rad as from[] and factor[] say, with the zero of each encoder. */

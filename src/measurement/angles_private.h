@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The making of angles from the inside: angles.c reads, corrects and concludes, jumps.c finds what is missing, doubled
-   or far off between one sample and the next. */
+   or far off between one sample and the next, resampled.c what another program put between recorded ones. */
 #ifndef EASEOFF_MEASUREMENT_ANGLES_PRIVATE_H
 #define EASEOFF_MEASUREMENT_ANGLES_PRIVATE_H
 
@@ -22,6 +22,7 @@ struct eo_angles_maker {
   const struct eo_tracks *tracks;
   struct eo_findings *findings;
   const struct eo_progress *progress;
+  const struct eo_times *asked;
   struct eo_scan *scan; /* owned */
   struct eo_sampler sampler;
   struct eo_sample sample[EO_HELD];
@@ -45,6 +46,10 @@ struct eo_angles_maker {
     double jump;
   } loss[EO_MOST_LOSSES];
   int64_t gaps, gap_row, spikes, spike_row;
+  bool origin_known;
+  struct {
+    int blocks, straight; /* of samples: looked at, and with many rows on straight lines */
+  } raster[2];            /* [channel] */
   bool wrapped[2];
 };
 
@@ -57,6 +62,11 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
 
 /* Findings about gaps, single values and lost counts, at the end. */
 void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles);
+
+/* Looks at samples of one block for rows that another program made up between recorded ones; at the end, the finding.
+ */
+void eo_resampled_note(struct eo_angles_maker *maker, const struct eo_sample *sample, int count);
+void eo_resampled_judge(const struct eo_angles_maker *maker);
 
 static inline const char *eo_channel_name(int channel)
 {

@@ -123,9 +123,10 @@ static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, 
     eo_angles_at_row(
         maker,
         eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
-                        "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld and the other does not: rows "
-                        "or counts were lost in one channel.",
-                        eo_channel_name(channel), DEGREES * excess[channel], rows, (long long)sample->row + 1),
+                        "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld (%.5g s) and the other does not: "
+                        "rows or counts were lost in one channel; times without it can be chosen.",
+                        eo_channel_name(channel), DEGREES * excess[channel], rows, (long long)sample->row + 1,
+                        sample->time - angles->origin),
         sample->row);
   }
 }

@@ -50,13 +50,14 @@ static enum eo_code measure(struct eo_measurement *measurement, struct eo_angles
                             const struct eo_measurement_settings *settings, const struct eo_progress *progress,
                             struct eo_error *error)
 {
-  if (angles->series && angles->rows >= 64) {
+  bool enough = angles->series && angles->rows >= 64;
+  if (enough) {
     measurement->ratio = angles->ratio;
     eo_orientation_judge(angles, settings->transmission.teeth, settings->stated_speed, &measurement->findings);
   }
   if (!angles->series || is_refused(measurement))
     return EO_OK;
-  if (unit_is_open(angles, tracks, settings->stated_speed))
+  if (enough && unit_is_open(angles, tracks, settings->stated_speed))
     EO_TRY(eo_units_judge(angles, &settings->transmission, doubt_of(tracks), &measurement->findings, error));
   if (is_refused(measurement))
     return EO_OK;
@@ -70,12 +71,13 @@ enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct
                                 const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles angles = {0};
+  const struct eo_times asked = {settings->transmission.part.from, settings->transmission.part.to};
   memset(measurement, 0, sizeof *measurement);
   measurement->load.pinion_torque = NAN;
   measurement->rows = eo_recording_rows(recording);
   measurement->ratio = NAN;
-  enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &measurement->findings,
-                                     progress, error);
+  enum eo_code code = eo_angles_make(&angles, recording, tracks, &asked, settings->spool_directory,
+                                     &measurement->findings, progress, error);
   measurement->interval = angles.interval;
   for (int channel = 0; channel < 2; channel++) {
     measurement->raw[channel] = angles.raw[channel];

@@ -7,7 +7,7 @@
 
 #include "measurement/scan.h"
 
-enum { BLOCK = 4096, MOST_STRETCHES = 4096, MOST_TURNS = 1 << 16, LEAST_ROWS = 8 };
+enum { BLOCK = 4096, MOST_STRETCHES = 4096, MOST_TURNS = 1 << 16 };
 static const double STANDING = 0.02; /* of the fast tenth of all speeds: slower is no measurement, and creeps there */
 static const double LEAST_TURNS = 3; /* of the pinion in a part; the shaft orders need them */
 static const double STEADY = 0.02;   /* relative: turns this near to their median are one steady state */
@@ -29,8 +29,6 @@ struct finder {
   struct eo_findings *findings;
   const struct eo_progress *progress;
   struct eo_parts *parts;
-  double origin;       /* s, time of the first row */
-  int64_t first, last; /* rows that the choice of times leaves */
   int stretches;
   struct stretch *stretch; /* owned, [stretches + 1] */
   double *speed;           /* owned, [stretches] rad/s, signed */
@@ -68,16 +66,7 @@ static int64_t rows_each(const struct finder *finder)
 
 static void add_stretch(struct finder *finder, int64_t index, const double row[3])
 {
-  double time = row[0] - finder->origin;
-  bool outside = time < finder->choice->from || (finder->choice->to > 0 && time > finder->choice->to);
-  if (index == 0 && finder->choice->from <= 0)
-    outside = false;
-  if (outside)
-    return;
-  if (finder->first < 0)
-    finder->first = index;
-  finder->last = index;
-  if ((index - finder->first) % rows_each(finder) == 0 && finder->stretches < MOST_STRETCHES)
+  if (index % rows_each(finder) == 0 && finder->stretches < MOST_STRETCHES)
     finder->stretch[finder->stretches++] = (struct stretch){index, row[0], row[1]};
 }
 
@@ -102,8 +91,8 @@ static struct eo_part part_between(const struct finder *finder, const struct str
 {
   return (struct eo_part){.first = from->row,
                           .last = to->row,
-                          .from = from->time - finder->origin,
-                          .to = to->time - finder->origin,
+                          .from = from->time - finder->angles->origin,
+                          .to = to->time - finder->angles->origin,
                           .turns = (to->angle - from->angle) / (2 * M_PI)};
 }
 
@@ -122,7 +111,7 @@ static void find_runs(struct finder *finder, double fast)
       continue;
     struct eo_part part = part_between(finder, &finder->stretch[begin], &finder->stretch[end]);
     if (to == n)
-      part.last = finder->last;
+      part.last = finder->angles->rows - 1;
     if (fabs(part.turns) < LEAST_TURNS && parts->count)
       continue;
     if (parts->count && fabs(parts->part[0].turns) < LEAST_TURNS)
@@ -216,7 +205,7 @@ static void say_parts(const struct finder *finder)
   const struct eo_part *used = &parts->part[parts->used];
   double all = finder->stretch[finder->stretches].time - finder->stretch[0].time;
   int kept = parts->count < EO_PARTS ? parts->count : EO_PARTS;
-  if (finder->choice->part || (parts->count == 1 && used->first == finder->first && used->last == finder->last))
+  if (finder->choice->part || (parts->count == 1 && used->first == 0 && used->last == finder->angles->rows - 1))
     return;
   if (kept == 1)
     eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
@@ -302,18 +291,7 @@ static enum eo_code choose(struct finder *finder, struct eo_error *error)
 
 static enum eo_code find(struct finder *finder, struct eo_error *error)
 {
-  double first[3];
-  enum eo_code code = eo_angles_read(finder->angles, 0, 1, first, error);
-  finder->origin = first[0];
-  finder->first = finder->last = -1;
-  if (!code)
-    code = each_row(finder, 0, finder->angles->rows - 1, add_stretch, error);
-  if (code)
-    return code;
-  if (finder->stretches < 2 || finder->last - finder->first < LEAST_ROWS) {
-    refuse(finder, "Hardly a row of the recording lies in the times asked for.", (double)finder->stretches);
-    return EO_OK;
-  }
+  EO_TRY(each_row(finder, 0, finder->angles->rows - 1, add_stretch, error));
   find_runs(finder, find_speeds(finder));
   return choose(finder, error);
 }

@@ -270,7 +270,8 @@ enum eo_code eo_transmission_measure(struct eo_transmission *result, const struc
   enum eo_code code = EO_OK;
   if (angles->rows < 64)
     eo_findings_add(findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, (double)angles->rows,
-                    "The recording has only %lld rows that can be used.", (long long)angles->rows);
+                    "The recording has only %lld rows that can be used%s.", (long long)angles->rows,
+                    settings->part.from > 0 || settings->part.to > 0 ? " in the times asked for" : "");
   else
     code = measure(fit, error);
   eo_normal_done(&fit->normal);

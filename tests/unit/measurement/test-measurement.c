@@ -433,6 +433,18 @@ static void check_parts(void)
   ok(!m->refused && fabs(m->transmission.parts.measured.from - 0.1) < 0.01 &&
          fabs(m->transmission.parts.measured.to - 0.8) < 0.01,
      "from 0.1 to 0.8 s when that is asked for");
+  s = usual();
+  s.fault = EO_FAULT_SLIP;
+  s.row = 13000;
+  s.size = 1;
+  settings.transmission.part = (struct eo_part_choice){.to = 12900 / s.sample_rate};
+  m = measure_with(&s, &settings);
+  double off = m->transmission.rms / eo_synthetic_rms(&s, 8) - 1;
+  ok(!m->refused && fabs(off) < 0.01, "times without the row that was lost: RMS off by %.2g of it", off);
+  settings.transmission.part.to = 13100 / s.sample_rate;
+  ok(measure_with(&s, &settings)->refused, "times with it are refused");
+  settings.transmission.part = (struct eo_part_choice){.from = 1e4};
+  ok(measure_with(&s, &settings)->refused, "times after the end");
 }
 
 static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum eo_severity severity)
@@ -441,6 +453,50 @@ static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum
   for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
     found = found || (m->findings.finding[i].kind == kind && m->findings.finding[i].severity == severity);
   return found;
+}
+
+/* Rows of a recording brought to `rate` on straight lines, as programs do that export with one time. */
+static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate)
+{
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  const struct eo_tracks tracks = {
+      .interval = 1 / rate, .time_column = -1, .channel = {{.column = {0}, .scale = 1}, {.column = {1}, .scale = 1}}};
+  struct eo_recording *recording = NULL, *resampled = NULL;
+  struct eo_tracks own;
+  double rows[2][3], row[2];
+  eo_measurement_done(&measurement);
+  memset(&measurement, 0, sizeof measurement);
+  enum eo_code code = eo_synthetic_record(s, &recording, &error);
+  if (!code)
+    code = eo_recording_new(&resampled, 2, "/tmp", &error);
+  eo_synthetic_tracks(s, &own);
+  for (double at = 0; !code && at + 1 < (double)eo_recording_rows(recording); at += s->sample_rate / rate) {
+    code = eo_recording_read(recording, (int64_t)at, 2, rows[0], &error);
+    for (int i = 0; i < 2; i++) {
+      int c = own.channel[i].column[0];
+      row[i] = own.channel[i].scale * (rows[0][c] + (at - floor(at)) * (rows[1][c] - rows[0][c]));
+    }
+    if (!code)
+      code = eo_recording_append(resampled, row, 1, &error);
+  }
+  if (!code)
+    code = eo_measurement_run(&measurement, resampled, &tracks, &settings, NULL, &error);
+  if (code)
+    printf("# %s\n", error.text);
+  eo_recording_free(recording);
+  eo_recording_free(resampled);
+  return &measurement;
+}
+
+static void check_resampled(void)
+{
+  struct eo_synthetic s = usual();
+  ok(!measure_resampled(&s, s.sample_rate)->refused, "the rows as they are");
+  for (double times = 2; times < 20; times *= 2.5)
+    ok(measure_resampled(&s, times * s.sample_rate)->refused &&
+           said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
+       "rows brought to %.3g times their rate on straight lines are refused", times);
 }
 
 static void check_load(void)
@@ -485,6 +541,7 @@ int main(int argc, char **argv)
   check_printed_radii();
   check_speeds();
   check_parts();
+  check_resampled();
   check_load();
   check_run_out();
   check_slow_clock();
