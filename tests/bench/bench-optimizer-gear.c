@@ -4,7 +4,8 @@
    of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
 
      bench-optimizer-gear [--quick] [--front] [--seeds N] [--first SEED] [--case a|b] [--design FILE] [--coarse]
-   [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR] [--rows FILE] [--blind]
+   [--budget N] [--target VALUE] [--algorithm NAME[,NAME]...] [--set KEY=NUMBER]... [--cache DIR] [--rows FILE]
+   [--blind]
 
    --front: Pareto fronts of the three objectives in those of the unmodified pair. --case: the variables, shared or per
    end; a design without it: as it states. --coarse: a third of the positions, cells and harmonics: an objective of the

@@ -4,7 +4,7 @@
    included. Prints a table; asserts nothing.
 
      bench-optimizer [--quick] [--front] [--seeds N] [--variables N] [--problem NAME] [--budget N] [--target VALUE]
-   [--algorithm NAME] [--set KEY=NUMBER]...
+   [--algorithm NAME[,NAME]...] [--set KEY=NUMBER]...
 
    --front: Pareto fronts of DTLZ2 with three objectives. */
 #include "contest.h"

@@ -254,11 +254,19 @@ void contest_print_head(const struct contest *contest)
   printf("   true  us/evaluation\n");
 }
 
+/* Whether one of the beginnings, with commas between, is that of the name. */
+static bool takes_part(const char *beginnings, const char *name)
+{
+  bool taken = !beginnings;
+  for (const char *at = beginnings; at && !taken; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+    taken = strncmp(name, at, strcspn(at, ",")) == 0;
+  return taken;
+}
+
 void contest_run(const struct contest *contest, const struct contest_problem *problem)
 {
   for (size_t c = 0; c < sizeof contestants / sizeof *contestants; c++)
-    if (contestants[c].front == contest->front &&
-        (!contest->algorithm || strncmp(contestants[c].name, contest->algorithm, strlen(contest->algorithm)) == 0))
+    if (contestants[c].front == contest->front && takes_part(contest->algorithm, contestants[c].name))
       print_line(contest, problem, &contestants[c]);
 }
 

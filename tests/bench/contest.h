@@ -49,7 +49,7 @@ struct contest {
   int seeds, first;       /* how many, from which on */
   int budget;             /* true evaluations of each run */
   double target;          /* value whose first reaching is counted; -INFINITY: none */
-  const char *algorithm;  /* how the names begin; NULL: all */
+  const char *algorithm;  /* how the names begin, with commas between; NULL: all */
   const char *change[32]; /* KEY=NUMBER: parameters of our own other than the defaults */
   int changes;
   const char *rows; /* file for every evaluation of the run; NULL: none */
@@ -59,8 +59,8 @@ struct contest {
 /* 11 seeds, 1000 evaluations, every algorithm. */
 struct contest contest_default(void);
 
-/* Understands --seeds N, --first SEED, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --rows FILE,
-   --front and --quick at argv[i]; returns how many words it took, 0: none. */
+/* Understands --seeds N, --first SEED, --budget N, --target VALUE, --algorithm NAME[,NAME]..., --set KEY=NUMBER, --rows
+   FILE, --front and --quick at argv[i]; returns how many words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
 void contest_print_head(const struct contest *contest);
