@@ -177,8 +177,15 @@ static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_desig
   EO_TRY(find_design(analysis, design, want, error));
   eo_pitch_analysis_done(&analysis->pitch);
   if (want & EO_WANT_PITCH && design->pitch.stated)
-    EO_TRY(eo_pitch_analysis_run(&analysis->pitch, analysis->evaluator, design, want & EO_WANT_ROOT, analysis->threads,
-                                 analysis->progress, error));
+    EO_TRY(eo_pitch_analysis_run(&analysis->pitch, analysis->evaluator,
+                                 &(struct eo_pitch_question){.design = design,
+                                                             .compliance_factor = 1,
+                                                             .speed_factor = 1,
+                                                             .root = want & EO_WANT_ROOT,
+                                                             .vibration = true,
+                                                             .threads = analysis->threads,
+                                                             .progress = analysis->progress},
+                                 error));
   if (want & EO_WANT_RATING)
     EO_TRY(find_rating(analysis, design, error));
   if (own_reference)

@@ -17,9 +17,7 @@ struct work {
   const struct eo_design *design;
   struct eo_tooth_deviation *ordered[2][2]; /* [end][member] in the order of meshing, of the case at hand */
   double *gap[2];                           /* [end] of the case at hand */
-  bool root;
-  int threads;
-  const struct eo_progress *progress; /* of the load case at hand, then of the vibrations */
+  const struct eo_pitch_question *question;
 };
 
 /* Contact takes most of the time, so that what is left is told by the load cases that are done. */
@@ -99,16 +97,16 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
       .inwards = load_case->running.inwards,
       .positions = work->design->pitch.positions,
       .stagger = eo_evaluator_stagger_of(pair, work->design, &load_case->running, work->design->pitch.positions),
-      .compliance_factor = 1,
+      .compliance_factor = work->question->compliance_factor,
       .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
       .shared_load = load_case->force,
       .hold = eo_meeting_hold(work->evaluator, work->design, load_case),
-      .threads = work->threads};
+      .threads = work->question->threads};
   for (int i = 0; i < 4; i++)
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
-  for (int end = 0; end < 2 && work->root; end++)
+  for (int end = 0; end < 2 && work->question->root && pair->root; end++)
     input.root[end] = eo_pair_half(pair, end)->root;
-  struct share share = {work->progress, (int)(own - work->result->load_case), work->result->cases};
+  struct share share = {work->question->progress, (int)(own - work->result->load_case), work->result->cases};
   const struct eo_progress progress = {report_share, &share};
   return eo_hunting_run(&own->hunting, &input, &progress, error);
 }
@@ -225,7 +223,7 @@ static enum eo_code respond_with(const struct work *work, const struct eo_case_r
   int most = hunting->positions / 2 - 1, harmonics = design->resolution.te_harmonics;
   const struct eo_long_case load = {.parameters = &parameters,
                                     .torque = own->load_case.torque,
-                                    .speed = own->load_case.speed,
+                                    .speed = own->load_case.speed * work->question->speed_factor,
                                     .pinion_teeth = hunting->teeth[EO_PINION],
                                     .cycles = hunting->cycles,
                                     .positions = hunting->positions,
@@ -289,7 +287,7 @@ static enum eo_code respond(void *context, int thread, int k, struct eo_error *e
     code = scratch[i] ? EO_OK : eo_error_memory(error);
   }
   own->response.outcome = EO_LONG_NO_LAW;
-  if (!code && own->hunting.failures == 0)
+  if (!code && work->question->vibration && own->hunting.failures == 0)
     code = respond_with(work, &work->evaluator->result.load_case[k], own, scratch, error);
   for (int i = 0; i < 4; i++)
     free(scratch[i]);
@@ -337,10 +335,10 @@ static enum eo_code run_cases(struct work *work, struct eo_error *error)
     EO_TRY(read_curves(work, own, error));
     EO_TRY(average_turns(own, load_case->running.backwards, error));
   }
-  const struct eo_parallel parallel = {.threads = work->threads,
+  const struct eo_parallel parallel = {.threads = work->question->threads,
                                        .work = respond,
                                        .context = work,
-                                       .progress = work->progress,
+                                       .progress = work->question->progress,
                                        .what = "vibration over the hunting period",
                                        .first = 1,
                                        .last = 1};
@@ -348,15 +346,9 @@ static enum eo_code run_cases(struct work *work, struct eo_error *error)
 }
 
 enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, bool root, int threads,
-                                   const struct eo_progress *progress, struct eo_error *error)
+                                   const struct eo_pitch_question *question, struct eo_error *error)
 {
-  struct work work = {.result = analysis,
-                      .progress = progress,
-                      .evaluator = evaluator,
-                      .design = design,
-                      .root = root && evaluator->pair->root,
-                      .threads = threads};
+  struct work work = {.result = analysis, .evaluator = evaluator, .design = question->design, .question = question};
   *analysis = (struct eo_pitch_analysis){0};
   EO_TIMED(analysis->milliseconds);
   enum eo_code code = run_cases(&work, error);

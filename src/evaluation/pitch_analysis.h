@@ -47,12 +47,18 @@ struct eo_pitch_analysis {
   double milliseconds;
 };
 
-/* Of a design that states single teeth, after the evaluator has run it. root: with root stresses, where the pair has
-   them. Errors: as eo_hunting_run() and eo_long_response_find(), cancelled. eo_pitch_analysis_done() also after an
-   error. */
+struct eo_pitch_question {
+  const struct eo_design *design; /* states single teeth; what the evaluator has run */
+  double compliance_factor, speed_factor;
+  bool root, vibration; /* with root stresses, where the pair has them; with the response */
+  int threads;
+  const struct eo_progress *progress;
+};
+
+/* After the evaluator has run the design, its contact at least. Errors: as eo_hunting_run() and
+   eo_long_response_find(), cancelled. eo_pitch_analysis_done() also after an error. */
 enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, bool root, int threads,
-                                   const struct eo_progress *progress, struct eo_error *error);
+                                   const struct eo_pitch_question *question, struct eo_error *error);
 void eo_pitch_analysis_done(struct eo_pitch_analysis *analysis);
 
 #endif
