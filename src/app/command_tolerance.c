@@ -18,7 +18,7 @@
 struct request {
   const char *file, *pairs, *grade, *seed, *csv, *worst, *keep, *work;
   const char *data, *cache, *threads; /* read by eo_app_crew_begin(), like --no-cache */
-  bool json, no_cache, no_vibration;
+  bool json, no_cache, no_vibration, single_teeth;
   struct eo_app_crew *crew;
   struct eo_design design;
   struct eo_geometry geometry;
@@ -54,6 +54,8 @@ static bool read_options(struct request *request, int *status)
     tolerance_settings->seed = (uint64_t)seed;
   if (request->no_vibration)
     tolerance_settings->vibration = false;
+  if (request->single_teeth)
+    tolerance_settings->single_teeth = true;
   return true;
 }
 
@@ -262,14 +264,21 @@ static int run(const struct eo_command *command, int argc, char **argv)
     free(request);
     return status;
   }
-  const struct eo_option options[] = {
-      {.name = "--pairs", .value = &request->pairs},      {.name = "--class", .value = &request->grade},
-      {.name = "--seed", .value = &request->seed},        {.name = "--no-vibration", .flag = &request->no_vibration},
-      {.name = "--worst", .value = &request->worst},      {.name = "--keep", .value = &request->keep},
-      {.name = "--work", .value = &request->work},        {.name = "--json", .flag = &request->json},
-      {.name = "--csv", .value = &request->csv},          {.name = "--data", .value = &request->data},
-      {.name = "--no-cache", .flag = &request->no_cache}, {.name = "--threads", .value = &request->threads},
-      {.name = "--cache", .value = &request->cache},      {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--pairs", .value = &request->pairs},
+                                      {.name = "--class", .value = &request->grade},
+                                      {.name = "--seed", .value = &request->seed},
+                                      {.name = "--no-vibration", .flag = &request->no_vibration},
+                                      {.name = "--worst", .value = &request->worst},
+                                      {.name = "--keep", .value = &request->keep},
+                                      {.name = "--work", .value = &request->work},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = "--threads", .value = &request->threads},
+                                      {.name = "--cache", .value = &request->cache},
+                                      {.name = "--single-teeth", .flag = &request->single_teeth},
+                                      {.name = NULL}};
   request->crew = &crew;
   if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
     status = run_design_or_job(command, request, operands);
@@ -280,7 +289,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_tolerance = {
     "tolerance",
-    "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] [--worst FILE] [--keep FILE] [--json] "
+    "DESIGN.json [--pairs N] [--class N] [--seed N] [--no-vibration] [--single-teeth] [--worst FILE] [--keep FILE] "
+    "[--json] "
     "[--csv FILE] [--threads N] [--data DIR] [--cache DIR] [--no-cache] | --work N",
     "many pairs as they are made: percentiles, what decides, yield",
     "The design's block \"tolerance\" says what scatters: a preset, inputs by their keys, limits that a good pair "
@@ -293,7 +303,11 @@ const struct eo_command eo_command_tolerance = {
     "coarse grid, and\n"
     "in full those that decide: a note says how many and how far the others are off, every interval has it in it; "
     "\"method\": \"full\" in\n"
-    "the block computes all in full. --worst writes the worst pair as a design, --csv a line per pair in full. --keep "
+    "the block computes all in full. --single-teeth gives every pair teeth of its own, index deviations within the "
+    "class, and "
+    "computes\n"
+    "its hunting period, which takes some hundred times as long. --worst writes the worst pair as a design, --csv a "
+    "line per pair in full. --keep "
     "FILE keeps every\n"
     "pair as it is computed: the same command goes on from there. All cores work unless --threads says otherwise; the "
     "numbers do not\n"

@@ -105,6 +105,17 @@ static const struct eo_field member_fields[] = {
 };
 static const struct eo_table member_table = EO_TABLE("a member's teeth", struct member_document, member_fields);
 
+const struct eo_field *eo_pitch_member_number(const char *key, size_t *offset)
+{
+  for (int i = 0; i < member_table.count; i++) {
+    const struct eo_field *field = &member_table.field[i];
+    *offset = field->offset - offsetof(struct member_document, own);
+    if (field->kind == EO_FIELD_NUMBER && strcmp(field->key, key) == 0)
+      return field;
+  }
+  return NULL;
+}
+
 static const struct eo_field pitch_fields[] = {
     EO_INTEGER_DERIVED(struct pitch_document, positions, "positions_per_cycle", 4, 1024,
                        "the largest divisor of the resolution's positions up to 32",

@@ -12,6 +12,9 @@
 
 extern const struct eo_table eo_pitch_table;
 
+/* A number of a member by its key (eccentricity_um), and where it stands in struct eo_pitch_member; NULL: none. */
+const struct eo_field *eo_pitch_member_number(const char *key, size_t *offset);
+
 /* Reads the object (NULL or null: teeth are alike); faults with their place. *pitch is made anew. */
 void eo_pitch_decode(const json_t *object, const struct eo_gear_pair *pair, struct eo_pitch *pitch,
                      struct eo_faults *faults);

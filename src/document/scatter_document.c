@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/made_teeth.h"
+#include "document/scatter_teeth.h"
 #include "rating/flank_tolerance.h"
 
 /* Where an evaluation reads its numbers; other blocks belong to the prepared pair, the rating or the search. */
@@ -16,6 +18,7 @@ struct search {
   struct eo_scatter *scatter;
   const struct eo_design *design;
   const struct eo_scatter_row *row;
+  bool revolutions; /* the inputs are those of an analysis that computes whole revolutions where it is asked to */
   char pointer[64]; /* of the row in the design; "" for a preset's */
   int found;
   struct eo_error *error;
@@ -65,6 +68,10 @@ static enum eo_code set_distribution(const struct search *search, struct eo_scat
     input->deviation.low = row->low;
     input->deviation.high = row->high;
     return row->low <= row->high ? EO_OK : refuse(search, "low is above high.");
+  case EO_SCATTER_HALF_NORMAL:
+    input->deviation.kind = EO_DISTRIBUTION_HALF_NORMAL;
+    input->deviation.cut = isnan(row->cut) ? INFINITY : row->cut;
+    return EO_OK;
   case EO_SCATTER_VALUES:
     input->deviation.kind = EO_DISTRIBUTION_LIST;
     input->together = group_number(search);
@@ -175,6 +182,21 @@ static enum eo_code add_factor(struct search *search, int target)
   return add_input(search, search->row->key, &input);
 }
 
+/* Numbers of the members' teeth, rest: "pinion.eccentricity_um". A search does not turn the gears round. */
+static enum eo_code add_tooth_numbers(struct search *search, const char *rest)
+{
+  struct eo_tooth_number number;
+  if (!search->revolutions)
+    return EO_OK;
+  if (!search->design->tolerance.single_teeth)
+    return refuse(search, "what single teeth do is computed where the block tolerance has \"single_teeth\": true.");
+  search->found = 0;
+  for (int member = 0; member < 2; member++)
+    if (eo_scatter_find_tooth_number(rest, member, &number))
+      EO_TRY(add_number(search, number.key, number.field, number.offset));
+  return search->found ? EO_OK : refuse(search, "there is no such number of a member's teeth.");
+}
+
 static enum eo_code add_row(struct search *search)
 {
   const char *key = search->row->key;
@@ -183,21 +205,28 @@ static enum eo_code add_row(struct search *search)
     return add_factor(search, EO_TARGET_COMPLIANCE);
   if (strcmp(key, "speed_factor") == 0)
     return add_factor(search, EO_TARGET_SPEED);
+  if (strncmp(key, "pitch.", 6) == 0)
+    return add_tooth_numbers(search, key + 6);
   for (int i = 0; varied[i]; i++)
     known |= strncmp(key, varied[i], strlen(varied[i])) == 0 && key[strlen(varied[i])] == '.';
   if (!known)
-    return refuse(search, "what scatters stands in modification, alignment, supports, shafts or load_cases, or is "
-                          "compliance_factor or speed_factor; another gear pair is prepared anew.");
+    return refuse(search, "what scatters stands in modification, alignment, supports, shafts, load_cases or pitch, or "
+                          "is compliance_factor or speed_factor; another gear pair is prepared anew.");
   search->found = 0;
   EO_TRY(walk(search, &eo_design_table, 0, key, ""));
   return search->found ? EO_OK : refuse(search, "there is no such number in the design.");
 }
 
-static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
+static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_design *design, bool revolutions,
+                               struct eo_error *error)
 {
   const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
   for (int i = 0; i < tolerance_settings->rows; i++) {
-    struct search search = {.scatter = scatter, .design = design, .row = &tolerance_settings->row[i], .error = error};
+    struct search search = {.scatter = scatter,
+                            .design = design,
+                            .row = &tolerance_settings->row[i],
+                            .revolutions = revolutions,
+                            .error = error};
     snprintf(search.pointer, sizeof search.pointer, "/tolerance/inputs/%d/key", i);
     if (tolerance_settings->preset == EO_SCATTER_AS_MEASURED && tolerance_settings->row[i].kind != EO_SCATTER_VALUES)
       return refuse(&search, "with the preset as_measured every input has values.");
@@ -210,7 +239,8 @@ static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_desig
 static enum eo_code add_preset_row(struct eo_scatter *scatter, const struct eo_design *design,
                                    const struct eo_scatter_row *row, struct eo_error *error)
 {
-  struct search search = {.scatter = scatter, .design = design, .row = row, .pointer = "/tolerance", .error = error};
+  struct search search = {
+      .scatter = scatter, .design = design, .row = row, .revolutions = true, .pointer = "/tolerance", .error = error};
   return add_row(&search);
 }
 
@@ -302,19 +332,63 @@ static enum eo_code add_preset(struct eo_scatter *scatter, const struct eo_desig
                     error);
 }
 
+/* Index deviations within the tolerances, as large as a half normal size of which they are two or three sigma: flanks
+   that are drawn reach one of the tolerances with a share of 1, and gears beyond them are sorted out. */
+static enum eo_code add_teeth(struct eo_scatter *scatter, const struct eo_design *design, struct eo_error *error)
+{
+  int sigmas = design->tolerance.preset == EO_SCATTER_GROUND ? 3 : 2;
+  const struct eo_scatter_row row = {
+      .key = "pitch.*.tolerance_share", .kind = EO_SCATTER_HALF_NORMAL, .sigma = 1. / sigmas, .cut = sigmas};
+  return add_preset_row(scatter, design, &row, error);
+}
+
+static enum eo_code add_all(struct eo_scatter *scatter, const struct eo_design *design, bool preset, bool revolutions,
+                            struct eo_error *error)
+{
+  bool teeth = revolutions && design->tolerance.single_teeth;
+  scatter->inputs = 0;
+  if (preset)
+    EO_TRY(add_preset(scatter, design, error));
+  if (teeth)
+    EO_TRY(add_teeth(scatter, design, error));
+  EO_TRY(add_stated(scatter, design, revolutions, error));
+  if (teeth)
+    EO_TRY(eo_scatter_add_seeds(scatter, error));
+  return eo_scatter_settle(scatter, error);
+}
+
+/* revolutions: with single teeth, where the block asks for them. */
+static enum eo_code find_inputs(struct eo_scatter *scatter, const struct eo_design *design, bool preset,
+                                bool revolutions, struct eo_error *error)
+{
+  if (!revolutions || !design->tolerance.single_teeth)
+    return add_all(scatter, design, preset, revolutions, error);
+  struct eo_design *toothed = malloc(sizeof *toothed);
+  if (!toothed)
+    return eo_error_memory(error);
+  memcpy(toothed, design, sizeof *toothed);
+  eo_design_state_teeth(toothed);
+  enum eo_code code = eo_scatter_check_teeth(design, toothed, error);
+  if (!code)
+    code = add_all(scatter, toothed, preset, true, error);
+  free(toothed);
+  return code;
+}
+
+/* Whether the inputs of a preset are there beside those stated. */
+static bool has_preset(const struct eo_design *design, bool assume_class, bool *assumed)
+{
+  const struct eo_tolerance_settings *settings = &design->tolerance;
+  bool nothing = settings->preset == EO_SCATTER_AS_STATED && settings->rows == 0;
+  if (assumed)
+    *assumed = nothing && assume_class;
+  return (nothing && assume_class) || settings->preset == EO_SCATTER_ISO_CLASS || settings->preset == EO_SCATTER_GROUND;
+}
+
 enum eo_code eo_scatter_of_design(struct eo_scatter *scatter, const struct eo_design *design, bool assume_class,
                                   bool *assumed, struct eo_error *error)
 {
-  const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
-  bool nothing = tolerance_settings->preset == EO_SCATTER_AS_STATED && tolerance_settings->rows == 0;
-  scatter->inputs = 0;
-  if (assumed)
-    *assumed = nothing && assume_class;
-  if ((nothing && assume_class) || tolerance_settings->preset == EO_SCATTER_ISO_CLASS ||
-      tolerance_settings->preset == EO_SCATTER_GROUND)
-    EO_TRY(add_preset(scatter, design, error));
-  EO_TRY(add_stated(scatter, design, error));
-  return eo_scatter_settle(scatter, error);
+  return find_inputs(scatter, design, has_preset(design, assume_class, assumed), true, error);
 }
 
 /* Deviations alone: bounds count for the design that is tried. */
@@ -365,7 +439,7 @@ enum eo_code eo_scatter_draw_range(struct eo_design *design, int first, int pair
   struct eo_scatter *scatter = malloc(sizeof *scatter);
   if (!scatter)
     return eo_error_memory(error);
-  enum eo_code code = eo_scatter_of_design(scatter, design, true, NULL, error);
+  enum eo_code code = find_inputs(scatter, design, has_preset(design, true, NULL), false, error);
   if (!code)
     code = draw(design, scatter, first, pairs, points, error);
   free(scatter);
@@ -376,12 +450,15 @@ void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t s
 {
   const struct eo_distribution *distribution = &input->deviation;
   int length = 0;
-  if (distribution->kind == EO_DISTRIBUTION_UNIFORM)
+  if (input->target == EO_TARGET_SEED)
+    snprintf(text, size, "teeth of its own for every pair");
+  else if (distribution->kind == EO_DISTRIBUTION_UNIFORM)
     snprintf(text, size, "uniform, %+.4g .. %+.4g", distribution->low, distribution->high);
   else if (distribution->kind == EO_DISTRIBUTION_LIST)
     snprintf(text, size, "%d values", input->values);
   else
-    length = snprintf(text, size, "normal, sigma %.4g", distribution->sigma);
+    length = snprintf(text, size, "%snormal, sigma %.4g",
+                      distribution->kind == EO_DISTRIBUTION_HALF_NORMAL ? "half " : "", distribution->sigma);
   if (length > 0 && distribution->mean != 0)
     length += snprintf(text + length, size - (size_t)length, ", bias %+.4g", distribution->mean);
   if (length > 0 && !isinf(distribution->cut))

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/made_teeth.h"
 #include "document/tolerance_document.h"
 #include "evaluation/scatter_levels.h"
 #include "tolerance/response_surface.h"
@@ -20,7 +21,7 @@ struct eo_scatter_plan eo_tolerance_plan(const struct eo_tolerance_settings *tol
 double eo_tolerance_memory(const struct eo_design *design, const struct eo_scatter *scatter)
 {
   double pairs = design->tolerance.pairs, levels = eo_scatter_is_coarse_first(design) ? 2 : 1,
-         numbers = (1 + levels) * eo_scatter_outputs(design) + 2. * scatter->inputs + 2;
+         numbers = (1 + levels) * eo_scatter_outputs(design) + 3. * scatter->inputs + 2;
   return sizeof(double) * pairs * numbers + eo_surface_memory(design->tolerance.pairs, scatter->inputs);
 }
 
@@ -29,14 +30,20 @@ static double value_at(const struct eo_scatter_run *run, int pair, int scalar, i
   return run->output[(size_t)pair * (size_t)run->outputs + (size_t)(scalar * run->cases + load_case)];
 }
 
-static enum eo_code check_limit(const struct eo_tolerance_limit *limit, int cases, int index, struct eo_error *error)
+static enum eo_code check_limit(const struct eo_tolerance_limit *limit, const struct eo_design *design, int index,
+                                struct eo_error *error)
 {
   char pointer[64];
+  int scalar = eo_scalar_find(limit->output), cases = design->load_cases;
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/output", index);
-  if (eo_scalar_find(limit->output) < 0)
+  if (scalar < 0)
     return eo_error_set(error, EO_ERROR_INPUT, pointer,
                         "There is no output \"%.60s\": peak_to_peak_um, order_1_um, max_pressure_MPa, impact_N, "
                         "rms_m_per_s2, K_Hbeta, edge_load_share and others of the documentation are.",
+                        limit->output);
+  if (eo_scalar_at(scalar)->needs & EO_SCALAR_TEETH && !design->tolerance.single_teeth)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer,
+                        "%s is a number of the hunting period, which is computed with \"single_teeth\": true.",
                         limit->output);
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/load_case", index);
   if (limit->load_case > cases)
@@ -48,7 +55,7 @@ enum eo_code eo_tolerance_check_limits(const struct eo_design *design, struct eo
 {
   const struct eo_tolerance_settings *tolerance_settings = &design->tolerance;
   for (int i = 0; i < tolerance_settings->limits; i++)
-    EO_TRY(check_limit(&tolerance_settings->limit[i], design->load_cases, i, error));
+    EO_TRY(check_limit(&tolerance_settings->limit[i], design, i, error));
   return EO_OK;
 }
 
@@ -129,12 +136,18 @@ static enum eo_code count_yields(struct eo_tolerance_report *report, struct eo_e
   return EO_OK;
 }
 
+/* By which pairs are told apart where no limit is stated: the largest swing that was computed. */
+static const char *swing_of(const struct eo_tolerance_report *report)
+{
+  return report->design->tolerance.single_teeth ? "period_peak_to_peak_um" : "peak_to_peak_um";
+}
+
 /* Largest excess over a limit; where none is stated the largest swing of the transmission error. */
 static double badness(const struct eo_tolerance_report *report, int pair, int *limit)
 {
   const struct eo_tolerance_settings *tolerance_settings = &report->design->tolerance;
   double worst = -INFINITY;
-  int swing = eo_scalar_find("peak_to_peak_um");
+  int swing = eo_scalar_find(swing_of(report));
   *limit = -1;
   for (int i = 0; i < tolerance_settings->limits; i++) {
     double own = beyond(report->run, &tolerance_settings->limit[i], pair);
@@ -154,18 +167,19 @@ static void find_worst(struct eo_tolerance_report *report)
 {
   double worst = -INFINITY, unused[2];
   int limit, swing = eo_scalar_find("peak_to_peak_um");
-  const char *name = "peak_to_peak_um";
+  const char *name = swing_of(report);
   for (int pair = 0; pair < report->run->pairs; pair++) {
     double own = badness(report, pair, &limit);
     report->failed += isnan(value_at(report->run, pair, swing, 0));
     if (report->run->full[pair] && own > worst) {
       worst = own;
       report->worst = pair;
-      name = limit >= 0 ? report->design->tolerance.limit[limit].output : "peak_to_peak_um";
+      name = limit >= 0 ? report->design->tolerance.limit[limit].output : swing_of(report);
     }
   }
   snprintf(report->worst_of, sizeof report->worst_of, "%s", name);
   report->worst_design = *report->design;
+  eo_design_state_teeth(&report->worst_design);
   eo_scatter_apply(report->scatter, report->run->input + (size_t)report->worst * (size_t)report->run->inputs,
                    &report->worst_design, &unused[0], &unused[1]);
   for (int k = 0; k < report->design->load_cases; k++)
@@ -177,37 +191,62 @@ static void find_worst(struct eo_tolerance_report *report)
            report->worst + 1);
 }
 
-static enum eo_code report_outputs(struct eo_tolerance_report *report, const struct eo_progress *progress,
-                                   struct eo_error *error)
+/* One number of all pairs; it is left out again where none has it. input: [pairs][quantities]. */
+static enum eo_code report_output(struct eo_tolerance_report *report, int i, int quantities, const double *input,
+                                  const struct eo_moments *moments, struct eo_error *error)
+{
+  const struct eo_scatter_run *run = report->run;
+  const struct eo_completion completion = eo_scatter_completion(run, report->design);
+  struct eo_report_completion completed = {.completion = &completion, .output = i};
+  struct eo_tolerance_case *output = &report->output[report->outputs];
+  *output = (struct eo_tolerance_case){
+      .scalar = eo_scalar_at(i / run->cases), .load_case = i % run->cases, .nominal = run->nominal[i]};
+  report->outputs++; /* so that it is freed */
+  if (run->coarse)
+    completed.completed = run->completed[i];
+  EO_TRY(eo_output_report_make(&output->report, run->pairs, quantities, input, run->output + i, run->outputs, moments,
+                               report->design->tolerance.seed, run->coarse ? &completed : NULL, error));
+  if (output->report.rows > 0)
+    return EO_OK;
+  eo_output_report_done(&output->report);
+  report->outputs--;
+  return EO_OK;
+}
+
+static enum eo_code report_outputs(struct eo_tolerance_report *report, int quantities, const double *input,
+                                   const struct eo_progress *progress, struct eo_error *error)
 {
   const struct eo_scatter_run *run = report->run;
   struct eo_moments moments[EO_MAX_SCATTER_INPUTS];
   bool independent = eo_scatter_is_independent(report->scatter);
-  const struct eo_completion completion = eo_scatter_completion(run, report->design);
-  for (int i = 0; i < run->inputs; i++)
+  for (int i = 0; i < quantities; i++)
     moments[i] = eo_scatter_moments(report->scatter, i);
   report->output = calloc((size_t)run->outputs, sizeof *report->output);
   if (!report->output)
     return eo_error_memory(error);
   for (int i = 0; i < run->outputs; i++) {
-    struct eo_tolerance_case *output = &report->output[report->outputs];
     if (eo_progress_report(progress, "statistics", (double)i / run->outputs))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "The analysis was stopped.");
-    *output = (struct eo_tolerance_case){
-        .scalar = eo_scalar_at(i / run->cases), .load_case = i % run->cases, .nominal = run->nominal[i]};
-    report->outputs++; /* so that it is freed */
-    struct eo_report_completion completed = {.completion = &completion, .output = i};
-    if (run->coarse)
-      completed.completed = run->completed[i];
-    EO_TRY(eo_output_report_make(&output->report, run->pairs, run->inputs, run->input, run->output + i, run->outputs,
-                                 independent ? moments : NULL, report->design->tolerance.seed,
-                                 run->coarse ? &completed : NULL, error));
-    if (output->report.rows > 0)
-      continue;
-    eo_output_report_done(&output->report);
-    report->outputs--;
+    EO_TRY(report_output(report, i, quantities, input, independent ? moments : NULL, error));
   }
   return EO_OK;
+}
+
+/* What decides is asked of quantities alone. */
+static enum eo_code report_quantities(struct eo_tolerance_report *report, const struct eo_progress *progress,
+                                      struct eo_error *error)
+{
+  const struct eo_scatter_run *run = report->run;
+  size_t quantities = (size_t)eo_scatter_quantities(report->scatter);
+  double *input = malloc(sizeof *input * (size_t)run->pairs * quantities + 1);
+  if (!input)
+    return eo_error_memory(error);
+  for (int pair = 0; pair < run->pairs; pair++)
+    memcpy(input + (size_t)pair * quantities, run->input + (size_t)pair * (size_t)run->inputs,
+           sizeof *input * quantities);
+  enum eo_code code = report_outputs(report, (int)quantities, input, progress, error);
+  free(input);
+  return code;
 }
 
 enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **result, const struct eo_design *design,
@@ -223,7 +262,7 @@ enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **result, const 
   report->assumed = assumed;
   enum eo_code code = count_yields(report, error);
   if (!code)
-    code = report_outputs(report, progress, error);
+    code = report_quantities(report, progress, error);
   if (!code)
     find_worst(report);
   if (code)

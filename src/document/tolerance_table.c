@@ -9,7 +9,7 @@ static const char *const presets[] = {"as_stated", "iso_class", "ground", "as_me
 static const char *const editions[] = {"1995", "1995_exact", "2013", NULL};
 static const char *const samplings[] = {"sobol", "latin", "random", NULL};
 static const char *const methods[] = {"auto", "full", "coarse_first", NULL};
-static const char *const kinds[] = {"normal", "uniform", "values", "fixed_sum", NULL};
+static const char *const kinds[] = {"normal", "uniform", "values", "fixed_sum", "half_normal", NULL};
 
 static const struct eo_field row[] = {
     {.key = "key",
@@ -20,14 +20,15 @@ static const struct eo_field row[] = {
      .count = EO_SCATTER_KEY,
      .help = "what scatters: keys of this document with points between, modification.pinion.left.profile_slope_um; "
              "load_cases.1.torque_Nm; * for every name, modification.*.*.helix_slope_um; compliance_factor, "
-             "speed_factor"},
+             "speed_factor; with single_teeth pitch.pinion.eccentricity_um"},
     EO_CHOICE(struct eo_scatter_row, kind, "distribution", kinds, EO_SCATTER_NORMAL,
-              "of the deviation from the nominal value; fixed_sum: normal, and what a group is off in all is nothing"),
+              "of the deviation from the nominal value; fixed_sum: normal, and what a group is off in all is "
+              "nothing; half_normal: the size of a normal one, of what has no sign, an eccentricity"),
     EO_NUMBER(struct eo_scatter_row, bias, "bias", NULL, -1e6, 1e6, 0, "mean deviation, in the unit of the key"),
     EO_NUMBER(struct eo_scatter_row, sigma, "sigma", NULL, 0, 1e6, 0,
               "standard deviation before the cut, in the unit of the key"),
     EO_NUMBER_DERIVED(struct eo_scatter_row, cut, "cut_sigma", NULL, 0.1, 10, "no cut",
-                      "deviations farther from the bias do not occur, in sigma (normal)"),
+                      "deviations farther from the bias do not occur, in sigma (normal, half_normal)"),
     EO_NUMBER(struct eo_scatter_row, low, "low", NULL, -1e6, 1e6, 0, "least deviation (uniform)"),
     EO_NUMBER(struct eo_scatter_row, high, "high", NULL, -1e6, 1e6, 0, "largest deviation (uniform)"),
     EO_TEXT(struct eo_scatter_row, values, "values",
@@ -58,7 +59,7 @@ static const struct eo_field tolerance[] = {
               "as_stated, as_measured: none"),
     EO_CHOICE(struct eo_tolerance_settings, edition, "edition", editions, EO_ISO1328_2013, "of ISO 1328-1"),
     EO_INTEGER(struct eo_tolerance_settings, grade, "class", 0, 12, 5,
-               "tolerance class of 2013, or grade of 1995, of the preset"),
+               "tolerance class of 2013, or grade of 1995, of the preset and of single teeth"),
     EO_INTEGER(struct eo_tolerance_settings, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, 1000, "how many are drawn"),
     EO_CHOICE(struct eo_tolerance_settings, sampling, "sampling", samplings, EO_SAMPLING_SOBOL,
               "scrambled Sobol points, a Latin hypercube, or independent draws"),
@@ -66,7 +67,8 @@ static const struct eo_field tolerance[] = {
         struct eo_tolerance_settings, method, "method", methods, EO_SCATTER_AUTO,
         "full: every pair as an analysis computes it; coarse_first: every pair on a coarse grid, and in full those "
         "that show what this leaves open and those by which the 95 % percentiles are decided; auto: coarse_first "
-        "from 500 pairs on, on 48 mesh positions or more, without root stress and with halves that are alike"),
+        "from 500 pairs on, on 48 mesh positions or more, without root stress and single teeth, with halves that are "
+        "alike"),
     {.key = "seed",
      .kind = EO_FIELD_SEED,
      .offset = offsetof(struct eo_tolerance_settings, seed),
@@ -76,6 +78,11 @@ static const struct eo_field tolerance[] = {
      .help = "equal seeds give equal pairs"},
     EO_FLAG(struct eo_tolerance_settings, vibration, "vibration", 1, "with the vibration of every pair"),
     EO_FLAG(struct eo_tolerance_settings, root_stress, "root_stress", 0, "with its root stress, which takes longest"),
+    EO_FLAG(struct eo_tolerance_settings, single_teeth, "single_teeth", 0,
+            "with teeth of its own for every pair: index deviations drawn within the member's tolerance_class of the "
+            "block pitch, or the class here; their share of it is half normal, the class 2 sigma (ground: 3) and cut "
+            "there. Gives what the hunting period has, period_peak_to_peak_um and others, and takes some hundred times "
+            "as long"),
     EO_LIST(struct eo_tolerance_settings, row, rows, "inputs", &row_table, 0, EO_MAX_SCATTER_ROWS,
             "what scatters and how; a key that the preset has too is taken from here"),
     EO_LIST(struct eo_tolerance_settings, limit, limits, "limits", &limit_table, 0, EO_MAX_TOLERANCE_LIMITS,

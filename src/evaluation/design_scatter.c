@@ -8,6 +8,8 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "design/made_teeth.h"
+#include "evaluation/pitch_analysis.h"
 #include "evaluation/scatter_levels.h"
 
 struct eo_scatter_bench {
@@ -50,10 +52,39 @@ void eo_scatter_bench_free(struct eo_scatter_bench *bench)
 
 int eo_scatter_outputs(const struct eo_design *design)
 {
-  int scalars = 0;
-  while (eo_scalar_at(scalars))
-    scalars++;
-  return scalars * design->load_cases;
+  return (design->tolerance.single_teeth ? EO_ALL_SCALARS : EO_SCALARS) * design->load_cases;
+}
+
+/* Of a scalar, where what it needs was asked for. */
+static double number_of(const struct eo_scatter_bench *bench, const struct eo_scalar *scalar,
+                        const struct eo_evaluation *evaluation, const struct eo_pitch_analysis *pitch, int load_case)
+{
+  if ((scalar->needs & EO_SCALAR_VIBRATION && !bench->vibration) ||
+      (scalar->needs & EO_SCALAR_ROOT && !bench->root_stress))
+    return NAN;
+  return scalar->needs & EO_SCALAR_TEETH ? eo_scalar_of_period(scalar, &pitch->load_case[load_case])
+                                         : eo_scalar_value(scalar, evaluation, load_case);
+}
+
+/* The hunting period of the pair that was run, where it has teeth of its own, and all numbers of the row. */
+static enum eo_code count_numbers(struct eo_scatter_bench *bench, const struct eo_scenario *scenario,
+                                  const struct eo_evaluation *evaluation, double *output, struct eo_error *error)
+{
+  struct eo_pitch_analysis pitch = {0};
+  const struct eo_pitch_question question = {.design = bench->design,
+                                             .compliance_factor = scenario->compliance,
+                                             .speed_factor = scenario->speed,
+                                             .root = bench->root_stress,
+                                             .vibration = bench->vibration,
+                                             .threads = 1};
+  int cases = bench->nominal->load_cases, outputs = eo_scatter_outputs(bench->nominal);
+  enum eo_code code = bench->nominal->tolerance.single_teeth
+                          ? eo_pitch_analysis_run(&pitch, bench->evaluator, &question, error)
+                          : EO_OK;
+  for (int i = 0; i < outputs && !code; i++)
+    output[i] = number_of(bench, eo_scalar_at(i / cases), evaluation, &pitch, i % cases);
+  eo_pitch_analysis_done(&pitch);
+  return code;
 }
 
 /* No more than the numbers take: root stress and vibration where they are asked for. */
@@ -61,24 +92,18 @@ enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *
                                   struct eo_error *error)
 {
   const struct eo_evaluation *evaluation;
-  const struct eo_scalar *scalar;
   struct eo_scenario scenario = {NAN, NAN, 1, 1};
-  bool root = bench->root_stress, vibration = bench->vibration;
-  int cases = bench->nominal->load_cases;
   memcpy(bench->design, bench->nominal, sizeof *bench->design);
+  eo_design_state_teeth(bench->design);
   if (input)
     eo_scatter_apply(bench->scatter, input, bench->design, &scenario.compliance, &scenario.speed);
   const struct eo_scenario *chosen = input ? &scenario : NULL;
-  if (vibration)
-    EO_TRY(eo_evaluator_run(bench->evaluator, bench->design, chosen, root ? EO_WANT_ROOT : 0, &evaluation, error));
+  if (bench->vibration)
+    EO_TRY(eo_evaluator_run(bench->evaluator, bench->design, chosen, bench->root_stress ? EO_WANT_ROOT : 0, &evaluation,
+                            error));
   else
     EO_TRY(eo_evaluator_contact_at(bench->evaluator, bench->design, chosen, &evaluation, error));
-  for (int i = 0; (scalar = eo_scalar_at(i)); i++)
-    for (int k = 0; k < cases; k++) {
-      bool asked = (vibration || !(scalar->needs & EO_SCALAR_VIBRATION)) && (root || !(scalar->needs & EO_SCALAR_ROOT));
-      output[i * cases + k] = asked ? eo_scalar_value(scalar, evaluation, k) : NAN;
-    }
-  return EO_OK;
+  return count_numbers(bench, &scenario, evaluation, output, error);
 }
 
 struct work {

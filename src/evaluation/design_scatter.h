@@ -39,7 +39,7 @@ struct eo_scatter_run {
   double *nominal;                /* [outputs], of the design itself */
 };
 
-/* Numbers of a row of the design. */
+/* Numbers of a row of the design: those of the hunting period where its pairs have teeth of their own. */
 int eo_scatter_outputs(const struct eo_design *design);
 
 /* Evaluates pairs as made, one after the other; a row depends on the values alone, not on what came before. */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/pitch_analysis.h"
 #include "numerics/periodic.h"
 
 enum what {
@@ -19,7 +20,14 @@ enum what {
   RMS,
   DYNAMIC,
   LOSS,
-  ROOT
+  ROOT,
+  PERIOD_SWING,
+  SHAFT,
+  SIDEBAND,
+  TOOTH_LOAD,
+  TOOTH_PRESSURE,
+  PERIOD_RMS,
+  TOOTH_ROOT
 };
 
 /* clang-format off */
@@ -44,21 +52,34 @@ enum what {
   ROW("dynamic_factor", "largest dynamic over static mesh force", 1, EO_SCALAR_VIBRATION, 0, -1, DYNAMIC)               \
   ROW("contact_loss", "share of the mesh cycle without contact", 1, EO_SCALAR_VIBRATION, 0, -1, LOSS)                   \
   ROW("root_stress_MPa", "largest root stress of both members", 1e6, EO_SCALAR_ROOT, 0, -1, ROOT)
+/* Of the hunting period; `end` of a shaft order is its member. */
+#define PERIOD(ROW)                                                                                                    \
+  ROW("period_peak_to_peak_um", "of the transmission error over the hunting period", 1e-6, EO_SCALAR_TEETH, 0, -1, PERIOD_SWING) \
+  ROW("pinion_order_um", "first order of the pinion's shaft in it, amplitude", 1e-6, EO_SCALAR_TEETH, 0, EO_PINION, SHAFT)  \
+  ROW("gear_order_um", "first order of the gear's shaft in it, amplitude", 1e-6, EO_SCALAR_TEETH, 0, EO_GEAR, SHAFT)        \
+  ROW("sideband_um", "largest sideband of the first mesh order in it, amplitude", 1e-6, EO_SCALAR_TEETH, 0, -1, SIDEBAND)   \
+  ROW("tooth_load_N", "largest load of any tooth", 1, EO_SCALAR_TEETH, 0, -1, TOOTH_LOAD)                                \
+  ROW("tooth_pressure_MPa", "largest contact pressure of any tooth", 1e6, EO_SCALAR_TEETH, 0, -1, TOOTH_PRESSURE)        \
+  ROW("period_rms_m_per_s2", "RMS of the acceleration normal to the teeth over the hunting period", 1,                   \
+      EO_SCALAR_TEETH | EO_SCALAR_VIBRATION, 0, -1, PERIOD_RMS)                                                          \
+  ROW("tooth_root_stress_MPa", "largest root stress of any tooth", 1e6, EO_SCALAR_TEETH | EO_SCALAR_ROOT, 0, -1, TOOTH_ROOT)
 #define SCALAR(key, help, unit, needs, order, end, what) {key, help, unit, needs, order, end, what},
 #define KEY(key, help, unit, needs, order, end, what) key,
 /* clang-format on */
-static const struct eo_scalar scalars[] = {SCALARS(SCALAR)};
+static const struct eo_scalar scalars[] = {SCALARS(SCALAR) PERIOD(SCALAR)};
 const char *const eo_scalar_keys[] = {SCALARS(KEY) NULL};
-_Static_assert(sizeof scalars / sizeof *scalars == EO_SCALARS, "raw values have room for every scalar");
+_Static_assert(sizeof eo_scalar_keys / sizeof *eo_scalar_keys == EO_SCALARS + 1,
+               "raw values have room for every scalar");
+_Static_assert(sizeof scalars / sizeof *scalars == EO_ALL_SCALARS, "all are counted");
 
 const struct eo_scalar *eo_scalar_at(int index)
 {
-  return index >= 0 && index < EO_SCALARS ? &scalars[index] : NULL;
+  return index >= 0 && index < EO_ALL_SCALARS ? &scalars[index] : NULL;
 }
 
 int eo_scalar_find(const char *key)
 {
-  for (int i = 0; i < EO_SCALARS; i++)
+  for (int i = 0; i < EO_ALL_SCALARS; i++)
     if (strcmp(scalars[i].key, key) == 0)
       return i;
   return -1;
@@ -121,7 +142,8 @@ double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluatio
 {
   const struct eo_case_result *case_result = &evaluation->load_case[load_case];
   bool shaken = !(scalar->needs & EO_SCALAR_VIBRATION) || case_result->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
-  if (case_result->contact_failures > 0 || !shaken || scalar->end >= evaluation->ends)
+  if (scalar->needs & EO_SCALAR_TEETH || case_result->contact_failures > 0 || !shaken ||
+      scalar->end >= evaluation->ends)
     return NAN;
   if (scalar->end >= 0)
     return at_end(scalar, case_result, scalar->end) / scalar->unit;
@@ -139,4 +161,46 @@ double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluatio
   default:
     return worse_of(scalar, evaluation, case_result) / scalar->unit;
   }
+}
+
+/* The largest of the lines whose names begin so. */
+static double largest_order(const struct eo_pitch_case *period, const char *beginning)
+{
+  double largest = NAN;
+  for (int i = 0; i < period->orders; i++)
+    if (strncmp(period->order[i].name, beginning, strlen(beginning)) == 0)
+      largest = fmax(largest, period->order[i].transmission);
+  return largest;
+}
+
+/* Of both ends, or members; 0: it is not asked for, or there is no such end. */
+static double larger(const struct eo_hunting_place place[2])
+{
+  double value = fmax(place[0].value, place[1].value);
+  return value > 0 ? value : NAN;
+}
+
+static double period_value(const struct eo_scalar *scalar, const struct eo_pitch_case *period)
+{
+  switch (scalar->what) {
+  case PERIOD_SWING:
+    return period->peak_to_peak;
+  case SHAFT:
+    return largest_order(period, scalar->end == EO_PINION ? "pinion 1" : "gear 1");
+  case SIDEBAND:
+    return largest_order(period, "mesh 1 ");
+  case TOOTH_LOAD:
+    return larger(period->hunting.most_load);
+  case TOOTH_PRESSURE:
+    return larger(period->hunting.most_pressure);
+  case PERIOD_RMS:
+    return period->response.outcome <= EO_LONG_CONTACT_LOST ? period->response.rms[EO_READING_NORMAL] : NAN;
+  default:
+    return larger(period->hunting.most_stress);
+  }
+}
+
+double eo_scalar_of_period(const struct eo_scalar *scalar, const struct eo_pitch_case *period)
+{
+  return period->hunting.failures > 0 ? NAN : period_value(scalar, period) / scalar->unit;
 }

@@ -5,8 +5,11 @@
 
 #include "evaluation/evaluator.h"
 
-/* What it takes beyond the static half of an evaluation. */
-enum { EO_SCALAR_VIBRATION = 1, EO_SCALAR_ROOT = 2 };
+/* What it takes beyond the static half of an evaluation; TEETH: whole revolutions (pitch_analysis.h). */
+enum { EO_SCALAR_VIBRATION = 1, EO_SCALAR_ROOT = 2, EO_SCALAR_TEETH = 4 };
+
+/* Those of an evaluation, EO_SCALARS, and behind them those of the hunting period. */
+enum { EO_ALL_SCALARS = EO_SCALARS + 8 };
 
 struct eo_scalar {
   const char *key;  /* with the unit of the document */
@@ -18,7 +21,7 @@ struct eo_scalar {
   int what;         /* of scalar.c */
 };
 
-/* Their keys by index, NULL at the end: the words of a choice. */
+/* Keys of an evaluation's by index, NULL at the end: the words of a choice. */
 extern const char *const eo_scalar_keys[];
 
 /* NULL after the last; the index of a key, -1: none. */
@@ -26,7 +29,11 @@ const struct eo_scalar *eo_scalar_at(int index);
 int eo_scalar_find(const char *key);
 
 /* Of a load case, in the unit of the key; NaN where there is none (no such end, contact or vibration did not converge,
-   not asked for). */
+   not asked for, of the hunting period). */
 double eo_scalar_value(const struct eo_scalar *scalar, const struct eo_evaluation *evaluation, int load_case);
+
+/* Of its hunting period, likewise: of scalars with EO_SCALAR_TEETH. */
+struct eo_pitch_case;
+double eo_scalar_of_period(const struct eo_scalar *scalar, const struct eo_pitch_case *period);
 
 #endif

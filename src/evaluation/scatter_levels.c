@@ -22,7 +22,7 @@ static const double COARSE_FRACTION = 0.7, PAIRS_EXPECTED = 160;
 bool eo_scatter_is_coarse_first(const struct eo_design *design)
 {
   const struct eo_tolerance_settings *settings = &design->tolerance;
-  bool can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) &&
+  bool can = !settings->root_stress && !settings->single_teeth && !eo_gear_pair_is_uneven(&design->gear_pair) &&
              settings->pairs >= 2 * (FIRST_IN_FULL + MORE_IN_FULL);
   bool pays = settings->pairs >= EO_COARSE_FIRST_FROM && design->resolution.positions >= 2 * COARSE_POSITIONS;
   return can && (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && pays));
@@ -78,7 +78,7 @@ struct rounds {
   int *pair;              /* [pairs], of a stage */
   double *share, *weight; /* [pairs] */
   int decide;             /* outputs by which the pairs in full are chosen */
-  int deciding[EO_MAX_LOAD_CASES * EO_SCALARS];
+  int deciding[EO_MAX_LOAD_CASES * EO_ALL_SCALARS];
 };
 
 static void add_deciding(struct rounds *rounds, int scalar, int load_case)
@@ -100,7 +100,8 @@ static void find_deciding(struct rounds *rounds)
       add_deciding(rounds, eo_scalar_find("rms_m_per_s2"), k);
     for (int i = 0; i < settings->limits; i++) {
       int scalar = eo_scalar_find(settings->limit[i].output);
-      if (scalar >= 0 && (settings->limit[i].load_case == 0 || settings->limit[i].load_case == k + 1))
+      if (scalar >= 0 && scalar < rounds->run->scalars &&
+          (settings->limit[i].load_case == 0 || settings->limit[i].load_case == k + 1))
         add_deciding(rounds, scalar, k);
     }
   }

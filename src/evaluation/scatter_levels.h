@@ -6,8 +6,8 @@
 
 #include "evaluation/design_scatter.h"
 
-/* Whether the design's pairs are computed coarsely first: as its method says, but never with root stress or with halves
-   that differ. */
+/* Whether the design's pairs are computed coarsely first: as its method says, but never with root stress, with single
+   teeth or with halves that differ. */
 bool eo_scatter_is_coarse_first(const struct eo_design *design);
 
 /* The design with the resolution of the coarse level, and a pair that serves it. pair: that of the design, borrowed as

@@ -12,7 +12,7 @@
 #include "http/service_reply.h"
 #include "study/tolerance_job.h"
 
-enum { MOST_PAIRS = 5000 }; /* in one answer; a job takes more */
+enum { MOST_PAIRS = 5000, MOST_WITH_TEETH = 64 }; /* in one answer; a job takes more */
 
 /* Beside the design, which the service copies. */
 struct order {
@@ -72,9 +72,9 @@ struct tolerance_order {
 static const struct eo_field fields[] = {
     EO_DOCUMENT(struct tolerance_order, design, "design", "Design", EO_FIELD_REQUIRED,
                 "with its block tolerance; without one class 5 of ISO 1328-1:2013 is taken"),
-    EO_INTEGER_DERIVED(
-        struct tolerance_order, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, "as the block says",
-        "how many, at most 5000 unless it is a job; the first ones are the same for any number, but of Latin points"),
+    EO_INTEGER_DERIVED(struct tolerance_order, pairs, "pairs", 1, EO_SCATTER_MOST_PAIRS, "as the block says",
+                       "how many, at most 5000 (with single teeth 64) unless it is a job; the first ones are the same "
+                       "for any number, but of Latin points"),
 };
 static const struct eo_table order_table = EO_TABLE("a tolerance analysis", struct tolerance_order, fields);
 
@@ -85,11 +85,12 @@ static bool settle(struct eo_request *request, struct eo_design *design, int pai
   if (pairs)
     design->tolerance.pairs = pairs;
   enum eo_code code = eo_scatter_of_design(&order->scatter, design, true, &order->assumed, &error);
-  if (!code && !later && design->tolerance.pairs > MOST_PAIRS)
+  int most = design->tolerance.single_teeth ? MOST_WITH_TEETH : MOST_PAIRS;
+  if (!code && !later && design->tolerance.pairs > most)
     code = eo_error_set(&error, EO_ERROR_INPUT, "/tolerance/pairs",
                         "%d pairs are more than the %d that one answer has here: state fewer, or order a job by "
                         "Prefer: respond-async.",
-                        design->tolerance.pairs, MOST_PAIRS);
+                        design->tolerance.pairs, most);
   if (!code)
     code = eo_service_admit_pairs(request->http->service, design, &error);
   if (code)

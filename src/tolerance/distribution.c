@@ -33,6 +33,13 @@ static double normal_quantile(const struct eo_distribution *distribution, double
   return distribution->mean + distribution->sigma * eo_normal_quantile(below + u * (1 - 2 * below));
 }
 
+/* q(u) = mean + sigma Phi^-1(1/2 + u (Phi(c) - 1/2)): theory (A14). */
+static double half_normal_quantile(const struct eo_distribution *distribution, double u)
+{
+  double most = isinf(distribution->cut) ? 1 : eo_normal_probability(distribution->cut);
+  return distribution->mean + distribution->sigma * eo_normal_quantile(0.5 + u * (most - 0.5));
+}
+
 double eo_distribution_quantile(const struct eo_distribution *distribution, double u)
 {
   switch (distribution->kind) {
@@ -42,6 +49,8 @@ double eo_distribution_quantile(const struct eo_distribution *distribution, doub
     int i = (int)(u * distribution->values);
     return distribution->values > 0 ? distribution->value[i < distribution->values ? i : distribution->values - 1] : 0;
   }
+  case EO_DISTRIBUTION_HALF_NORMAL:
+    return distribution->sigma > 0 ? half_normal_quantile(distribution, u) : distribution->mean;
   default:
     return distribution->sigma > 0 ? normal_quantile(distribution, u) : distribution->mean;
   }
@@ -59,6 +68,24 @@ static struct eo_moments normal_moments(const struct eo_distribution *distributi
   moments.deviation = distribution->sigma * sqrt(square);
   moments.fourth = (3 - 2 * distribution->cut * (distribution->cut * distribution->cut + 3) * ends) / (square * square);
   return moments;
+}
+
+/* Raw moments of |z| up to the cut c, by parts: with phi the density and w = 2 Phi(c) - 1 what is left,
+   m1 = 2 (phi(0) - phi(c))/w, m2 = 1 - 2 c phi(c)/w, m3 = 2 m1 - 2 c^2 phi(c)/w, m4 = 3 m2 - 2 c^3 phi(c)/w. */
+static struct eo_moments half_normal_moments(const struct eo_distribution *distribution)
+{
+  if (!(distribution->sigma > 0))
+    return (struct eo_moments){.mean = distribution->mean, .fourth = 3};
+  double cut = isinf(distribution->cut) ? 0 : distribution->cut,
+         left = isinf(distribution->cut) ? 1 : 2 * eo_normal_probability(cut) - 1,
+         ends = isinf(distribution->cut) ? 0 : 2 * density(cut) / left;
+  double first = 2 * density(0) / left - ends, second = 1 - cut * ends, third = 2 * first - cut * cut * ends,
+         fourth = 3 * second - cut * cut * cut * ends, square = second - first * first;
+  return (struct eo_moments){.mean = distribution->mean + distribution->sigma * first,
+                             .deviation = distribution->sigma * sqrt(square),
+                             .third = (third - 3 * first * second + 2 * first * first * first) / pow(square, 1.5),
+                             .fourth = (fourth - 4 * first * third + 6 * first * first * second - 3 * pow(first, 4)) /
+                                       (square * square)};
 }
 
 static struct eo_moments list_moments(const struct eo_distribution *distribution)
@@ -83,6 +110,8 @@ struct eo_moments eo_distribution_moments(const struct eo_distribution *distribu
     return list_moments(distribution);
   if (distribution->kind == EO_DISTRIBUTION_NORMAL)
     return normal_moments(distribution);
+  if (distribution->kind == EO_DISTRIBUTION_HALF_NORMAL)
+    return half_normal_moments(distribution);
   const double flat = 1.8; /* fourth moment of a uniform distribution: (1/5) / (1/3)^2 */
   return (struct eo_moments){.mean = (distribution->low + distribution->high) / 2,
                              .deviation = (distribution->high - distribution->low) / sqrt(12),

@@ -5,9 +5,10 @@
 #define EASEOFF_TOLERANCE_DISTRIBUTION_H
 
 enum eo_distribution_kind {
-  EO_DISTRIBUTION_NORMAL,  /* mean, sigma, cut */
-  EO_DISTRIBUTION_UNIFORM, /* low, high */
-  EO_DISTRIBUTION_LIST,    /* value: each as likely as the next */
+  EO_DISTRIBUTION_NORMAL,      /* mean, sigma, cut */
+  EO_DISTRIBUTION_UNIFORM,     /* low, high */
+  EO_DISTRIBUTION_LIST,        /* value: each as likely as the next */
+  EO_DISTRIBUTION_HALF_NORMAL, /* of a size: mean + sigma |z|; cut */
 };
 
 struct eo_distribution {

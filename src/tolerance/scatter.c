@@ -88,6 +88,8 @@ int eo_scatter_draw(const struct eo_scatter *scatter, const struct eo_sampler *s
   for (int i = 0; i < scatter->inputs; i++) {
     const struct eo_scatter_input *input = &scatter->input[i];
     double drawn = input->nominal + value[i];
+    if (input->target == EO_TARGET_SEED)
+      drawn = floor(drawn);
     value[i] = fmin(fmax(drawn, input->least), input->most);
     bounded += value[i] != drawn;
   }
@@ -105,7 +107,10 @@ void eo_scatter_apply(const struct eo_scatter *scatter, const double *value, voi
       *compliance = value[i];
     else if (input->target == EO_TARGET_SPEED)
       *speed = value[i];
-    else
+    else if (input->target == EO_TARGET_SEED) {
+      uint64_t seed = (uint64_t)value[i];
+      memcpy((char *)target + input->offset, &seed, sizeof seed);
+    } else
       memcpy((char *)target + input->offset, &si, sizeof si);
   }
 }
@@ -120,6 +125,14 @@ struct eo_moments eo_scatter_moments(const struct eo_scatter *scatter, int i)
     moments.deviation = own * sqrt(fmax(0, 1 - own * own / variances));
   }
   return moments;
+}
+
+int eo_scatter_quantities(const struct eo_scatter *scatter)
+{
+  int count = scatter->inputs;
+  while (count > 0 && scatter->input[count - 1].target == EO_TARGET_SEED)
+    count--;
+  return count;
 }
 
 bool eo_scatter_is_independent(const struct eo_scatter *scatter)

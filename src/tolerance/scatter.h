@@ -12,12 +12,12 @@
 enum { EO_MAX_SCATTER_INPUTS = 128, EO_SCATTER_NAME = 96, EO_SCATTER_LIST = 200 };
 
 /* What an input is. */
-enum eo_scatter_target { EO_TARGET_MEMBER, EO_TARGET_COMPLIANCE, EO_TARGET_SPEED };
+enum eo_scatter_target { EO_TARGET_MEMBER, EO_TARGET_COMPLIANCE, EO_TARGET_SPEED, EO_TARGET_SEED };
 
 struct eo_scatter_input {
   char key[EO_SCATTER_NAME];
   int target;                       /* enum eo_scatter_target */
-  size_t offset;                    /* MEMBER: of a double in the struct that is drawn */
+  size_t offset;                    /* MEMBER: of a double in the struct that is drawn; SEED: of an uint64_t */
   double unit;                      /* SI value = value times unit */
   double nominal, least, most;      /* in the unit of the key; a drawn value beyond a bound is the bound */
   struct eo_distribution deviation; /* from nominal */
@@ -46,6 +46,10 @@ void eo_scatter_apply(const struct eo_scatter *scatter, const double *value, voi
 
 /* Moments of the drawn value of an input, in the unit of its key; with a fixed sum those that are left. */
 struct eo_moments eo_scatter_moments(const struct eo_scatter *scatter, int input);
+
+/* Inputs that are quantities: seeds, which stand behind them, are names of what was drawn, and nothing grows with them.
+ */
+int eo_scatter_quantities(const struct eo_scatter *scatter);
 
 /* Inputs that are independent of each other: without fixed sums and lists drawn together. */
 bool eo_scatter_is_independent(const struct eo_scatter *scatter);

@@ -27,14 +27,20 @@ enum eo_scatter_method {
 };
 enum { EO_COARSE_FIRST_FROM = 500 };
 
-enum eo_scatter_kind { EO_SCATTER_NORMAL, EO_SCATTER_UNIFORM, EO_SCATTER_VALUES, EO_SCATTER_FIXED_SUM };
+enum eo_scatter_kind {
+  EO_SCATTER_NORMAL,
+  EO_SCATTER_UNIFORM,
+  EO_SCATTER_VALUES,
+  EO_SCATTER_FIXED_SUM,
+  EO_SCATTER_HALF_NORMAL
+};
 
 /* Deviations of one input from its nominal value, in the unit of its key; `*` in the key stands for every name. */
 struct eo_scatter_row {
   char key[EO_SCATTER_KEY];
   int kind;                     /* enum eo_scatter_kind */
-  double bias, sigma;           /* NORMAL, FIXED_SUM */
-  double cut;                   /* NORMAL: values beyond do not occur; NaN: none */
+  double bias, sigma;           /* NORMAL, FIXED_SUM, HALF_NORMAL */
+  double cut;                   /* NORMAL, HALF_NORMAL: values beyond do not occur; NaN: none */
   double low, high;             /* UNIFORM */
   char values[EO_SCATTER_TEXT]; /* VALUES: numbers as text */
   char group[32];               /* VALUES: drawn row by row together; FIXED_SUM: whose sum stays what it is */
@@ -56,6 +62,7 @@ struct eo_tolerance_settings {
   int method;   /* enum eo_scatter_method */
   uint64_t seed;
   bool vibration, root_stress;
+  bool single_teeth; /* every pair has teeth of its own, over the hunting period */
   int rows;
   struct eo_scatter_row row[EO_MAX_SCATTER_ROWS];
   int limits;

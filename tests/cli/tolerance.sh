@@ -107,6 +107,31 @@ near "the yield" /yields/1/fraction "$folder/all.json" /yields/1/fraction 0.02 a
 near "the worst pair" /worst/pair "$folder/all.json" /worst/pair 0 absolute
 write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
 
+# ---- teeth of its own for every pair: shaft orders grow with the eccentricity, the same bytes ----
+
+write_design '{"vibration": false, "single_teeth": true, "inputs": [{"key": "pitch.*.tolerance_share", "sigma": 0}, {"key": "pitch.gear.eccentricity_um", "distribution": "half_normal", "sigma": 2}]}, "pitch": {"positions_per_cycle": 4}'
+tolerance --pairs 8 --json --csv "$folder/teeth.csv"
+echo "[1]" >"$folder/expected"
+near "R2 of the gear's shaft order" /outputs/17/R2 "$folder/expected" "" 1e-6 absolute
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
+  NR > 1 { ratio = $at["load_cases.1.gear_order_um"] / $at["pitch.gear.eccentricity_um"]; if (ratio < 0.99 || ratio > 1 || $at["load_cases.1.pinion_order_um"] > 1e-6) bad++ }
+  END { exit bad || NR != 9 }' "$folder/teeth.csv"
+result $? "it is the eccentricity, less what 44 teeth average"
+toothed='"preset": "iso_class", "class": 5, "vibration": false'
+write_design "{$toothed, \"single_teeth\": true}, \"pitch\": {\"positions_per_cycle\": 4}"
+tolerance --pairs 4 --json --threads 1 --worst "$folder/toothed.json" --keep "$folder/teeth"
+cp "$folder/out" "$folder/teeth.json"
+head -n 3 "$folder/teeth" >"$folder/cut"
+tolerance --pairs 4 --json --threads 3 --keep "$folder/cut"
+same "$folder/out" "$folder/teeth.json" "single teeth: the same bytes with 3 threads after a stop"
+write_design "{$toothed}, \"pitch\": {\"positions_per_cycle\": 4}"
+tolerance --pairs 4 --json --single-teeth
+same "$folder/out" "$folder/teeth.json" "and asked for by the option"
+"$EASEOFF" analyze "$folder/toothed.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
+"$numbers" "$folder/teeth.json" /outputs/15/histogram/largest >"$folder/expected"
+near "the worst pair has these teeth" /pitch/load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
+write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
+
 # ---- and for MPI ranks, where mpirun is ----
 
 # pid of a rank; empty: it is not there yet
@@ -143,6 +168,10 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
   write_design '{"preset": "iso_class", "class": 5, "method": "coarse_first", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
   ranked 3 --pairs 200 --json
   same "$folder/out" "$folder/first.json" "coarse first: the same bytes with 3 ranks"
+  write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
+  write_design "{$toothed, \"single_teeth\": true}, \"pitch\": {\"positions_per_cycle\": 4}"
+  ranked 2 --pairs 4 --json
+  same "$folder/out" "$folder/teeth.json" "single teeth: the same bytes with 2 ranks"
   write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
   ranked 2 --pairs 24 --json --threads 2 --cache "$folder/node"
   same "$folder/out" "$folder/one.json" "the same bytes with threads of a rank, and a folder of pairs of its own"
@@ -200,6 +229,8 @@ result $? "a heading and a line for each pair"
 
 refuses "there is no such number" '{"inputs": [{"key": "modification.pinion.left.profil_slope_um", "sigma": 1}]}'
 refuses "another gear pair is prepared anew" '{"inputs": [{"key": "gear_pair.normal_module_mm", "sigma": 1}]}'
+refuses "single_teeth" '{"inputs": [{"key": "pitch.gear.eccentricity_um", "sigma": 1}]}'
+refuses "number of the hunting period" '{"limits": [{"output": "tooth_load_N", "at_most": 1}]}'
 refuses "not stated" '{"inputs": [{"key": "modification.pinion.left.tip_relief_diameter_mm", "sigma": 1}]}'
 refuses "no output \"peak\"" '{"pairs": 1, "limits": [{"output": "peak", "at_most": 1}]}'
 refuses "no load case 2" '{"pairs": 1, "limits": [{"output": "peak_to_peak_um", "load_case": 2, "at_most": 1}]}'

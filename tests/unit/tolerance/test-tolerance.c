@@ -40,6 +40,23 @@ static void test_moments(const struct eo_distribution *d, double within, const c
      "%s: moments %.6g %.6g %.6g, kurtosis %.6g", what, sum[1], sum[2], sum[3], m.fourth);
 }
 
+/* |z|: mean sqrt(2/pi), variance 1 - 2/pi, skewness and kurtosis of the half normal distribution. */
+static void test_half_normal(void)
+{
+  const struct eo_distribution whole = {.kind = EO_DISTRIBUTION_HALF_NORMAL, .mean = 1, .sigma = 2, .cut = INFINITY};
+  struct eo_distribution cut = whole;
+  struct eo_moments moments = eo_distribution_moments(&whole);
+  close_to(moments.mean, 1 + 2 * sqrt(2 / M_PI), 1e-12, "mean of a half normal");
+  close_to(moments.deviation, 2 * sqrt(1 - 2 / M_PI), 1e-12, "its deviation");
+  close_to(moments.third, 0.99527174643115, 1e-9, "its skewness");
+  close_to(moments.fourth, 3.86917730362, 1e-9, "its kurtosis");
+  close_to(eo_distribution_quantile(&whole, 0.5), 1 + 2 * 0.674489750196082, 1e-9, "its median");
+  cut.cut = 2;
+  test_moments(&cut, 1e-6, "half normal, cut at 2 sigma");
+  ok(eo_distribution_quantile(&cut, 1e-9) >= 1 && eo_distribution_quantile(&cut, 1 - 1e-9) <= 5,
+     "sizes from 0 to the cut");
+}
+
 static void test_distributions(void)
 {
   const double value[] = {1, 2, 2, 7};
@@ -250,6 +267,7 @@ int main(void)
   test_scatter();
   test_normal();
   test_distributions();
+  test_half_normal();
   test_sequence();
   test_samplers();
   test_intervals();

@@ -14,7 +14,7 @@ import { progressBar } from '../../jobbar.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
 const MADE = ['preset', 'class', 'edition'];
-const DRAWN = ['pairs', 'method', 'sampling', 'seed', 'vibration', 'root_stress'];
+const DRAWN = ['pairs', 'method', 'sampling', 'seed', 'vibration', 'root_stress', 'single_teeth'];
 const LOOKS = {
   preset: { label: 'Scatter' },
   class: { label: 'Tolerance class' },
@@ -23,8 +23,10 @@ const LOOKS = {
   method: { label: 'Computed' },
   vibration: { label: 'with their vibration' },
   root_stress: { label: 'with their root stress' },
+  single_teeth: { label: 'with teeth of their own' },
 };
 const FIRST = 64; // pairs of the first answer; a job has all of them
+const FIRST_WITH_TEETH = 2; // a hunting period of each
 const LIMITS = /** @type {[string, string, string][]} */ ([
   ['peak_to_peak_um', 'TE, at most', 'um'],
   ['rms_m_per_s2', 'Vibration, at most', 'm_per_s2'],
@@ -186,7 +188,8 @@ class ToleranceView {
     this.#stopped = false;
     this.#of = JSON.stringify(this.app.store.design);
     this.#lock();
-    this.#asked = Math.min(FIRST, this.#wanted);
+    const first = this.app.store.design.tolerance?.single_teeth ? FIRST_WITH_TEETH : FIRST;
+    this.#asked = Math.min(first, this.#wanted);
     this.lane.submit({
       path: 'tolerance',
       body: { design: JSON.parse(this.#of), pairs: this.#asked },
