@@ -97,6 +97,14 @@ await chapter('a design of this program', async () => {
   await drop(page, '.figure-pane', [{ name: 'mine.json', text }]);
   await page.waitForFunction(() => /^mine/.test(document.title));
   ok(true, 'is opened at once');
+  const flank = { tip_relief_exponent: 0, root_relief_exponent: 0, leading_end_relief_exponent: 0 };
+  const ends = { left: flank, right: flank };
+  const wrong = JSON.stringify({ ...design, modification: { pinion: ends, gear: ends } });
+  await drop(page, '.figure-pane', [{ name: 'wrong.json', text: wrong }]);
+  const notice = page.locator('.notice', { hasText: 'relief_exponent' });
+  await notice.waitFor();
+  const { y } = await notice.boundingBox();
+  ok(y > 0 && / more\.$/.test(await notice.innerText()), 'of many faults the first ones are told, and how many more');
 });
 
 await chapter('a grid on a flank', async () => {

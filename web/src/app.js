@@ -19,6 +19,7 @@ import { notice } from './base/notice.js';
  */
 
 const OWN_KEYS = ['job', 'items', 'tab']; // of views, in the address
+const TOLD = 4; // faults of a document that a notice has room for
 const VIEW_KEYS = ['speeds', 'vary', 'shows']; // how the design is looked at: ranges and choices of its figures
 
 export class App extends EventTarget {
@@ -172,11 +173,9 @@ export class App extends EventTarget {
       await act();
     } catch (error) {
       const faults = error instanceof Refusal ? error.faults : [];
-      notice.say(
-        faults.length
-          ? faults.map(fault => `${fault.pointer} ${fault.detail}`).join(' ')
-          : /** @type {Error} */ (error).message,
-      );
+      const told = faults.slice(0, TOLD).map(fault => `${fault.pointer} ${fault.detail}`);
+      if (faults.length > TOLD) told.push(`${faults.length - TOLD} more.`);
+      notice.say(told.length ? told.join(' ') : /** @type {Error} */ (error).message);
     }
   }
 }
