@@ -63,7 +63,7 @@ enum { MOST_ENDS = 8 + EO_FLANK_LINES * (EO_FLANK_LINES + 1) };
 /* Bands between these, which are put in order, and the faces. */
 static void set_bands(struct eo_flank_pieces *pieces, int count, double at[MOST_ENDS])
 {
-  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = 2e-6 * half;
+  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = 1e-5 * half;
   qsort(at, (size_t)count, sizeof *at, compare_numbers);
   pieces->bands = 0;
   pieces->y[0] = -half;

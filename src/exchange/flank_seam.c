@@ -109,22 +109,26 @@ static double gap_at(const struct side side[2], const double start[2], double u,
 }
 
 /* Where the sides of a line cross: own[2], u on each. Between the place where the side above begins and the one where
-   the side below ends, beyond their folds; false: they do not overlap, or do not cross there. Where the side below
-   folds back before the other begins and lies above it even there, nothing of it is left: the fold. */
+   the side below ends, beyond their folds; false: they do not overlap, or do not cross there. Where a side folds back
+   before the other ends and lies above it even there, nothing of it is left: the fold. */
 static bool find_crossing(const struct side side[2], double own[2])
 {
   enum { ROUNDS = 60 };
   double start[2] = {beyond_fold(&side[0]), beyond_fold(&side[1])}, at[2], off[2];
-  double first = spot_at(&side[1], start[1]).ahead;
-  if (!(spot_at(&side[0], start[0]).ahead > first))
+  double first = spot_at(&side[1], start[1]).ahead, end = spot_at(&side[0], start[0]).ahead;
+  if (!(end > first))
     return false;
   at[0] = find_ahead(&side[0], start[0], first);
-  at[1] = start[0];
-  off[1] = gap_at(side, start, at[1], own);
+  at[1] = find_ahead(&side[0], start[0], spot_at(&side[1], find_ahead(&side[1], start[1], end)).ahead);
   off[0] = gap_at(side, start, at[0], own);
+  bool lost = off[0] > 0 && at[0] > side[0].far && at[0] < side[0].own &&
+              spot_at(&side[0], at[0]).ahead - first > EO_FLANK_STEP;
+  off[1] = gap_at(side, start, at[1], own);
+  if (off[0] * off[1] > 0 && lost)
+    gap_at(side, start, at[0], own);
   if (off[0] * off[1] > 0)
-    return off[0] > 0 && at[0] > side[0].far && at[0] < side[0].own &&
-           spot_at(&side[0], at[0]).ahead - first > EO_FLANK_STEP;
+    return lost || (off[1] < 0 && own[1] > side[1].own && own[1] < side[1].far &&
+                    end - spot_at(&side[0], at[1]).ahead > EO_FLANK_STEP);
   for (int i = 0; i < ROUNDS && fabs(at[1] - at[0]) > EO_FLANK_NEAR; i++) { /* false position (Illinois), and halves */
     double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]),
            u = at[0] + share * (at[1] - at[0]), here = gap_at(side, start, u, own);
