@@ -118,7 +118,7 @@ static double most_seen(const struct probe *probe, const struct eo_transmission_
                         enum eo_track_doubt doubt)
 {
   struct unit unit[UNITS];
-  double seen[UNITS];
+  double seen[UNITS] = {0};
   int best = 0, units = open_units(doubt, unit);
   for (int i = 0; i < units; i++) {
     seen[i] = lines_seen(probe, settings->teeth, unit[i].factor);
