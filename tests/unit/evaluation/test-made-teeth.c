@@ -184,7 +184,7 @@ static void test_worst(void)
 {
   static struct made made;
   struct eo_tolerance_report *report;
-  struct eo_analysis *analysis;
+  struct eo_analysis *analysis = NULL;
   struct eo_geometry geometry;
   struct eo_error error;
   made.design = plain_design();
