@@ -4,7 +4,7 @@
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "evaluation/evaluator.h"
-#include "flexibility/closed_form.h"
+#include "support/synthetic-pair.h"
 #include "support/tap.h"
 
 #include <stdlib.h>
@@ -14,13 +14,6 @@ enum { POSITIONS = 12 };
 
 static struct eo_pair *pair;
 static struct eo_evaluator *evaluator;
-static struct eo_closed_form form = {1.5e-9, 12e-3, -0.8e-3, 20, 4000};
-
-static void stop(const struct eo_error *error)
-{
-  printf("Bail out! %s: %s\n", error->pointer, error->text);
-  exit(1);
-}
 
 /* Aligned, unmodified, one load case. */
 static struct eo_design plain_design(void)

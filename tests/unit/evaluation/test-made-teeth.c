@@ -5,7 +5,7 @@
 #include "document/examples.h"
 #include "document/tolerance_document.h"
 #include "evaluation/analysis.h"
-#include "flexibility/closed_form.h"
+#include "support/synthetic-pair.h"
 #include "support/tap.h"
 
 #include <complex.h>
@@ -15,13 +15,6 @@
 enum { POSITIONS = 32, PINION = 18, GEAR = 45, PAIRS = 5 }; /* meet again after 90 mesh cycles */
 
 static struct eo_pair *pair;
-static struct eo_closed_form form = {1.5e-9, 12e-3, -0.8e-3, 20, 4000};
-
-static void stop(const struct eo_error *error)
-{
-  printf("Bail out! %s: %s\n", error->pointer, error->text);
-  exit(1);
-}
 
 /* Aligned, one load case; nothing scatters yet. */
 static struct eo_design plain_design(void)

@@ -6,7 +6,7 @@
 #include "document/examples.h"
 #include "document/pitch_document.h"
 #include "evaluation/analysis.h"
-#include "flexibility/closed_form.h"
+#include "support/synthetic-pair.h"
 #include "support/tap.h"
 
 #include <stdlib.h>
@@ -16,13 +16,6 @@ enum { POSITIONS = 32, PINION = 18, GEAR = 45 }; /* meet again after 90 mesh cyc
 
 static struct eo_pair *pair;
 static struct eo_analysis *analysis;
-static struct eo_closed_form form = {1.5e-9, 12e-3, -0.8e-3, 20, 4000};
-
-static void stop(const struct eo_error *error)
-{
-  printf("Bail out! %s: %s\n", error->pointer, error->text);
-  exit(1);
-}
 
 /* Aligned, one load case; teeth without deviations. */
 static struct eo_design plain_design(void)
