@@ -193,6 +193,34 @@ static const double *corner_of(const struct eo_step_face *face, int corner)
   return face->patch.control[(corner == 1 || corner == 2 ? (rows - 1) * columns : 0) + (corner >= 2 ? columns - 1 : 0)];
 }
 
+/* Whether a face is no wider than the tolerance anywhere, along p or along q. */
+static bool is_line(const struct eo_step_face *face)
+{
+  int rows = face->patch.sites[0].count, columns = face->patch.sites[1].count;
+  bool along[2] = {true, true};
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < columns; j++) {
+      const double *own = face->patch.control[i * columns + j];
+      along[0] = along[0] && same_point(own, face->patch.control[i * columns]);
+      along[1] = along[1] && same_point(own, face->patch.control[j]);
+    }
+  return along[0] || along[1];
+}
+
+/* What is a line is no face: its neighbours have it as an edge. A reader would take the two edges of such a face for
+   one and could not mesh it. */
+static void drop_lines(struct eo_step_part *part)
+{
+  int kept = 0;
+  for (int k = 0; k < part->faces; k++)
+    if (!is_line(&part->face[k])) {
+      if (kept < k)
+        part->face[kept] = part->face[k];
+      kept++;
+    }
+  part->faces = kept;
+}
+
 /* Neighbours have an edge in common where their sides are one curve, and corners that are one point. */
 static void join_faces(struct eo_step_part *part)
 {
@@ -221,6 +249,7 @@ bool eo_step_part_init(struct eo_step_part *part, const struct eo_tooth *tooth, 
   part->flank = kind == EO_TOOTH_DRIVE || kind == EO_TOOTH_COAST;
   if (!cut_faces(part) || !fit_faces(part))
     return false;
+  drop_lines(part);
   join_faces(part);
   return true;
 }
