@@ -71,6 +71,13 @@ void eo_flank_piece_at(const struct eo_flank_pieces *pieces, const struct eo_fla
   generate(pieces, u, y, delta, slope, point);
 }
 
+void eo_flank_rack_at(const struct eo_flank_pieces *pieces, double u, double y, struct eo_surface_point *point)
+{
+  const struct eo_modification_shape *shape = eo_flank_shape_of(pieces);
+  double slope[2], delta = eo_surface_relief(shape, u, (pieces->coast ? -1 : 1) * shape->lengthen * y, slope);
+  generate(pieces, u, y, delta, slope, point);
+}
+
 double eo_flank_turn(const double a[3], const double b[3])
 {
   double product[3];

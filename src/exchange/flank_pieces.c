@@ -60,10 +60,16 @@ static double crossing_of(const struct eo_flank_pieces *pieces, const struct eo_
 
 enum { MOST_ENDS = 8 + EO_FLANK_LINES * (EO_FLANK_LINES + 1) };
 
+/* The narrowest band, m: two of its ends that are nearer are one. */
+static double least_band(const struct eo_flank_pieces *pieces)
+{
+  return 5e-6 * pieces->tooth->geometry->member_width[pieces->tooth->member];
+}
+
 /* Bands between these, which are put in order, and the faces. */
 static void set_bands(struct eo_flank_pieces *pieces, int count, double at[MOST_ENDS])
 {
-  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = 1e-5 * half;
+  double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = least_band(pieces);
   qsort(at, (size_t)count, sizeof *at, compare_numbers);
   pieces->bands = 0;
   pieces->y[0] = -half;
@@ -203,10 +209,10 @@ static int add_turns(const struct eo_flank_pieces *pieces, int band, int most, d
 
 static bool same_fold(struct eo_flank_fold a, struct eo_flank_fold b)
 {
-  return a.lost == b.lost && a.part == b.part;
+  return a.lost == b.lost && a.part == b.part && a.open == b.open;
 }
 
-/* Where an end of the flank begins to fold, or a piece to be lost in it, between two rows. */
+/* Where an end of the flank begins to fold, or a piece to be lost there, between two rows. */
 static double find_fold(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int count, int which,
                         double low, double high)
 {
@@ -219,25 +225,31 @@ static double find_fold(const struct eo_flank_pieces *pieces, const struct eo_fl
   return (low + high) / 2;
 }
 
-/* Adds where that is within a band; returns how many there are now. */
+/* Adds where that is within a band, more than once between two rows if it has to; returns how many there are now. */
 static int add_folds(const struct eo_flank_pieces *pieces, int band, int most, double *at, int count)
 {
+  enum { TIMES = 4 };
   struct eo_flank_piece piece[EO_FLANK_LINES];
   int own = list_pieces(pieces, band, piece);
-  double from = pieces->y[band], row = (pieces->y[band + 1] - from) / EO_FLANK_ROWS;
+  double from = pieces->y[band], row = (pieces->y[band + 1] - from) / EO_FLANK_ROWS, behind = 1e-6 * row;
   for (int which = 0; which < 2; which++) {
     struct eo_flank_fold before = eo_flank_fold_at(pieces, piece, own, which, from);
     for (int r = 1; r <= EO_FLANK_ROWS; r++) {
-      struct eo_flank_fold fold = eo_flank_fold_at(pieces, piece, own, which, from + r * row);
-      if (!same_fold(fold, before) && count < most)
-        at[count++] = find_fold(pieces, piece, own, which, from + (r - 1) * row, from + r * row);
+      double low = from + (r - 1) * row, high = from + r * row;
+      const struct eo_flank_fold fold = eo_flank_fold_at(pieces, piece, own, which, high);
+      for (int i = 0; i < TIMES && !same_fold(fold, before) && count < most; i++) {
+        low = find_fold(pieces, piece, own, which, low, high);
+        at[count++] = low;
+        low = fmin(low + behind, high);
+        before = eo_flank_fold_at(pieces, piece, own, which, low);
+      }
       before = fold;
     }
   }
   return count;
 }
 
-/* A corner between a piece that is lost and one that folds back itself is lost, too. */
+/* A corner between a piece that is lost and one that is cut itself is lost, too. */
 static void cut_band(struct eo_flank_pieces *pieces, int band)
 {
   struct eo_flank_piece piece[EO_FLANK_LINES];
@@ -248,6 +260,8 @@ static void cut_band(struct eo_flank_pieces *pieces, int band)
   int first = root.lost, last = count - 1 - tip.lost;
   for (int i = 0; i < count; i++) {
     piece[i].lost = i < first || i > last;
+    piece[i].open[0] = i == first && root.open;
+    piece[i].open[1] = i == last && tip.open;
     piece[i].direct = eo_flank_stands_still(pieces, &piece[i]);
     piece[i].swept[1] = i + 1 < count && eo_flank_is_swept(pieces, &piece[i], &piece[i + 1]);
     add_piece(pieces, &piece[i]);
@@ -261,6 +275,53 @@ static void cut_band(struct eo_flank_pieces *pieces, int band)
   }
 }
 
+/* How far beyond an end of the flank's circle the rack generates at (u, y), m. */
+static double beyond_circle(const struct eo_flank_pieces *pieces, int which, double u, double y)
+{
+  struct eo_surface_point point;
+  eo_flank_rack_at(pieces, u, y, &point);
+  return (which ? 1 : -1) * (eo_flank_radius(&point) - pieces->radius[which]);
+}
+
+/* How far beyond an end of the active profile the rack goes, m, for the flank to reach its circle at y; INFINITY: that
+   takes more than a small part of the profile, or the flank turns back before. Over a kink what is generated jumps. */
+static double reach_at(const struct eo_flank_pieces *pieces, int which, double y)
+{
+  enum { PARTS = 20, STEPS = 50 };
+  const double least = 0.02; /* of progress per step of the rack */
+  double step = (pieces->u[1] - pieces->u[0]) / PARTS / STEPS;
+  int outwards = which ? 1 : -1;
+  for (int i = 0; i <= STEPS; i++) {
+    double u = pieces->u[which] + outwards * i * step, off = beyond_circle(pieces, which, u, y);
+    if (off > -EO_FLANK_NEAR)
+      return i * step;
+    double beside[2]; /* not at u, which may lie on a kink */
+    for (int k = 0; k < 2; k++)
+      beside[k] = beyond_circle(pieces, which, u + outwards * (k + 1) * EO_FLANK_STEP, y);
+    if (!(beside[1] - beside[0] > least * EO_FLANK_STEP))
+      break;
+  }
+  return INFINITY;
+}
+
+/* Where a relief is too steep for that the flank ends where the end of the active profile generates, on no circle. */
+static void reach_circles(struct eo_flank_pieces *pieces)
+{
+  enum { ROWS = 65 };
+  const struct eo_tooth *tooth = pieces->tooth;
+  double width = tooth->geometry->member_width[tooth->member], reach[2] = {0};
+  pieces->radius[0] = tooth->geometry->start_radius[tooth->member];
+  pieces->radius[1] = tooth->geometry->tip_radius[tooth->member];
+  for (int i = 0; i < ROWS; i++)
+    for (int end = 0; end < 2; end++)
+      reach[end] = fmax(reach[end], reach_at(pieces, end, ((double)i / (ROWS - 1) - 0.5) * width));
+  for (int end = 0; end < 2; end++)
+    if (isfinite(reach[end]))
+      pieces->u[end] += (end ? 1 : -1) * reach[end];
+    else
+      pieces->radius[end] = end ? INFINITY : 0;
+}
+
 void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth *tooth, enum eo_tooth_part part)
 {
   memset(pieces, 0, sizeof *pieces);
@@ -272,6 +333,7 @@ void eo_flank_pieces_init(struct eo_flank_pieces *pieces, const struct eo_tooth 
   struct eo_flank_frame root = eo_flank_frame_at(pieces, pieces->u[0], 0),
                         tip = eo_flank_frame_at(pieces, pieces->u[1], 0);
   pieces->sense = eo_flank_ahead(&root, tip.origin.position) > 0 ? 1 : -1;
+  reach_circles(pieces);
   find_lines(pieces);
   double at[MOST_ENDS];
   int ends = list_ends(pieces, at);
@@ -291,7 +353,7 @@ static void swept_point(const struct eo_flank_pieces *pieces, const struct eo_fl
                         const struct eo_flank_row *row, double a, double y, struct eo_surface_point *point)
 {
   if (row->own[1] == eo_flank_line_at(pieces, piece->line[0], y))
-    eo_flank_swept_at(pieces, piece, a, y, point);
+    eo_flank_swept_at(pieces, piece, row->share[0] + a * (row->share[1] - row->share[0]), y, point);
   else
     eo_flank_piece_at(pieces, row->maker, row->own[1], y, point);
 }
@@ -300,10 +362,12 @@ void eo_flank_piece_point(const struct eo_flank_pieces *pieces, int k, struct eo
                           double point[3], double normal[3])
 {
   const struct eo_flank_piece *piece = &pieces->piece[k];
-  const double least = 1e-9; /* where a band ends both of what it and the next have are near */
   bool corner = piece->line[0] == piece->line[1];
-  double from = pieces->y[piece->band], width = pieces->y[piece->band + 1] - from, y = from + b * width;
+  double from = pieces->y[piece->band], width = pieces->y[piece->band + 1] - from, y = from + b * width,
+         least = fmin(least_band(pieces) / width, 0.1); /* nearer to its ends than that may lie another one's */
   struct eo_surface_point generated;
+  if (row->b != b && corner)
+    eo_flank_swept_share(pieces, piece, y, row->share);
   if (row->b != b)
     eo_flank_ends_at(pieces, corner ? piece - 1 : piece, from + fmin(fmax(b, least), 1 - least) * width, row);
   row->b = b;

@@ -31,6 +31,9 @@ void eo_flank_piece_at(const struct eo_flank_pieces *pieces, const struct eo_fla
 void eo_flank_swept_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double a, double y,
                        struct eo_surface_point *point);
 
+/* What the rack generates at (u, y), whichever piece that is of. */
+void eo_flank_rack_at(const struct eo_flank_pieces *pieces, double u, double y, struct eo_surface_point *point);
+
 struct eo_flank_frame eo_flank_frame_at(const struct eo_flank_pieces *pieces, double u, double y);
 
 /* How far a point lies beyond the frame's origin towards the tip, and how far out of the tooth. */
@@ -59,14 +62,22 @@ double eo_flank_step_at(const struct eo_flank_pieces *pieces, const struct eo_fl
 bool eo_flank_is_swept(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *below,
                        const struct eo_flank_piece *above);
 
-/* How an end of the flank (0: root, 1: tip) folds at y: how many of the band's pieces [count] are folded back there as
-   a whole, and whether the next one is in part. */
+/* Radius of a point of a flank, m. */
+double eo_flank_radius(const struct eo_surface_point *point);
+
+/* What is left at an end of the flank (0: root, 1: tip) at y: how many of the band's pieces [count] are folded back
+   there as a whole or lie beyond the circle where the flank ends, whether the next one does in part, and whether it
+   goes on to that circle beyond its line. */
 struct eo_flank_fold {
   int lost;
-  bool part;
+  bool part, open;
 };
 struct eo_flank_fold eo_flank_fold_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
                                       int count, int which, double y);
+
+/* What of a swept corner lies between the circles where the flank ends. */
+void eo_flank_swept_share(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
+                          double share[2]);
 
 /* The ends at y of a piece that no corner sweeps. Both are the same where nothing of it is left. */
 void eo_flank_ends_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,

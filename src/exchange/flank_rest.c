@@ -132,9 +132,10 @@ static double lowest_at(const struct section *section, double roll)
   const double same = 2e-8; /* m: where slopes are steep an end lies so far from the last place */
   double lowest = NAN;
   for (int end = 0; end < 2; end++) {
-    const struct foot *foot = &section->at[end ? section->count - 1 : 0];
+    const struct foot *foot = &section->at[end ? section->count - 1 : 0], *next = foot + (end ? -1 : 1);
+    double rise = foot->roll != next->roll ? (foot->height - next->height) / (foot->roll - next->roll) : 0;
     if (fabs(foot->roll - roll) < same)
-      lowest = fmin(lowest, foot->height);
+      lowest = fmin(lowest, foot->height + (roll - foot->roll) * rise);
   }
   for (int i = 0; i + 1 < section->count; i++) {
     const struct foot *a = &section->at[i], *b = a + 1;

@@ -99,6 +99,31 @@ static double find_ahead(const struct side *side, double start, double ahead)
   return good;
 }
 
+/* Where a number that has other signs at at[0] and at[1], off[0] and off[1], is nothing: false position (Illinois), and
+   halves. */
+static double find_zero(double (*off_at)(const void *context, double u), const void *context, double at[2],
+                        double off[2])
+{
+  enum { ROUNDS = 60 };
+  for (int i = 0; i < ROUNDS && fabs(at[1] - at[0]) > EO_FLANK_NEAR; i++) {
+    double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]),
+           u = at[0] + share * (at[1] - at[0]), here = off_at(context, u);
+    if (fabs(here) < EO_FLANK_NEAR / 100)
+      return u;
+    int same = here * off[0] > 0 ? 0 : 1;
+    at[same] = u;
+    off[same] = here;
+    off[1 - same] /= 2;
+  }
+  return (at[0] + at[1]) / 2;
+}
+
+/* Two sides, and where each begins behind its fold. */
+struct seam {
+  const struct side *side;
+  const double *start;
+};
+
 /* How far out of the tooth the side below lies at u above the other at the same place; own[2]: u on each. */
 static double gap_at(const struct side side[2], const double start[2], double u, double own[2])
 {
@@ -108,12 +133,18 @@ static double gap_at(const struct side side[2], const double start[2], double u,
   return here.above - spot_at(&side[1], own[1]).above;
 }
 
+static double gap_of(const void *context, double u)
+{
+  const struct seam *seam = context;
+  double own[2];
+  return gap_at(seam->side, seam->start, u, own);
+}
+
 /* Where the sides of a line cross: own[2], u on each. Between the place where the side above begins and the one where
    the side below ends, beyond their folds; false: they do not overlap, or do not cross there. Where a side folds back
    before the other ends and lies above it even there, nothing of it is left: the fold. */
 static bool find_crossing(const struct side side[2], double own[2])
 {
-  enum { ROUNDS = 60 };
   double start[2] = {beyond_fold(&side[0]), beyond_fold(&side[1])}, at[2], off[2];
   double first = spot_at(&side[1], start[1]).ahead, end = spot_at(&side[0], start[0]).ahead;
   if (!(end > first))
@@ -129,16 +160,8 @@ static bool find_crossing(const struct side side[2], double own[2])
   if (off[0] * off[1] > 0)
     return lost || (off[1] < 0 && own[1] > side[1].own && own[1] < side[1].far &&
                     end - spot_at(&side[0], at[1]).ahead > EO_FLANK_STEP);
-  for (int i = 0; i < ROUNDS && fabs(at[1] - at[0]) > EO_FLANK_NEAR; i++) { /* false position (Illinois), and halves */
-    double share = i % 4 == 3 || off[0] == off[1] ? 0.5 : off[0] / (off[0] - off[1]),
-           u = at[0] + share * (at[1] - at[0]), here = gap_at(side, start, u, own);
-    if (fabs(here) < EO_FLANK_NEAR / 100)
-      return true;
-    int same = here * off[0] > 0 ? 0 : 1;
-    at[same] = u;
-    off[same] = here;
-    off[1 - same] /= 2;
-  }
+  const struct seam seam = {side, start};
+  gap_at(side, start, find_zero(gap_of, &seam, at, off), own);
   return true;
 }
 
@@ -221,6 +244,68 @@ static struct meeting meet(const struct eo_flank_pieces *pieces, const struct eo
   return meeting;
 }
 
+double eo_flank_radius(const struct eo_surface_point *point)
+{
+  return hypot(point->position[0], point->position[1]);
+}
+
+/* How far the point at u of a side at an end of the flank (the root's where it looks towards the tip) is beyond the
+   circle there, m. */
+static double beyond_circle(const void *context, double u)
+{
+  const struct side *side = context;
+  struct eo_surface_point point;
+  eo_flank_piece_at(side->pieces, &side->piece, u, side->y, &point);
+  double radius = side->pieces->radius[side->outwards < 0];
+  return radius > 0 ? side->outwards * (radius - eo_flank_radius(&point)) : -INFINITY;
+}
+
+/* The u of a side at an end of the flank that lies on its circle, from `start` on; where that is within the circle, the
+   start, or beyond the line of a side that is open; where all of it is beyond, its other end. */
+static double on_circle(const struct side *side, double start, bool open)
+{
+  double at[2] = {start, side->far}, off[2] = {beyond_circle(side, start)}, most = fabs(side->far - side->own);
+  if (off[0] <= 0 && (!open || isinf(off[0])))
+    return start;
+  for (double way = 16 * EO_FLANK_STEP; off[0] <= 0; way *= 2) {
+    if (way > most)
+      return start;
+    at[1] = at[0];
+    at[0] = start - side->outwards * way;
+    off[0] = beyond_circle(side, at[0]);
+  }
+  off[1] = beyond_circle(side, at[1]);
+  if (off[1] > 0) { /* it may begin with a fold that leads back over the circle */
+    struct side turned = *side;
+    turned.outwards = -side->outwards;
+    turned.line = turned.own = side->far;
+    turned.far = side->own;
+    at[1] = beyond_fold(&turned);
+    off[1] = beyond_circle(side, at[1]);
+  }
+  return off[1] > 0 ? side->far : find_zero(beyond_circle, side, at, off);
+}
+
+void eo_flank_swept_share(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, double y,
+                          double share[2])
+{
+  enum { HALVINGS = 50 };
+  for (int which = 0; which < 2; which++) {
+    double in = 1 - which, out = which;
+    share[which] = which;
+    for (int i = 0; i < HALVINGS; i++) {
+      struct eo_surface_point point;
+      double at = i ? (in + out) / 2 : out;
+      eo_flank_swept_at(pieces, piece, at, y, &point);
+      bool within = (which ? 1 : -1) * (eo_flank_radius(&point) - pieces->radius[which]) <= EO_FLANK_NEAR;
+      if (i == 0 && within)
+        break;
+      *(within ? &in : &out) = at;
+      share[which] = in;
+    }
+  }
+}
+
 /* An end of a piece at y: u, and the place on the unmodified flank. */
 struct end {
   double own, place;
@@ -259,23 +344,28 @@ static struct side from_end(const struct eo_flank_pieces *pieces, const struct e
 struct eo_flank_fold eo_flank_fold_at(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece,
                                       int count, int which, double y)
 {
+  const double least = 1e-9; /* m */
   struct eo_flank_fold fold = {0};
   int inwards = which ? -1 : 1;
   for (const struct eo_flank_piece *own = piece + (which ? count - 1 : 0); fold.lost < count - 1; own += inwards) {
     struct side side = from_end(pieces, own, which, y);
-    double start = beyond_fold(&side), end = side.far;
+    double behind = beyond_fold(&side), start = on_circle(&side, behind, fold.open), end = side.far;
     if (start != side.far)
       end = end_at_neighbour(pieces, own, 1 - which, own + inwards, fold.lost < count - 2 ? own + 2 * inwards : NULL, y)
                 .own;
-    fold.part = start != side.own;
-    if (!fold.part || inwards * (end - start) > 0)
+    bool folded = behind != side.own && start == behind;
+    fold.part = folded || (fold.open && inwards * (start - side.own) > least);
+    bool on_no_circle = !folded && start != side.far && !isfinite(beyond_circle(&side, start));
+    if (inwards * (end - start) > 0 || on_no_circle)
       break;
+    fold.open = !folded;
     fold.lost++;
   }
   return fold;
 }
 
-/* An end of a piece that has a neighbour there, or behind its fold at an end of the flank. */
+/* An end of a piece that has a neighbour there, or that of the flank: behind its fold, on its circle, or where a corner
+   goes on. */
 static struct end find_end(const struct eo_flank_pieces *pieces, const struct eo_flank_piece *piece, int which,
                            double y)
 {
@@ -284,7 +374,9 @@ static struct end find_end(const struct eo_flank_pieces *pieces, const struct eo
   if (next)
     return end_at_neighbour(pieces, piece, which, next, next_to(pieces, next, direction), y);
   struct side side = from_end(pieces, piece, which, y);
-  double own = beyond_fold(&side);
+  double own = side.own;
+  if (!piece->swept[which] || piece[direction].lost)
+    own = on_circle(&side, beyond_fold(&side), piece->open[which]);
   struct eo_surface_point point;
   eo_flank_piece_at(pieces, piece, own, y, &point);
   return (struct end){own, eo_flank_find_place(pieces, point.position, own, y)};

@@ -22,8 +22,14 @@ static double clamp(double value)
   return fmin(1, fmax(0, value));
 }
 
+static double clamp_profile(double beyond, double value)
+{
+  return fmin(1 + beyond, fmax(-beyond, value));
+}
+
 /* One step of Gauss and Newton on the parameters of the nearest point. */
-static void refine(const struct eo_tooth *tooth, enum eo_tooth_part part, const double node[3], double *p, double *q)
+static void refine(const struct eo_tooth *tooth, enum eo_tooth_part part, double beyond, const double node[3],
+                   double *p, double *q)
 {
   const double step = 1e-5;
   double point[3], other[3], along[2][3], gram[3] = {0}, right[2] = {0};
@@ -42,13 +48,14 @@ static void refine(const struct eo_tooth *tooth, enum eo_tooth_part part, const 
     right[1] += along[1][c] * (node[c] - point[c]);
   }
   double determinant = gram[0] * gram[2] - gram[1] * gram[1];
-  *p = clamp(*p + (gram[2] * right[0] - gram[1] * right[1]) / determinant);
+  *p = clamp_profile(beyond, *p + (gram[2] * right[0] - gram[1] * right[1]) / determinant);
   *q = clamp(*q + (gram[0] * right[1] - gram[1] * right[0]) / determinant);
 }
 
-/* Distance of a point from the exact part, m: along its normal where the part is nearest, found step by step. */
-__attribute__((unused)) static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part part,
-                                                    const double node[3])
+/* Distance of a point from the exact part, m: along its normal where the part is nearest, found step by step; beyond:
+   how far the profile's parameter goes beyond its ends. */
+static double distance_within(const struct eo_tooth *tooth, enum eo_tooth_part part, double beyond,
+                              const double node[3])
 {
   double p = 0.5, q = 0.5, best = 1, point[3], normal[3], other[3];
   for (int i = 0; i <= 12; i++)
@@ -67,10 +74,10 @@ __attribute__((unused)) static double distance_from(const struct eo_tooth *tooth
     double to[2] = {p, q}, nearest = best;
     for (int i = -1; i <= 1; i++)
       for (int k = -1; k <= 1; k++) {
-        eo_tooth_point(tooth, part, 0, clamp(p + i * step), clamp(q + k * step), other, NULL);
+        eo_tooth_point(tooth, part, 0, clamp_profile(beyond, p + i * step), clamp(q + k * step), other, NULL);
         if (apart(node, other) < nearest) {
           nearest = apart(node, other);
-          to[0] = clamp(p + i * step);
+          to[0] = clamp_profile(beyond, p + i * step);
           to[1] = clamp(q + k * step);
         }
       }
@@ -81,7 +88,7 @@ __attribute__((unused)) static double distance_from(const struct eo_tooth *tooth
   }
   for (int round = 0; round < 6; round++) { /* not over a kink, from where the way leads on */
     double to[2] = {p, q};
-    refine(tooth, part, node, &to[0], &to[1]);
+    refine(tooth, part, beyond, node, &to[0], &to[1]);
     eo_tooth_point(tooth, part, 0, to[0], to[1], other, NULL);
     if (!(apart(node, other) < best))
       break;
@@ -94,6 +101,17 @@ __attribute__((unused)) static double distance_from(const struct eo_tooth *tooth
   for (int c = 0; c < 3; c++)
     along_normal += (node[c] - point[c]) * normal[c];
   return whole > 1e-6 ? whole : fabs(along_normal);
+}
+
+/* A flank's rack goes on beyond both ends of its active profile as far as the circles of its ends ask for; a way that
+   is looked for there as well can end in a fold. */
+__attribute__((unused)) static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part part,
+                                                    const double node[3])
+{
+  const double beyond = 0.06;
+  double own = distance_within(tooth, part, 0, node);
+  bool flank = part == EO_TOOTH_DRIVE || part == EO_TOOTH_COAST;
+  return flank && own > 1e-9 ? fmin(own, distance_within(tooth, part, beyond, node)) : own;
 }
 
 __attribute__((unused)) static bool make_mesh(const struct eo_design *design, const struct eo_geometry *geometry,

@@ -102,6 +102,29 @@ static int check_splines(const struct listing *l)
   return wrong;
 }
 
+/* Loops that run along one edge twice: faces that are no more than a line, which a reader takes for periodic ones. */
+static int check_loops(const struct listing *l)
+{
+  int wrong = 0;
+  for (int i = 1; i <= l->instances; i++) {
+    long edge[4] = {0};
+    int edges = 0;
+    if (strncmp(l->at[i], "EDGE_LOOP", 9) != 0)
+      continue;
+    for (const char *c = l->at[i]; *c != '\n'; c++)
+      if (*c == '#' && edges < 4) {
+        const char *of = strchr(l->at[strtol(c + 1, NULL, 10)], '#');
+        edge[edges++] = strtol(of + 1, NULL, 10);
+      }
+    bool twice = edges < 2;
+    for (int a = 0; a < edges; a++)
+      for (int b = 0; b < a; b++)
+        twice = twice || edge[a] == edge[b];
+    wrong += twice;
+  }
+  return wrong;
+}
+
 static void check_file(const char *name, int faces, int shells)
 {
   struct eo_text text = {0};
@@ -302,7 +325,7 @@ static void check_loaded(const char *name, int member)
    its sides; the file says of no part that it is further off than allowed. */
 static void check_pieces(const char *what, bool folds, bool begins_behind)
 {
-  double largest = 0, gap = 0, rest = 0, point[3], next[3], normal[3];
+  double largest = 0, gap = 0, rest = 0, off_circle = 0, point[3], next[3], normal[3];
   int swept = 0, pieces = 0, behind = 0;
   for (int member = 0; member < 2; member++)
     for (int coast = 0; coast < 2; coast++) {
@@ -323,9 +346,16 @@ static void check_pieces(const char *what, bool folds, bool begins_behind)
           eo_flank_piece_point(&flank, k, &row, 0.1 + 0.4 * (i % 3), 0.1 + 0.4 * (i / 3), point, NULL);
           largest = fmax(largest, distance_from(&tooth, coast ? EO_TOOTH_COAST : EO_TOOTH_DRIVE, point));
         }
-        for (int i = 0; i <= 4 && k + 1 < flank.count && piece[1].band == piece->band; i++) {
+        for (int i = 0; i <= 4 && (k == 0 || piece[-1].lost || piece[-1].band != piece->band); i++) {
+          eo_flank_piece_point(&flank, k, &row, 0, 0.1 + 0.2 * i, point, NULL);
+          behind += hypot(point[0], point[1]) > flank.radius[0] + 1e-9;
+        }
+        for (int i = 0; i <= 4 && (k + 1 == flank.count || piece[1].lost || piece[1].band != piece->band); i++) {
+          eo_flank_piece_point(&flank, k, &row, 1, 0.001 + 0.2495 * i, point, NULL);
+          off_circle = fmax(off_circle, fabs(hypot(point[0], point[1]) - geometry.tip_radius[member]));
+        }
+        for (int i = 0; i <= 4 && k + 1 < flank.count && piece[1].band == piece->band && !piece[1].lost; i++) {
           eo_flank_piece_point(&flank, k, &row, 1, 0.1 + 0.2 * i, point, normal);
-          behind += (k == 0 || piece[-1].lost) && row.own[0] > flank.u[0] + 1e-6;
           eo_flank_piece_point(&flank, k + 1, &other, 0, 0.1 + 0.2 * i, next, NULL);
           gap = fmax(gap, fabs((next[0] - point[0]) * normal[0] + (next[1] - point[1]) * normal[1] +
                                (next[2] - point[2]) * normal[2]));
@@ -336,12 +366,17 @@ static void check_pieces(const char *what, bool folds, bool begins_behind)
   ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, within %.2g nm of the exact flank", what, pieces, swept,
      1e9 * largest);
   ok((behind > 0) == begins_behind, "%s: %d rows begin behind a fold at the root", what, behind);
+  ok(off_circle < 1e-9, "%s: the flank ends on the tip circle, within %.2g nm", what, 1e9 * off_circle);
   ok(rest < 2e-9, "%s: pieces are what the rack leaves, within %.2g nm", what, 1e9 * rest);
   ok(gap < allowed / 2, "%s: pieces meet within %.2g nm, normal", what, 1e9 * gap);
   for (int member = 0; member < 2; member++) {
     struct eo_text text = {0};
     eo_step_write(&design, &geometry, member, false, &text);
     const char *word = strstr(text.data, "/* ");
+    struct listing l = list_instances(text.data);
+    int wrong = check_loops(&l);
+    ok(wrong == 0, "%s: %d of %d faces are lines", what, wrong, l.faces);
+    free(l.at);
     ok(!text.failed && text.size < 1500000 && !word, "%s: %zu bytes, every spline within 5 nm %.60s", what, text.size,
        word ? word : "");
     eo_text_done(&text);
