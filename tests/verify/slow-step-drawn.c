@@ -195,12 +195,23 @@ static void check_loaded(int index, int member, bool folded)
      index, member ? "gear" : "pinion", nodes, 1e9 * largest, off, folded ? ", folded by a relief" : "");
 }
 
+/* What was not drawn is 0, which a document has as no number of its key. */
+static void drop_zeros(json_t *object)
+{
+  const char *key;
+  void *next;
+  json_t *value;
+  json_object_foreach_safe(object, next, key, value) if (json_is_object(value)) drop_zeros(value);
+  else if (json_is_number(value) && json_number_value(value) == 0) json_object_del(object, key);
+}
+
 static void leave(const char *folder, int index)
 {
   char path[300];
   struct eo_text text = {0};
   struct eo_error error;
   json_t *document = eo_design_encode(&design);
+  drop_zeros(json_object_get(document, "modification"));
   snprintf(path, sizeof path, "%s/pair-%d.json", folder, index);
   char *dump = json_dumps(document, JSON_INDENT(1));
   eo_text_add(&text, dump ? dump : "");
