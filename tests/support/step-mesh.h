@@ -68,7 +68,7 @@ static double distance_within(const struct eo_tooth *tooth, enum eo_tooth_part p
         q = k / 12.;
       }
     }
-  if (best > 20e-3)
+  if (best > 20e-3 + tooth->geometry->face_width / 12) /* not near this part */
     return best;
   for (double step = 1 / 24.; step > 1e-6;) { /* to the neighbour that is nearer, else closer around */
     double to[2] = {p, q}, nearest = best;
