@@ -278,24 +278,27 @@ static void sum_up(struct run *run, enum eo_job_state state, const char *stopped
   run->row.best_value = NAN;
 }
 
+static enum eo_code put_rows(struct run *run, int count, double *number, struct eo_error *error)
+{
+  for (int i = 0; i < count; i++)
+    EO_TRY(write_row(run, &run->writing[i], number, error));
+  run->outcome->done += count;
+  run->outcome->computed += count;
+  sum_up(run, EO_JOB_RUNNING, "");
+  EO_TRY(eo_store_update_job(run->job->store, &run->row, error));
+  return eo_store_commit(run->job->store, error);
+}
+
 /* One transaction. */
 static enum eo_code write_rows(struct run *run, int count, struct eo_error *error)
 {
   double *number = malloc(sizeof *number * (size_t)run->outputs);
   enum eo_code code = number ? eo_store_begin(run->job->store, error) : eo_error_memory(error);
-  bool open = !code;
-  for (int i = 0; i < count && !code; i++)
-    code = write_row(run, &run->writing[i], number, error);
   if (!code) {
-    run->outcome->done += count;
-    run->outcome->computed += count;
-    sum_up(run, EO_JOB_RUNNING, "");
-    code = eo_store_update_job(run->job->store, &run->row, error);
+    code = put_rows(run, count, number, error);
+    if (code)
+      eo_store_rollback(run->job->store);
   }
-  if (!code)
-    code = eo_store_commit(run->job->store, error);
-  if (code && open)
-    eo_store_rollback(run->job->store);
   free(number);
   return code;
 }
@@ -328,7 +331,25 @@ static int watch(void *context, const char *what, double fraction)
   return report(run, what);
 }
 
-/* The document of what came, kept with the job; its end and its result are one transaction. */
+static enum eo_code put_result(struct run *run, const char *text, struct eo_error *error)
+{
+  EO_TRY(eo_store_keep_result(run->job->store, run->job->job, text, error));
+  EO_TRY(eo_store_update_job(run->job->store, &run->row, error));
+  return eo_store_commit(run->job->store, error);
+}
+
+/* A job's end and its result are one transaction. */
+static enum eo_code write_result(struct run *run, const char *text, struct eo_error *error)
+{
+  EO_TRY(eo_store_begin_lasting(run->job->store, error));
+  sum_up(run, EO_JOB_DONE, "");
+  enum eo_code code = put_result(run, text, error);
+  if (code)
+    eo_store_rollback(run->job->store);
+  return code;
+}
+
+/* The document of what came, kept with the job. */
 static enum eo_code conclude(struct run *run, const struct eo_scatter_run *rows, const struct eo_progress *progress,
                              struct eo_error *error)
 {
@@ -337,17 +358,7 @@ static enum eo_code conclude(struct run *run, const struct eo_scatter_run *rows,
   EO_TRY(eo_tolerance_report_new(&report, run->job->design, &run->scatter, rows, run->assumed, progress, error));
   eo_tolerance_write(report, run->job->warnings, &text);
   eo_tolerance_report_free(report);
-  enum eo_code code = text.failed ? eo_error_memory(error) : eo_store_begin_lasting(run->job->store, error);
-  bool open = !code;
-  sum_up(run, EO_JOB_DONE, "");
-  if (!code)
-    code = eo_store_keep_result(run->job->store, run->job->job, text.data, error);
-  if (!code)
-    code = eo_store_update_job(run->job->store, &run->row, error);
-  if (!code)
-    code = eo_store_commit(run->job->store, error);
-  if (code && open)
-    eo_store_rollback(run->job->store);
+  enum eo_code code = text.failed ? eo_error_memory(error) : write_result(run, text.data, error);
   eo_text_done(&text);
   return code;
 }

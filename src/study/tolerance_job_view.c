@@ -25,26 +25,34 @@ static enum eo_code take_row(void *context, const struct eo_stored_variant *row,
   return EO_OK;
 }
 
+/* The rows of a job that has all of them, or as many as it computes in full. */
+static enum eo_code fill_table(struct table *table, struct eo_store *store, int64_t job, const struct eo_design *design,
+                               struct eo_scatter *scatter, struct eo_error *error)
+{
+  const struct eo_scatter_plan plan = eo_tolerance_plan(&design->tolerance);
+  EO_TRY(eo_scatter_of_design(scatter, design, true, NULL, error));
+  EO_TRY(eo_scatter_run_draw(&table->rows, design, scatter, &plan, error));
+  for (int i = 0; i < table->rows.pairs; i++)
+    table->rows.full[i] = false;
+  EO_TRY(eo_store_each_variant(store, job, -1, table->rows.outputs, take_row, table, error));
+  if (!table->rows.coarse && table->there < table->rows.pairs)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The job has %d of its %d pairs.", table->there, table->rows.pairs);
+  return EO_OK;
+}
+
 enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, const struct eo_design *design,
                                   struct eo_text *text, struct eo_error *error)
 {
   struct table table = {0};
   struct eo_scatter *scatter = malloc(sizeof *scatter);
-  const struct eo_scatter_plan plan = eo_tolerance_plan(&design->tolerance);
-  enum eo_code code = scatter ? eo_scatter_of_design(scatter, design, true, NULL, error) : eo_error_memory(error);
-  if (!code)
-    code = eo_scatter_run_draw(&table.rows, design, scatter, &plan, error);
-  for (int i = 0; i < table.rows.pairs && !code; i++)
-    table.rows.full[i] = false;
-  if (!code)
-    code = eo_store_each_variant(store, job, -1, table.rows.outputs, take_row, &table, error);
-  if (!code && !table.rows.coarse && table.there < table.rows.pairs)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The job has %d of its %d pairs.", table.there, table.rows.pairs);
+  if (!scatter)
+    return eo_error_memory(error);
+  enum eo_code code = fill_table(&table, store, job, design, scatter, error);
   const struct eo_tolerance_report report = {.design = design, .scatter = scatter, .run = &table.rows};
-  if (!code)
+  if (!code) {
     eo_tolerance_csv(&report, text);
-  if (!code && text->failed)
-    code = eo_error_memory(error);
+    code = text->failed ? eo_error_memory(error) : EO_OK;
+  }
   eo_scatter_run_done(&table.rows);
   free(scatter);
   return code;

@@ -173,19 +173,35 @@ static enum eo_code put_in_order(struct eo_output_report *report, double *size, 
   return code;
 }
 
+static enum eo_code weigh_inputs(const struct rows *rows, struct eo_output_report *report,
+                                 const struct eo_moments *moments, double *scratch, struct eo_error *error)
+{
+  EO_TRY(regress(rows, report, scratch, error));
+  if (moments)
+    EO_TRY(fit_surface(rows, report, moments, scratch, error));
+  return put_in_order(report, scratch, error);
+}
+
 static enum eo_code find_influences(const struct rows *rows, struct eo_output_report *report,
                                     const struct eo_moments *moments, struct eo_error *error)
 {
   double *scratch = malloc(sizeof *scratch * 2 * (size_t)rows->inputs);
   if (!scratch)
     return eo_error_memory(error);
-  enum eo_code code = regress(rows, report, scratch, error);
-  if (!code && moments)
-    code = fit_surface(rows, report, moments, scratch, error);
-  if (!code)
-    code = put_in_order(report, scratch, error);
+  enum eo_code code = weigh_inputs(rows, report, moments, scratch, error);
   free(scratch);
   return code;
+}
+
+static enum eo_code tell(const struct rows *rows, struct eo_output_report *report, const struct eo_moments *moments,
+                         uint64_t seed, const struct eo_report_completion *completion, struct eo_error *error)
+{
+  report->rows = rows->count;
+  if (rows->count > 0)
+    EO_TRY(describe(rows, report, seed, error));
+  if (rows->count > 0 && completion)
+    EO_TRY(complete(rows, report, completion, error));
+  return report->varies ? find_influences(rows, report, moments, error) : EO_OK;
 }
 
 enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, int inputs, const double *input,
@@ -202,13 +218,8 @@ enum eo_code eo_output_report_make(struct eo_output_report *report, int pairs, i
     report->influence[i] = (struct eo_report_influence){i, NAN, NAN, NAN};
   enum eo_code code = collect(&rows, report, pairs, input, output, stride,
                               completion ? completion->completion->full : NULL, error);
-  report->rows = rows.count;
-  if (!code && rows.count > 0)
-    code = describe(&rows, report, seed, error);
-  if (!code && rows.count > 0 && completion)
-    code = complete(&rows, report, completion, error);
-  if (!code && report->varies)
-    code = find_influences(&rows, report, moments, error);
+  if (!code)
+    code = tell(&rows, report, moments, seed, completion, error);
   free(rows.input);
   return code;
 }
