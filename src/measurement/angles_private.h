@@ -7,7 +7,7 @@
 #include "measurement/angles.h"
 #include "measurement/sampler.h"
 
-enum { EO_MOST_LOSSES = 3, EO_AHEAD = 4, EO_HELD = EO_SAMPLER_BLOCK + EO_AHEAD };
+enum { EO_MOST_LOSSES = 3, EO_MOST_DISTANCES = 64, EO_AHEAD = 4, EO_HELD = EO_SAMPLER_BLOCK + EO_AHEAD };
 
 /* Usual speeds of the samples that are held, and the size of step that is out of the ordinary. */
 struct eo_usual {
@@ -46,6 +46,8 @@ struct eo_angles_maker {
     double jump;
   } loss[EO_MOST_LOSSES];
   int64_t gaps, gap_row, spikes, spike_row;
+  int64_t hidden, hidden_row;         /* gaps that the times do not show, and the last of them */
+  double distance[EO_MOST_DISTANCES]; /* rows from each to the next */
   bool origin_known;
   struct {
     int blocks, straight; /* of samples: looked at, and with many rows on straight lines */

@@ -8,6 +8,8 @@
 static const double DEGREES = 180 / M_PI;
 static const double UNEVEN =
     0.2; /* range of the speed in a block, relative: above, steps are judged by their neighbours */
+static const double MOSTLY = 0.8; /* of the distances between gaps: even ones */
+enum { LEAST_DISTANCES = 8 };
 
 static double step_of(const struct eo_sample *from, const struct eo_sample *to, int channel)
 {
@@ -113,6 +115,9 @@ static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, 
   if (both) {
     maker->delay += excess[0] / usual->rate[0];
     angles->dropped += llround(fabs(rows));
+    if (maker->hidden++ && maker->hidden <= EO_MOST_DISTANCES)
+      maker->distance[maker->hidden - 2] = (double)(sample->row - maker->hidden_row);
+    maker->hidden_row = sample->row;
     if (!maker->gaps++)
       maker->gap_row = sample->row;
     return;
@@ -240,6 +245,41 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
   return code;
 }
 
+/* Rows that are missing from both channels, or there twice, at even distances: a program took the recorded row that is
+   the nearest to each of its own, and then the times are right; or they were lost, and then they are not. */
+static bool is_even(struct eo_angles_maker *maker, double *distance)
+{
+  int count = (int)(maker->hidden <= EO_MOST_DISTANCES ? maker->hidden : EO_MOST_DISTANCES) - 1, even = 0;
+  if (count < LEAST_DISTANCES)
+    return false;
+  *distance = eo_scan_quantile(maker->distance, count, 0.5);
+  for (int i = 0; i < count; i++)
+    even += fabs(maker->distance[i] - *distance) <= 1;
+  return even > MOSTLY * count;
+}
+
+static void judge_gaps(struct eo_angles_maker *maker, const struct eo_angles *angles)
+{
+  double distance;
+  if (is_even(maker, &distance))
+    eo_angles_at_row(maker,
+                     eo_findings_add(maker->findings, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED, -1, distance,
+                                     "Every %.3g rows one is missing from both channels or there twice: a program took "
+                                     "the recorded value that is the nearest to each of its times, or rows are lost; "
+                                     "which of both decides on the speed. Export each channel as it was recorded.",
+                                     distance),
+                     maker->gap_row);
+  else if (maker->gaps)
+    eo_angles_at_row(
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)angles->dropped,
+                        "About %lld rows are missing from both channels in %lld places, the first before row %lld; "
+                        "the angles say for how long, and time was "
+                        "set by them.",
+                        (long long)angles->dropped, (long long)maker->gaps, (long long)maker->gap_row + 1),
+        maker->gap_row);
+}
+
 void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles)
 {
   for (int i = 0; i < maker->losses && maker->losses <= EO_MOST_LOSSES; i++)
@@ -252,15 +292,7 @@ void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angle
                         eo_channel_name(maker->loss[i].channel), DEGREES * maker->loss[i].jump,
                         (long long)maker->loss[i].row + 1),
         maker->loss[i].row);
-  if (maker->gaps)
-    eo_angles_at_row(
-        maker,
-        eo_findings_add(maker->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)angles->dropped,
-                        "About %lld rows are missing from both channels in %lld places, the first before row %lld; "
-                        "the angles say for how long, and time was "
-                        "set by them.",
-                        (long long)angles->dropped, (long long)maker->gaps, (long long)maker->gap_row + 1),
-        maker->gap_row);
+  judge_gaps(maker, angles);
   if (maker->spikes)
     eo_angles_at_row(maker,
                      eo_findings_add(maker->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)maker->spikes,

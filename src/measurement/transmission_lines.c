@@ -86,7 +86,8 @@ static double axis_bias(const struct eo_order_fit *fit)
 void eo_order_fit_read_lines(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
-  result->axis_noise = eo_axis_noise_sigma(&fit->noise);
+  double at_most = result->residual / fit->settings->base_radius[EO_PINION]; /* what both channels share is no noise */
+  result->axis_noise = fmin(eo_axis_noise_sigma(&fit->noise), at_most);
   result->axis_swing = fit->axis.share[EO_PINION] * cabs(fit->axis.swing[EO_PINION][0]);
   for (int h = 0; h < result->harmonics; h++) {
     result->mesh[h] = mesh_line(fit, h);

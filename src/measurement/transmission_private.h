@@ -6,6 +6,7 @@
 
 #include "measurement/axis.h"
 #include "measurement/beside.h"
+#include "measurement/images.h"
 #include "measurement/synchronous.h"
 #include "measurement/terms.h"
 #include "measurement/transmission.h"
@@ -35,6 +36,7 @@ struct eo_order_fit {
   double rows[EO_ORDER_FIT_BLOCK][3];
   struct eo_synchronous *synchronous;
   struct eo_waterfall *waterfall;
+  struct eo_images *images;
   struct eo_beside beside;
 };
 

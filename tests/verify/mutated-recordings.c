@@ -38,11 +38,13 @@ enum row_fault {
   HEADING_AGAIN,
   CUT,         /* in the middle of the last row */
   LOST_IN_ONE, /* the gear's values move up by some rows */
+  ON_LINES,    /* brought to another rate on straight lines */
+  LAST_VALUE,  /* brought to another rate by the last value */
   ROW_FAULTS
 };
-static const char *const fault_names[ROW_FAULTS] = {"sound",         "gap",   "lost",       "doubled",
-                                                    "exchanged",     "moved", "backwards",  "no numbers",
-                                                    "heading again", "cut",   "lost in one"};
+static const char *const fault_names[ROW_FAULTS] = {
+    "sound",      "gap",           "lost", "doubled",     "exchanged", "moved",     "backwards",
+    "no numbers", "heading again", "cut",  "lost in one", "on lines",  "last value"};
 
 struct unit {
   const char *name;
@@ -63,6 +65,7 @@ struct plan {
   const struct unit *unit;
   enum row_fault fault;
   int64_t at, size; /* of the fault */
+  double rate;      /* rows per second of the file */
   int names, separator, encoding, line_end;
   bool comma, quoted, units_below, comments, unit_stated;
   const char *point;
@@ -107,6 +110,11 @@ static void make_plan(struct plan *p, uint64_t seed)
   p->time = (enum time_style)choice(p, 4, TIME_STYLES);
   p->unit = &units[choice(p, 5, sizeof units / sizeof *units)];
   p->fault = (enum row_fault)(choice(p, 6, 3) ? 1 + choice(p, 7, ROW_FAULTS - 1) : SOUND);
+  p->rate = p->truth.sample_rate;
+  if (p->fault == ON_LINES || p->fault == LAST_VALUE) {
+    p->rate = floor(p->rate * drawn_between(p, 19, 0.7, 1.95));
+    p->truth.wrapped = false;
+  }
   int64_t rows = eo_synthetic_rows(&p->truth);
   p->at = (int64_t)(drawn_between(p, 8, 0.1, 0.8) * (double)rows);
   p->size = 1 + choice(p, 9, 40);
@@ -272,7 +280,7 @@ static void put_facts(struct sheet *s)
   }
   if (p->time == RATE_IN_HEADING) {
     char text[80];
-    snprintf(text, sizeof text, rates[choice(p, 31, 5)], p->truth.sample_rate);
+    snprintf(text, sizeof text, rates[choice(p, 31, 5)], p->rate);
     put(s, "%s", text);
     put_line_end(s);
   }
@@ -453,6 +461,24 @@ static void judge(struct tally *t, uint64_t seed, const struct plan *p, const js
   show(p, document, path);
 }
 
+/* The rows as a program brings them to its own rate; *count of them. The caller frees. */
+static double *resample(const struct plan *p, const double *rows, int64_t *count)
+{
+  double step = p->truth.sample_rate / p->rate, *made = malloc((size_t)ROW * 3 * sizeof *made);
+  int64_t n = 0;
+  if (!made)
+    exit(99);
+  for (double at = 0; n < ROW && at + 1 < (double)*count; at = step * (double)++n) {
+    const double *from = rows + 3 * (int64_t)at;
+    double way = p->fault == ON_LINES ? at - floor(at) : 0;
+    made[3 * n] = (double)n / p->rate;
+    for (int c = 1; c < 3; c++)
+      made[3 * n + c] = from[c] + way * (from[3 + c] - from[c]);
+  }
+  *count = n;
+  return made;
+}
+
 static void try_one(struct tally *t, uint64_t seed, const char *path, bool keep)
 {
   struct plan p;
@@ -463,6 +489,11 @@ static void try_one(struct tally *t, uint64_t seed, const char *path, bool keep)
   if (!rows || count > ROW)
     exit(99);
   eo_synthetic_fill(&p.truth, 0, count, rows);
+  if (p.fault == ON_LINES || p.fault == LAST_VALUE) {
+    double *made = resample(&p, rows, &count);
+    free(rows);
+    rows = made;
+  }
   write_sheet(&sheet, rows, count);
   save(&sheet, path);
   struct eo_geometry geometry = {.teeth = {17, 44}, .base_radius = {0.0518616, 0.1342300}};

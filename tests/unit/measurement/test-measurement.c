@@ -455,8 +455,9 @@ static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum
   return found;
 }
 
-/* Rows of a recording brought to `rate` on straight lines, as programs do that export with one time. */
-static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate)
+/* Rows of a recording brought to `rate` on straight lines, or by the last value, as programs do that export with one
+   time. */
+static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate, bool last)
 {
   const struct eo_measurement_settings settings = {
       .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
@@ -464,7 +465,7 @@ static const struct eo_measurement *measure_resampled(const struct eo_synthetic 
       .interval = 1 / rate, .time_column = -1, .channel = {{.column = {0}, .scale = 1}, {.column = {1}, .scale = 1}}};
   struct eo_recording *recording = NULL, *resampled = NULL;
   struct eo_tracks own;
-  double rows[2][3], row[2];
+  double rows[2][3], row[2], way;
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
   enum eo_code code = eo_synthetic_record(s, &recording, &error);
@@ -473,9 +474,10 @@ static const struct eo_measurement *measure_resampled(const struct eo_synthetic 
   eo_synthetic_tracks(s, &own);
   for (double at = 0; !code && at + 1 < (double)eo_recording_rows(recording); at += s->sample_rate / rate) {
     code = eo_recording_read(recording, (int64_t)at, 2, rows[0], &error);
+    way = last ? 0 : at - floor(at);
     for (int i = 0; i < 2; i++) {
       int c = own.channel[i].column[0];
-      row[i] = own.channel[i].scale * (rows[0][c] + (at - floor(at)) * (rows[1][c] - rows[0][c]));
+      row[i] = own.channel[i].scale * (rows[0][c] + way * (rows[1][c] - rows[0][c]));
     }
     if (!code)
       code = eo_recording_append(resampled, row, 1, &error);
@@ -491,12 +493,31 @@ static const struct eo_measurement *measure_resampled(const struct eo_synthetic 
 
 static void check_resampled(void)
 {
+  static const double lines[] = {0.7, 0.8, 0.97, 1.02, 1.1, 1.37, 1.618, 1.9, 2, 5, 12.5},
+                      right[] = {0.5, 0.618, 0.83, 1.37, 1.9, 2.3, 5}, open[] = {0.95, 0.98, 1.02, 1.05, 1.1};
   struct eo_synthetic s = usual();
-  ok(!measure_resampled(&s, s.sample_rate)->refused, "the rows as they are");
-  for (double times = 2; times < 20; times *= 2.5)
-    ok(measure_resampled(&s, times * s.sample_rate)->refused &&
+  double truth = eo_synthetic_rms(&s, 8);
+  ok(!measure_resampled(&s, s.sample_rate, false)->refused, "the rows as they are");
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+    ok(measure_resampled(&s, lines[i] * s.sample_rate, false)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
-       "rows brought to %.3g times their rate on straight lines are refused", times);
+       "rows brought to %.3g times their rate on straight lines are refused", lines[i]);
+  for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
+    const struct eo_measurement *m = measure_resampled(&s, right[i] * s.sample_rate, true);
+    double known = eo_synthetic_rms(&s, m->transmission.harmonics);
+    ok(!m->refused && fabs(m->transmission.rms - known) < 3 * m->transmission.rms_sigma,
+       "by the last value at %.3g times their rate: RMS %.4f, truth %.4f", right[i], m->transmission.rms, known);
+  }
+  for (size_t i = 0; i < sizeof open / sizeof *open; i++)
+    ok(measure_resampled(&s, open[i] * s.sample_rate, true)->refused &&
+           said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
+       "by the last value at %.3g times it: rows at even distances are there twice, or not", open[i]);
+  s.noise = 0;
+  ok(measure_resampled(&s, 1.37 * s.sample_rate, false)->refused, "straight lines show without noise, too");
+  s.interpolation = 64;
+  const struct eo_measurement *m = measure(&s);
+  ok(!m->refused, "steps of an encoder are none: RMS %.4f +- %.4f, truth %.4f", m->transmission.rms,
+     m->transmission.rms_sigma, truth);
 }
 
 static void check_load(void)
