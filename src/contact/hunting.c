@@ -48,15 +48,33 @@ static double form_at(const struct eo_geometry *geometry, const struct eo_flank_
          tooth->lead_crowning * zeta * zeta;
 }
 
-double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
-                      const struct eo_tooth_deviation *const tooth[2])
+/* normal: of an index deviation. */
+static double gap_at(const struct eo_geometry *geometry, double normal, const struct eo_flank_point *point,
+                     bool inwards, const struct eo_tooth_deviation *const tooth[2])
 {
-  double gap = 0, normal = cos(geometry->transverse_pressure_angle) * cos(geometry->base_helix_angle);
+  double gap = 0;
   for (int member = 0; member < 2; member++)
     if (tooth[member])
       /* theory (P1) */
       gap += form_at(geometry, point, inwards, member, tooth[member]) - tooth[member]->index * normal;
   return gap;
+}
+
+static double normal_of(const struct eo_geometry *geometry)
+{
+  return cos(geometry->transverse_pressure_angle) * cos(geometry->base_helix_angle);
+}
+
+double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards,
+                      const struct eo_tooth_deviation *const tooth[2])
+{
+  return gap_at(geometry, normal_of(geometry), point, inwards, tooth);
+}
+
+static bool has_form(const struct eo_tooth_deviation *tooth)
+{
+  return tooth && (tooth->profile_slope != 0 || tooth->helix_slope != 0 || tooth->profile_crowning != 0 ||
+                   tooth->lead_crowning != 0);
 }
 
 /* The teeth of a pair of an end. */
@@ -68,19 +86,24 @@ static void teeth_of(const struct eo_hunt *hunt, int end, int pair, const struct
   }
 }
 
-/* Gaps of one position in a cycle. */
+/* Gaps of one position in a cycle; those of a line whose teeth have no form of their own are off by one number. */
 static void set_gaps(const struct eo_hunt *hunt, struct eo_hunting_walker *walker, int end, int cycle, int j)
 {
   const struct eo_contact_grid *grid = hunt->input->grid[end];
+  double normal = normal_of(&grid->geometry);
   const struct eo_contact_position *position = &grid->position[j];
   const double *gap = hunt->input->gap[end] + position->first;
   for (int l = 0; l < position->lines; l++) {
     const struct eo_contact_line *line = &position->line[l];
     const struct eo_tooth_deviation *tooth[2];
     teeth_of(hunt, end, cycle - line->pair, tooth);
-    for (int i = line->first; i < line->first + line->cells; i++)
-      walker->gap[end][position->first + i] = gap[i] + eo_hunting_gap(&grid->geometry, &position->point[i],
-                                                                      hunt->input->inwards, tooth);
+    bool formed = has_form(tooth[0]) || has_form(tooth[1]);
+    double off = gap_at(&grid->geometry, normal, &position->point[line->first], hunt->input->inwards, tooth);
+    for (int i = line->first; i < line->first + line->cells; i++) {
+      if (formed)
+        off = gap_at(&grid->geometry, normal, &position->point[i], hunt->input->inwards, tooth);
+      walker->gap[end][position->first + i] = gap[i] + off;
+    }
   }
 }
 
