@@ -33,6 +33,9 @@ struct eo_hunt {
   struct eo_hunting_walker *walker; /* [threads] */
 };
 
+/* Cycles, instants and pairs of a result that has nothing else yet. EO_ERROR_INPUT: too many instants. */
+enum eo_code eo_hunting_count(struct eo_hunting *hunting, const struct eo_hunting_input *input, struct eo_error *error);
+
 /* Makes room for the result and the work. eo_hunt_end() also after an error. */
 enum eo_code eo_hunt_begin(struct eo_hunt *hunt, struct eo_hunting *result, const struct eo_hunting_input *input,
                            struct eo_error *error);

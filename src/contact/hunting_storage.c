@@ -22,7 +22,7 @@ static double *make_numbers(int count, bool *complete)
   return number;
 }
 
-static void count_result(struct eo_hunting *hunting, const struct eo_hunting_input *input)
+enum eo_code eo_hunting_count(struct eo_hunting *hunting, const struct eo_hunting_input *input, struct eo_error *error)
 {
   const struct eo_geometry *geometry = &input->grid[0]->geometry;
   int range[2];
@@ -39,13 +39,6 @@ static void count_result(struct eo_hunting *hunting, const struct eo_hunting_inp
     range[1] = own[1] > range[1] ? own[1] : range[1];
   }
   hunting->lines = range[1] - hunting->first_line + 1;
-}
-
-static enum eo_code make_result(struct eo_hunting *hunting, const struct eo_hunting_input *input,
-                                struct eo_error *error)
-{
-  bool complete = true;
-  count_result(hunting, input);
   if ((double)hunting->cycles * hunting->positions > EO_HUNTING_MOST_INSTANTS)
     return eo_error_set(error, EO_ERROR_INPUT, "/pitch/positions_per_cycle",
                         "%d and %d teeth meet again after %d mesh cycles; with %d positions each that is more than the "
@@ -53,6 +46,14 @@ static enum eo_code make_result(struct eo_hunting *hunting, const struct eo_hunt
                         hunting->teeth[0], hunting->teeth[1], hunting->cycles, hunting->positions,
                         EO_HUNTING_MOST_INSTANTS);
   hunting->instants = hunting->cycles * hunting->positions;
+  return EO_OK;
+}
+
+static enum eo_code make_result(struct eo_hunting *hunting, const struct eo_hunting_input *input,
+                                struct eo_error *error)
+{
+  bool complete = true;
+  EO_TRY(eo_hunting_count(hunting, input, error));
   for (int end = 0; end < hunting->ends; end++) {
     hunting->load[end] = make_numbers(hunting->instants, &complete);
     hunting->approach[end] = make_numbers(hunting->instants, &complete);

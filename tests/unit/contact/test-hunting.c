@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact over the hunting period: what holds for it exactly (no deviations, constants, rigid teeth, linear
-   response, hands of their own, slopes that all teeth have, threads). Closed-form compliance, the paper's pair. */
+   response, hands of their own, slopes that all teeth have, threads), and how far pairs of teeth as springs come to it.
+   Closed-form compliance, the paper's pair. */
 #include "contact/hunting.h"
+#include "contact/tooth_springs.h"
 #include "numerics/fft.h"
 #include "support/contact-fixture.h"
 
@@ -377,6 +379,102 @@ static void test_fewer_positions(void)
   eo_hunting_done(&half);
 }
 
+struct sketched {
+  struct eo_hunting period, stretch;
+};
+
+static struct sketched sketch(const struct eo_hunting_input *input, int stretch)
+{
+  struct sketched sketched;
+  struct eo_error error;
+  if (eo_hunting_sketch(&sketched.period, &sketched.stretch, stretch, input, &error))
+    stop(&error);
+  return sketched;
+}
+
+static void sketched_done(struct sketched *sketched)
+{
+  eo_hunting_done(&sketched->period);
+  eo_hunting_done(&sketched->stretch);
+}
+
+static double swing_of(const struct eo_hunting *hunting)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < hunting->instants; i++) {
+    low = fmin(low, hunting->approach[0][i]);
+    high = fmax(high, hunting->approach[0][i]);
+  }
+  return high - low;
+}
+
+static double mean_square(const struct eo_hunting *a, const struct eo_hunting *b)
+{
+  double sum = 0;
+  for (int i = 0; i < a->instants; i++)
+    sum += (a->approach[0][i] - b->approach[0][i]) * (a->approach[0][i] - b->approach[0][i]) / a->instants;
+  return sum;
+}
+
+/* Springs pass through the solution of one cycle, and follow a tooth that stands forward by its own approach. */
+static void test_springs_alike(void)
+{
+  struct eo_hunting_input input = plain_input(1);
+  struct eo_hunting full = run(&input);
+  struct sketched alike = sketch(&input, 3);
+  double most = apart(full.instants, alike.period.approach[0], full.approach[0], 0);
+  ok(most < 1e-11 && alike.period.failures == 0,
+     "springs without deviations: the approach of the full contact (%.1e m)", most);
+  close_to(alike.period.most_load[0].value / full.most_load[0].value, 1, 1e-6, "the largest load of a pair");
+  close_to(alike.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6, "the largest pressure");
+  ok(apart(alike.stretch.instants, alike.stretch.approach[0], alike.period.approach[0], 0) < 1e-11 &&
+         alike.stretch.cycles == 3 && alike.stretch.positions == POSITIONS,
+     "a stretch is the beginning of the period");
+  for (int i = 0; i < GEAR; i++)
+    table[0][0][i] = (struct eo_tooth_deviation){.index = 5e-6};
+  input.tooth[0][0] = table[0][0];
+  struct sketched forward = sketch(&input, 0);
+  most = apart(full.instants, forward.period.approach[0], full.approach[0], -5e-6 * normal);
+  ok(most < 1e-11, "a constant moves Z by -F cos alpha_t cos beta_b and nothing else (%.1e m)", most);
+  sketched_done(&forward);
+  sketched_done(&alike);
+  eo_hunting_done(&full);
+}
+
+/* Drawn teeth, with forms of their own on one member. */
+static void test_springs_drawn(void)
+{
+  draw_tables(6e-6, 3e-6);
+  for (int i = 0; i < GEAR; i++) {
+    table[0][1][i].profile_slope = random_between(9, i, -3e-6, 3e-6);
+    table[0][1][i].lead_crowning = random_between(10, i, -3e-6, 3e-6);
+  }
+  struct eo_hunting_input input = plain_input(1);
+  put_tables(&input);
+  struct eo_hunting full = run(&input);
+  struct sketched drawn = sketch(&input, 0);
+  double swing = swing_of(&full), off = sqrt(mean_square(&drawn.period, &full)),
+         load = drawn.period.most_load[0].value / full.most_load[0].value,
+         pressure = drawn.period.most_pressure[0].value / full.most_pressure[0].value;
+  ok(drawn.period.failures == 0 && off < 0.01 * swing, "springs are %.3f um off a swing of %.2f um (root mean square)",
+     1e6 * off, 1e6 * swing);
+  close_to(swing_of(&drawn.period) / swing, 1, 0.01, "the swing over the period");
+  close_to(load, 1, 0.03, "the largest load of a tooth");
+  close_to(pressure, 1, 0.05, "the largest pressure of a tooth");
+  struct eo_hunting_input few = input;
+  few.positions = POSITIONS / 4;
+  struct sketched seldom = sketch(&few, 2);
+  double most = 0;
+  for (int i = 0; i < seldom.period.instants; i++)
+    most = fmax(most, fabs(seldom.period.approach[0][i] - drawn.period.approach[0][4 * i]));
+  ok(most < 1e-10, "fewer positions: the same numbers there (%.1e m)", most);
+  ok(apart(seldom.stretch.instants, seldom.stretch.approach[0], drawn.period.approach[0], 0) < 1e-10,
+     "and a stretch has all of them");
+  sketched_done(&seldom);
+  sketched_done(&drawn);
+  eo_hunting_done(&full);
+}
+
 int main(void)
 {
   open_bench();
@@ -389,6 +487,8 @@ int main(void)
   test_forms();
   test_one_full_tooth();
   test_fewer_positions();
+  test_springs_alike();
+  test_springs_drawn();
   close_bench();
   return tap_done();
 }
