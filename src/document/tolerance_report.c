@@ -296,17 +296,19 @@ bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char
 {
   const struct eo_scatter_run *run = report->run;
   char rms[60] = "";
-  double error = largest_error(report, "rms_m_per_s2");
+  bool teeth = report->design->tolerance.single_teeth;
+  double error = largest_error(report, teeth ? "period_rms_m_per_s2" : "rms_m_per_s2");
   if (!run->coarse)
     return false;
   if (isfinite(error))
     snprintf(rms, sizeof rms, ", the RMS acceleration by %.2g m/s2", error);
   snprintf(
       note, EO_COMPLETION_NOTE,
-      "%d of %d pairs were computed in full, the others on a coarse grid and corrected by these: a pair's "
-      "peak-to-peak error is off by %.2g um%s (root mean square of pairs left out, worst load case). The intervals "
+      "%d of %d pairs were computed in full, the others on a coarse grid%s and corrected by these: a pair's "
+      "peak-to-peak error%s is off by %.2g um%s (root mean square of pairs left out, worst load case). The intervals "
       "have this in them; the method \"full\" computes every pair.",
-      eo_scatter_full_pairs(run), run->pairs, largest_error(report, "peak_to_peak_um"), rms);
+      eo_scatter_full_pairs(run), run->pairs, teeth ? ", their teeth as springs," : "",
+      teeth ? " over the hunting period" : "", largest_error(report, swing_of(report)), rms);
   return true;
 }
 

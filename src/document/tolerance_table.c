@@ -67,8 +67,8 @@ static const struct eo_field tolerance[] = {
         struct eo_tolerance_settings, method, "method", methods, EO_SCATTER_AUTO,
         "full: every pair as an analysis computes it; coarse_first: every pair on a coarse grid, and in full those "
         "that show what this leaves open and those by which the 95 % percentiles are decided; auto: coarse_first "
-        "from 500 pairs on, on 48 mesh positions or more, without root stress and single teeth, with halves that are "
-        "alike"),
+        "from 500 pairs on, on 48 mesh positions or more, or from 64 pairs with single teeth on, unless the pinion is "
+        "held along its axis with these; without root stress, with halves that are alike"),
     {.key = "seed",
      .kind = EO_FIELD_SEED,
      .offset = offsetof(struct eo_tolerance_settings, seed),
@@ -81,8 +81,8 @@ static const struct eo_field tolerance[] = {
     EO_FLAG(struct eo_tolerance_settings, single_teeth, "single_teeth", 0,
             "with teeth of its own for every pair: index deviations drawn within the member's tolerance_class of the "
             "block pitch, or the class here; their share of it is half normal, the class 2 sigma (ground: 3) and cut "
-            "there. Gives what the hunting period has, period_peak_to_peak_um and others, and takes some hundred times "
-            "as long"),
+            "there. Gives what the hunting period has, period_peak_to_peak_um and others; a pair in full takes some "
+            "hundred times as long"),
     EO_LIST(struct eo_tolerance_settings, row, rows, "inputs", &row_table, 0, EO_MAX_SCATTER_ROWS,
             "what scatters and how; a key that the preset has too is taken from here"),
     EO_LIST(struct eo_tolerance_settings, limit, limits, "limits", &limit_table, 0, EO_MAX_TOLERANCE_LIMITS,

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "contact/tooth_springs.h"
+#include "dynamics/long_sketch.h"
 #include "evaluation/evaluator_private.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
@@ -86,6 +88,15 @@ static void arrange(struct work *work, struct eo_case_result *load_case, const s
   }
 }
 
+/* The period at few positions, and a stretch of it, at all positions of the grid, by which the pair vibrates. */
+static enum eo_code sketch(const struct work *work, const struct eo_hunting_input *input, struct eo_pitch_case *own,
+                           struct eo_error *error)
+{
+  enum { TURNS = 3 }; /* of the gear */
+  int cycles = EO_LONG_SKETCH_LEAD + TURNS * input->grid[EO_LEFT]->geometry.teeth[EO_GEAR];
+  return eo_hunting_sketch(&own->hunting, &own->stretch, work->question->vibration ? cycles : 0, input, error);
+}
+
 static enum eo_code hunt(struct work *work, const struct eo_case_result *load_case, struct eo_pitch_case *own,
                          struct eo_error *error)
 {
@@ -106,6 +117,8 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
   for (int end = 0; end < 2 && work->question->root && pair->root; end++)
     input.root[end] = eo_pair_half(pair, end)->root;
+  if (work->design->pitch.sketched)
+    return sketch(work, &input, own, error);
   struct share share = {work->question->progress, (int)(own - work->result->load_case), work->result->cases};
   const struct eo_progress progress = {report_share, &share};
   return eo_hunting_run(&own->hunting, &input, &progress, error);
@@ -190,10 +203,16 @@ static bool hands_alike(const struct work *work, const struct eo_pitch_case *own
   return alike;
 }
 
-/* Z at which an end would carry P, from the load it has; both in the order of time. */
-static void order_in_time(const struct eo_pitch_case *own, bool backwards, int end, double *deflection, double *tangent)
+/* The contact by which the pair vibrates. */
+static const struct eo_hunting *heard(const struct eo_pitch_case *own, const struct eo_design *design)
 {
-  const struct eo_hunting *hunting = &own->hunting;
+  return design->pitch.sketched ? &own->stretch : &own->hunting;
+}
+
+/* Z at which an end would carry P, from the load it has; both in the order of time. */
+static void order_in_time(const struct eo_pitch_case *own, const struct eo_hunting *hunting, bool backwards, int end,
+                          double *deflection, double *tangent)
+{
   for (int i = 0; i < hunting->instants; i++) {
     int from = backwards ? (hunting->instants - i) % hunting->instants : i;
     double k = hunting->tangent[end][from];
@@ -202,18 +221,26 @@ static void order_in_time(const struct eo_pitch_case *own, bool backwards, int e
   }
 }
 
+/* No more than pairs as made are asked for. */
+static enum eo_code sketch_response(struct eo_long_response *response, const struct eo_long_case *load,
+                                    struct eo_error *error)
+{
+  *response = (struct eo_long_response){.outcome = EO_LONG_IN_CONTACT};
+  return eo_long_sketch_rms(load, &response->rms[EO_READING_NORMAL], error);
+}
+
 static enum eo_code respond_with(const struct work *work, const struct eo_case_result *load_case,
                                  struct eo_pitch_case *own, double *const scratch[4], struct eo_error *error)
 {
   const struct eo_design *design = work->design;
-  const struct eo_hunting *hunting = &own->hunting;
+  const struct eo_hunting *hunting = heard(own, design);
   struct eo_dynamics_parameters parameters;
   bool held = load_case->at_stop || design->alignment.pinion_axial != EO_AXIAL_STOPS,
        differ = design->gear_pair.ends == 2 &&
                 !(!work->evaluator->pair->right && eo_reuse_same_flanks(design) && hands_alike(work, own));
   double stiffness = 0;
   for (int end = 0; end < hunting->ends; end++) {
-    order_in_time(own, load_case->running.backwards, end, scratch[end], scratch[2 + end]);
+    order_in_time(own, hunting, load_case->running.backwards, end, scratch[end], scratch[2 + end]);
     for (int i = 0; i < hunting->instants; i++)
       stiffness += scratch[2 + end][i] / (hunting->ends * hunting->instants);
   }
@@ -232,7 +259,8 @@ static enum eo_code respond_with(const struct work *work, const struct eo_case_r
                                     .tangent = {scratch[2], scratch[3]},
                                     .back = load_case->end[EO_LEFT].deflection.part[0][EO_DEFLECTION_NODES / 2] -
                                             design->gear_pair.backlash};
-  return eo_long_response_find(&own->response, &load, error);
+  return design->pitch.sketched ? sketch_response(&own->response, &load, error)
+                                : eo_long_response_find(&own->response, &load, error);
 }
 
 static void add_order(struct eo_pitch_case *own, double order, const char *name)
@@ -283,11 +311,11 @@ static enum eo_code respond(void *context, int thread, int k, struct eo_error *e
   enum eo_code code = EO_OK;
   (void)thread;
   for (int i = 0; i < 4 && !code; i++) {
-    scratch[i] = malloc(sizeof(double) * (size_t)own->hunting.instants);
+    scratch[i] = malloc(sizeof(double) * (size_t)heard(own, work->design)->instants);
     code = scratch[i] ? EO_OK : eo_error_memory(error);
   }
   own->response.outcome = EO_LONG_NO_LAW;
-  if (!code && work->question->vibration && own->hunting.failures == 0)
+  if (!code && work->question->vibration && own->hunting.failures == 0 && own->stretch.failures == 0)
     code = respond_with(work, &work->evaluator->result.load_case[k], own, scratch, error);
   for (int i = 0; i < 4; i++)
     free(scratch[i]);
@@ -365,6 +393,7 @@ void eo_pitch_analysis_done(struct eo_pitch_analysis *analysis)
   for (int k = 0; k < analysis->cases && analysis->load_case; k++) {
     struct eo_pitch_case *own = &analysis->load_case[k];
     eo_hunting_done(&own->hunting);
+    eo_hunting_done(&own->stretch);
     eo_long_response_done(&own->response);
     free(own->transmission);
     free(own->cycle_mean);

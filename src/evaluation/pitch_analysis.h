@@ -22,16 +22,16 @@ struct eo_pitch_order {
 struct eo_pitch_case {
   struct eo_load_case load_case;
   struct eo_pitch_meeting meeting;
-  struct eo_hunting hunting;
-  double force[2];                  /* [end] P, N */
-  double *transmission;             /* [instants] of the pair, transverse, m, by mesh position */
-  double mean, peak_to_peak;        /* of it over the period, m */
-  double *cycle_mean, *cycle_swing; /* [cycles] of each cycle, m */
-  double *turn[2];                  /* [member]: [teeth positions] in the order of time, mean over its turns (the
-                                       time-synchronous average) less the mean of all, m */
-  double float_mean, float_swing;   /* of the pinion along its axis, + to the right, m; 0 with one end */
-  int lines;                        /* instants/2 + 1: line k is at order k / (revolutions of the pinion) */
-  double complex *line;             /* one-sided spectrum of the transmission error, see eo_fft_spectrum() */
+  struct eo_hunting hunting, stretch; /* stretch: of a pair that is sketched, by which it vibrates */
+  double force[2];                    /* [end] P, N */
+  double *transmission;               /* [instants] of the pair, transverse, m, by mesh position */
+  double mean, peak_to_peak;          /* of it over the period, m */
+  double *cycle_mean, *cycle_swing;   /* [cycles] of each cycle, m */
+  double *turn[2];                    /* [member]: [teeth positions] in the order of time, mean over its turns (the
+                                         time-synchronous average) less the mean of all, m */
+  double float_mean, float_swing;     /* of the pinion along its axis, + to the right, m; 0 with one end */
+  int lines;                          /* instants/2 + 1: line k is at order k / (revolutions of the pinion) */
+  double complex *line;               /* one-sided spectrum of the transmission error, see eo_fft_spectrum() */
   int orders;
   struct eo_pitch_order order[EO_PITCH_ORDERS];
   struct eo_long_response response;

@@ -1,36 +1,64 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/scatter_levels.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The coarse grid: a third of the positions, cells and harmonics. What that leaves of the numbers' order among pairs,
-   and what it costs: theory, Gears as made. */
-enum { COARSE_POSITIONS = 24, COARSE_CELLS = 10, COARSE_HARMONICS = 12 };
+/* The coarse grid: a third of the positions, cells and harmonics; teeth of their own are looked at at a third of these
+   positions. What that leaves of the numbers' order among pairs, and what it costs: theory, Gears as made. */
+enum { COARSE_POSITIONS = 24, COARSE_CELLS = 10, COARSE_HARMONICS = 12, COARSE_TEETH = 8 };
 
-/* Pairs in full at first, evenly spread as the first points are, and in each round behind. */
-enum { FIRST_IN_FULL = 64, MORE_IN_FULL = 16, MOST_ROUNDS_FOR_LARGEST = 8 };
+/* Pairs in full: at first, evenly spread as the first points are, in each round behind, and with the rounds at most.
+   One with teeth of its own takes as long as a hundred on the coarse level, so that there are few of them, and the
+   rounds end where the intervals still have something of it in them. Where the progress stands when the coarse rows are
+   there, and in full where as many as expected are done. */
+enum { MOST_ROUNDS_FOR_LARGEST = 8 };
+static const struct levels {
+  int first, more, most;
+  double coarse_fraction, expected;
+} MESH_CYCLE = {64, 16, INT_MAX, 0.7, 160}, HUNTING_PERIOD = {24, 8, 48, 0.2, 48};
 
 /* How far the completion may leave the 95 % percentile of what decides open: its standard deviation over the value. */
 static const double WELL_KNOWN = 0.01;
 static const double DECIDING_PERCENT = 95;
 
-/* Progress when the coarse rows are there; in full, where this many are done. */
-static const double COARSE_FRACTION = 0.7, PAIRS_EXPECTED = 160;
+static const struct levels *levels_of(const struct eo_design *design)
+{
+  return design->tolerance.single_teeth ? &HUNTING_PERIOD : &MESH_CYCLE;
+}
+
+/* Springs know nothing of a pinion that is held along its axis. */
+static bool has_springs(const struct eo_design *design)
+{
+  return design->gear_pair.ends == 1 || design->alignment.pinion_axial == EO_AXIAL_FLOATING ||
+         design->alignment.pinion_axial == EO_AXIAL_STOPS;
+}
 
 bool eo_scatter_is_coarse_first(const struct eo_design *design)
 {
   const struct eo_tolerance_settings *settings = &design->tolerance;
-  bool can = !settings->root_stress && !settings->single_teeth && !eo_gear_pair_is_uneven(&design->gear_pair) &&
-             settings->pairs >= 2 * (FIRST_IN_FULL + MORE_IN_FULL);
+  const struct levels *levels = levels_of(design);
+  bool teeth = settings->single_teeth, can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) &&
+                                             settings->pairs >= 2 * (levels->first + levels->more);
   bool pays = settings->pairs >= EO_COARSE_FIRST_FROM && design->resolution.positions >= 2 * COARSE_POSITIONS;
-  return can && (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && pays));
+  return can && (!teeth || has_springs(design)) &&
+         (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && (teeth || pays)));
 }
 
 static void at_most(int *value, int most)
 {
   *value = *value < most ? *value : most;
+}
+
+/* Positions of a mesh cycle at which teeth of their own are looked at: a divisor of those of the grid. */
+static int coarse_divisor(int positions)
+{
+  int divisor = positions < COARSE_TEETH ? positions : COARSE_TEETH;
+  while (positions % divisor)
+    divisor--;
+  return divisor;
 }
 
 void eo_scatter_make_coarse(struct eo_design *coarse, const struct eo_design *design)
@@ -40,6 +68,9 @@ void eo_scatter_make_coarse(struct eo_design *coarse, const struct eo_design *de
   at_most(&coarse->resolution.cells_per_line, COARSE_CELLS);
   at_most(&coarse->resolution.harmonics, COARSE_HARMONICS);
   at_most(&coarse->resolution.te_harmonics, COARSE_POSITIONS / 2);
+  coarse->pitch.sketched = design->tolerance.single_teeth;
+  if (coarse->pitch.sketched)
+    coarse->pitch.positions = coarse_divisor(coarse->resolution.positions);
 }
 
 enum eo_code eo_scatter_coarse_pair(struct eo_pair **coarse, const struct eo_pair *pair, const struct eo_design *design,
@@ -77,7 +108,8 @@ struct rounds {
   void *context;
   int *pair;              /* [pairs], of a stage */
   double *share, *weight; /* [pairs] */
-  int decide;             /* outputs by which the pairs in full are chosen */
+  const struct levels *levels;
+  int decide; /* outputs by which the pairs in full are chosen */
   int deciding[EO_MAX_LOAD_CASES * EO_ALL_SCALARS];
 };
 
@@ -90,14 +122,15 @@ static void add_deciding(struct rounds *rounds, int scalar, int load_case)
   rounds->deciding[rounds->decide++] = output;
 }
 
-/* Outputs that are limited; swing and RMS in any case. */
+/* Outputs that are limited; swing and RMS in any case, of the hunting period where teeth are single. */
 static void find_deciding(struct rounds *rounds)
 {
   const struct eo_tolerance_settings *settings = &rounds->design->tolerance;
+  bool teeth = settings->single_teeth;
   for (int k = 0; k < rounds->run->cases; k++) {
-    add_deciding(rounds, eo_scalar_find("peak_to_peak_um"), k);
+    add_deciding(rounds, eo_scalar_find(teeth ? "period_peak_to_peak_um" : "peak_to_peak_um"), k);
     if (settings->vibration)
-      add_deciding(rounds, eo_scalar_find("rms_m_per_s2"), k);
+      add_deciding(rounds, eo_scalar_find(teeth ? "period_rms_m_per_s2" : "rms_m_per_s2"), k);
     for (int i = 0; i < settings->limits; i++) {
       int scalar = eo_scalar_find(settings->limit[i].output);
       if (scalar >= 0 && scalar < rounds->run->scalars &&
@@ -114,9 +147,9 @@ static enum eo_code complete(struct rounds *rounds, struct eo_error *error)
   return EO_OK;
 }
 
-static double progress_at(int full)
+static double progress_at(const struct levels *levels, int full)
 {
-  return COARSE_FRACTION + (1 - COARSE_FRACTION) * fmin(1, full / PAIRS_EXPECTED);
+  return levels->coarse_fraction + (1 - levels->coarse_fraction) * fmin(1, full / levels->expected);
 }
 
 /* The first `count` of rounds->pair. */
@@ -125,7 +158,8 @@ static enum eo_code compute_in_full(struct rounds *rounds, int count, struct eo_
   int before = eo_scatter_full_pairs(rounds->run);
   for (int i = 0; i < count; i++)
     rounds->run->full[rounds->pair[i]] = true;
-  const struct eo_scatter_stage stage = {false, count, rounds->pair, progress_at(before), progress_at(before + count)};
+  const struct eo_scatter_stage stage = {false, count, rounds->pair, progress_at(rounds->levels, before),
+                                         progress_at(rounds->levels, before + count)};
   EO_TRY(rounds->compute(rounds->context, &stage, error));
   return complete(rounds, error);
 }
@@ -136,7 +170,7 @@ static int choose_first(struct rounds *rounds)
   const struct eo_scatter_run *run = rounds->run;
   int count = 0;
   for (int i = 0; i < run->pairs; i++)
-    if (i < FIRST_IN_FULL || isnan(run->coarse[(size_t)i * (size_t)run->outputs + (size_t)rounds->deciding[0]]))
+    if (i < rounds->levels->first || isnan(run->coarse[(size_t)i * (size_t)run->outputs + (size_t)rounds->deciding[0]]))
       rounds->pair[count++] = i;
   return count;
 }
@@ -159,7 +193,7 @@ static enum eo_code choose_next(struct rounds *rounds, int *count, struct eo_err
     for (int pair = 0; pair < run->pairs; pair++)
       rounds->weight[pair] += by * by * rounds->share[pair];
   }
-  while (open && *count < MORE_IN_FULL) {
+  while (open && *count < rounds->levels->more) {
     int best = 0;
     for (int pair = 1; pair < run->pairs; pair++)
       best = rounds->weight[pair] > rounds->weight[best] ? pair : best;
@@ -201,11 +235,11 @@ static enum eo_code run_rounds(struct rounds *rounds, struct eo_error *error)
   int count, pairs = run->pairs;
   for (int i = 0; i < pairs; i++)
     rounds->pair[i] = i;
-  const struct eo_scatter_stage coarse = {true, pairs, rounds->pair, 0, COARSE_FRACTION};
+  const struct eo_scatter_stage coarse = {true, pairs, rounds->pair, 0, rounds->levels->coarse_fraction};
   EO_TRY(rounds->compute(rounds->context, &coarse, error));
   memset(run->full, 0, sizeof *run->full * (size_t)pairs);
   EO_TRY(compute_in_full(rounds, choose_first(rounds), error));
-  for (;;) {
+  while (eo_scatter_full_pairs(run) + rounds->levels->more <= rounds->levels->most) {
     EO_TRY(choose_next(rounds, &count, error));
     if (count == 0)
       break;
@@ -237,6 +271,7 @@ enum eo_code eo_scatter_run_levels(struct eo_scatter_run *run, const struct eo_d
     return eo_error_memory(error);
   rounds->run = run;
   rounds->design = design;
+  rounds->levels = levels_of(design);
   rounds->completion = eo_scatter_completion(run, design);
   rounds->compute = compute;
   rounds->context = context;

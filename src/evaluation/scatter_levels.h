@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs as made at two levels: all on a coarse grid, and in full as many as the percentiles take. Which ones follows
-   from the rows alone, so that threads, ranks and a resumed run change nothing. */
+/* Pairs as made at two levels: all on a coarse grid, single teeth as springs (contact/tooth_springs.h), and in full as
+   many as the percentiles take. Which ones follows from the rows alone, so that threads, ranks and a resumed run change
+   nothing. */
 #ifndef EASEOFF_EVALUATION_SCATTER_LEVELS_H
 #define EASEOFF_EVALUATION_SCATTER_LEVELS_H
 
 #include "evaluation/design_scatter.h"
 
-/* Whether the design's pairs are computed coarsely first: as its method says, but never with root stress, with single
-   teeth or with halves that differ. */
+/* Whether the design's pairs are computed coarsely first: as its method says, but never with root stress, with halves
+   that differ, or with single teeth and a pinion that is held along its axis. */
 bool eo_scatter_is_coarse_first(const struct eo_design *design);
 
 /* The design with the resolution of the coarse level, and a pair that serves it. pair: that of the design, borrowed as

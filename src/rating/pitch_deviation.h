@@ -44,6 +44,7 @@ enum eo_code eo_tooth_tables_add(struct eo_tooth_tables *tables, enum eo_flank_s
 /* What a design says of single teeth. */
 struct eo_pitch {
   bool stated;    /* false: teeth are alike, and the hunting period is not computed */
+  bool sketched;  /* pairs of teeth are springs: contact/tooth_springs.h; no document says so */
   int positions;  /* of a mesh cycle; 0: 32, at most those of the resolution */
   int gear_tooth; /* whose drive flank meets that of the pinion's tooth 0 */
   struct eo_pitch_member {

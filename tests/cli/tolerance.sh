@@ -130,6 +130,20 @@ same "$folder/out" "$folder/teeth.json" "and asked for by the option"
 "$EASEOFF" analyze "$folder/toothed.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
 "$numbers" "$folder/teeth.json" /outputs/15/histogram/largest >"$folder/expected"
 near "the worst pair has these teeth" /pitch/load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
+# root stress: the largest of any tooth of the worst pair is what an analysis of these teeth finds
+write_design '{"preset": "iso_class", "class": 5, "vibration": false, "root_stress": true, "single_teeth": true, "limits": [{"output": "tooth_root_stress_MPa", "at_most": 1}]}, "pitch": {"positions_per_cycle": 4}'
+tolerance --pairs 2 --json --worst "$folder/toothed.json" --csv "$folder/stressed.csv"
+awk -F, '{ sub(/\r$/, "") }
+  NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
+  NR > 1 { stress = $at["load_cases.1.tooth_root_stress_MPa"]; if (stress > most) most = stress; if (stress < $at["load_cases.1.root_stress_MPa"] * 0.9) bad++ }
+  END { printf "[%.9f]\n", most; exit bad || NR != 3 }' "$folder/stressed.csv" >"$folder/expected"
+result $? "every pair has a root stress of its teeth, of the size of that of the cycle"
+"$EASEOFF" analyze "$folder/toothed.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
+"$numbers" "$folder/out" /pitch/load_cases/0/largest/root_stress/pinion/stress_MPa >"$folder/pinion"
+"$numbers" "$folder/out" /pitch/load_cases/0/largest/root_stress/gear/stress_MPa >"$folder/gear"
+cat "$folder/pinion" "$folder/gear" | tr -d '[] ' | sort -g | tail -n 1 | sed 's/.*/[&]/' >"$folder/larger"
+cp "$folder/larger" "$folder/out"
+near "the worst pair's teeth have this root stress" "" "$folder/expected" "" 1e-6 relative
 write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
 
 # ---- and for MPI ranks, where mpirun is ----

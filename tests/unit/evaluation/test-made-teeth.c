@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pairs as made with teeth of their own: teeth alike leave the numbers of one mesh cycle, what an eccentricity and a
-   drawn pattern do to the shaft orders in closed form, factors, the worst pair as a design, what a search draws. */
+   drawn pattern do to the shaft orders in closed form, factors, the worst pair as a design, many pairs with few in
+   full, what a search draws. */
 #include "design/made_teeth.h"
 #include "document/examples.h"
 #include "document/tolerance_document.h"
 #include "evaluation/analysis.h"
+#include "evaluation/scatter_levels.h"
 #include "support/synthetic-pair.h"
 #include "support/tap.h"
 
@@ -213,6 +215,70 @@ static void test_worst(void)
   eo_scatter_run_done(&made.run);
 }
 
+/* Rows of a run before. */
+static bool find_row(void *context, int row, double *output)
+{
+  const struct made *before = context;
+  size_t outputs = (size_t)before->run.outputs;
+  if (before->run.full[row])
+    memcpy(output, before->run.output + (size_t)row * outputs, sizeof *output * outputs);
+  return before->run.full[row];
+}
+
+static void run_as(struct made *made, int method, int threads, struct made *before)
+{
+  struct eo_error error;
+  made->design.tolerance.method = method;
+  complete(made);
+  struct eo_scatter_plan plan = eo_tolerance_plan(&made->design.tolerance);
+  plan.threads = threads;
+  if (before)
+    plan.log = (struct eo_scatter_log){.find = find_row, .context = before};
+  if (eo_scatter_run_pairs(&made->run, pair, &made->design, &made->scatter, &plan, NULL, &error))
+    stop(&error);
+}
+
+/* Many pairs with springs for teeth, few in full: how far the springs are off, whatever the threads and what was known
+   before. */
+static void test_coarse_first(void)
+{
+  enum { MANY = 64 };
+  static const struct {
+    const char *key;
+    double most; /* error over the largest value */
+  } numbers[] = {{"period_peak_to_peak_um", 0.01}, {"pinion_order_um", 0.005},   {"gear_order_um", 0.005},
+                 {"tooth_load_N", 0.02},           {"tooth_pressure_MPa", 0.04}, {"period_rms_m_per_s2", 0.08}};
+  static struct made few, again;
+  few.design = plain_design();
+  few.design.tolerance.preset = EO_SCATTER_ISO_CLASS;
+  few.design.tolerance.pairs = MANY;
+  again.design = few.design;
+  run_as(&few, EO_SCATTER_COARSE_FIRST, 2, NULL);
+  run_as(&again, EO_SCATTER_AUTO, 3, &few);
+  int full = eo_scatter_full_pairs(&few.run), worst = 0, swing = eo_scalar_find(numbers[0].key);
+  ok(few.run.coarse && full >= 24 && full < MANY, "%d of %d pairs are in full", full, MANY);
+  ok(memcmp(few.run.output, again.run.output, sizeof(double) * MANY * (size_t)few.run.outputs) == 0,
+     "the same bytes with 3 threads, where nothing is asked for, and with rows from before");
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    int output = eo_scalar_find(numbers[i].key);
+    double largest = 0, least = INFINITY;
+    for (int row = 0; row < MANY; row++) {
+      largest = fmax(largest, few.run.output[row * few.run.outputs + output]);
+      least = fmin(least, few.run.output[row * few.run.outputs + output]);
+    }
+    ok(few.run.completed[output].error < numbers[i].most * largest && largest > 1.05 * least,
+       "springs leave %.3g of %s open, which is %.4g .. %.4g", few.run.completed[output].error, numbers[i].key, least,
+       largest);
+  }
+  for (int i = 0; i < MANY; i++)
+    worst = few.run.output[i * few.run.outputs + swing] > few.run.output[worst * few.run.outputs + swing] ? i : worst;
+  ok(few.run.full[worst], "the pair with the largest swing, %d, is one of them", worst + 1);
+  few.design.alignment.pinion_axial = EO_AXIAL_FIXED;
+  ok(!eo_scatter_is_coarse_first(&few.design), "a pinion that is held has all in full");
+  eo_scatter_run_done(&few.run);
+  eo_scatter_run_done(&again.run);
+}
+
 /* A search does not turn the gears round: its pairs are those that it has without single teeth. */
 static void test_search(void)
 {
@@ -277,6 +343,7 @@ int main(void)
   test_patterns();
   test_factors();
   test_worst();
+  test_coarse_first();
   test_search();
   test_refusals();
   eo_pair_free(pair);
