@@ -23,6 +23,7 @@ const { caseLong, caseNames, torqueOf } = await import('../../web/src/figures/co
 const { shownSentence, useInches } = await import('../../web/src/base/units.js');
 const { Jobs } = await import('../../web/src/base/jobs.js');
 const { DesignStore } = await import('../../web/src/base/store.js');
+const { emptyText } = await import('../../web/src/views/tolerance/empty_text.js');
 const { byComponent } = await import('../../web/src/shell/import_file.js');
 
 let count = 0;
@@ -39,6 +40,17 @@ const is = (value, expected, what) =>
   );
 const near = (value, expected, tolerance, what) =>
   ok(Math.abs(value - expected) <= tolerance, `${what}: ${value} against ${expected}`);
+
+// ---- pairs as made, before there are any ----
+for (const [block, asked, what, word] of [
+  [undefined, 0, 'nothing is chosen', 'Choose how the gears are made'],
+  [{ preset: 'as_stated', inputs: [], single_teeth: true }, 0, 'single teeth alone', 'teeth of its own'],
+  [{ preset: 'iso_class', single_teeth: true }, 0, 'a preset', 'draw the pairs'],
+  [{ preset: 'as_stated', inputs: [{ key: 'compliance_factor' }] }, 0, 'inputs of your own', 'draw the pairs'],
+  [{ single_teeth: true }, 2, 'pairs that were asked for', 'on their way'],
+])
+  ok(emptyText(block, asked).includes(word), `what stands there with ${what}`);
+ok(!emptyText({ single_teeth: true }, 0).includes('Choose how'), 'single teeth are a choice');
 
 // ---- lengths in sentences, as tests/unit/format/test-inch.c has them ----
 is(shownSentence('The face, 70 mm, is wide.'), 'The face, 70 mm, is wide.', 'mm where nothing is chosen');

@@ -11,6 +11,7 @@ import { shownSentence, shownUnit, shownValue, typedText, units } from '../../ba
 import { Chart } from '../../figures/chart.js';
 import { group } from '../../form/group.js';
 import { progressBar } from '../../jobbar.js';
+import { emptyText } from './empty_text.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
 const MADE = ['preset', 'class', 'edition'];
@@ -74,12 +75,7 @@ class ToleranceView {
     this.inputs = h('section.figure.with-table.scattering-card', { 'aria-label': 'What scatters' });
     this.notes = h('section.tolerance-notes', { 'aria-label': 'Notes' });
     this.worst = h('button', { type: 'button', onclick: () => this.#openWorst() }, 'Open the worst pair');
-    this.empty = h(
-      'p.empty',
-      null,
-      'Nothing has been drawn yet. Choose how the gears are made on the left: a preset from ISO 1328-1 is enough; ' +
-        'inputs of your own stand in the block "tolerance" of the design document.',
-    );
+    this.empty = h('p.empty');
     this.figures = h(
       '.figures',
       null,
@@ -187,9 +183,9 @@ class ToleranceView {
     this.app.form.flush();
     this.#stopped = false;
     this.#of = JSON.stringify(this.app.store.design);
-    this.#lock();
     const first = this.app.store.design.tolerance?.single_teeth ? FIRST_WITH_TEETH : FIRST;
     this.#asked = Math.min(first, this.#wanted);
+    this.#lock();
     this.lane.submit({
       path: 'tolerance',
       body: { design: JSON.parse(this.#of), pairs: this.#asked },
@@ -199,6 +195,7 @@ class ToleranceView {
   }
 
   #lock() {
+    this.#sayEmpty();
     this.start.disabled = true;
     this.stop.hidden = false;
   }
@@ -283,6 +280,7 @@ class ToleranceView {
   /** @param {string} text */
   #end(text) {
     this.#asked = 0;
+    this.#sayEmpty();
     this.start.disabled = false;
     this.stop.hidden = true;
     this.#say(text);
@@ -295,8 +293,14 @@ class ToleranceView {
 
   /** The design has changed: what is shown belongs to the one before. */
   #note() {
+    this.#sayEmpty();
     if (this.#result && this.#of && !this.#asked && JSON.stringify(this.app.store.design) !== this.#of)
       this.#say('The design has changed since these pairs were drawn.');
+  }
+
+  /** While there are no figures: what was chosen, or that they are on their way. */
+  #sayEmpty() {
+    fill(this.empty, emptyText(this.app.store.design.tolerance, this.#asked + this.#job));
   }
 
   #drawChoice() {
@@ -315,6 +319,7 @@ class ToleranceView {
   #draw() {
     const result = this.#result;
     this.empty.hidden = result !== null;
+    this.#sayEmpty();
     this.head.hidden = result === null;
     this.figures.hidden = result === null;
     if (!result) return;
