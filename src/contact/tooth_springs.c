@@ -25,6 +25,7 @@ struct sketch {
   const struct eo_hunting_input *input;
   int places, step;       /* of a mesh cycle, step of the grid's positions apart */
   int lines, teeth[2];    /* pairs at most */
+  int failures;           /* places whose full contact did not converge */
   struct place *place[2]; /* [end]: [places] */
   double *off[2];         /* [end]: behind spring.off */
 };
@@ -271,6 +272,8 @@ static enum eo_code fit_end(struct sketch *sketch, struct fit *fit, int end, str
   double *off = sketch->off[end];
   for (int at = 0; at < sketch->places; at++)
     off = fit_place(fit, sketch, at, off);
+  sketch->failures += fit->solved.failures;
+  fit->solved.failures = 0;
   return EO_OK;
 }
 
@@ -450,7 +453,7 @@ enum eo_code eo_hunting_sketch(struct eo_hunting *period, struct eo_hunting *str
     if (stretch_cycles > 0)
       pass(&sketch, end, stretch);
   }
-  period->failures += fit.solved.failures;
+  period->failures += sketch.failures;
   fit_done(&fit);
   for (int end = 0; end < 2; end++) {
     free(sketch.place[end]);
