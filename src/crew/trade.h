@@ -8,6 +8,7 @@
 
 #include <stdatomic.h>
 
+#include "base/progress.h"
 #include "format/text.h"
 
 /* Where a process works. */
@@ -25,6 +26,19 @@ struct eo_crew_bench {
   const atomic_bool *stopped; /* whoever works long looks at it and ends with EO_ERROR_CANCELLED */
   void *state;                /* of the trade */
 };
+
+/* What asks a trade's long work to end when the crew stops; valid as long as the bench. */
+static inline int eo_crew_bench_look(void *bench, const char *what, double fraction)
+{
+  (void)what;
+  (void)fraction;
+  return atomic_load(((const struct eo_crew_bench *)bench)->stopped);
+}
+
+static inline struct eo_progress eo_crew_bench_progress(struct eo_crew_bench *bench)
+{
+  return (struct eo_progress){eo_crew_bench_look, bench};
+}
 
 struct eo_crew_trade {
   const char *name; /* known to all of the crew */

@@ -22,19 +22,11 @@ struct shop {
                                                                                     it */
 };
 
-static int look_for_stop(void *context, const char *what, double fraction)
-{
-  const struct eo_crew_bench *bench = context;
-  (void)what;
-  (void)fraction;
-  return atomic_load(bench->stopped);
-}
-
 static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
 {
   struct shop *shop = calloc(1, sizeof *shop);
   struct eo_geometry geometry;
-  const struct eo_progress progress = {look_for_stop, bench};
+  const struct eo_progress progress = eo_crew_bench_progress(bench);
   const struct eo_pair_options options = {.cache_directory = bench->place->cache};
   if (!shop)
     return eo_error_memory(error);

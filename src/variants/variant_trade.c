@@ -68,14 +68,6 @@ static enum eo_code read_axis(struct eo_variant_axis *axis, const json_t *asked,
   return EO_OK;
 }
 
-static int look_for_stop(void *context, const char *what, double fraction)
-{
-  const struct eo_crew_bench *bench = context;
-  (void)what;
-  (void)fraction;
-  return atomic_load(bench->stopped);
-}
-
 static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
 {
   struct shop *shop = calloc(1, sizeof *shop);
@@ -93,7 +85,7 @@ static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
   EO_TRY(eo_scalars_init(&shop->scalars, json_string_value(json_object_get(shop->order, "columns")),
                          (int)json_integer_value(json_object_get(shop->order, "cases")),
                          (int)json_integer_value(json_object_get(shop->order, "ends")), error));
-  shop->progress = (struct eo_progress){look_for_stop, bench};
+  shop->progress = eo_crew_bench_progress(bench);
   return eo_pair_rack_new(&shop->rack, bench->place, &shop->progress, error);
 }
 
