@@ -8,6 +8,8 @@
 
 static const double STRAIGHT = 0.01; /* of the usual bend at a row: less is none */
 static const double SPARSE = 0.03; /* of the others bend by up to ten times that in fine values; in coarse ones none */
+static const double MANY = 0.2;    /* of the others differ from each other; those of half precision are a few dozen */
+static const double SAME = 1e-6;   /* of the usual bend */
 static const double OFTEN = 0.12;  /* of the rows without a bend; noise leaves 1 in 100 */
 static const double MOSTLY = 0.6;  /* the same where most rows lie between recorded ones; noise leaves 1 in 50 */
 static const double EVEN = 0.02;   /* of a step of time: rows that are even but for the digits of their times */
@@ -45,12 +47,14 @@ static double usual_step(struct eo_angles_maker *maker, const struct eo_sample *
 static bool is_straight(const double *bend, int n, double share, double often, double rounding)
 {
   double large = bend[(int)(share * (n - 1))];
-  int straight = 0, slight = 0;
+  int straight = 0, slight = 0, values = 0;
   while (straight < n && bend[straight] <= STRAIGHT * large)
     straight++;
   while (straight + slight < n && bend[straight + slight] <= 10 * STRAIGHT * large)
     slight++;
-  return large > rounding && straight > often * n && slight > SPARSE * (n - straight);
+  for (int i = straight + 1; i < n; i++)
+    values += bend[i] - bend[i - 1] > SAME * large;
+  return large > rounding && straight > often * n && slight > SPARSE * (n - straight) && values > MANY * (n - straight);
 }
 
 static void look_at(struct eo_angles_maker *maker, const struct eo_sample *sample, int count, int channel, bool even)

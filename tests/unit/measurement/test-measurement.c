@@ -520,6 +520,40 @@ static void check_resampled(void)
      m->transmission.rms_sigma, truth);
 }
 
+/* Eleven bits, as half precision has them: many rows seem to lie on lines, and no program made them up. */
+static void check_half_precision(void)
+{
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  struct eo_synthetic s = usual();
+  struct eo_recording *recording = NULL, *rounded = NULL;
+  struct eo_tracks tracks;
+  double row[3];
+  int exponent;
+  s.wrapped = true;
+  s.sample_rate = 12012.3;
+  eo_synthetic_tracks(&s, &tracks);
+  enum eo_code code = eo_synthetic_record(&s, &recording, &error);
+  if (!code)
+    code = eo_recording_new(&rounded, 3, "/tmp", &error);
+  for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
+    code = eo_recording_read(recording, i, 1, row, &error);
+    for (int c = 1; c < 3; c++) {
+      double part = frexp(row[c], &exponent);
+      row[c] = ldexp(round(2048 * part), exponent - 11);
+    }
+    if (!code)
+      code = eo_recording_append(rounded, row, 1, &error);
+  }
+  eo_measurement_done(&measurement);
+  memset(&measurement, 0, sizeof measurement);
+  if (!code)
+    code = eo_measurement_run(&measurement, rounded, &tracks, &settings, NULL, &error);
+  ok(!code && !said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED), "half precision is no straight line");
+  eo_recording_free(recording);
+  eo_recording_free(rounded);
+}
+
 static void check_load(void)
 {
   struct eo_synthetic s = usual();
@@ -563,6 +597,7 @@ int main(int argc, char **argv)
   check_speeds();
   check_parts();
   check_resampled();
+  check_half_precision();
   check_load();
   check_run_out();
   check_slow_clock();
