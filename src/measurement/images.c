@@ -11,11 +11,12 @@
 enum {
   MOST_ROWS = 1 << 16,
   LEAST_ROWS = 1024,
-  FINER = 4,  /* lines of a spectrum per line that the rows can tell apart */
-  BANDS = 32, /* of the residual's spectrum, each made level */
-  APART = 8,  /* rows on either side from which the speed at a row follows */
-  RATES = 5,  /* with the same beat */
-  BEATS = 8   /* that are looked at */
+  FINER = 4,       /* lines of a spectrum per line that the rows can tell apart */
+  BANDS = 32,      /* of the residual's spectrum, each made level */
+  APART = 8,       /* rows on either side from which the speed at a row follows */
+  RATES = 5,       /* with the same beat */
+  BEATS = 8,       /* that are looked at */
+  LEAST_ORDERS = 8 /* of the mesh: fewer leave some that the recording has, higher than any image */
 };
 static const double CHANCE = 25;    /* times the mean of the other lines: chance leaves 20 in one of 10,000 */
 static const double KURTOSIS = 2.8; /* of noise, with its uncertainty, 3; of the steps of an encoder 1.8 to 2.4 */
@@ -345,7 +346,7 @@ static void join_beats(struct beat *list, int of_images, int count, int rows)
     list[i].in_images = 0;
     list[i].highest = false;
     for (int k = 0; k < of_images; k++)
-      if (fabs(list[k].frequency - list[i].frequency) * rows < 1) {
+      if (fabs(list[k].frequency - list[i].frequency) * rows < 2) {
         list[k].in_noise = list[i].in_noise;
         list[i].in_images = list[k].in_images;
       }
@@ -358,7 +359,7 @@ enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line
   struct beat beat[BEATS];
   int count = 0;
   *found = (struct eo_images_found){0};
-  if (images->count < LEAST_ROWS || harmonics < 1)
+  if (images->count < LEAST_ROWS || harmonics < LEAST_ORDERS)
     return EO_OK;
   for (images->size = 2 * BANDS; images->size < FINER * images->count;)
     images->size *= 2;
@@ -370,7 +371,7 @@ enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line
   list_lines(images, mesh[0].order, harmonics, BEATS - 2, beat, &count);
   int of_images = count;
   EO_TRY(look_at_noise(images, error));
-  list_lines(images, mesh[0].order, harmonics, 2, beat, &count);
+  list_lines(images, mesh[0].order, 0, 2, beat, &count);
   join_beats(beat, of_images, count, images->count);
   for (int i = 0; i < count; i++)
     judge_beat(images, mesh, harmonics, &beat[i], found);
