@@ -243,6 +243,7 @@ static double explained(const struct candidate *candidate, int part)
 {
   return square(factor_of(candidate, part)) * candidate->energy[part] / 2;
 }
+
 /* Rates with one beat, those at which every order has its images apart from it. */
 static int list_rates(double beat, const struct eo_order_line *mesh, int harmonics, double turns,
                       struct candidate list[RATES])
@@ -293,12 +294,12 @@ static bool is_whole(const struct candidate *candidate, double rest, int rows)
 
 static double kurtosis(const struct eo_images *images)
 {
-  double square = 0, fourth = 0;
+  double second = 0, fourth = 0;
   for (int i = 0; i < images->count; i++) {
-    square += pow(images->residual[i], 2) / images->count;
+    second += pow(images->residual[i], 2) / images->count;
     fourth += pow(images->residual[i], 4) / images->count;
   }
-  return fourth / (square * square);
+  return fourth / (second * second);
 }
 
 /* The likeliest of the rates with a beat: the most is explained, with a share that can be. */
