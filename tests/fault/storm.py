@@ -13,6 +13,7 @@ restore  archives made while the server works, each restored and compared
 """
 
 import atexit
+import ctypes
 import hashlib
 import http.client
 import json
@@ -40,6 +41,15 @@ def design(torque=400.0, **more):
     return {"gear_pair": pair, "load_cases": [{"torque_Nm": torque, "speed_rpm": 1500}], "resolution": COARSE, **more}
 
 
+STOP_SECONDS = 10  # that a server may take after SIGTERM, whatever is in its queue
+
+
+def end_with_parent():
+    """A server whose script is ended, however, ends too: it would go on with its queue for hours."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 class Server:
     """A server on a data folder of its own; requests may fail while it is not there."""
 
@@ -50,7 +60,7 @@ class Server:
         command = [PROGRAM, "serve", "--listen", "127.0.0.1:0", "--data", str(self.folder), "--quiet", *self.options]
         command += ["--questions-at-once", "100000", "--starts-at-once", "100000", "--attempts", "1000"]
         with open(self.folder.parent / "server.log", "ab") as log:
-            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log)
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, preexec_fn=end_with_parent)
         atexit.register(self.process.kill)
         line = self.process.stdout.readline().decode()
         self.port = int(line.split(":")[3].rstrip("/\n")) if line.startswith("easeoff: http") else 0
@@ -58,7 +68,7 @@ class Server:
 
     def kill(self, how=signal.SIGKILL):
         self.process.send_signal(how)
-        self.process.wait()
+        self.process.wait(STOP_SECONDS)
         self.process.stdout.close()
         atexit.unregister(self.process.kill)
 
