@@ -22,6 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -77,6 +78,7 @@ static void run_server(int output, char *const *options)
   int count = 6, errors = open("/dev/null", O_WRONLY);
   for (; *options && count < 31; options++)
     argument[count++] = *options;
+  prctl(PR_SET_PDEATHSIG, SIGKILL); /* a test that is ended leaves no server with its queue */
   dup2(output, STDOUT_FILENO);
   if (!getenv("SHOW_LOG"))
     dup2(errors, STDERR_FILENO);

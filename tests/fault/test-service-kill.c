@@ -2,6 +2,7 @@
 /* A service killed in the middle of an optimization: the next one on the same folder goes on with it, evaluates nothing
    twice and ends with the result of an undisturbed run. KILLS=N sets how often it is killed (default 4). */
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include "base/random.h"
@@ -47,6 +48,7 @@ static bool serve_and_kill(int rows)
   fflush(stdout);
   pid_t child = fork();
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     eo_service_new(&(struct eo_service *){NULL}, &(struct eo_service_settings){.data = folder, .threads = 2}, &error);
     for (;;)
       pause();
