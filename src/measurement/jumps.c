@@ -2,6 +2,7 @@
 #include "measurement/angles_private.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,13 +125,16 @@ static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, 
   }
   int channel = fabs(excess[0]) / usual->limit[0] > fabs(excess[1]) / usual->limit[1] ? 0 : 1;
   if (angles->slips++ < 4) {
+    char size[32] = ""; /* in rows, unless the channel stood still before */
     rows = excess[channel] / (usual->rate[channel] * usual->interval);
+    if (isfinite(rows))
+      snprintf(size, sizeof size, " (%.3g rows)", rows);
     eo_angles_at_row(
         maker,
         eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
-                        "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld (%.5g s) and the other does not: "
+                        "The %s channel jumps by %.5g degrees%s at row %lld (%.5g s) and the other does not: "
                         "rows or counts were lost in one channel; times without it can be chosen.",
-                        eo_channel_name(channel), DEGREES * excess[channel], rows, (long long)sample->row + 1,
+                        eo_channel_name(channel), DEGREES * excess[channel], size, (long long)sample->row + 1,
                         sample->time - angles->origin),
         sample->row);
   }

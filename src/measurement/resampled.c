@@ -15,7 +15,10 @@ static const double MOSTLY = 0.6;  /* the same where most rows lie between recor
 static const double EVEN = 0.02;   /* of a step of time: rows that are even but for the digits of their times */
 static const double MOVING = 0.2;  /* of the usual step */
 static const double ROUNDING = 1e-13; /* of an angle: bends are those of the numbers themselves */
-enum { LEAST = 200 };                 /* rows that tell */
+enum {
+  LEAST = 200, /* rows that tell */
+  FEW = 16     /* different steps of times that were rounded once or twice */
+};
 
 /* How far the angle at a row is from the line through its neighbours, half of it; 0 when a neighbour hardly moves. */
 static double bend_of(const struct eo_sample *sample, int channel, bool even, double usual)
@@ -27,13 +30,22 @@ static double bend_of(const struct eo_sample *sample, int channel, bool even, do
   return fmin(fabs(before), fabs(behind)) > MOVING * usual ? fabs(behind * (1 - part) - before * part) : NAN;
 }
 
-static bool is_even(const struct eo_sample *sample, int count)
+/* Rows that are even but for the digits of their times: these make few different steps, and none of the times is
+   farther from an even one than the steps differ. */
+static bool is_even(struct eo_angles_maker *maker, const struct eo_sample *sample, int count)
 {
-  double usual = (sample[count - 1].time - sample[0].time) / (count - 1);
-  bool even = true;
-  for (int i = 1; i < count && even; i++)
-    even = fabs(sample[i].time - sample[i - 1].time - usual) < EVEN * usual;
-  return even;
+  double usual = (sample[count - 1].time - sample[0].time) / (count - 1), *step = maker->scratch, farthest = 0;
+  int kinds = 1;
+  for (int i = 1; i < count; i++) {
+    step[i - 1] = sample[i].time - sample[i - 1].time;
+    farthest = fmax(farthest, fabs(sample[i].time - sample[0].time - i * usual));
+  }
+  eo_scan_quantile(step, count - 1, 0.5); /* sorts */
+  double spread = step[count - 2] - step[0];
+  for (int i = 1; i < count - 1; i++)
+    kinds += step[i] - step[i - 1] > SAME * usual;
+  bool rounded = kinds <= FEW && step[0] > 0 && farthest <= 1.01 * spread;
+  return rounded || fmax(step[count - 2] - usual, usual - step[0]) < EVEN * usual;
 }
 
 static double usual_step(struct eo_angles_maker *maker, const struct eo_sample *sample, int count, int channel)
@@ -78,7 +90,7 @@ void eo_resampled_note(struct eo_angles_maker *maker, const struct eo_sample *sa
 {
   if (count < LEAST || maker->sampler.pulses)
     return;
-  bool even = is_even(sample, count);
+  bool even = is_even(maker, sample, count);
   for (int channel = 0; channel < 2; channel++) {
     bool ours = channel == 1 && maker->tracks->interpolated.step > 0;
     if (maker->tracks->channel[channel].track == EO_TRACK_ANGLE && !ours)

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define BLOCK 2048      /* rows read at once */
 #define STEPS 20000     /* steps from which the resolution of times is told */
@@ -99,6 +100,13 @@ static double resolution(double *step, int64_t count, bool *standing)
   return odd >= FEW || (*standing && odd) ? least : 0;
 }
 
+/* A row that is there twice says nothing of what the times resolve; the first row of a block is not compared. */
+static bool is_repeated(const struct eo_guess *guess, const double *rows, int64_t at)
+{
+  size_t width = (size_t)guess->columns;
+  return at > 0 && !memcmp(rows + (size_t)at * width, rows + (size_t)(at - 1) * width, width * sizeof *rows);
+}
+
 static enum eo_code find_resolution(const struct eo_guess *guess, int column, double *quantum, bool *standing,
                                     struct eo_error *error)
 {
@@ -112,7 +120,7 @@ static enum eo_code find_resolution(const struct eo_guess *guess, int column, do
     code = eo_recording_read(guess->recording, first, n, row, error);
     for (int64_t i = 0; !code && i < n; i++) {
       double time = row[i * guess->columns + column];
-      if (!isnan(time - before))
+      if (!isnan(time - before) && !(time == before && is_repeated(guess, row, i)))
         step[count++] = time - before;
       before = time;
     }

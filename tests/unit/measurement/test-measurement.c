@@ -554,6 +554,43 @@ static void check_half_precision(void)
   eo_recording_free(rounded);
 }
 
+/* Even rows whose times were written as days of a spreadsheet: rounded by ten decimals, and as a sum with the date. */
+static void check_rounded_times(void)
+{
+  static const double rates[] = {4000, 6000, 8192, 9999}, DAY = 86400, DATE = 45356.375;
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
+    struct eo_synthetic s = usual();
+    struct eo_recording *recording = NULL, *rounded = NULL;
+    struct eo_tracks tracks;
+    double row[3];
+    s.noise = 0;
+    s.sample_rate = rates[k];
+    s.speed = 2 * M_PI * 10;
+    eo_synthetic_tracks(&s, &tracks);
+    enum eo_code code = eo_synthetic_record(&s, &recording, &error);
+    if (!code)
+      code = eo_recording_new(&rounded, 3, "/tmp", &error);
+    for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
+      code = eo_recording_read(recording, i, 1, row, &error);
+      row[0] = (round((DATE + row[0] / DAY) * 1e10) / 1e10 - DATE) * DAY;
+      if (!code)
+        code = eo_recording_append(rounded, row, 1, &error);
+    }
+    eo_measurement_done(&measurement);
+    memset(&measurement, 0, sizeof measurement);
+    if (!code)
+      code = eo_measurement_run(&measurement, rounded, &tracks, &settings, NULL, &error);
+    ok(!code && !measurement.refused, "times of %.6g rows per second as days are no straight lines: %s", rates[k],
+       code                             ? error.text
+       : measurement.findings.count > 0 ? measurement.findings.finding[0].text
+                                        : "");
+    eo_recording_free(recording);
+    eo_recording_free(rounded);
+  }
+}
+
 static void check_load(void)
 {
   struct eo_synthetic s = usual();
@@ -598,6 +635,7 @@ int main(int argc, char **argv)
   check_parts();
   check_resampled();
   check_half_precision();
+  check_rounded_times();
   check_load();
   check_run_out();
   check_slow_clock();
