@@ -92,6 +92,13 @@ static bool is_interval(const char *key)
          is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
 
+/* Without a word for a rate or an interval the unit of the number tells which of both it is. */
+static bool is_sampling(const char *key)
+{
+  return is_one(key, "sampling sampled sample abtastung abgetastet echantillonnage muestreo campionamento amostragem "
+                     "bemonstering scan scanning acquisition logging messung");
+}
+
 static bool is_start(const char *key)
 {
   return is_one(key, "x0 t0 tstart starttime startoffset wfstartoffset xzero xstart xoffset startvalue starts "
@@ -179,6 +186,25 @@ static bool is_turn_unit(const char *unit)
   return holds(folded, "perrev perturn /rev /turn /umdr proumdr");
 }
 
+static bool is_bits(const char *unit)
+{
+  char folded[KEY];
+  fold(unit, folded);
+  return is_one(folded, "bit bits");
+}
+
+/* Encoders of so many bits have two to that power of counts in a turn; an analogue input has bits too, and no turn. */
+static struct eo_stated read_bits(const char *name, double number)
+{
+  char folded[KEY];
+  fold(name, folded);
+  bool encoder = holds(folded, "encoder geber codeur codificador singleturn perturn perrev") &&
+                 holds(folded, "resol aufl bit turn rev");
+  if (!encoder || !(number >= 1 && number <= 40) || number != floor(number))
+    return nothing();
+  return (struct eo_stated){EO_STATED_TURN, exp2(number), eo_stated_member(name)};
+}
+
 /* "kS/s" and the like: whatever stands before it, the number is a sampling rate. */
 static bool is_sampling_unit(const char *unit)
 {
@@ -211,7 +237,8 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
 {
   bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
   bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
-  bool rate = is_rate(folded), interval = is_interval(folded), tick = is_tick(folded);
+  bool rate = is_rate(folded) || (frequency && is_sampling(folded)),
+       interval = is_interval(folded) || (time && is_sampling(folded)), tick = is_tick(folded);
   if (is_slow_clock(folded, number, quantity, factor))
     rate = true, tick = false;
   if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)
@@ -237,6 +264,8 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   if (!isfinite(number))
     return stated;
   eo_unit_split(key, name, (int)sizeof name, own, (int)sizeof own);
+  if (is_bits(*unit ? unit : own))
+    return read_bits(name, number);
   enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
   fold(key, folded);

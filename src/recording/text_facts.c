@@ -70,11 +70,15 @@ static void copy_trimmed(char *to, size_t size, const char *from, const char *en
   snprintf(to, size, "%.*s", (int)((size_t)(end - from) < size ? (size_t)(end - from) : size - 1), from);
 }
 
-/* The word behind a number: "kHz", "counts/rev", "counts per rev". */
-static const char *unit_behind(const char *p, const char *end, char *unit, size_t size)
+/* The word behind a number: "kHz", "counts/rev", "counts per rev". Another number is none, but that of another cell. */
+static const char *unit_behind(const char *number, const char *end, char *unit, size_t size)
 {
+  const char *p = number;
   while (p < end && strchr(" \t[(;,", *p) && *p)
     p++;
+  *unit = '\0';
+  if (p < end && (isdigit((unsigned char)*p) || strchr("+-.", *p)))
+    return number;
   const char *last = p;
   while (last < end && !strchr("\t;,|)]\"=:", *last))
     last++;
@@ -215,7 +219,17 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
   }
 }
 
-/* "Delta_X  2.5E-4    3E-4": a key and a number for each column, in the places of the columns. */
+static int count_cells(const struct eo_text_format *format, const struct eo_header_line *line)
+{
+  struct eo_cell cell;
+  int count = 0;
+  for (const char *at = line->start; at && eo_text_next_cell(&at, line->end, format->separator, &cell);)
+    count++;
+  return count;
+}
+
+/* "Delta_X  2.5E-4    3E-4": a key and a number for each column, in the places of the columns, or one cell to the right
+   of them. */
 static void take_for_columns(struct eo_text_format *format, const struct eo_header_line *line)
 {
   struct eo_cell cell;
@@ -225,15 +239,16 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   const char *at = line->start;
   if (format->separator == ' ' || !eo_text_next_cell(&at, line->end, format->separator, &cell))
     return;
+  int first = count_cells(format, line) == format->cells + 1 ? 0 : 1;
   copy_cell(key, sizeof key, &cell);
-  for (int c = 1; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
+  for (int c = first; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;
     if (!cell.length || number_at(format, cell.text, cell.text + cell.length, true, &number) != cell.text + cell.length)
       continue;
     stated[c] = eo_stated_read(key, number, "");
     count += stated[c].kind != EO_STATED_NOTHING;
   }
-  for (int c = 1; c < format->cells && count > 1; c++) {
+  for (int c = first; c < format->cells && count > 1; c++) {
     if (stated[c].kind == EO_STATED_INTERVAL)
       format->clock[c].interval = stated[c].value, format->clock[c].other = 0;
     if (stated[c].kind == EO_STATED_START)

@@ -171,6 +171,26 @@ static int find_names(const struct eo_text_format *format, const struct eo_heade
   return names;
 }
 
+/* "Channel;pinion;gear" over rows of two cells: a cell more than the rows have, and the first says what the others are.
+   Without it they stand in the places of the columns. */
+static void drop_key(const struct eo_text_format *format, struct eo_header_line *line)
+{
+  static const char *const KEYS[] = {"channel", "channels", "channel name", "kanal",  "kanalname", "name",   "names",
+                                     "signal",  "signals",  "label",        "labels", "unit",      "units",  "einheit",
+                                     "voie",    "grandeur", "unite",        "canal",  "canale",    "unidad", "unita"};
+  struct eo_cell cell;
+  char text[EO_RECORDING_NAME];
+  const char *at = line->start;
+  if (format->separator == ' ' || count_cells(line, format->separator) != format->cells + 1 ||
+      !eo_text_next_cell(&at, line->end, format->separator, &cell) || !at)
+    return;
+  copy_cell(text, sizeof text, &cell);
+  text[strcspn(text, ":")] = '\0';
+  for (size_t i = 0; i < sizeof KEYS / sizeof *KEYS; i++)
+    if (!strcasecmp(text, KEYS[i]))
+      line->start = at;
+}
+
 void eo_text_read_header(struct eo_text_format *format, const char *head)
 {
   struct eo_header *header = malloc(sizeof *header);
@@ -180,6 +200,8 @@ void eo_text_read_header(struct eo_text_format *format, const char *head)
   if (!header)
     return;
   eo_header_split(header, format, head);
+  for (int i = 0; i < header->lines; i++)
+    drop_key(format, &header->line[i]);
   int names = find_names(format, header, &units);
   if (units >= 0) {
     char separator = header_separator(format, &header->line[units]);

@@ -221,6 +221,40 @@ static void squares(FILE *f, double rate, int tracks)
   }
 }
 
+static void test_headings(void)
+{
+  struct eo_notes notes = {0};
+  struct eo_error error = {0};
+  FILE *f = begin("Channel;pinion;gear\nUnit;deg;deg\nStart time [s];0.000000;0.0123\nSample rate [Hz];4000;3990.7\n");
+  for (int i = 0; i < 200; i++)
+    fprintf(f, "%.9f;%.9f\n", 0.9 * i, 0.9 * 17 / 44 * (i * 4000 / 3990.7));
+  fclose(f);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  struct eo_clock pinion = r ? eo_recording_clock(r, 0) : (struct eo_clock){0},
+                  gear = r ? eo_recording_clock(r, 1) : (struct eo_clock){0};
+  ok(r && fabs(pinion.interval * 4000 - 1) < 1e-12 && pinion.start == 0 && fabs(gear.interval * 3990.7 - 1) < 1e-12 &&
+         gear.start == 0.0123 && !strcmp(eo_recording_unit(r, 1), "deg"),
+     "rates and starts of the channels in a heading with a column of keys: %.9g s from %.9g s%s", gear.interval,
+     gear.start, error.text);
+  eo_recording_free(r);
+}
+
+/* A program that writes some rows twice, their times too, leaves times that stand as those of a coarse clock do. */
+static void test_repeated_rows(void)
+{
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  FILE *f = begin("t_s;pinion_deg;gear_deg\n");
+  for (int i = 0; i < 4000; i++)
+    for (int twice = 0; twice < 1 + (i % 49 == 0); twice++)
+      fprintf(f, "%.6f;%.9f;%.9f\n", 2.5e-4 * i, 0.9 * i, 0.9 * 17 / 44 * i);
+  struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
+  ok(r && tracks.time_column == 0 && !noted(&notes, "only tells"), "the times of rows that are there twice count%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 static void test_squares(void)
 {
   struct eo_layout_choice lines = {.lines = {60, 60}};
@@ -254,6 +288,8 @@ int main(void)
   test_units();
   test_columns();
   test_counters();
+  test_headings();
+  test_repeated_rows();
   test_squares();
   return fixture_close();
 }

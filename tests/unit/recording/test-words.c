@@ -162,6 +162,15 @@ static void test_stated(void)
   stated("Rate", 240000, "values/h", EO_STATED_NOTHING, 0);
   stated("Taktrate", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
   stated("Taktrate", 80, "MHz", EO_STATED_TICK, 1.25e-8);
+  stated("sampling", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Abtastung", 0.25, "ms", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Echantillonnage [Hz]", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Sample", 4000, "", EO_STATED_NOTHING, 0);
+  stated("Encoder resolution", 22, "bit", EO_STATED_TURN, 4194304);
+  stated("Geberaufl\xc3\xb6sung [Bit]", 20, "", EO_STATED_TURN, 1048576);
+  stated("Singleturn resolution", 17, "bits", EO_STATED_TURN, 131072);
+  stated("Resolution", 16, "bit", EO_STATED_NOTHING, 0); /* of an analogue input */
+  stated("Encoder resolution", 64, "bit", EO_STATED_NOTHING, 0);
   ok(eo_stated_read("Rate gear", 1, "Hz").member == 1 && eo_stated_read("fs_pinion", 1, "Hz").member == 0,
      "whose it is");
   ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"), "when it began");
