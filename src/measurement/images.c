@@ -9,28 +9,27 @@
 #include "numerics/fft.h"
 
 enum {
-  MOST_ROWS = 1 << 16,
   LEAST_ROWS = 1024,
-  FINER = 4,       /* lines of a spectrum per line that the rows can tell apart */
-  BANDS = 32,      /* of the residual's spectrum, each made level */
-  APART = 8,       /* rows on either side from which the speed at a row follows */
-  RATES = 5,       /* with the same beat */
-  BEATS = 8,       /* that are looked at */
-  LEAST_ORDERS = 8 /* of the mesh: fewer leave some that the recording has, higher than any image */
+  FINER = 4,  /* lines of a spectrum per line that the rows can tell apart */
+  BANDS = 32, /* of the residual's spectrum, each made level */
+  APART = 8,  /* rows on either side from which the speed at a row follows */
+  RATES = 5,  /* with the same beat */
+  BEATS = 8   /* that are looked at */
 };
 static const double CHANCE = 25;    /* times the mean of the other lines: chance leaves 20 in one of 10,000 */
 static const double KURTOSIS = 2.8; /* of noise, with its uncertainty, 3; of the steps of an encoder 1.8 to 2.4 */
-static const double DEPTH = 0.1;  /* of the beat in the square of the noise, relative: 0.3 of straight lines, less of an
-                                      encoder whose noise goes with its lines */
-static const double MUCH = 0.5;   /* of what is no image */
-static const double LINE = 12;    /* times the mean of its band: no noise */
-static const double SLOWEST = 3;  /* beats per turn of the pinion: slower ones the shafts make, too */
-static const double ALIKE = 0.25; /* by which the strongest image may differ from the others, relative */
+static const double DEPTH = 0.1; /* of the beat in the square of the noise, relative: 0.3 of straight lines, less of an
+                                     encoder whose noise goes with its lines */
+static const double MUCH = 0.5;  /* of what is no image */
+static const double LINE = 12;   /* times the mean of its band: no noise */
+static const double SLOWEST = 3; /* beats per turn of the pinion: slower ones the shafts make, too */
+static const double MOST_TURNS = 0.9; /* of an order between two recorded rows: at 1 one of its images stands still */
+static const double ALIKE = 0.25;     /* by which the strongest image may differ from the others, relative */
 
 struct eo_images {
   int count, size;          /* rows; samples of a spectrum */
-  double *theta;            /* [MOST_ROWS] owned, with the others */
-  double *residual;         /* [MOST_ROWS] */
+  double *theta;            /* [EO_IMAGES_ROWS] owned, with the others */
+  double *residual;         /* [EO_IMAGES_ROWS] */
   double complex *spectrum; /* [size] owned */
   double *power;            /* [size] owned */
 };
@@ -40,10 +39,10 @@ enum eo_code eo_images_new(struct eo_images **images, struct eo_error *error)
   struct eo_images *made = calloc(1, sizeof *made);
   *images = made;
   if (made)
-    made->theta = malloc(sizeof *made->theta * 2 * MOST_ROWS);
+    made->theta = malloc(sizeof *made->theta * 2 * EO_IMAGES_ROWS);
   if (!made || !made->theta)
     return eo_error_memory(error);
-  made->residual = made->theta + MOST_ROWS;
+  made->residual = made->theta + EO_IMAGES_ROWS;
   return EO_OK;
 }
 
@@ -60,7 +59,7 @@ void eo_images_free(struct eo_images *images)
 void eo_images_add(struct eo_images *images, double theta, double residual)
 {
   bool again = images->count && images->theta[images->count - 1] == theta;
-  if (images->count == MOST_ROWS || again)
+  if (images->count == EO_IMAGES_ROWS || again)
     return;
   images->theta[images->count] = theta;
   images->residual[images->count++] = residual;
@@ -83,10 +82,11 @@ static double turns_per_row(const struct eo_images *images)
   return fabs(images->theta[images->count - 1] - images->theta[0]) / (2 * M_PI * (images->count - 1));
 }
 
-/* Beats of orders with each other: frequencies that multiples of the mesh have, or seem to have at these rows. */
-static bool is_mesh(const struct eo_images *images, double mesh, int harmonics, double beat)
+/* Beats of orders with each other, with those that were not fitted too: frequencies that multiples of the mesh have, or
+   seem to have at these rows. */
+static bool is_mesh(const struct eo_images *images, double mesh, double beat)
 {
-  for (int i = 1; i <= 2 * harmonics; i++)
+  for (int i = 1; i <= 2 * EO_MESH_ORDERS; i++)
     if (fabs(fabs(remainder(i * mesh * turns_per_row(images), 1)) - beat) * images->count < 1)
       return true;
   return false;
@@ -98,8 +98,8 @@ struct beat {
   bool highest; /* of the images */
 };
 
-/* Adds the highest lines of the spectrum to list[BEATS]. */
-static void list_lines(struct eo_images *images, double mesh, int harmonics, int most, struct beat *list, int *count)
+/* Adds the highest lines of the spectrum to list[BEATS]. mesh: order whose multiples do not count, 0: all count. */
+static void list_lines(struct eo_images *images, double mesh, int most, struct beat *list, int *count)
 {
   int first = (int)(SLOWEST * turns_per_row(images) * images->size) + FINER, last = images->size / 2, n = 0;
   for (int i = first; i <= last; i++)
@@ -112,7 +112,7 @@ static void list_lines(struct eo_images *images, double mesh, int harmonics, int
     if (n < 1 || !(square(images->spectrum[best]) > CHANCE * mean))
       return;
     struct beat beat = {(double)best / images->size, square(images->spectrum[best]) / mean, 0, *count == 0};
-    if (!is_mesh(images, mesh, harmonics, beat.frequency))
+    if (!(mesh > 0 && is_mesh(images, mesh, beat.frequency)))
       list[(*count)++] = beat;
     else
       found--;
@@ -182,7 +182,6 @@ struct candidate {
   /* [0] the strongest image, [1] the others, [2] all */
   double complex product[3]; /* with the residual */
   double energy[3];
-  double loss; /* of the RMS, when all vibration went through straight lines */
 };
 
 /* An image of a wave that turns by `turns` from one recorded row to the next, as a part of what is left of the wave. */
@@ -196,13 +195,10 @@ static double image_of(double turns, int side)
 static void set_candidate(struct candidate *candidate, double rate, const struct eo_order_line *mesh, int harmonics,
                           double turns)
 {
-  double most = 0, left = 0, whole = 0;
+  double most = 0;
   *candidate = (struct candidate){.rate = rate};
   for (int h = 0; h < harmonics; h++) {
-    double phase = mesh[h].order * turns / rate, gain = pow(sin(M_PI * phase) / (M_PI * phase), 2),
-           acceleration = pow(mesh[h].order, 4) * square(mesh[h].amplitude);
-    left += acceleration;
-    whole += acceleration / (gain * gain);
+    double phase = mesh[h].order * turns / rate;
     for (int side = -1; side <= 1; side += 2)
       if (image_of(phase, side) * cabs(mesh[h].amplitude) > most) {
         most = image_of(phase, side) * cabs(mesh[h].amplitude);
@@ -210,7 +206,19 @@ static void set_candidate(struct candidate *candidate, double rate, const struct
         candidate->order = h;
       }
   }
-  candidate->loss = 1 - sqrt(left / whole);
+}
+
+/* Of the RMS of some orders, when all vibration went through straight lines. */
+static double loss_of(const struct candidate *candidate, const struct eo_order_line *mesh, int orders, double turns)
+{
+  double left = 0, whole = 0;
+  for (int h = 0; h < orders; h++) {
+    double phase = mesh[h].order * turns / candidate->rate, gain = pow(sin(M_PI * phase) / (M_PI * phase), 2),
+           acceleration = pow(mesh[h].order, 4) * square(mesh[h].amplitude);
+    left += acceleration;
+    whole += acceleration / (gain * gain);
+  }
+  return 1 - sqrt(left / whole);
 }
 
 static void add_row(struct candidate *candidate, const struct eo_images *images, int row,
@@ -220,7 +228,7 @@ static void add_row(struct candidate *candidate, const struct eo_images *images,
   double complex strongest = 0, all = 0, beat = cexp(2 * M_PI * I * (phase - floor(phase)));
   for (int h = 0; h < harmonics; h++)
     for (int side = -1; side <= 1; side += 2) {
-      double complex image = image_of(fmin(order[h] * turns, 0.5), side) *
+      double complex image = image_of(fmin(order[h] * turns, MOST_TURNS), side) *
                              (side > 0 ? vibration[h] : conj(vibration[h])) * beat;
       all += image;
       if (h == candidate->order && side == candidate->side)
@@ -251,7 +259,7 @@ static int list_rates(double beat, const struct eo_order_line *mesh, int harmoni
   const double rate[RATES] = {beat, 1 - beat, 1 + beat, 2 - beat, 2 + beat};
   int count = 0;
   for (int i = 0; i < RATES; i++)
-    if (mesh[harmonics - 1].order * turns < 0.5 * rate[i])
+    if (mesh[harmonics - 1].order * turns < MOST_TURNS * rate[i])
       set_candidate(&list[count++], rate[i], mesh, harmonics, turns);
   return count;
 }
@@ -316,7 +324,7 @@ static const struct candidate *likeliest(const struct candidate *list, int count
 
 /* What straight lines with a beat take away. It is there where images and noise have it both, where all images are
    there as one, or where noise that is no rounding has it. */
-static void judge_beat(struct eo_images *images, const struct eo_order_line *mesh, int harmonics,
+static void judge_beat(struct eo_images *images, const struct eo_order_line *mesh, int harmonics, int asked,
                        const struct beat *beat, struct eo_images_found *found)
 {
   struct candidate list[RATES];
@@ -333,7 +341,8 @@ static void judge_beat(struct eo_images *images, const struct eo_order_line *mes
   rest = (rest - explained(best, 2)) / images->count;
   bool both = beat->in_images > CHANCE && beat->in_noise > CHANCE,
        noise = beat->in_noise > fmax(CHANCE, DEPTH * DEPTH * images->count / 8) && kurtosis(images) > KURTOSIS;
-  double sure = sqrt(2 * rest / best->energy[2]), loss = fmin(1, share_of(best) + (noise ? 2 * sure : 0)) * best->loss;
+  double sure = sqrt(2 * rest / best->energy[2]),
+         loss = fmin(1, share_of(best) + (noise ? 2 * sure : 0)) * loss_of(best, mesh, asked, turns_per_row(images));
   bool there = both || noise || (beat->highest && is_whole(best, rest, images->count));
   if (there && loss > found->loss)
     *found = (struct eo_images_found){best->rate, share_of(best), loss};
@@ -354,13 +363,13 @@ static void join_beats(struct beat *list, int of_images, int count, int rows)
   }
 }
 
-enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line *mesh, int harmonics,
+enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line *mesh, int harmonics, int asked,
                             struct eo_images_found *found, struct eo_error *error)
 {
   struct beat beat[BEATS];
   int count = 0;
   *found = (struct eo_images_found){0};
-  if (images->count < LEAST_ROWS || harmonics < LEAST_ORDERS)
+  if (images->count < LEAST_ROWS)
     return EO_OK;
   for (images->size = 2 * BANDS; images->size < FINER * images->count;)
     images->size *= 2;
@@ -369,12 +378,12 @@ enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line
   if (!images->spectrum || !images->power)
     return eo_error_memory(error);
   EO_TRY(look_for_images(images, mesh, harmonics, error));
-  list_lines(images, mesh[0].order, harmonics, BEATS - 2, beat, &count);
+  list_lines(images, mesh[0].order, BEATS - 2, beat, &count);
   int of_images = count;
   EO_TRY(look_at_noise(images, error));
-  list_lines(images, mesh[0].order, 0, 2, beat, &count);
+  list_lines(images, 0, 2, beat, &count);
   join_beats(beat, of_images, count, images->count);
   for (int i = 0; i < count; i++)
-    judge_beat(images, mesh, harmonics, &beat[i], found);
+    judge_beat(images, mesh, harmonics, asked, &beat[i], found);
   return EO_OK;
 }

@@ -9,24 +9,26 @@
 
 #include "measurement/orders.h"
 
+enum { EO_IMAGES_ROWS = 1 << 16 }; /* looked at, the first ones */
+
 struct eo_images; /* opaque */
 
 struct eo_images_found {
   double rate;  /* recorded rows per row, the likeliest of those with this beat; 0: no beat was found */
   double share; /* of the vibration that went through the straight lines: 1, or that of one shaft */
-  double loss;  /* what that may have taken from the RMS, relative */
+  double loss;  /* what that may have taken from the RMS of the orders asked for, relative */
 };
 
 /* Errors: memory. */
 enum eo_code eo_images_new(struct eo_images **images, struct eo_error *error);
 void eo_images_free(struct eo_images *images);
 
-/* The next row: angle of the axis, rad, and what the fit leaves, m. The first rows of a long recording are enough; one
-   that repeats the angle before it tells nothing. */
+/* The next row: angle of the axis, rad, and what the fit leaves, m. Beyond EO_IMAGES_ROWS
+   none is taken; one that repeats the angle before it tells nothing. */
 void eo_images_add(struct eo_images *images, double theta, double residual);
 
-/* mesh[harmonics]: orders that were fitted. Errors: memory. */
-enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line *mesh, int harmonics,
+/* mesh[harmonics]: orders that were fitted, of which the first `asked` are the answer. Errors: memory. */
+enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line *mesh, int harmonics, int asked,
                             struct eo_images_found *found, struct eo_error *error);
 
 #endif

@@ -111,7 +111,8 @@ static void judge_axis(struct eo_order_fit *fit)
   double turns = result->revolutions[EO_PINION], gear = result->revolutions[EO_GEAR],
          swing = (result->speed_high - result->speed_low) / result->speed;
   int possible = (int)(0.45 * per_turn / fit->settings->teeth[EO_PINION]);
-  result->asked = fit->settings->harmonics ? fit->settings->harmonics : 8;
+  fit->possible = possible < EO_MESH_ORDERS ? possible : EO_MESH_ORDERS;
+  result->asked = fit->settings->harmonics ? fit->settings->harmonics : EO_USUAL_ORDERS;
   result->asked = result->asked < 1 ? 1 : result->asked > EO_MESH_ORDERS ? EO_MESH_ORDERS : result->asked;
   result->harmonics = result->asked < possible ? result->asked : possible;
   if (turns < 3 || gear < 1.5)
@@ -189,7 +190,6 @@ static enum eo_code add_residual(struct eo_order_fit *fit, const double row[3], 
   double residual = eo_order_fit_error(fit, row) - part[0] - part[1] - part[2];
   fit->result->residual += residual * residual;
   eo_beside_add(&fit->beside, theta, residual);
-  eo_images_add(fit->images, theta, residual);
   eo_synchronous_add(fit->synchronous, index, theta, part[1], part[2], residual);
   if (fit->waterfall)
     eo_waterfall_add(fit->waterfall, row[0] - fit->origin, theta, residual);
@@ -231,28 +231,8 @@ static enum eo_code run_fit(struct eo_order_fit *fit, struct eo_error *error)
   EO_TRY(eo_order_fit_settle_axis(fit, error));
   eo_beside_init(&fit->beside, fit->settings->teeth, fit->result->harmonics, fit->turns);
   EO_TRY(eo_synchronous_new(&fit->synchronous, fit->result, fit->settings->teeth, fit->from, fit->turns, error));
-  EO_TRY(eo_images_new(&fit->images, error));
   EO_TRY(eo_waterfall_new(&fit->waterfall, fit->result, fit->settings->teeth, fit->from, error));
   return eo_order_fit_each_row(fit, add_residual, "residual", error);
-}
-
-/* Rows that a program made up on straight lines; not those that were interpolated here, and not where the noise goes
-   with the tracks. */
-static enum eo_code judge_images(struct eo_order_fit *fit, struct eo_error *error)
-{
-  struct eo_transmission *result = fit->result;
-  struct eo_images_found found;
-  if (fit->angles->interpolated.step > 0 || fit->angles->raw[0] || fit->angles->raw[1])
-    return EO_OK;
-  EO_TRY(eo_images_find(fit->images, result->mesh, result->harmonics, &found, error));
-  if (found.rate > 0 && found.loss * result->rms > result->rms_sigma)
-    eo_findings_add(
-        fit->findings, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED, -1, found.rate / fit->angles->interval,
-        "The angles were recorded with about %.5g rows per second and brought to %.5g on straight lines "
-        "between them, which takes up to %.2g %% from the RMS of the mesh orders. Export each channel as it "
-        "was recorded, with its own times.",
-        found.rate / fit->angles->interval, 1 / fit->angles->interval, 100 * found.loss);
-  return EO_OK;
 }
 
 static enum eo_code measure(struct eo_order_fit *fit, struct eo_error *error)
@@ -269,7 +249,7 @@ static enum eo_code measure(struct eo_order_fit *fit, struct eo_error *error)
   EO_TRY(run_fit(fit, error));
   result->residual = sqrt(result->residual / (double)result->rows);
   eo_order_fit_read_lines(fit);
-  EO_TRY(judge_images(fit, error));
+  EO_TRY(eo_order_fit_judge_images(fit, error));
   EO_TRY(eo_synchronous_finish(fit->synchronous, result, error));
   EO_TRY(eo_waterfall_finish(fit->waterfall, result, error));
   judge_result(fit);
@@ -299,7 +279,6 @@ enum eo_code eo_transmission_measure(struct eo_transmission *result, const struc
   eo_normal_done(&fit->normal);
   eo_synchronous_free(fit->synchronous);
   eo_waterfall_free(fit->waterfall);
-  eo_images_free(fit->images);
   free(fit);
   return code;
 }

@@ -11,10 +11,12 @@
 #include "measurement/angles.h"
 #include "measurement/orders.h"
 
+enum { EO_USUAL_ORDERS = 8 }; /* of the mesh */
+
 struct eo_transmission_settings {
   int teeth[2];
   double base_radius[2]; /* m */
-  int harmonics;         /* mesh orders, 1..EO_MESH_ORDERS; 0: 8 */
+  int harmonics;         /* mesh orders, 1..EO_MESH_ORDERS; 0: EO_USUAL_ORDERS */
   struct eo_part_choice part;
 };
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fit of the orders over the rows of a part, shared by the files that make it: rows and terms (transmission.c), the
-   axis (transmission_axis.c), what is read from the coefficients (transmission_lines.c). */
+   axis (transmission_axis.c), what is read from the coefficients (transmission_lines.c), whether the rows are those that
+   were recorded (transmission_images.c). */
 #ifndef EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
 #define EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
 
@@ -33,10 +34,11 @@ struct eo_order_fit {
   double mean_speed; /* of all rows of the part, rad/s */
   double from, to;   /* pinion angle of the rows that count, rad */
   double turns;      /* between them */
+  int possible;      /* mesh orders that the rows carry */
   double rows[EO_ORDER_FIT_BLOCK][3];
   struct eo_synchronous *synchronous;
   struct eo_waterfall *waterfall;
-  struct eo_images *images;
+  struct eo_images *images; /* where they are looked for */
   struct eo_beside beside;
 };
 
@@ -65,5 +67,9 @@ enum eo_code eo_order_fit_settle_axis(struct eo_order_fit *fit, struct eo_error 
 
 /* Fills what the coefficients and the residual say of the orders. */
 void eo_order_fit_read_lines(struct eo_order_fit *fit);
+
+/* Looks for rows that a program brought to other times, with the usual orders where fewer are asked for; the finding.
+   Errors: memory, of reading, cancelled. */
+enum eo_code eo_order_fit_judge_images(struct eo_order_fit *fit, struct eo_error *error);
 
 #endif

@@ -456,11 +456,12 @@ static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum
 }
 
 /* Rows of a recording brought to `rate` on straight lines, or by the last value, as programs do that export with one
-   time. */
-static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate, bool last)
+   time. orders: asked for, 0: the usual ones. */
+static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate, bool last, int orders)
 {
   const struct eo_measurement_settings settings = {
-      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}, .harmonics = orders},
+      .stated_speed = NAN};
   const struct eo_tracks tracks = {
       .interval = 1 / rate, .time_column = -1, .channel = {{.column = {0}, .scale = 1}, {.column = {1}, .scale = 1}}};
   struct eo_recording *recording = NULL, *resampled = NULL;
@@ -497,27 +498,47 @@ static void check_resampled(void)
                       right[] = {0.5, 0.618, 0.83, 1.37, 1.9, 2.3, 5}, open[] = {0.95, 0.98, 1.02, 1.05, 1.1};
   struct eo_synthetic s = usual();
   double truth = eo_synthetic_rms(&s, 8);
-  ok(!measure_resampled(&s, s.sample_rate, false)->refused, "the rows as they are");
+  ok(!measure_resampled(&s, s.sample_rate, false, 0)->refused, "the rows as they are");
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
-    ok(measure_resampled(&s, lines[i] * s.sample_rate, false)->refused &&
+    ok(measure_resampled(&s, lines[i] * s.sample_rate, false, 0)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
        "rows brought to %.3g times their rate on straight lines are refused", lines[i]);
   for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
-    const struct eo_measurement *m = measure_resampled(&s, right[i] * s.sample_rate, true);
+    const struct eo_measurement *m = measure_resampled(&s, right[i] * s.sample_rate, true, 0);
     double known = eo_synthetic_rms(&s, m->transmission.harmonics);
     ok(!m->refused && fabs(m->transmission.rms - known) < 3 * m->transmission.rms_sigma,
        "by the last value at %.3g times their rate: RMS %.4f, truth %.4f", right[i], m->transmission.rms, known);
   }
   for (size_t i = 0; i < sizeof open / sizeof *open; i++)
-    ok(measure_resampled(&s, open[i] * s.sample_rate, true)->refused &&
+    ok(measure_resampled(&s, open[i] * s.sample_rate, true, 0)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
        "by the last value at %.3g times it: rows at even distances are there twice, or not", open[i]);
   s.noise = 0;
-  ok(measure_resampled(&s, 1.37 * s.sample_rate, false)->refused, "straight lines show without noise, too");
+  ok(measure_resampled(&s, 1.37 * s.sample_rate, false, 0)->refused, "straight lines show without noise, too");
   s.interpolation = 64;
   const struct eo_measurement *m = measure(&s);
   ok(!m->refused, "steps of an encoder are none: RMS %.4f +- %.4f, truth %.4f", m->transmission.rms,
      m->transmission.rms_sigma, truth);
+}
+
+/* What is looked for does not depend on what is asked for, nor on orders that the recorded rows hardly carry. */
+static void check_resampled_orders(void)
+{
+  static const double places[] = {0.75, 1.37, 1.5};
+  struct eo_synthetic s = usual();
+  for (int orders = 1; orders <= 3; orders += 2) {
+    ok(!measure_resampled(&s, s.sample_rate, false, orders)->refused, "the rows as they are, with %d orders", orders);
+    ok(fabs(measurement.transmission.rms - eo_synthetic_rms(&s, orders)) < 3 * measurement.transmission.rms_sigma,
+       "their RMS is that of %d", orders);
+    ok(measure_resampled(&s, 1.37 * s.sample_rate, false, orders)->refused &&
+           said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
+       "on straight lines they are refused");
+  }
+  s.sample_rate = 8000; /* 1.8 rows per period of the eighth order */
+  for (size_t i = 0; i < sizeof places / sizeof *places; i++)
+    ok(measure_resampled(&s, places[i] * s.sample_rate, false, 0)->refused &&
+           said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
+       "240 rows per turn brought to %.3g times as many on straight lines are refused", places[i]);
 }
 
 /* Eleven bits, as half precision has them: many rows seem to lie on lines, and no program made them up. */
@@ -634,6 +655,7 @@ int main(int argc, char **argv)
   check_speeds();
   check_parts();
   check_resampled();
+  check_resampled_orders();
   check_half_precision();
   check_rounded_times();
   check_load();
