@@ -24,6 +24,7 @@ static const double MUCH = 0.5;  /* of what is no image */
 static const double LINE = 12;   /* times the mean of its band: no noise */
 static const double SLOWEST = 3; /* beats per turn of the pinion: slower ones the shafts make, too */
 static const double MOST_TURNS = 0.9; /* of an order between two recorded rows: at 1 one of its images stands still */
+static const double SURE = 5;         /* standard deviations */
 static const double ALIKE = 0.25;     /* by which the strongest image may differ from the others, relative */
 
 struct eo_images {
@@ -155,14 +156,60 @@ static void whiten(struct eo_images *images)
   }
 }
 
+static double kurtosis(const struct eo_images *images)
+{
+  double second = 0, fourth = 0;
+  for (int i = 0; i < images->count; i++) {
+    second += pow(images->residual[i], 2) / images->count;
+    fourth += pow(images->residual[i], 4) / images->count;
+  }
+  return fourth / (second * second);
+}
+
+/* Mean power of the noise, without lines, in an eighth of the rows' rate, the k-th from above; *sine: mean of sin^2 of
+   half the phase from row to row there. */
+static double power_in_band(struct eo_images *images, int k, double *sine)
+{
+  double from = 0.5 - 0.125 * (k + 1), to = from + 0.125, sum = 0;
+  int n = 0, kept = 0;
+  for (int i = (int)(from * images->size) + 1; i < (int)(to * images->size); i++)
+    images->power[n++] = square(images->spectrum[i]);
+  *sine = 0.5 - (sin(2 * M_PI * to) - sin(2 * M_PI * from)) / (4 * M_PI * (to - from));
+  double highest = n ? LINE * eo_scan_quantile(images->power, n, 0.5) / M_LN2 : 0;
+  for (int i = 0; i < n; i++)
+    if (images->power[i] <= highest) {
+      sum += images->power[i];
+      kept++;
+    }
+  return kept ? sum / kept : 0;
+}
+
+/* Means of neighbours have less of what alternates from row to row: the power of their noise goes with
+   1 - q sin^2(phase / 2), q = 4 f (1 - f) on the place f between them. q, where the upper two bands say so beyond
+   chance, the third agrees and it is no rounding; 0 where they do not, or where the power falls off more steeply than
+   any mean's. */
+static double alike_neighbours(struct eo_images *images)
+{
+  double power[3], sine[3], chance = sqrt(2 / (images->count / 8.0)); /* of a ratio of two bands, relative */
+  for (int k = 0; k < 3; k++)
+    power[k] = power_in_band(images, k, &sine[k]);
+  double ratio = power[1] / power[0], most = (1 - sine[1]) / (1 - sine[0]);
+  if (!(power[0] > 0 && ratio > 1 + SURE * chance && ratio < most * (1 + SURE * chance)))
+    return 0;
+  /* theory (M8) */
+  double q = fmin(1, (ratio - 1) / (ratio * sine[0] - sine[1])), expected = (1 - q * sine[2]) / (1 - q * sine[1]);
+  return fabs(power[2] / power[1] / expected - 1) < ALIKE && kurtosis(images) > KURTOSIS ? q : 0;
+}
+
 /* Noise of two recorded rows is less on the middle between them than at either: its square goes with the beat. */
-static enum eo_code look_at_noise(struct eo_images *images, struct eo_error *error)
+static enum eo_code look_at_noise(struct eo_images *images, double *alike, struct eo_error *error)
 {
   double mean = 0;
   memset(images->spectrum, 0, sizeof *images->spectrum * (size_t)images->size);
   for (int i = 0; i < images->count; i++)
     images->spectrum[i] = images->residual[i];
   EO_TRY(eo_fft_forward(images->size, images->spectrum, error));
+  *alike = alike_neighbours(images);
   whiten(images);
   EO_TRY(eo_fft_forward(images->size, images->spectrum, error)); /* the rows from behind */
   for (int i = 0; i < images->count; i++) {
@@ -252,7 +299,7 @@ static double explained(const struct candidate *candidate, int part)
   return square(factor_of(candidate, part)) * candidate->energy[part] / 2;
 }
 
-/* Rates with one beat, those at which every order has its images apart from it. */
+/* Rates with one beat, those that carry every order: beyond half of a rate an order is its own image. */
 static int list_rates(double beat, const struct eo_order_line *mesh, int harmonics, double turns,
                       struct candidate list[RATES])
 {
@@ -291,6 +338,14 @@ static bool can_be(const struct candidate *candidate)
   return share_of(candidate) < 1 + ALIKE;
 }
 
+/* Whether the strongest image and the others may be there as one, as far as noise lets it tell. */
+static bool can_be_one(const struct candidate *candidate, double rest)
+{
+  double complex strongest = factor_of(candidate, 0), others = factor_of(candidate, 1);
+  double unsure = candidate->energy[1] > 0 ? SURE * sqrt(2 * rest / candidate->energy[1]) : INFINITY;
+  return cabs(others - strongest) < ALIKE * cabs(strongest) + unsure;
+}
+
 /* Whether the images of a candidate are all there, as one, and much of what is left; rest: mean square of what is no
    image. */
 static bool is_whole(const struct candidate *candidate, double rest, int rows)
@@ -298,16 +353,6 @@ static bool is_whole(const struct candidate *candidate, double rest, int rows)
   double complex strongest = factor_of(candidate, 0), others = factor_of(candidate, 1);
   return cabs(others - strongest) < ALIKE * cabs(strongest) && explained(candidate, 1) > 2 * CHANCE * rest &&
          explained(candidate, 2) > MUCH * rest * rows;
-}
-
-static double kurtosis(const struct eo_images *images)
-{
-  double second = 0, fourth = 0;
-  for (int i = 0; i < images->count; i++) {
-    second += pow(images->residual[i], 2) / images->count;
-    fourth += pow(images->residual[i], 4) / images->count;
-  }
-  return fourth / (second * second);
 }
 
 /* The likeliest of the rates with a beat: the most is explained, with a share that can be. */
@@ -322,8 +367,9 @@ static const struct candidate *likeliest(const struct candidate *list, int count
   return best;
 }
 
-/* What straight lines with a beat take away. It is there where images and noise have it both, where all images are
-   there as one, or where noise that is no rounding has it. */
+/* What straight lines with a beat take away. It is there where images and noise have it both (noise of an encoder's
+   steps as well: there the images have to be one), where all images are there as one, or where noise that is no
+   rounding has it. */
 static void judge_beat(struct eo_images *images, const struct eo_order_line *mesh, int harmonics, int asked,
                        const struct beat *beat, struct eo_images_found *found)
 {
@@ -339,13 +385,31 @@ static void judge_beat(struct eo_images *images, const struct eo_order_line *mes
   for (int i = 0; i < images->count; i++)
     rest += images->residual[i] * images->residual[i];
   rest = (rest - explained(best, 2)) / images->count;
-  bool both = beat->in_images > CHANCE && beat->in_noise > CHANCE,
-       noise = beat->in_noise > fmax(CHANCE, DEPTH * DEPTH * images->count / 8) && kurtosis(images) > KURTOSIS;
+  bool rounded = kurtosis(images) <= KURTOSIS,
+       both = beat->in_images > CHANCE && beat->in_noise > CHANCE && (!rounded || can_be_one(best, rest)),
+       noise = beat->in_noise > fmax(CHANCE, DEPTH * DEPTH * images->count / 8) && !rounded;
   double sure = sqrt(2 * rest / best->energy[2]),
          loss = fmin(1, share_of(best) + (noise ? 2 * sure : 0)) * loss_of(best, mesh, asked, turns_per_row(images));
   bool there = both || noise || (beat->highest && is_whole(best, rest, images->count));
-  if (there && loss > found->loss)
-    *found = (struct eo_images_found){best->rate, share_of(best), loss};
+  if (there && loss > found->loss) {
+    found->rate = best->rate;
+    found->share = share_of(best);
+    found->loss = loss;
+  }
+}
+
+/* Of the RMS of some orders, where they went through means of neighbours as the noise did. */
+static double alike_loss(double alike, const struct eo_order_line *mesh, int orders, double turns)
+{
+  double left = 0, whole = 0;
+  for (int h = 0; h < orders; h++) {
+    /* theory (M8) */
+    double gain = 1 - alike * pow(sin(M_PI * mesh[h].order * turns), 2),
+           acceleration = pow(mesh[h].order, 4) * square(mesh[h].amplitude);
+    left += acceleration;
+    whole += acceleration / gain;
+  }
+  return 1 - sqrt(left / whole);
 }
 
 /* Beats that the noise has: those that the images have too are one. */
@@ -368,6 +432,7 @@ enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line
 {
   struct beat beat[BEATS];
   int count = 0;
+  double alike = 0;
   *found = (struct eo_images_found){0};
   if (images->count < LEAST_ROWS)
     return EO_OK;
@@ -380,7 +445,9 @@ enum eo_code eo_images_find(struct eo_images *images, const struct eo_order_line
   EO_TRY(look_for_images(images, mesh, harmonics, error));
   list_lines(images, mesh[0].order, BEATS - 2, beat, &count);
   int of_images = count;
-  EO_TRY(look_at_noise(images, error));
+  EO_TRY(look_at_noise(images, &alike, error));
+  found->alike = alike;
+  found->alike_loss = alike_loss(alike, mesh, asked, turns_per_row(images));
   list_lines(images, 0, 2, beat, &count);
   join_beats(beat, of_images, count, images->count);
   for (int i = 0; i < count; i++)

@@ -17,6 +17,8 @@ struct eo_images_found {
   double rate;  /* recorded rows per row, the likeliest of those with this beat; 0: no beat was found */
   double share; /* of the vibration that went through the straight lines: 1, or that of one shaft */
   double loss;  /* what that may have taken from the RMS of the orders asked for, relative */
+  double alike; /* 1 - power of the noise that alternates from row to row, relative to slow noise; 0: none is missing */
+  double alike_loss; /* of the RMS, where the orders went the same way */
 };
 
 /* Errors: memory. */

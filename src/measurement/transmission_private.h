@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fit of the orders over the rows of a part, shared by the files that make it: rows and terms (transmission.c), the
-   axis (transmission_axis.c), what is read from the coefficients (transmission_lines.c), whether the rows are those that
-   were recorded (transmission_images.c). */
+   axis (transmission_axis.c), what is read from the coefficients (transmission_lines.c), whether the rows are those
+   that were recorded (transmission_images.c). */
 #ifndef EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
 #define EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
 

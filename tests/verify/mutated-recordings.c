@@ -112,9 +112,7 @@ static void make_plan(struct plan *p, uint64_t seed)
   p->fault = (enum row_fault)(choice(p, 6, 3) ? 1 + choice(p, 7, ROW_FAULTS - 1) : SOUND);
   p->rate = p->truth.sample_rate;
   if (p->fault == ON_LINES || p->fault == LAST_VALUE) {
-    double times = drawn_between(p, 19, 0.7, 1.95);
-    /* Rates that are nearly the same beat more slowly than the shafts turn: theory says that this is not seen. */
-    p->rate = floor(p->rate * (fabs(times - 1) < 0.015 ? 1.03 : times));
+    p->rate = floor(p->rate * drawn_between(p, 19, 0.7, 1.95));
     p->truth.wrapped = false;
   }
   int64_t rows = eo_synthetic_rows(&p->truth);

@@ -541,6 +541,22 @@ static void check_resampled_orders(void)
        "240 rows per turn brought to %.3g times as many on straight lines are refused", places[i]);
 }
 
+/* Where nothing beats, or too slowly, the noise of neighbouring rows tells. */
+static void check_alike_neighbours(void)
+{
+  static const double slow[] = {1.0005, 1.002, 1.005};
+  struct eo_synthetic s = usual();
+  for (size_t i = 0; i < sizeof slow / sizeof *slow; i++) {
+    const struct eo_measurement *m = measure_resampled(&s, slow[i] * s.sample_rate, false, 0);
+    ok(m->refused || said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING),
+       "rows brought to %.5g times their rate on straight lines are a question: RMS %.4f, truth %.4f", slow[i],
+       m->transmission.rms, eo_synthetic_rms(&s, 8));
+  }
+  s.interpolation = 4;
+  s.lines[EO_PINION] = 2048;
+  ok(!said(measure(&s), EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "the steps of a coarse encoder are none");
+}
+
 /* Eleven bits, as half precision has them: many rows seem to lie on lines, and no program made them up. */
 static void check_half_precision(void)
 {
@@ -656,6 +672,7 @@ int main(int argc, char **argv)
   check_parts();
   check_resampled();
   check_resampled_orders();
+  check_alike_neighbours();
   check_half_precision();
   check_rounded_times();
   check_load();
