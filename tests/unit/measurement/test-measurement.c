@@ -415,6 +415,33 @@ static void check_slow_clock(void)
      t->rms_sigma, truth);
 }
 
+/* Almost without noise, what the program's own interpolation or correction takes away would stand out: no kind is
+   biased beyond what is stated. */
+static void check_own_interpolation(void)
+{
+  static const enum drawn_kind kinds[] = {DRAWN_OWN_RATE, DRAWN_OWN_START, DRAWN_TRACKS};
+  enum { EACH = 8 };
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {17, 44}, .base_radius = {radius[0], radius[1]}, .harmonics = 8}, .stated_speed = NAN};
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+    double sum = 0, furthest = 0, stated = 0;
+    for (int i = 0; i < EACH; i++) {
+      enum drawn_kind kind;
+      struct eo_synthetic s = drawn((uint64_t)(kinds[k] + DRAWN_KINDS * (100 + i)), &kind);
+      s.noise = 2e-9;
+      s.track_noise = 0;
+      const struct eo_transmission *t = &measure_columns(&s, &settings)->transmission;
+      double off = (t->rms - eo_synthetic_rms(&s, t->harmonics)) / t->rms_sigma; /* of the orders that are carried */
+      sum += off;
+      furthest = fmax(furthest, fabs(off));
+      stated += t->rms_sigma / t->rms / EACH;
+    }
+    ok(furthest < 3 && fabs(sum) < 3 * sqrt(EACH),
+       "%s, without noise: off by %+.2f standard deviations in the mean of %d, %.2f at most, of %.2g %%",
+       drawn_names[kinds[k]], sum / EACH, EACH, furthest, 100 * stated);
+  }
+}
+
 /* Another part, or other times, when they are asked for. */
 static void check_parts(void)
 {
@@ -678,6 +705,7 @@ int main(int argc, char **argv)
   check_load();
   check_run_out();
   check_slow_clock();
+  check_own_interpolation();
   check_truth(recordings);
   eo_measurement_done(&measurement);
   return tap_done();
