@@ -13,6 +13,7 @@
 struct encoder {
   int tracks, column[2];
   double middle[2];
+  bool exact; /* an edge has the time of the row that shows it */
   bool high[2], begun;
   double before[2], time;      /* values and time of the row before */
   int64_t edges, forward;      /* of two tracks: edges in all, those of one direction */
@@ -27,7 +28,8 @@ static double time_of(const struct eo_layout_clock *clock, const double *row, in
 /* The time between two rows at which a track passes the middle, by a straight line. */
 static enum eo_code keep_edge(struct encoder *encoder, int track, double value, double time, struct eo_error *error)
 {
-  double share = (encoder->middle[track] - encoder->before[track]) / (value - encoder->before[track]);
+  double share = encoder->exact ? 1
+                                : (encoder->middle[track] - encoder->before[track]) / (value - encoder->before[track]);
   double at = encoder->time + share * (time - encoder->time);
   return eo_recording_append(encoder->pulses, &at, 1, error);
 }
@@ -60,6 +62,55 @@ static enum eo_code take_row(struct encoder *encoder, const double *row, double 
   return code;
 }
 
+/* Rows that differ from the one before in a track, and how unlike their times are. */
+struct changes {
+  int64_t rows, changed;
+  double before[4], time; /* of the row before */
+  double sum, squares;    /* of the steps of time */
+};
+
+static void count_change(const struct eo_guess *guess, const struct encoder encoder[2], const double *row,
+                         struct changes *changes)
+{
+  double time = time_of(&guess->clock[0], row, 0), step = time - changes->time;
+  bool changed = false;
+  for (int i = 0; i < 4; i++) {
+    double value = i % 2 < encoder[i / 2].tracks ? row[encoder[i / 2].column[i % 2]] : 0;
+    changed = changed || value != changes->before[i];
+    changes->before[i] = value;
+  }
+  changes->time = time;
+  if (changes->rows++ == 0)
+    return;
+  changes->changed += changed;
+  changes->sum += step;
+  changes->squares += step * step;
+}
+
+/* Logic analysers write a row where a track changes and none between. Nearly all rows change something then, at times
+   that are anything but even. */
+static enum eo_code look_for_changes(const struct eo_guess *guess, struct encoder encoder[2], struct eo_error *error)
+{
+  static const double NEARLY = 0.9, UNEVEN = 0.1; /* of the rows; standard deviation of the steps over their mean */
+  struct changes changes = {0};
+  int64_t rows = eo_recording_rows(guess->recording);
+  if (guess->clock[0].column < 0 || guess->clock[0].column != guess->clock[1].column)
+    return EO_OK;
+  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(guess->recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++)
+      count_change(guess, encoder, block + i * guess->columns, &changes);
+  }
+  free(block);
+  double steps = (double)(changes.rows - 1), mean = changes.sum / steps,
+         uneven = sqrt(fmax(0, changes.squares / steps - mean * mean)) / mean;
+  encoder[0].exact = encoder[1].exact = (double)changes.changed > NEARLY * steps && uneven > UNEVEN;
+  return code;
+}
+
 static enum eo_code find_edges(const struct eo_guess *guess, struct encoder encoder[2], struct eo_error *error)
 {
   int64_t rows = eo_recording_rows(guess->recording);
@@ -87,7 +138,7 @@ static enum eo_code check(const struct eo_guess *guess, const struct encoder *en
   if (!(guess->choice->lines[member] > 0) && !(eo_recording_turn(guess->recording, encoder->column[0]) > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines",
                         "The %s's encoder was recorded as a square wave; give its lines per turn.", whose);
-  if (lines < 3 || rows / lines < ROWS_PER_LINE)
+  if (lines < 3 || (!encoder->exact && rows / lines < ROWS_PER_LINE))
     return eo_error_set(
         error, EO_ERROR_INPUT, "/kind",
         "The %s's encoder was recorded as a square wave with %.3g rows per line: the times of its edges "
@@ -167,6 +218,10 @@ static enum eo_code decode(struct eo_guess *guess, struct encoder encoder[2], co
     }
     EO_TRY(eo_recording_new(&encoder[s].pulses, 1, spool_directory, error));
   }
+  EO_TRY(look_for_changes(guess, encoder, error));
+  if (encoder[0].exact)
+    eo_notes_add(guess->notes, "The rows are the changes of the tracks, as logic analysers list them: their times are "
+                               "those of the edges.");
   EO_TRY(find_edges(guess, encoder, error));
   for (int s = 0; s < 2; s++)
     EO_TRY(check(guess, &encoder[s], s, error));

@@ -255,6 +255,32 @@ static void test_repeated_rows(void)
   eo_recording_free(r);
 }
 
+/* A logic analyser lists the changes of its channels: 60 lines per turn of either shaft, few rows per line. */
+static void check_changes(void)
+{
+  struct eo_layout_choice lines = {.lines = {60, 60}};
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  double turns = SPEED / (2 * M_PI), first = 1 / (120 * turns), row[2], worst = 0;
+  FILE *f = begin("Time [s],Channel 0,Channel 1\n0.000000000,0,0\n");
+  for (int64_t edge[2] = {1, 1}; edge[0] < 4000;) {
+    double at[2] = {(double)edge[0] * first, (double)edge[1] * first * 44 / 17};
+    int next = at[1] < at[0];
+    edge[next]++;
+    fprintf(f, "%.9f,%d,%d\n", at[next], (int)((edge[0] - 1) % 2), (int)((edge[1] - 1) % 2));
+  }
+  struct eo_recording *r = find(f, &lines, &tracks, &notes, &error);
+  for (int64_t i = 0; r && i < 1500; i++) {
+    if (eo_recording_read(r, i, 1, row, &error))
+      break;
+    worst = fmax(worst, fabs(row[0] - (double)(2 * i + 1) * first));
+  }
+  ok(r && tracks.channel[0].track == EO_TRACK_PULSES && worst < 1e-9 && noted(&notes, "logic analysers"),
+     "changes of two tracks are edges at their times: %.3g s off%s", worst, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 static void test_squares(void)
 {
   struct eo_layout_choice lines = {.lines = {60, 60}};
@@ -272,6 +298,7 @@ static void test_squares(void)
        "square waves of %d track%s: %.4g turns%s", k, k == 1 ? "" : "s", turns, r ? "" : error.text);
     eo_recording_free(r);
   }
+  check_changes();
   FILE *f = begin("t_s;Pinion_TTL [V];Gear_TTL [V]\n");
   squares(f, 40000, 1);
   asked(f, NULL, "/lines", "square wave", "square waves without their lines");
