@@ -336,6 +336,8 @@ static enum eo_code make(struct eo_angles_maker *maker, struct eo_angles *angles
     return EO_OK;
   EO_TRY(eo_recording_new(&angles->series, 3, spool_directory, error));
   EO_TRY(convert(maker, angles, error));
+  if (maker->sampler.pulses)
+    EO_TRY(eo_pulses_state(maker->sampler.pulses, &angles->interpolated, error));
   conclude(maker, angles);
   return EO_OK;
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pulse times as angles: line k of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
-   the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the twelve gear pulses
-   around (below 1e-4 of a harmonic that has seven pulses per period); none stands where a line of the gear is missing.
- */
+   the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the gear pulses
+   around, of which recording/interpolation.h says what it leaves of a wave; none stands where a line of the gear is
+   missing. */
 #include "measurement/pulse_train.h"
 #include "measurement/sampler.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { NODES = 12, SIDE = EO_SAMPLER_BLOCK };
+enum { NODES = EO_INTERPOLATION_UNEVEN, SIDE = EO_SAMPLER_BLOCK };
 
 /* The pulses of one encoder, in blocks. */
 struct train {
@@ -21,7 +21,8 @@ struct train {
 
 struct eo_pulses {
   struct train train[2];
-  int64_t next, near; /* pinion pulse; gear pulse at or before it */
+  int64_t next, near;                               /* pinion pulse; gear pulse at or before it */
+  int64_t places[EO_INTERPOLATION_PLACES], samples; /* how many samples stand where between two gear pulses, and all */
 };
 
 enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
@@ -72,24 +73,20 @@ static enum eo_code interpolate(struct eo_pulses *pulses, double time, double *l
 {
   struct train *gear = &pulses->train[1];
   int64_t first = pulses->near - NODES / 2 + 1;
-  double node[NODES][2];
+  double node[NODES], passed[NODES], weight[NODES];
   *line = 0;
   for (int i = 0; i < NODES; i++) {
     const double *pulse;
     enum eo_code code = pulse_at(gear, first + i, &pulse, error);
     if (code)
       return code;
-    node[i][0] = pulse[0];
-    node[i][1] = pulse[1];
+    node[i] = pulse[0];
+    passed[i] = pulse[1];
   }
-  for (int i = 0; i < NODES; i++) {
-    double weight = 1;
-    for (int j = 0; j < NODES; j++)
-      if (j != i)
-        weight *= (time - node[j][0]) / (node[i][0] - node[j][0]);
-    *line += weight * (node[i][1] - node[0][1]);
-  }
-  *line += node[0][1];
+  eo_interpolation_weights(NODES, node, time, weight);
+  for (int i = 0; i < NODES; i++)
+    *line += weight[i] * (passed[i] - passed[0]);
+  *line += passed[0];
   return EO_OK;
 }
 
@@ -132,7 +129,27 @@ static enum eo_code sample_at(struct eo_pulses *pulses, struct eo_sample *sample
                          {2 * M_PI * own / pulses->train[0].made.lines, 2 * M_PI * line / pulses->train[1].made.lines},
                          pulses->next};
   *taken = !code && isfinite(line);
+  if (*taken) {
+    pulses->places[(int)((time - low[0]) / (high[0] - low[0]) * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
+    pulses->samples++;
+  }
   return code;
+}
+
+enum eo_code eo_pulses_state(struct eo_pulses *pulses, struct eo_interpolation *interpolated, struct eo_error *error)
+{
+  struct train *gear = &pulses->train[1];
+  const double *pulse, *last;
+  *interpolated = (struct eo_interpolation){.points = NODES};
+  if (pulses->samples == 0)
+    return EO_OK;
+  EO_TRY(pulse_at(gear, 0, &pulse, error));
+  double time = pulse[0], line = pulse[1];
+  EO_TRY(pulse_at(gear, gear->made.count - 1, &last, error));
+  interpolated->step = (last[0] - time) / (last[1] - line);
+  for (int i = 0; i < EO_INTERPOLATION_PLACES; i++)
+    interpolated->share[i] = (double)pulses->places[i] / (double)pulses->samples;
+  return EO_OK;
 }
 
 enum eo_code eo_pulses_next(struct eo_pulses *pulses, struct eo_sample *sample, int *count, struct eo_error *error)

@@ -44,4 +44,7 @@ void eo_pulses_free(struct eo_pulses *pulses);
 void eo_pulses_judge(const struct eo_pulses *pulses, struct eo_findings *findings);
 enum eo_code eo_pulses_next(struct eo_pulses *pulses, struct eo_sample *sample, int *count, struct eo_error *error);
 
+/* After the last sample: how they stood between the pulses of the gear. */
+enum eo_code eo_pulses_state(struct eo_pulses *pulses, struct eo_interpolation *interpolated, struct eo_error *error);
+
 #endif

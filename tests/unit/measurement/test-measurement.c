@@ -655,6 +655,29 @@ static void check_rounded_times(void)
   }
 }
 
+/* The encoder with the fewer lines limits the mesh orders, and what is lost between its pulses is put back or stated.
+ */
+static void check_few_lines(void)
+{
+  static const int lines[][2] = {{720, 360}, {360, 720}, {500, 1024}, {1024, 800}, {1024, 1024}, {2048, 1024}};
+  struct eo_synthetic s = usual();
+  s.output = EO_SYNTHETIC_PULSES;
+  s.noise = 0;
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+    for (int share = 0; share < 3; share++) {
+      s.lines[0] = lines[i][0];
+      s.lines[1] = lines[i][1];
+      s.pinion_share = 0.5 * share;
+      const struct eo_transmission *t = &measure(&s)->transmission;
+      int most = (int)(0.45 * fmin(lines[i][0], lines[i][1] * 17 / 44) / 17);
+      double truth = eo_synthetic_rms(&s, t->harmonics);
+      ok(!measurement.refused && t->harmonics == (most < 8 ? most : 8) && fabs(t->rms - truth) < 3 * t->rms_sigma &&
+             (most >= 8 || said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING)),
+         "%d and %d lines, %g of the vibration the pinion's: RMS %.4f +- %.4f of %d orders, truth %.4f", lines[i][0],
+         lines[i][1], s.pinion_share, t->rms, t->rms_sigma, t->harmonics, truth);
+    }
+}
+
 static void check_load(void)
 {
   struct eo_synthetic s = usual();
@@ -694,6 +717,7 @@ int main(int argc, char **argv)
   }
   check_faults();
   check_limits();
+  check_few_lines();
   check_printed_radii();
   check_speeds();
   check_parts();
