@@ -404,23 +404,23 @@ static bool is_as_meant(const char *key, const json_t *value, const json_t *stan
   return json_equal(value, json_object_get(standard, key)) || (stands && json_number_value(value) == 0);
 }
 
-/* What differs from the defaults of a flank; NULL without memory. */
-static json_t *encode_flank(const struct eo_flank_modification *flank)
+/* What differs from the standard, a flank with its defaults as a document; NULL without memory. */
+static json_t *encode_flank(const struct eo_flank_modification *flank, const json_t *standard)
+{
+  json_t *object = standard ? eo_table_encode(&eo_flank_modification_table, flank) : NULL, *value;
+  const char *key;
+  void *next;
+  if (object)
+    json_object_foreach_safe(object, next, key, value) if (is_as_meant(key, value, standard))
+        json_object_del(object, key);
+  return object;
+}
+
+static json_t *encode_standard_flank(void)
 {
   struct eo_flank_modification standard;
   eo_table_defaults(&eo_flank_modification_table, &standard);
-  json_t *object = eo_table_encode(&eo_flank_modification_table, flank),
-         *other = eo_table_encode(&eo_flank_modification_table, &standard), *value;
-  const char *key;
-  void *next;
-  if (object && other)
-    json_object_foreach_safe(object, next, key, value) if (is_as_meant(key, value, other)) json_object_del(object, key);
-  if (!other) {
-    json_decref(object);
-    object = NULL;
-  }
-  json_decref(other);
-  return object;
+  return eo_table_encode(&eo_flank_modification_table, &standard);
 }
 
 static void put_unless_empty(json_t *object, const char *key, json_t *value, bool *failed)
@@ -435,15 +435,15 @@ enum eo_code eo_modification_write(const struct eo_modification *modification, i
                                    struct eo_error *error)
 {
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
-  json_t *document = json_object();
-  bool failed = !document;
+  json_t *document = json_object(), *standard = encode_standard_flank();
+  bool failed = !document || !standard;
   for (int i = 0; i < 2; i++) {
     json_t *member = json_object();
     failed |= !member;
     for (int end = 0; end < ends; end++) {
-      json_t *flank = encode_flank(&modification->flank[i][end]);
+      json_t *flank = encode_flank(&modification->flank[i][end], standard);
       failed |= !flank;
-      put_unless_empty(flank, "coast", encode_flank(&modification->coast[i][end]), &failed);
+      put_unless_empty(flank, "coast", encode_flank(&modification->coast[i][end], standard), &failed);
       put_unless_empty(member, end_name[end], flank, &failed);
     }
     put_unless_empty(document, member_name[i], member, &failed);
@@ -451,6 +451,7 @@ enum eo_code eo_modification_write(const struct eo_modification *modification, i
   if (!failed)
     eo_json_write(text, document, EO_JSON_CANONICAL);
   json_decref(document);
+  json_decref(standard);
   return failed || text->failed ? eo_error_memory(error) : EO_OK;
 }
 

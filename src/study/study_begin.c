@@ -159,6 +159,9 @@ static enum eo_code set_view(struct study *study, struct eo_error *error)
   return eo_optimizer_set_view(study->optimizer, &view, error);
 }
 
+/* Rows of other jobs between two looks at whether a stop is asked for: tens of thousands take a while. */
+enum { EVERY = 32 };
+
 /* One row of other jobs, if this study can ask for it. x: bit for bit as it was asked for in the same space, so that it
    is found again. */
 static enum eo_code import(void *context, const struct eo_stored_evaluation *evaluation, const double *x, int size,
@@ -169,6 +172,8 @@ static enum eo_code import(void *context, const struct eo_stored_evaluation *eva
   struct eo_modification modification;
   double point[EO_MAX_LISTED], objectives[EO_MAX_OBJECTIVES];
   const struct eo_modification *base = &study->plan->design->modification;
+  if (study->visited++ % EVERY == 0 && eo_study_tell_progress(study, 0))
+    return EO_ERROR_CANCELLED;
   enum eo_code code = eo_modification_read(evaluation->modification, &modification, error);
   if (code || !eo_study_space_locate(&study->result->space, base, &modification, point))
     return code;
@@ -211,9 +216,10 @@ enum eo_code eo_study_begin(struct study *study, struct eo_error *error)
   EO_TRY(find_job(study, error));
   EO_TRY(find_unmodified(study, error));
   EO_TRY(describe_value(study, error));
+  enum eo_code code = EO_OK;
   if (!study->plan->fresh && study->job.import_upto > 0)
-    EO_TRY(eo_store_each_evaluation(study->plan->store, study->job.problem, study->job.import_upto, study->space_hash,
-                                    result->scenarios, result->cases, import, study, error));
-  result->imported = study->row.count;
-  return EO_OK;
+    code = eo_store_each_evaluation(study->plan->store, study->job.problem, study->job.import_upto, study->space_hash,
+                                    result->scenarios, result->cases, import, study, error);
+  result->imported = study->row.count; /* after a stop too: none of them is this job's */
+  return code;
 }

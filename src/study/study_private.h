@@ -40,6 +40,7 @@ struct study {
   struct eo_design *scratch; /* owned */
   struct eo_rows row;        /* true rows, in the optimizer's order; the pending batch behind them */
   int told;                  /* rows the optimizer has */
+  int visited;               /* rows of other jobs that were looked at */
   int *missing;              /* [missing_capacity] rows of the pending batch to compute; owned */
   int target;                /* states that they get */
   int missing_count, missing_capacity;

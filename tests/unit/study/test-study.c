@@ -171,6 +171,20 @@ static void test_reuse(void)
   ok(result.computed == 8, "and the budget is for new ones");
   eo_study_result_done(&result);
 
+  /* a stop while these are read, which takes long where there are many */
+  struct eo_study_plan cut = plan;
+  design.optimization.search.true_evaluations = 9;
+  cut.watch = stop_after;
+  cut.context = &(int){0};
+  free(run(&cut, &result));
+  ok(result.stopped == EO_STOP_CANCELLED && result.imported < 32 && result.computed == 0,
+     "a stop is heard after %d rows of earlier searches", result.imported);
+  eo_study_result_done(&result);
+  free(run(&plan, &result));
+  ok(result.resumed && result.imported >= 60 && result.computed == 9, "and the search goes on with all %d",
+     result.imported);
+  eo_study_result_done(&result);
+
   /* another space: both ends apart; the rows with equal ends lie in it */
   design.optimization.variables = EO_VARIABLES_PER_END;
   complete(&design);
