@@ -355,7 +355,6 @@ enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording 
     return eo_error_memory(error);
   }
   angles->interpolated = tracks->interpolated;
-  angles->pulses = tracks->channel[0].track == EO_TRACK_PULSES;
   maker->recording = recording;
   maker->tracks = tracks;
   maker->asked = asked;

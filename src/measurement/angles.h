@@ -27,7 +27,6 @@ struct eo_angles {
   int64_t dropped;              /* rows missing from both channels */
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   bool raw[2], wrapped[2];
-  bool pulses; /* the rows are the pulses of the first channel, the values of the second between its own */
   struct eo_interpolation interpolated; /* of the second channel, whose values were brought to the first one's times */
   bool units_in_doubt;                  /* one channel is in degrees, the other in radians, and it is open which */
 };

@@ -22,7 +22,8 @@ static const double DEPTH = 0.1; /* of the beat in the square of the noise, rela
                                      encoder whose noise goes with its lines */
 static const double MUCH = 0.5;  /* of what is no image */
 static const double LINE = 12;   /* times the mean of its band: no noise */
-static const double SLOWEST = 3; /* beats per turn of the pinion: slower ones the shafts make, too */
+static const double SCATTERED = 0.85; /* mean power of noise over median / ln 2: 1; of smooth curves 0.69 */
+static const double SLOWEST = 3;      /* beats per turn of the pinion: slower ones the shafts make, too */
 static const double MOST_TURNS = 0.9; /* of an order between two recorded rows: at 1 one of its images stands still */
 static const double SURE = 5;         /* standard deviations */
 static const double ALIKE = 0.25;     /* by which the strongest image may differ from the others, relative */
@@ -167,7 +168,8 @@ static double kurtosis(const struct eo_images *images)
 }
 
 /* Mean power of the noise, without lines, in an eighth of the rows' rate, the k-th from above; *sine: mean of sin^2 of
-   half the phase from row to row there. */
+   half the phase from row to row there. 0 where the powers do not scatter as those of noise: what an even curve leaves,
+   as of angles that were computed, is alike from line to line. */
 static double power_in_band(struct eo_images *images, int k, double *sine)
 {
   double from = 0.5 - 0.125 * (k + 1), to = from + 0.125, sum = 0;
@@ -175,13 +177,13 @@ static double power_in_band(struct eo_images *images, int k, double *sine)
   for (int i = (int)(from * images->size) + 1; i < (int)(to * images->size); i++)
     images->power[n++] = square(images->spectrum[i]);
   *sine = 0.5 - (sin(2 * M_PI * to) - sin(2 * M_PI * from)) / (4 * M_PI * (to - from));
-  double highest = n ? LINE * eo_scan_quantile(images->power, n, 0.5) / M_LN2 : 0;
+  double usual = n ? eo_scan_quantile(images->power, n, 0.5) / M_LN2 : 0;
   for (int i = 0; i < n; i++)
-    if (images->power[i] <= highest) {
+    if (images->power[i] <= LINE * usual) {
       sum += images->power[i];
       kept++;
     }
-  return kept ? sum / kept : 0;
+  return kept && sum / kept > SCATTERED * usual ? sum / kept : 0;
 }
 
 /* Means of neighbours have less of what alternates from row to row: the power of their noise goes with
@@ -194,7 +196,7 @@ static double alike_neighbours(struct eo_images *images)
   for (int k = 0; k < 3; k++)
     power[k] = power_in_band(images, k, &sine[k]);
   double ratio = power[1] / power[0], most = (1 - sine[1]) / (1 - sine[0]);
-  if (!(power[0] > 0 && ratio > 1 + SURE * chance && ratio < most * (1 + SURE * chance)))
+  if (!(power[0] > 0 && power[2] > 0 && ratio > 1 + SURE * chance && ratio < most * (1 + SURE * chance)))
     return 0;
   /* theory (M8) */
   double q = fmin(1, (ratio - 1) / (ratio * sine[0] - sine[1])), expected = (1 - q * sine[2]) / (1 - q * sine[1]);

@@ -6,6 +6,9 @@
 
 #include <stdlib.h>
 
+/* m, residual: encoders leave a hundred times as much, digits of angles that were computed less. */
+static const double QUIET = 1e-11;
+
 /* A fit of its own that what is asked for does not see. */
 struct looked {
   struct eo_order_fit fit;
@@ -73,7 +76,7 @@ enum eo_code eo_order_fit_judge_images(struct eo_order_fit *fit, struct eo_error
         "between them, which takes up to %.2g %% from the RMS of the mesh orders. Export each channel as it "
         "was recorded, with its own times.",
         found.rate / fit->angles->interval, 1 / fit->angles->interval, 100 * found.loss);
-  else if (!fit->angles->pulses && found.alike_loss * result->rms > result->rms_sigma)
+  else if (result->residual > QUIET && found.alike_loss * result->rms > result->rms_sigma)
     eo_findings_add(fit->findings, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING, -1, found.alike,
                     "The noise of neighbouring rows is alike as if they were means of neighbours: by a filter, or a "
                     "program that brought a channel to other times on straight lines. If the vibration went the same "

@@ -618,6 +618,41 @@ static void check_half_precision(void)
   eo_recording_free(rounded);
 }
 
+/* Angles that were computed have no noise of which neighbours could be means: all digits, or twelve decimals of a turn.
+ */
+static void check_computed_angles(void)
+{
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  for (int digits = 0; digits < 2; digits++) {
+    struct eo_synthetic s = usual();
+    struct eo_recording *recording = NULL;
+    struct eo_tracks tracks;
+    eo_synthetic_tracks(&s, &tracks);
+    enum eo_code code = eo_recording_new(&recording, 3, "/tmp", &error);
+    for (int i = 0; !code && i < 8800; i++) {
+      double time = i / 4000., pinion = 1.29 + 20 * M_PI * time, vibration = 0, row[3];
+      for (int h = 0; h < 8; h++)
+        vibration += creal(s.order[h] * cexp(I * (h + 1) * 17 * pinion));
+      double gear = pinion * 17 / 44 + (vibration + 2e-5 * cos(pinion + 0.5)) / radius[1];
+      row[0] = time;
+      row[1] = digits ? round(pinion / (2 * M_PI) * 1e12) * 2e-12 * M_PI : pinion;
+      row[2] = digits ? round(gear / (2 * M_PI) * 1e12) * 2e-12 * M_PI : gear;
+      for (int c = 0; c < 2; c++)
+        row[c + 1] /= tracks.channel[c].scale;
+      code = eo_recording_append(recording, row, 1, &error);
+    }
+    eo_measurement_done(&measurement);
+    memset(&measurement, 0, sizeof measurement);
+    if (!code)
+      code = eo_measurement_run(&measurement, recording, &tracks, &settings, NULL, &error);
+    ok(!code && !measurement.refused && !eo_findings_find(&measurement.findings, EO_FINDING_SAMPLE_RATE),
+       "computed angles%s are no means: %.3g um are left", digits ? " with twelve decimals" : "",
+       1e6 * measurement.transmission.residual);
+    eo_recording_free(recording);
+  }
+}
+
 /* Even rows whose times were written as days of a spreadsheet: rounded by ten decimals, and as a sum with the date. */
 static void check_rounded_times(void)
 {
@@ -726,6 +761,7 @@ int main(int argc, char **argv)
   check_alike_neighbours();
   check_half_precision();
   check_rounded_times();
+  check_computed_angles();
   check_load();
   check_run_out();
   check_slow_clock();
