@@ -634,7 +634,8 @@ static void check_computed_angles(void)
       double time = i / 4000., pinion = 1.29 + 20 * M_PI * time, vibration = 0, row[3];
       for (int h = 0; h < 8; h++)
         vibration += creal(s.order[h] * cexp(I * (h + 1) * 17 * pinion));
-      double gear = pinion * 17 / 44 + (vibration + 2e-5 * cos(pinion + 0.5)) / radius[1];
+      double shafts = 2e-5 * cos(pinion + 0.5) + 3e-5 * cos(pinion * 17 / 44 - 1),
+             gear = 1.1 + pinion * 17 / 44 + (vibration + shafts) / radius[1];
       row[0] = time;
       row[1] = digits ? round(pinion / (2 * M_PI) * 1e12) * 2e-12 * M_PI : pinion;
       row[2] = digits ? round(gear / (2 * M_PI) * 1e12) * 2e-12 * M_PI : gear;
