@@ -3,12 +3,11 @@
 // the Design view, one edit at a time, taken back after each. A sample of them in `make check`; `make check-page-edits`
 // (EASEOFF_EDITS=all) makes two kinds of edit of every field of every example, others in each example, so that all
 // examples together make every kind; half an hour and more.
-import { LOOSE, Server, chapter, finish, note, ok, openBrowser, settled } from './harness.mjs';
+import { LOOSE, Server, WAIT, chapter, finish, note, ok, openBrowser, settled } from './harness.mjs';
 
 const ALL = process.env.EASEOFF_EDITS === 'all';
 const SAMPLE = 9; // of the usual check: one field of so many, one kind of edit for each
 const EACH = 2; // kinds of edit of a field, of all fields
-const WAIT = 30000; // ms
 const KINDS = ['larger', 'smaller', 'much larger', 'empty', 'zero', 'negative', 'words'];
 
 const server = await Server.start();

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that are dropped on the page: of other programs, of this one, a grid on a flank, recordings on the rig.
 import { readFile } from 'node:fs/promises';
-import { COARSE, LOOSE, Server, chapter, drop, finish, ok, openBrowser, settled } from './harness.mjs';
+import { COARSE, LOOSE, Server, WAIT, chapter, drop, finish, ok, openBrowser, settled } from './harness.mjs';
 
 const START = `#design?from=paper-case-a&${LOOSE}`;
-const WAIT = Number(process.env.EASEOFF_WAIT ?? 30000); // ms for anything
 const CASES = `${process.env.SOURCES}/tests/cases/exchange`;
 
 const server = await Server.start();

@@ -7,7 +7,7 @@ import * as harness from './harness.mjs';
 const { COARSE, LOOSE, Server, chapter, finish, note, ok, openBrowser } = harness;
 
 const START = `#design?from=paper-case-a&${LOOSE}`;
-const WAIT = Number(process.env.EASEOFF_WAIT ?? 30000); // ms for anything
+const { WAIT } = harness;
 const PAUSE = 700; // ms after which a typed value has been taken
 
 const server = await Server.start();

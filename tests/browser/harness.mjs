@@ -44,6 +44,9 @@ export function finish() {
   process.exitCode = failed ? 1 : 0;
 }
 
+/** ms that a page may take for anything: on busy cores a preparation takes ten times as long as on idle ones. */
+export const WAIT = Number(process.env.EASEOFF_WAIT ?? 120000);
+
 /** A page of somebody who has been here before, without movement; `troubles`: what its scripts complained about. */
 export async function knownPage(browser, options) {
   const context = await browser.newContext({ reducedMotion: 'reduce', ...options });
@@ -51,7 +54,7 @@ export async function knownPage(browser, options) {
     if (location.protocol === 'http:') localStorage.setItem('easeoff-lead', 'away');
   });
   const page = await context.newPage();
-  page.setDefaultTimeout(30000);
+  page.setDefaultTimeout(WAIT);
   const troubles = [];
   page.on('pageerror', error => troubles.push(error.message));
   return { page, troubles };

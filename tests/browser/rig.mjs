@@ -2,7 +2,7 @@
 // A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
 // one is deleted.
 import { readFile } from 'node:fs/promises';
-import { LOOSE, Server, accessible, chapter, cutLabels, finish, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, cutLabels, finish, ok, openBrowser } from './harness.mjs';
 
 const START = `#rig?from=paper-case-a&${LOOSE}`;
 
@@ -14,7 +14,7 @@ const context = await browser.newContext({
   acceptDownloads: true,
 });
 const page = await context.newPage();
-page.setDefaultTimeout(30000);
+page.setDefaultTimeout(WAIT);
 const troubles = [];
 page.on('console', message => {
   if ((message.type() === 'error' || message.type() === 'warning') && !/GL Driver Message|422|409/.test(message.text()))

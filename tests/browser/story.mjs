@@ -2,7 +2,7 @@
 // A designer's day: look, drag, mistype, search, close the laptop, come back, compare, print; and a server that goes
 // away.
 import { readFile } from 'node:fs/promises';
-import { Server, chapter, cutLabels, finish, note, ok, openBrowser } from './harness.mjs';
+import { Server, WAIT, chapter, cutLabels, finish, note, ok, openBrowser } from './harness.mjs';
 
 // a coarse mesh, so that preparing the pair takes a second
 const COARSE = {
@@ -17,7 +17,6 @@ const COARSE = {
 const START = `#design?from=paper-case-a&${Object.entries(COARSE)
   .map(([key, value]) => `resolution.${key}=${value}`)
   .join('&')}`;
-const WAIT = Number(process.env.EASEOFF_WAIT ?? 60000); // ms for anything
 const MOST_BYTES = 1e6; // of the first view
 
 const server = await Server.start();

@@ -1,7 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A stranger with a gear of their own: five numbers and a load, a slider, a search, a comparison, a report; on every
 // size of screen, light and dark. Each page on the way has room for its labels, and axe-core finds nothing on it.
-import { LOOSE, Server, chapter, cutLabels, findings, finish, note, ok, openBrowser, settled } from './harness.mjs';
+import {
+  LOOSE,
+  Server,
+  WAIT,
+  chapter,
+  cutLabels,
+  findings,
+  finish,
+  note,
+  ok,
+  openBrowser,
+  settled,
+} from './harness.mjs';
 
 const GEAR = [
   ['Teeth of the pinion', '23'],
@@ -36,7 +48,7 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     isMobile: phone,
   });
   const page = await context.newPage();
-  page.setDefaultTimeout(Number(process.env.EASEOFF_WAIT ?? 30000));
+  page.setDefaultTimeout(WAIT);
   const troubles = [];
   page.on('pageerror', error => troubles.push(error.message));
   const number = name => page.locator('.number-cell', { hasText: name }).locator('.value').innerText();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study from the page: keys, cost, start, table, sort, brush, a row that is opened; no long task while doing so.
 import { cp, rm } from 'node:fs/promises';
-import { LOOSE, Server, accessible, chapter, finish, note, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, finish, note, ok, openBrowser } from './harness.mjs';
 
 const [FOLDER, JOB] = (process.env.EASEOFF_STUDY ?? '').split(':');
 const MOST_TASK = 100; // ms
@@ -23,7 +23,7 @@ await context.addInitScript(() => {
   }).observe({ type: 'longtask', buffered: true });
 });
 const page = await context.newPage();
-page.setDefaultTimeout(30000);
+page.setDefaultTimeout(WAIT);
 const troubles = [];
 page.on('pageerror', error => troubles.push(error.message));
 const rows = page.locator('.variant-table tbody:not(.space) tr');

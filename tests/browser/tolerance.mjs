@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs as made from the page: the first at once, all of them from a job that another page finds again and can stop.
-import { LOOSE, Server, accessible, chapter, finish, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, finish, ok, openBrowser } from './harness.mjs';
 
 const server = await Server.start();
 const browser = await openBrowser();
@@ -18,9 +18,9 @@ const jobs = async () => (await (await fetch(new URL('api/v1/jobs?kind=tolerance
 await chapter('a job draws them all', async () => {
   await page.goto(`${server.address}#tolerance?from=paper-case-a&${LOOSE}&tolerance.pairs=150`);
   await draw.click();
-  await page.getByText(/\b64 pairs/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/\b64 pairs/).first().waitFor({ timeout: WAIT });
   ok(true, 'the first pairs are shown');
-  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: WAIT });
   const [job] = await jobs();
   ok(job.state === 'done' && job.progress.true_evaluations === 150, 'all of them come from a job');
   ok(await draw.isEnabled(), 'it can be done again');
@@ -28,7 +28,7 @@ await chapter('a job draws them all', async () => {
 
 await chapter('another page', async () => {
   await page.reload();
-  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: WAIT });
   ok((await state.textContent()).includes('20'), 'shows what was drawn, with its date');
 });
 
@@ -37,14 +37,14 @@ await chapter('for everybody', () => accessible(page, 'a tolerance analysis'));
 await chapter('stopping', async () => {
   await page.goto('about:blank');
   await page.goto(`${server.address}#tolerance?from=paper-case-a&${LOOSE}&tolerance.pairs=50000`);
-  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/, 150 pairs/).first().waitFor({ timeout: WAIT });
   await draw.click();
-  await page.getByText(/of 50000/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/of 50000/).first().waitFor({ timeout: WAIT });
   await page.reload();
-  await page.getByText(/of 50000/).first().waitFor({ timeout: 60000 });
+  await page.getByText(/of 50000/).first().waitFor({ timeout: WAIT });
   ok(true, 'a job that runs is found again');
   await page.getByRole('button', { name: 'Stop' }).click();
-  await page.getByText('what was drawn is kept').waitFor({ timeout: 60000 });
+  await page.getByText('what was drawn is kept').waitFor({ timeout: WAIT });
   ok((await jobs())[0].state === 'cancelled', 'and is stopped');
 });
 
