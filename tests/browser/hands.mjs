@@ -387,7 +387,8 @@ await chapter('a link shows the same', async () => {
   elsewhere.setDefaultTimeout(WAIT);
   await elsewhere.goto(page.url());
   await settled(elsewhere);
-  await elsewhere.getByLabel('Number that is varied').waitFor({ state: 'attached' }); // a figure that comes after the numbers
+  // a figure that comes after the numbers
+  await elsewhere.getByLabel('Number that is varied').waitFor({ state: 'attached' });
   const seen = await elsewhere.evaluate(() => ({
     pin: document.querySelector('.pin select').selectedOptions[0].textContent,
     speeds: [...document.querySelectorAll('.range-fields input')].slice(0, 2).map(input => input.value),
