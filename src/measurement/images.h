@@ -3,7 +3,7 @@
    times on straight lines takes the mesh orders down, by up to a third of them, and leaves what it took beside them: an
    image of every order on either side of the recorded rate, and noise that swells with the place between two recorded
    rows. Both go with the beat of the two rates, which no gear knows of. Where the recorded rate is the same as that of
-   the rows, or a multiple, nothing beats and nothing tells. */
+   the rows, or a multiple, nothing beats; then the noise of neighbouring rows is alike. */
 #ifndef EASEOFF_MEASUREMENT_IMAGES_H
 #define EASEOFF_MEASUREMENT_IMAGES_H
 

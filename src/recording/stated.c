@@ -92,11 +92,12 @@ static bool is_interval(const char *key)
          is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
 
-/* Without a word for a rate or an interval the unit of the number tells which of both it is. */
-static bool is_sampling(const char *key)
+/* Without a word for a rate or an interval the unit of the number tells which of both it is; of a scan or of an
+   acquisition a time may be its duration. */
+static bool is_sampling(const char *key, bool time)
 {
-  return is_one(key, "sampling sampled sample abtastung abgetastet echantillonnage muestreo campionamento amostragem "
-                     "bemonstering scan scanning acquisition logging messung");
+  return is_one(key, "sampling abtastung echantillonnage muestreo campionamento amostragem bemonstering") ||
+         (!time && is_one(key, "sampled sample abgetastet scan scanning acquisition logging"));
 }
 
 static bool is_start(const char *key)
@@ -237,8 +238,8 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
 {
   bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
   bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
-  bool rate = is_rate(folded) || (frequency && is_sampling(folded)),
-       interval = is_interval(folded) || (time && is_sampling(folded)), tick = is_tick(folded);
+  bool rate = is_rate(folded) || (frequency && is_sampling(folded, false)),
+       interval = is_interval(folded) || (time && is_sampling(folded, true)), tick = is_tick(folded);
   if (is_slow_clock(folded, number, quantity, factor))
     rate = true, tick = false;
   if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)

@@ -32,6 +32,18 @@ void eo_header_split(struct eo_header *header, const struct eo_text_format *form
   }
 }
 
+int eo_header_cells(const struct eo_header_line *line, char separator)
+{
+  struct eo_cell cell;
+  int count = 0, filled = 0;
+  for (const char *at = line->start; eo_text_next_cell(&at, line->end, separator, &cell);) {
+    count++;
+    if (cell.length)
+      filled = count;
+  }
+  return filled;
+}
+
 static const char *skip_digits(const char *p, const char *end)
 {
   while (p < end && isdigit((unsigned char)*p))
@@ -219,15 +231,6 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
   }
 }
 
-static int count_cells(const struct eo_text_format *format, const struct eo_header_line *line)
-{
-  struct eo_cell cell;
-  int count = 0;
-  for (const char *at = line->start; at && eo_text_next_cell(&at, line->end, format->separator, &cell);)
-    count++;
-  return count;
-}
-
 /* "Delta_X  2.5E-4    3E-4": a key and a number for each column, in the places of the columns, or one cell to the right
    of them. */
 static void take_for_columns(struct eo_text_format *format, const struct eo_header_line *line)
@@ -239,7 +242,7 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   const char *at = line->start;
   if (format->separator == ' ' || !eo_text_next_cell(&at, line->end, format->separator, &cell))
     return;
-  int first = count_cells(format, line) == format->cells + 1 ? 0 : 1;
+  int first = eo_header_cells(line, format->separator) == format->cells + 1 ? 0 : 1;
   copy_cell(key, sizeof key, &cell);
   for (int c = first; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;

@@ -17,6 +17,9 @@ struct eo_header {
   struct eo_header_line line[EO_HEADER_LINES]; /* those that hold anything, in their order */
 };
 
+/* Cells of a line up to the last that is not empty. */
+int eo_header_cells(const struct eo_header_line *line, char separator);
+
 void eo_header_split(struct eo_header *header, const struct eo_text_format *format, const char *head);
 
 /* Fills clocks, tick and counts per turn of the format from lines such as "Sample rate: 4000 Hz", "Delta X;0,00025",

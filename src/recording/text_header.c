@@ -24,30 +24,18 @@ static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
   snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
 }
 
-static int count_cells(const struct eo_header_line *line, char separator)
-{
-  struct eo_cell cell;
-  int count = 0, filled = 0;
-  for (const char *at = line->start; eo_text_next_cell(&at, line->end, separator, &cell);) {
-    count++;
-    if (cell.length)
-      filled = count;
-  }
-  return filled;
-}
-
 /* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. A line
    with the rows' own separator may have more cells. 0: none does. */
 static char header_separator(const struct eo_text_format *format, const struct eo_header_line *line)
 {
   const char marks[] = {format->separator, '\t', ';', ',', '|'}, blanks[] = {' ', EO_TEXT_WIDE};
   for (size_t i = 0; i < sizeof marks; i++)
-    if (count_cells(line, marks[i]) == format->cells)
+    if (eo_header_cells(line, marks[i]) == format->cells)
       return marks[i];
-  if (format->cells > 1 && format->separator != ' ' && count_cells(line, format->separator) > format->cells)
+  if (format->cells > 1 && format->separator != ' ' && eo_header_cells(line, format->separator) > format->cells)
     return format->separator; /* before blanks, which names have inside */
   for (size_t i = 0; i < sizeof blanks; i++)
-    if (count_cells(line, blanks[i]) == format->cells)
+    if (eo_header_cells(line, blanks[i]) == format->cells)
       return blanks[i];
   return '\0';
 }
@@ -181,7 +169,7 @@ static void drop_key(const struct eo_text_format *format, struct eo_header_line 
   struct eo_cell cell;
   char text[EO_RECORDING_NAME];
   const char *at = line->start;
-  if (format->separator == ' ' || count_cells(line, format->separator) != format->cells + 1 ||
+  if (format->separator == ' ' || eo_header_cells(line, format->separator) != format->cells + 1 ||
       !eo_text_next_cell(&at, line->end, format->separator, &cell) || !at)
     return;
   copy_cell(text, sizeof text, &cell);

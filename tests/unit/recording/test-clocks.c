@@ -239,6 +239,21 @@ static void test_headings(void)
   eo_recording_free(r);
 }
 
+/* A separator behind the last number of a line of keys is no further cell. */
+static void test_key_column(void)
+{
+  struct eo_notes notes = {0};
+  struct eo_error error = {0};
+  FILE *f = begin("key;pinion;gear\nDelta_X;0.00025;0.0005;\n");
+  for (int i = 0; i < 200; i++)
+    fprintf(f, "%d;%.9f;%.9f\n", i, 0.9 * i, 0.9 * 17 / 44 * i);
+  fclose(f);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && eo_recording_clock(r, 1).interval == 0.00025 && eo_recording_clock(r, 2).interval == 0.0005,
+     "numbers of a line of keys that ends with a separator stand over their columns%s", error.text);
+  eo_recording_free(r);
+}
+
 /* A program that writes some rows twice, their times too, leaves times that stand as those of a coarse clock do. */
 static void test_repeated_rows(void)
 {
@@ -316,6 +331,7 @@ int main(void)
   test_columns();
   test_counters();
   test_headings();
+  test_key_column();
   test_repeated_rows();
   test_squares();
   return fixture_close();

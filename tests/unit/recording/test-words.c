@@ -166,6 +166,8 @@ static void test_stated(void)
   stated("Abtastung", 0.25, "ms", EO_STATED_INTERVAL, 2.5e-4);
   stated("Echantillonnage [Hz]", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
   stated("Sample", 4000, "", EO_STATED_NOTHING, 0);
+  stated("Acquisition", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Acquisition", 20, "s", EO_STATED_NOTHING, 0); /* how long it took */
   stated("Encoder resolution", 22, "bit", EO_STATED_TURN, 4194304);
   stated("Geberaufl\xc3\xb6sung [Bit]", 20, "", EO_STATED_TURN, 1048576);
   stated("Singleturn resolution", 17, "bits", EO_STATED_TURN, 131072);
