@@ -170,7 +170,7 @@ double complex eo_order_fit_amplitude(const struct eo_order_fit *fit, int at)
 }
 
 /* The parts of the transmission error at a row: drift, mesh orders, shaft orders. */
-void eo_order_fit_parts(const struct eo_order_fit *fit, const double row[3], double theta, double part[3])
+static void find_parts(const struct eo_order_fit *fit, const double row[3], double theta, double part[3])
 {
   double value[EO_MOST_TERMS];
   int mesh_end = fit->terms.drift + 2 * fit->result->harmonics;
@@ -180,14 +180,23 @@ void eo_order_fit_parts(const struct eo_order_fit *fit, const double row[3], dou
     part[i < fit->terms.drift ? 0 : i < mesh_end ? 1 : 2] += value[i] * fit->coefficient[i];
 }
 
+bool eo_order_fit_residual(const struct eo_order_fit *fit, const double row[3], double *theta, double part[3],
+                           double *residual)
+{
+  *theta = eo_axis_angle(&fit->axis, row[1]);
+  if (*theta < fit->from || *theta > fit->to)
+    return false;
+  find_parts(fit, row, *theta, part);
+  *residual = eo_order_fit_error(fit, row) - part[0] - part[1] - part[2];
+  return true;
+}
+
 static enum eo_code add_residual(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
-  double theta = eo_axis_angle(&fit->axis, row[1]), part[3];
+  double theta, part[3], residual;
   (void)error;
-  if (theta < fit->from || theta > fit->to)
+  if (!eo_order_fit_residual(fit, row, &theta, part, &residual))
     return EO_OK;
-  eo_order_fit_parts(fit, row, theta, part);
-  double residual = eo_order_fit_error(fit, row) - part[0] - part[1] - part[2];
   fit->result->residual += residual * residual;
   eo_beside_add(&fit->beside, theta, residual);
   eo_synchronous_add(fit->synchronous, index, theta, part[1], part[2], residual);

@@ -19,13 +19,11 @@ static double mesh_slope(const struct eo_order_fit *fit, double theta)
 /* The fit of the share: what is left of the transmission error against what the swing would do to the mesh orders. */
 static enum eo_code add_swing(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
-  double theta = eo_axis_angle(&fit->axis, row[1]), part[3];
+  double theta, part[3], residual;
   (void)index;
   (void)error;
-  if (theta < fit->from || theta > fit->to)
+  if (!eo_order_fit_residual(fit, row, &theta, part, &residual))
     return EO_OK;
-  eo_order_fit_parts(fit, row, theta, part);
-  double residual = eo_order_fit_error(fit, row) - part[0] - part[1] - part[2];
   double slope = mesh_slope(fit, theta);
   for (int member = 0; member < 2; member++) {
     double effect = slope * eo_axis_swing(&fit->axis, member, theta);

@@ -17,13 +17,11 @@ struct looked {
 
 static enum eo_code add_row(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
-  double theta = eo_axis_angle(&fit->axis, row[1]), part[3];
+  double theta, part[3], residual;
   (void)index;
   (void)error;
-  if (theta < fit->from || theta > fit->to)
-    return EO_OK;
-  eo_order_fit_parts(fit, row, theta, part);
-  eo_images_add(fit->images, theta, eo_order_fit_error(fit, row) - part[0] - part[1] - part[2]);
+  if (eo_order_fit_residual(fit, row, &theta, part, &residual))
+    eo_images_add(fit->images, theta, residual);
   return EO_OK;
 }
 

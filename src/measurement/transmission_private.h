@@ -58,8 +58,10 @@ double eo_order_fit_error(const struct eo_order_fit *fit, const double row[3]);
 /* Amplitude of the order number `at` of the terms, m. */
 double complex eo_order_fit_amplitude(const struct eo_order_fit *fit, int at);
 
-/* The parts of the transmission error at a row: drift, mesh orders, shaft orders, m. */
-void eo_order_fit_parts(const struct eo_order_fit *fit, const double row[3], double theta, double part[3]);
+/* Of a row that is fitted: angle of the axis, rad, the parts of its transmission error (drift, mesh orders, shaft
+   orders) and what they leave, m; false: it is not fitted. */
+bool eo_order_fit_residual(const struct eo_order_fit *fit, const double row[3], double *theta, double part[3],
+                           double *residual);
 
 /* What the encoder of the pinion, and what moves the pinion, do to the axis is told from the first fit and taken out;
    then it is fitted again. */
