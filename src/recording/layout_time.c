@@ -157,12 +157,18 @@ static enum eo_code refuse_times(const struct eo_guess *guess, struct eo_error *
   char text[80];
   for (int c = 0; c < guess->columns; c++) {
     const struct eo_column *look = &guess->look[c];
-    if (!is_called_time(guess, c) || guess->number[c] || !(look->falls > 0))
+    bool constant = look->count > 1 && look->low == look->high && look->low > 0;
+    if (!is_called_time(guess, c) || guess->number[c] || (!(look->falls > 0) && !constant))
       continue;
     eo_layout_label(guess, c, text, sizeof text);
     if (look->falls > 9 * look->rises)
       return eo_error_set(error, EO_ERROR_INPUT, "/time",
                           "The times in %s fall from row to row: the last row stands first. Turn the rows round.",
+                          text);
+    if (constant || (look->low >= 0 && 4 * look->falls > look->rises))
+      return eo_error_set(error, EO_ERROR_INPUT, "/time",
+                          "The values in %s do not rise: if they are steps from row to row, call the column dt; else "
+                          "choose \"none\" as time and give the sampling rate.",
                           text);
     return eo_error_set(
         error, EO_ERROR_INPUT, "/time",

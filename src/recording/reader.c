@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE /* mkostemp */
 #include "recording/reader.h"
-#include "recording/zip_files.h"
+#include "recording/compound.h"
 #include "recording/isolate.h"
 #include "recording/readers.h"
+#include "recording/zip_files.h"
 
 #include <fcntl.h>
 #include <limits.h>
@@ -352,6 +353,14 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
     own = *options;
   if (!own.max_bytes)
     own.max_bytes = EO_READER_BYTES;
-  return sign.kind == EO_READER_ARCHIVE ? read_archive(path, &own, recording, notes, error)
-                                        : read_kind(path, &sign, &own, recording, notes, error);
+  struct eo_recording *read = NULL;
+  code = sign.kind == EO_READER_ARCHIVE ? read_archive(path, &own, &read, notes, error)
+                                        : read_kind(path, &sign, &own, &read, notes, error);
+  if (!code)
+    code = eo_compound_join(&read, own.spool_directory, notes, error);
+  if (code)
+    eo_recording_free(read);
+  else
+    *recording = read;
+  return code;
 }

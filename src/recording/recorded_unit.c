@@ -19,9 +19,9 @@ static const struct {
 } units[] = {
     {"s sec secs second seconds sek sekunde sekunden seconde secondes segundo segundos secondi secondo",
      EO_QUANTITY_TIME, 1},
-    {"ms msec msecs millisecond milliseconds millis msek millisekunden", EO_QUANTITY_TIME, 1e-3},
-    {"us usec usecs microsecond microseconds micros mikrosekunden", EO_QUANTITY_TIME, 1e-6},
-    {"ns nsec nanosecond nanoseconds nanos", EO_QUANTITY_TIME, 1e-9},
+    {"ms msec msecs millisec millisecs millisecond milliseconds millis msek millisekunden", EO_QUANTITY_TIME, 1e-3},
+    {"us usec usecs microsec microsecs microsecond microseconds micros mikrosekunden", EO_QUANTITY_TIME, 1e-6},
+    {"ns nsec nsecs nanosec nanosecs nanosecond nanoseconds nanos nanosekunden", EO_QUANTITY_TIME, 1e-9},
     {"ps", EO_QUANTITY_TIME, 1e-12},
     {"min mins minute minutes minuten", EO_QUANTITY_TIME, 60},
     {"h hr hrs hour hours std stunden", EO_QUANTITY_TIME, 3600},

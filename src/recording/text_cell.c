@@ -182,11 +182,68 @@ static bool is_marked_hexadecimal(const struct eo_cell *cell)
                               !memcmp(cell->text, "16#", 3));
 }
 
+/* One of the marks, separated by blanks, the longest first; returns its bytes, 0: none is there. */
+static size_t mark_at(const char *at, const char *end, const char *marks)
+{
+  for (const char *p = marks; *p;) {
+    size_t n = strcspn(p, " ");
+    if ((size_t)(end - at) >= n && !strncasecmp(at, p, n))
+      return n;
+    p += n + (p[n] == ' ');
+  }
+  return 0;
+}
+
+/* Digits with a decimal point at most, since "12d34" is no power of ten here; returns their end. */
+static const char *part_at(const char *at, const char *end, char point, double *value)
+{
+  char digits[32];
+  size_t n = digits_at(at, end);
+  if (n > 0 && at + n < end && at[n] == point)
+    n += 1 + digits_at(at + n + 1, end);
+  if (!n || n >= sizeof digits)
+    return at;
+  memcpy(digits, at, n);
+  digits[n] = '\0';
+  return eo_decimal_read(digits, point, value) ? at + n : at;
+}
+
+bool eo_text_cell_sexagesimal(const struct eo_cell *cell, char point, bool colons, double *value)
+{
+  static const char *const marks[3] = {"deg \xc2\xb0 \xc2\xba \xcb\x9a \xb0 \xba d",
+                                       "min '' \xe2\x80\xb2 \xe2\x80\x99 \xc2\xb4 \xb4 m '",
+                                       "sec \"\" '' \xe2\x80\xb3 \xe2\x80\x9d \xe2\x80\xb2\xe2\x80\xb2 s \""};
+  const char *at = cell->text, *end = at + cell->length;
+  bool negative = at < end && *at == '-';
+  double sum = 0, unit = 1;
+  int parts = 0;
+  for (at += at < end && (*at == '-' || *at == '+'); at < end && parts < 3; parts++, unit *= 60) {
+    double number = 0;
+    const char *last = part_at(at, end, point, &number);
+    if (last == at || (parts > 0 && number >= 60))
+      return false;
+    size_t mark = mark_at(last, end, marks[parts]);
+    mark = colons && !mark && last < end && *last == ':' ? 1 : mark;
+    if (last + mark < end && (!mark || number != floor(number))) /* only the last part may be broken */
+      return false;
+    if (!mark && (!parts || !colons) && parts < 2)
+      return false;
+    sum += number / unit;
+    at = skip_blanks(last + mark, end, '\0');
+  }
+  *value = negative ? -sum : sum;
+  return at == end && parts > 1;
+}
+
 void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size)
 {
   double value, factor;
   const char *end = cell->text + cell->length, *at = eo_decimal_read(cell->text, point, &value);
   *unit = '\0';
+  if (eo_text_cell_sexagesimal(cell, point, false, &value)) {
+    snprintf(unit, (size_t)size, "deg");
+    return;
+  }
   if (!at || at >= end || end - at >= size)
     return;
   while (at < end && eo_text_blank(*at))
@@ -210,6 +267,9 @@ enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, dou
     return EO_CELL_MISSING;
   if (is_marked_hexadecimal(cell) && eo_text_cell_hex(cell, value))
     return EO_CELL_NUMBER;
+  if (eo_text_cell_sexagesimal(cell, point, false, value))
+    return EO_CELL_UNIT;
+  *value = NAN;
   struct eo_moment moment;
   if (cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment))
     return EO_CELL_MOMENT;

@@ -9,7 +9,7 @@
 enum eo_cell_kind {
   EO_CELL_NUMBER,
   EO_CELL_GROUPED, /* a number whose only mark is that of thousands: it may be a decimal point after all */
-  EO_CELL_UNIT,    /* a number with its unit behind it: "0.25 ms" */
+  EO_CELL_UNIT,    /* a number with its unit behind it: "0.25 ms", or an angle: 12°34'56.7" */
   EO_CELL_MOMENT,  /* a date or a time of day */
   EO_CELL_HEX,     /* digits that are no decimal number but a hexadecimal one, without a mark */
   EO_CELL_MISSING,
@@ -42,6 +42,10 @@ enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, dou
 
 /* A hexadecimal number with or without a mark ("0x3F", "3Fh", "$3F", "3F"); false when the cell is none. */
 bool eo_text_cell_hex(const struct eo_cell *cell, double *value);
+
+/* Degrees, minutes and seconds of arc, in degrees: 12°34'56.7", 12d34m56.7s and, where it is known for an angle,
+   12:34:56.7; seconds may be missing. False when the cell is none. */
+bool eo_text_cell_sexagesimal(const struct eo_cell *cell, char point, bool colons, double *value);
 
 /* The unit behind a number, as the cell has it; "" when there is none. */
 void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size);

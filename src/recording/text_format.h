@@ -18,6 +18,7 @@ enum eo_text_content {
   EO_TEXT_NUMBER,
   EO_TEXT_UNIT,   /* numbers with a unit behind them */
   EO_TEXT_HEX,    /* hexadecimal numbers without a mark */
+  EO_TEXT_ARC,    /* degrees, minutes and seconds between colons */
   EO_TEXT_MOMENT, /* dates and times */
   EO_TEXT_DATE,   /* dates that go with the times of day in the cell beside them */
 };

@@ -187,6 +187,9 @@ static enum eo_cell_kind cell_value(struct text *text, int c, double *value)
     return moment_value(text, c, value);
   if (text->format.content[c] == EO_TEXT_UNIT)
     return unit_value(text, c, value);
+  if (text->format.content[c] == EO_TEXT_ARC &&
+      eo_text_cell_sexagesimal(&text->cell[c], text->format.point, true, value))
+    return EO_CELL_NUMBER;
   if (text->format.content[c] == EO_TEXT_HEX && eo_text_cell_hex(&text->cell[c], value))
     return EO_CELL_NUMBER;
   enum eo_cell_kind kind = eo_text_cell_value(&text->cell[c], text->format.point, value);
@@ -338,6 +341,15 @@ static enum eo_code read_rows(struct text *text, struct eo_error *error)
   return code ? code : flush(text, error);
 }
 
+/* What looks like a time of day is an angle where the heading gives it the unit of one. */
+static void settle_arcs(struct eo_text_format *format)
+{
+  double factor;
+  for (int c = 0; c < format->cells; c++)
+    if (format->content[c] == EO_TEXT_MOMENT && eo_unit_find(format->unit[c], &factor) == EO_QUANTITY_ANGLE)
+      format->content[c] = EO_TEXT_ARC;
+}
+
 static enum eo_code make_recording(struct text *text, const char *spool_directory, struct eo_error *error)
 {
   const struct eo_text_format *format = &text->format;
@@ -406,6 +418,7 @@ static enum eo_code read_text(struct text *text, const struct eo_reader_options 
   if (code)
     return code;
   eo_text_read_header(&text->format, text->block);
+  settle_arcs(&text->format);
   eo_text_sections_find(&text->sections, &text->format, text->block);
   text->block[size] = next;
   code = make_recording(text, options->spool_directory, error);

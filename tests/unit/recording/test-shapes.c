@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Recordings in shapes other than one column for each quantity: numbers in parts and steps that add up come out right,
+   and what only looks like them is left alone. */
+#include "support/known-run.h"
+
+#define RATE 4000.0
+#define EPOCH 1709629199
+
+/* Whole units of a number that is not negative, and what is left, as people print both. */
+static int64_t whole(double number, int64_t parts, int64_t *rest)
+{
+  int64_t all = llround(number * (double)parts);
+  *rest = all % parts;
+  return all / parts;
+}
+
+static FILE *parts_of_time(const char *header, const char *format, int64_t epoch, double start, int64_t parts)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / RATE;
+    int64_t rest, seconds = whole(start + t, parts, &rest);
+    fprintf(f, format, (long long)(epoch + seconds), (long long)rest);
+    fprintf(f, ",%.12g,%.12g\n", degrees(pinion(start + t)), degrees(gear(start + t)));
+  }
+  return f;
+}
+
+static void test_parts_of_time(void)
+{
+  const char *note = "parts of one time";
+  right(parts_of_time("header.stamp.secs,header.stamp.nsecs,pinion [deg],gear [deg]\n", "%lld,%lld", EPOCH, 0.8,
+                      1000000000),
+        NULL, 1e-7, note, "seconds and nanoseconds as robots log them");
+  right(parts_of_time("tv_sec,tv_usec,pinion [deg],gear [deg]\n", "%lld,%lld", 0, 0.8, 1000000), NULL, 1e-7, note,
+        "seconds and microseconds from 0");
+  right(parts_of_time("", "%lld,%lld", EPOCH, 0.8, 1000000000), NULL, 1e-7, note, "without names");
+  right(parts_of_time("epoch_s,fraction,pinion [deg],gear [deg]\n", "%lld,0.%06lld", EPOCH, 0.8, 1000000), NULL, 1e-7,
+        note, "a fraction below 1");
+  for (int way = 0; way < 2; way++) {
+    double start = way ? 86399.5 : 32399.5;
+    FILE *f = begin(way ? "hour,minute,second,microsecond,pinion [deg],gear [deg]\n"
+                        : "Date,Time,us,pinion [deg],gear [deg]\n");
+    for (int i = 0; i < ROWS; i++) {
+      double t = start + i / RATE;
+      int64_t us, s = whole(t, 1000000, &us);
+      fprintf(f, way ? "%d,%d,%d,%d" : "05/03/2024,%02d:%02d:%02d,%d", (int)(s / 3600 % 24), (int)(s / 60 % 60),
+              (int)(s % 60), (int)us);
+      fprintf(f, ",%.16g,%.16g\n", degrees(pinion(t)), degrees(gear(t)));
+    }
+    right(f, NULL, 1e-6, note, way ? "hours to microseconds in columns, over midnight" : "date, time and fraction");
+  }
+  FILE *f = begin("sec,latency_ms,time_us,pinion [deg],gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%d,%d,%d,%.12g,%.12g\n", i / 4000, i * 7 % 40, i * 250, degrees(pinion(i / RATE)),
+            degrees(gear(i / RATE)));
+  right(f, NULL, 1e-7, "\"time\" is taken as time", "milliseconds that are no part of the time");
+}
+
+static void test_steps(void)
+{
+  FILE *f = begin("Δt [ms];Ritzel [°];Rad [°]\n");
+  double t = 0;
+  for (int i = 0; i < ROWS; i++) {
+    double step = i ? 0.25 + 0.02 * sin(i * 0.7) : 0;
+    t += step * 1e-3;
+    fprintf(f, "%.12g;%.12g;%.12g\n", step, degrees(pinion(t)), degrees(gear(t)));
+  }
+  right(f, NULL, 1e-7, "steps of time", "steps that differ");
+  const char *rows[2] = {"time [ms];pinion [deg];gear [deg]\n", "t_s;dt_s;pinion [deg];gear [deg]\n"};
+  for (int kind = 0; kind < 2; kind++) {
+    f = begin(rows[kind]);
+    for (int i = 0; i < ROWS; i++) {
+      if (kind)
+        fprintf(f, "%.9g;", i / RATE);
+      fprintf(f, "%g;%.12g;%.12g\n", kind ? 7e-3 : 0.25, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+    }
+    if (kind)
+      right(f, NULL, 1e-7, "\"t\" is taken as time", "steps beside times do not count");
+    else
+      asked(f, NULL, "/time", "call the column dt", "a time that stands still");
+  }
+}
+
+/* Degrees, minutes and seconds of an angle in the format, the sign first. */
+static void put_arc(FILE *f, const char *format, double angle)
+{
+  int64_t rest, minutes = whole(fabs(degrees(angle)) * 60, 60000000, &rest);
+  fprintf(f, format, angle < 0 ? "-" : "", (int)(minutes / 60), (int)(minutes % 60), (int)(rest / 1000000),
+          (int)(rest % 1000000));
+}
+
+static FILE *arcs(const char *header, const char *format, double sign)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / RATE;
+    fprintf(f, "%.9g;", t);
+    put_arc(f, format, sign * pinion(t));
+    fputc(';', f);
+    put_arc(f, format, sign * gear(t));
+    fputc('\n', f);
+  }
+  return f;
+}
+
+static void test_arcs(void)
+{
+  right(arcs("t_s;pinion;gear\n", "%s%d°%02d'%02d.%06d\"", 1), NULL, 1e-7, "in degrees", "12°34'56.7\"");
+  right(arcs("t_s;pinion;gear\n", "%s%d\xb0 %02d' %02d.%06d''", 1), NULL, 1e-7, "in degrees",
+        "in Latin 1, with blanks");
+  right(arcs("t_s;pinion;gear\n", "%s%d° %02d′ %02d.%06d″", 1), NULL, 1e-7, "in degrees", "with primes");
+  right(arcs("t_s;pinion;gear\n", "\"%s%d°%02d'%02d.%06d\"\"\"", 1), NULL, 1e-7, "in degrees", "in quotes");
+  right(arcs("t_s;pinion;gear\n", "%s%dd%02dm%02d.%06ds", 1), NULL, 1e-7, "in degrees", "with letters");
+  right(arcs("t_s;pinion [deg];gear [deg]\n", "%s%d:%02d:%02d.%06d", 1), NULL, 1e-7, "in degrees", "with colons");
+  right(arcs("t_s;p_deg;p_min;p_sec;g_deg;g_min;g_sec\n", "%s%d;%d;%d.%06d", 1), NULL, 1e-7, "parts of one angle",
+        "in columns");
+  right(arcs("t;pinion;;;gear;;\ns;deg;arcmin;arcsec;deg;arcmin;arcsec\n", "%s%d;%d;%d.%06d", 1), NULL, 1e-7,
+        "parts of one angle", "in columns with units below");
+  FILE *f = begin("t_s;turn;pinion [deg];gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.9g;%d;%.12g;%.12g\n", i / RATE, (int)(degrees(pinion(i / RATE)) / 360), degrees(pinion(i / RATE)),
+            degrees(gear(i / RATE)));
+  right(f, NULL, 1e-7, "in degrees", "whole turns beside angles are no part of them");
+}
+
+/* Below 0 minutes count down from 0 with the degrees, or up from them; "-0" is a degree of its own. */
+static void test_negative_arcs(void)
+{
+  for (int way = 0; way < 2; way++) {
+    struct eo_recording *r;
+    struct eo_error error;
+    double most = 0;
+    FILE *f = begin("p_deg;p_min;p_sec\n");
+    for (int i = 0; i < 200; i++) {
+      double angle = 9.97 - 0.1 * i;
+      int64_t rest, minutes = whole(angle + 100, 3600000000LL, &rest), base = way ? 100 : 0;
+      if (!way)
+        minutes = whole(fabs(angle), 3600000000LL, &rest);
+      fprintf(f, "%s%lld;%lld;%.6f\n", !way && angle < 0 ? "-" : "", (long long)(minutes - base),
+              (long long)(rest / 60000000), (double)(rest % 60000000) * 1e-6);
+    }
+    fclose(f);
+    r = read_fixture(NULL, NULL, &error);
+    for (int i = 0; r && i < 200; i++)
+      most = fmax(most, fabs(cell_of(r, i, 0) - (9.97 - 0.1 * i)));
+    ok(r && eo_recording_columns(r) == 1 && most < 1e-9, "degrees below 0 whose minutes count %s: %.2g",
+       way ? "up" : "down", most);
+    eo_recording_free(r);
+  }
+}
+
+int main(void)
+{
+  fixture_open();
+  test_parts_of_time();
+  test_steps();
+  test_arcs();
+  test_negative_arcs();
+  return fixture_close();
+}
