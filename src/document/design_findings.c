@@ -186,7 +186,7 @@ static double fold_of(const struct eo_geometry *geometry, int member, const stru
   static const double NOTABLE = 0.02; /* of the active profile: the sides of a kink cross within less */
   double longest = 0, end[2], at[2];
   eo_active_profile(geometry, member, end);
-  for (int i = -1; i <= 1; i++) {
+  for (int i = shape->varies ? -1 : 1; i <= 1; i++) { /* one slice is like the other where nothing varies */
     struct eo_modification_shape slice;
     eo_modification_slice(shape, i * geometry->face_width / 2, &slice);
     double length = eo_slice_fold(geometry, member, shape->varies ? &slice : shape, at);

@@ -5,10 +5,9 @@
 
 #include <stdlib.h>
 
-#include "base/parallel.h"
 #include "document/result_private.h"
 
-enum { WRITERS = 2, HALVES = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
+enum { WRITERS = EO_TEAM_THREADS, HALVES = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
 
 struct writing {
   struct eo_result_source source[WRITERS]; /* [thread] */
@@ -23,15 +22,22 @@ static json_t *encode_part(struct eo_result_source *source, int part)
   return part % HALVES ? eo_result_case_contact(source, k) : eo_result_case_consequences(source, k);
 }
 
-static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
+/* The largest first, so that both writers end together: the head, the consequences of each load case, its contact. */
+static int part_of(const struct writing *writing, int item)
+{
+  int cases = writing->source[0].analysis->cases;
+  return item <= cases ? HALVES * item : HALVES * (item - cases) - 1;
+}
+
+/* What cannot be made stays empty. */
+static void write_part(void *context, int thread, int item)
 {
   struct writing *writing = context;
-  json_t *part = encode_part(&writing->source[thread], item);
+  int number = part_of(writing, item);
+  json_t *part = encode_part(&writing->source[thread], number);
   if (part)
-    eo_json_write(&writing->part[item], part, EO_JSON_COMPACT);
-  bool good = part && !writing->part[item].failed;
+    eo_json_write(&writing->part[number], part, EO_JSON_COMPACT);
   json_decref(part);
-  return good ? EO_OK : eo_error_memory(error);
 }
 
 /* What stands in the braces of a part. */
@@ -62,12 +68,12 @@ static enum eo_code write_all(struct writing *writing, const struct eo_warnings 
                               struct eo_error *error)
 {
   const struct eo_analysis *analysis = writing->source[0].analysis;
-  const struct eo_parallel parallel = {
-      .threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = writing};
+  int parts = 1 + HALVES * analysis->cases;
   struct eo_text tail = {0};
-  enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
-  if (code)
-    return code;
+  eo_team_do(eo_evaluator_team(analysis->evaluator), &(struct eo_work_list){write_part, writing, .pieces = parts});
+  for (int i = 0; i < parts; i++)
+    if (!writing->part[i].size || writing->part[i].failed)
+      return eo_error_memory(error);
   json_t *last = eo_result_tail(&writing->source[0], warnings);
   if (last)
     eo_json_write(&tail, last, EO_JSON_COMPACT);

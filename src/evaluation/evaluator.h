@@ -5,6 +5,7 @@
 #ifndef EASEOFF_EVALUATION_EVALUATOR_H
 #define EASEOFF_EVALUATION_EVALUATOR_H
 
+#include "base/team.h"
 #include "contact/elastic.h"
 #include "contact/face_load.h"
 #include "contact/loaded.h"
@@ -86,6 +87,9 @@ void eo_evaluator_free(struct eo_evaluator *evaluator);
 /* Threads that one evaluation may use, 1 (as made) or 2: both ends at once, then root stress beside the vibration. The
    results do not depend on it. */
 enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error);
+
+/* Its threads, for what its caller makes of the results between runs. */
+struct eo_team *eo_evaluator_team(const struct eo_evaluator *evaluator);
 
 /* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the
    nominal one. evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not

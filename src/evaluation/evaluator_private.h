@@ -9,7 +9,6 @@
 #include "evaluation/meeting_field.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stddef.h>
 
@@ -23,26 +22,6 @@ enum {
 
 /* Beside EO_WANT_...: stop after the entering impact. */
 enum { EO_WANT_CONTACT_ALONE = 1 << 8 };
-
-/* A list of pieces of work, in any order and on either thread. */
-struct eo_work_list {
-  void (*work)(void *context, int thread, int piece);
-  void *context; /* borrowed */
-  int pieces;
-  bool filler; /* what nobody waits for yet: taken where there is nothing else */
-  int next, done;
-  struct eo_work_list *behind;
-};
-
-/* The two threads of a run, or the one. */
-struct eo_team {
-  pthread_t thread; /* the second one */
-  bool started;
-  pthread_mutex_t mutex; /* guards what follows, and the lists */
-  pthread_cond_t changed;
-  bool closed;
-  struct eo_work_list *first;
-};
 
 struct eo_roots;
 
@@ -89,7 +68,8 @@ struct eo_evaluator {
   const struct eo_pair *pair;
   struct eo_design *made; /* a pair as drawn for a robust objective; owned; NULL until there is one */
   int most_cases;
-  int threads; /* 1 or 2 */
+  int threads;          /* 1 or 2 */
+  struct eo_team *team; /* owned */
 
   /* what is still valid from the last run: reuse.c */
   struct eo_end_key solved_for[2]; /* [end] */
@@ -236,24 +216,6 @@ eo_end_step eo_end_summarise;
 
 void eo_evaluator_summarise_pairs(struct eo_evaluator *evaluator, const struct eo_run *run);
 void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_run *run);
-
-/* In evaluator_threads.c. */
-
-/* A second thread where there are to be two. */
-void eo_team_start(struct eo_team *team, int threads);
-
-/* Leaves a list to whoever has time; it is borrowed until settle(), and any thread may offer one. */
-void eo_team_offer(struct eo_team *team, struct eo_work_list *list);
-
-/* Works a list off, with the other thread; back when it is done. */
-void eo_team_do(struct eo_team *team, struct eo_work_list *list);
-
-/* Back when everything that was offered is done. */
-void eo_team_settle(struct eo_team *team);
-void eo_team_finish(struct eo_team *team);
-
-/* Takes each end through a step, two ends at once where there are two threads. */
-void eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step);
 
 /* In evaluator_roots.c. */
 

@@ -79,6 +79,7 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   for (int end = 0; end < 2; end++) {
     EO_TRY(eo_loaded_end_init(&evaluator->spare[end], both[end], error));
   }
+  EO_TRY(eo_team_new(&evaluator->team, error));
   return add_workspaces(evaluator, 0, error);
 }
 
@@ -104,7 +105,13 @@ enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int thread
   if (threads > 1 && !evaluator->loaded[1][0])
     EO_TRY(add_workspaces(evaluator, 1, error));
   evaluator->threads = threads > 1 ? 2 : 1;
+  eo_team_use(evaluator->team, evaluator->threads);
   return EO_OK;
+}
+
+struct eo_team *eo_evaluator_team(const struct eo_evaluator *evaluator)
+{
+  return evaluator->team;
 }
 
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int load_case, int end)
@@ -138,6 +145,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
 {
   if (!evaluator)
     return;
+  eo_team_free(evaluator->team);
   eo_design_rating_free(evaluator->rating);
   done_results(evaluator);
   for (int end = 0; end < 2; end++) {

@@ -19,6 +19,27 @@ static struct eo_run run_of(const struct eo_evaluator *evaluator, const struct e
   return run;
 }
 
+struct ends {
+  struct eo_evaluator *evaluator;
+  const struct eo_run *run;
+  eo_end_step *step;
+};
+
+static void take_end(void *context, int thread, int end)
+{
+  const struct ends *ends = context;
+  (void)thread;
+  ends->step(ends->evaluator, ends->run, end);
+}
+
+/* Takes each end through a step, two ends at once where there are two threads. */
+static void each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step)
+{
+  EO_TIMED(evaluator->result.static_ms);
+  struct ends ends = {.evaluator = evaluator, .run = run, .step = step};
+  eo_team_do(run->team, &(struct eo_work_list){take_end, &ends, .pieces = evaluator->result.ends});
+}
+
 /* The order of one evaluation: the list in src/README.md, call by call. */
 static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error)
 {
@@ -34,7 +55,7 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   eo_reuse_compare(evaluator, run);
 
   /* slice gap, lead, tip corners, misalignment of each end, both at once */
-  eo_evaluator_each_end(evaluator, run, eo_end_set_fields);
+  each_end(evaluator, run, eo_end_set_fields);
   /* the gaps that they make at every point */
   eo_evaluator_set_gaps(evaluator, run);
   /* root stress, tooth by tooth: by whichever thread has nothing else to do once the loads of an end are there */
@@ -50,7 +71,7 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   /* all loads are what they are: the rest of the root stress */
   eo_roots_offer_rest(run->roots);
   /* first contact, secant stiffness, pressure, edge load, load over the face of each end */
-  eo_evaluator_each_end(evaluator, run, eo_end_summarise);
+  each_end(evaluator, run, eo_end_summarise);
   /* transmission error of the pair */
   eo_evaluator_summarise_pairs(evaluator, run);
   /* entering impact: first touch, speed, force */
@@ -80,15 +101,13 @@ static enum eo_code follow(struct eo_evaluator *evaluator, const struct eo_desig
                            struct eo_error *error)
 {
   struct eo_run run = run_of(evaluator, design, scenario, want);
-  struct eo_team team;
-  struct eo_roots roots = {.evaluator = evaluator, .team = &team};
-  run.team = &team;
+  struct eo_roots roots = {.evaluator = evaluator, .team = evaluator->team};
+  run.team = evaluator->team;
   run.roots = &roots;
   enum eo_code code = run.rating ? eo_evaluator_lean(evaluator, &run, error) : EO_OK;
   if (!code) {
-    eo_team_start(&team, evaluator->threads);
     code = follow_order(evaluator, &run, error);
-    eo_team_finish(&team);
+    eo_team_settle(evaluator->team);
   }
   if (!code && run.rating)
     eo_evaluator_rate(evaluator, &run);

@@ -61,10 +61,9 @@ double eo_slice_fold(const struct eo_geometry *geometry, int member, const struc
   double end[2], before = 0, from = NAN, longest = 0;
   eo_active_profile(geometry, member, end);
   for (int i = 0; i <= STEPS; i++) {
-    struct eo_slice_point point;
     double u = end[0] + (end[1] - end[0]) * i / STEPS, step = (end[1] - end[0]) / STEPS;
-    eo_slice_point_at(geometry, member, slice, u, &point);
-    double radius = hypot(point.position[0], point.position[1]);
+    struct eo_slice_ray ray = slice_ray(geometry, member, slice, u, 0);
+    double radius = hypot(ray.distance, ray.arm);
     bool back = i > 0 && radius < before;
     if (back && isnan(from))
       from = u - step;

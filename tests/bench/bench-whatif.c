@@ -25,7 +25,7 @@ static int compare(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* No two requests are the same. right: the right end changes too. */
+/* No two requests are the same, and no two ends: equal ones are computed once. right: the right end changes too. */
 static char *next_design(bool right)
 {
   static double relief = 14;
@@ -33,7 +33,7 @@ static char *next_design(bool right)
   for (int end = 0; end <= right; end++) {
     json_t *flank = json_object_get(json_object_get(json_object_get(design, "modification"), "pinion"),
                                     end ? "right" : "left");
-    json_object_set_new(flank, "tip_relief_um", json_real(relief));
+    json_object_set_new(flank, "tip_relief_um", json_real(relief + end));
   }
   return json_dumps(design, JSON_COMPACT | JSON_REAL_PRECISION(9));
 }

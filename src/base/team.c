@@ -1,5 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "evaluation/evaluator_private.h"
+#include "base/team.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+struct eo_team {
+  pthread_t second;
+  bool started;
+  pthread_mutex_t mutex;         /* guards what follows, and the lists */
+  pthread_cond_t offered, ended; /* for the second thread: there is a piece; for the first: one is done, or there is */
+  bool waits[EO_TEAM_THREADS];   /* [thread]: so that nobody is woken who is awake */
+  bool helps, closed;            /* helps: the second thread may take pieces */
+  struct eo_work_list *first;
+};
 
 /* The next piece of the work that is most urgent, of that list alone where one is named; with the mutex held. */
 static struct eo_work_list *find_piece(struct eo_team *team, const struct eo_work_list *alone)
@@ -13,6 +26,21 @@ static struct eo_work_list *find_piece(struct eo_team *team, const struct eo_wor
   return found;
 }
 
+static void wait_on(struct eo_team *team, int thread, pthread_cond_t *condition)
+{
+  team->waits[thread] = true;
+  pthread_cond_wait(condition, &team->mutex);
+  team->waits[thread] = false;
+}
+
+static void wake(struct eo_team *team)
+{
+  if (team->waits[0])
+    pthread_cond_signal(&team->ended);
+  if (team->waits[1] && (team->closed || (team->helps && find_piece(team, NULL))))
+    pthread_cond_signal(&team->offered);
+}
+
 /* Takes one piece; false: there is none. With the mutex held, not while working. */
 static bool take_piece(struct eo_team *team, int thread, const struct eo_work_list *alone)
 {
@@ -23,8 +51,8 @@ static bool take_piece(struct eo_team *team, int thread, const struct eo_work_li
   pthread_mutex_unlock(&team->mutex);
   list->work(list->context, thread, piece);
   pthread_mutex_lock(&team->mutex);
-  list->done++;
-  pthread_cond_broadcast(&team->changed);
+  if (++list->done == list->pieces)
+    wake(team);
   return true;
 }
 
@@ -32,25 +60,49 @@ static void *run_second(void *argument)
 {
   struct eo_team *team = argument;
   pthread_mutex_lock(&team->mutex);
-  for (;;) {
-    if (take_piece(team, 1, NULL))
-      continue;
-    if (team->closed)
-      break;
-    pthread_cond_wait(&team->changed, &team->mutex);
-  }
+  while (!team->closed)
+    if (!team->helps || !take_piece(team, 1, NULL))
+      wait_on(team, 1, &team->offered);
   pthread_mutex_unlock(&team->mutex);
   return NULL;
 }
 
-/* Where no thread can be made, the calling one does all of the work. */
-void eo_team_start(struct eo_team *team, int threads)
+enum eo_code eo_team_new(struct eo_team **result, struct eo_error *error)
 {
-  team->first = NULL;
-  team->closed = false;
+  struct eo_team *team = calloc(1, sizeof *team);
+  if (!team)
+    return eo_error_memory(error);
   pthread_mutex_init(&team->mutex, NULL);
-  pthread_cond_init(&team->changed, NULL);
-  team->started = threads > 1 && pthread_create(&team->thread, NULL, run_second, team) == 0;
+  pthread_cond_init(&team->offered, NULL);
+  pthread_cond_init(&team->ended, NULL);
+  *result = team;
+  return EO_OK;
+}
+
+void eo_team_free(struct eo_team *team)
+{
+  if (!team)
+    return;
+  if (team->started) {
+    pthread_mutex_lock(&team->mutex);
+    team->closed = true;
+    wake(team);
+    pthread_mutex_unlock(&team->mutex);
+    pthread_join(team->second, NULL);
+  }
+  pthread_cond_destroy(&team->ended);
+  pthread_cond_destroy(&team->offered);
+  pthread_mutex_destroy(&team->mutex);
+  free(team);
+}
+
+void eo_team_use(struct eo_team *team, int threads)
+{
+  pthread_mutex_lock(&team->mutex);
+  team->helps = threads > 1;
+  pthread_mutex_unlock(&team->mutex);
+  if (threads > 1 && !team->started)
+    team->started = pthread_create(&team->second, NULL, run_second, team) == 0;
 }
 
 void eo_team_offer(struct eo_team *team, struct eo_work_list *list)
@@ -62,7 +114,7 @@ void eo_team_offer(struct eo_team *team, struct eo_work_list *list)
   while (*link)
     link = &(*link)->behind;
   *link = list;
-  pthread_cond_broadcast(&team->changed);
+  wake(team);
   pthread_mutex_unlock(&team->mutex);
 }
 
@@ -72,7 +124,7 @@ void eo_team_do(struct eo_team *team, struct eo_work_list *list)
   pthread_mutex_lock(&team->mutex);
   while (list->done < list->pieces)
     if (!take_piece(team, 0, list) && !take_piece(team, 0, NULL))
-      pthread_cond_wait(&team->changed, &team->mutex);
+      wait_on(team, 0, &team->ended);
   struct eo_work_list **link = &team->first;
   while (*link != list)
     link = &(*link)->behind;
@@ -86,40 +138,7 @@ void eo_team_settle(struct eo_team *team)
   for (struct eo_work_list *list = team->first; list; list = list->behind)
     while (list->done < list->pieces)
       if (!take_piece(team, 0, NULL))
-        pthread_cond_wait(&team->changed, &team->mutex);
+        wait_on(team, 0, &team->ended);
   team->first = NULL;
   pthread_mutex_unlock(&team->mutex);
-}
-
-void eo_team_finish(struct eo_team *team)
-{
-  eo_team_settle(team);
-  pthread_mutex_lock(&team->mutex);
-  team->closed = true;
-  pthread_cond_broadcast(&team->changed);
-  pthread_mutex_unlock(&team->mutex);
-  if (team->started)
-    pthread_join(team->thread, NULL);
-  pthread_cond_destroy(&team->changed);
-  pthread_mutex_destroy(&team->mutex);
-}
-
-struct ends {
-  struct eo_evaluator *evaluator;
-  const struct eo_run *run;
-  eo_end_step *step;
-};
-
-static void take_end(void *context, int thread, int end)
-{
-  const struct ends *ends = context;
-  (void)thread;
-  ends->step(ends->evaluator, ends->run, end);
-}
-
-void eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *step)
-{
-  EO_TIMED(evaluator->result.static_ms);
-  struct ends ends = {.evaluator = evaluator, .run = run, .step = step};
-  eo_team_do(run->team, &(struct eo_work_list){take_end, &ends, .pieces = evaluator->result.ends});
 }
