@@ -23,17 +23,24 @@ def output(*command):
 def linked_packages(program):
     """{name: (version, source, licence)} of the Debian packages that hold what the program loads."""
     files = sorted({os.path.realpath(path) for path in re.findall(r"=> (/\S+)", output("ldd", program))})
-    found = {}
-    for file in files:
-        # dpkg may know a file below /lib or below /usr/lib
-        names = [file, file.removeprefix("/usr"), "/usr" + file]
-        owners = (subprocess.run(["dpkg", "-S", name], capture_output=True, text=True, check=False) for name in names)
-        owner = next((done.stdout.split(":")[0] for done in owners if done.returncode == 0), None)
+    # dpkg may know a file below /lib or below /usr/lib; it is asked once, as it reads all its lists for every question
+    names = {file: (file, file.removeprefix("/usr"), "/usr" + file) for file in files}
+    asked = ["dpkg", "-S", *(name for each in names.values() for name in each)]
+    owner_of = {}
+    for line in subprocess.run(asked, capture_output=True, text=True, check=False).stdout.splitlines():
+        owners, _, path = line.rpartition(": ")
+        owner_of.setdefault(path, re.split("[:,]", owners)[0])
+    owners = set()
+    for file, each in names.items():
+        owner = next((owner_of[name] for name in each if name in owner_of), None)
         if owner is None:
             raise SystemExit(f"no Debian package holds {file}")
-        form = "${Version}\t${source:Package}\t${source:Version}"
-        version, source, source_version = output("dpkg-query", "-W", "-f", form, owner).split("\n")[0].split("\t")
-        found[owner] = (version, f"{source} {source_version}")
+        owners.add(owner)
+    found = {}
+    form = "${Package}\t${Version}\t${source:Package}\t${source:Version}\n"
+    for line in output("dpkg-query", "-W", "-f", form, *sorted(owners)).splitlines():
+        name, version, source, source_version = line.split("\t")
+        found.setdefault(name, (version, f"{source} {source_version}"))
     return found
 
 
