@@ -15,7 +15,7 @@ struct writer {
 __attribute__((unused)) static void put_number(struct writer *w, uint64_t value, int bytes)
 {
   for (int i = 0; i < bytes; i++)
-    w->bytes[w->size + (size_t)(w->big ? bytes - 1 - i : i)] = (unsigned char)(value >> 8 * i);
+    w->bytes[w->size + (size_t)(w->big ? bytes - 1 - i : i)] = i < 8 ? (unsigned char)(value >> 8 * i) : 0;
   w->size += (size_t)bytes;
 }
 

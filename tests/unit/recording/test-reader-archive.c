@@ -13,7 +13,7 @@ static int entries;
 static void put(unsigned char *to, size_t *at, uint64_t value, int count)
 {
   for (int i = 0; i < count; i++)
-    to[(*at)++] = (unsigned char)(value >> 8 * i);
+    to[(*at)++] = i < 8 ? (unsigned char)(value >> 8 * i) : 0;
 }
 
 /* A stored file: local header, name, content; and its line in the directory. */
