@@ -348,6 +348,10 @@ static void trace(void)
   eo_law_done(&law);
 }
 
+/* N/m. In time the pinion rings on such a spring in millions of steps: the balance alone goes so far, and a fixed one
+   is integrated. */
+static const double NEARLY_FIXED = 1e16;
+
 static double held_rms(double stiffness, struct eo_vibration *r)
 {
   struct eo_dynamics_parameters p = paper_pair();
@@ -361,10 +365,12 @@ static double held_rms(double stiffness, struct eo_vibration *r)
   struct eo_vibration_case load = paper_case(&left, &right);
   load.phase_right = 0.2;
   eo_vibration_solve(solver, &load, EO_START_COLD, r, NULL);
-  struct eo_vibration t;
-  eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
-  near(r->rms_pair[0], t.rms_pair[0], 1e-4, "held: balance against integration");
-  near(r->pinion_thrust_max, t.pinion_thrust_max, 1e-3, "held: thrust by balance and integration");
+  if (stiffness != NEARLY_FIXED) {
+    struct eo_vibration t;
+    eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
+    near(r->rms_pair[0], t.rms_pair[0], 1e-4, "held: balance against integration");
+    near(r->pinion_thrust_max, t.pinion_thrust_max, 1e-3, "held: thrust by balance and integration");
+  }
   eo_vibration_free(solver);
   eo_law_done(&left);
   eo_law_done(&right);
@@ -374,8 +380,8 @@ static double held_rms(double stiffness, struct eo_vibration *r)
 static void held_limits(void)
 {
   struct eo_vibration floating, soft, middle, stiff, fixed;
-  double f = held_rms(0, &floating), s = held_rms(1e-3, &soft), m = held_rms(3e8, &middle), h = held_rms(1e16, &stiff),
-         x = held_rms(INFINITY, &fixed);
+  double f = held_rms(0, &floating), s = held_rms(1e-3, &soft), m = held_rms(3e8, &middle),
+         h = held_rms(NEARLY_FIXED, &stiff), x = held_rms(INFINITY, &fixed);
   near(s, f, 1e-9, "k_a towards 0 is floating");
   near(h, x, 1e-6, "k_a towards infinity is fixed");
   near(stiff.pinion_thrust_mean, fixed.pinion_thrust_mean, 1e-6, "and so is the thrust");
