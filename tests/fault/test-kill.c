@@ -9,7 +9,7 @@
 #include "support/study-fixture.h"
 #include "support/tap.h"
 
-enum { BUDGET = 300 };
+enum { BUDGET = 160 };
 
 static struct eo_pair *pair;
 static struct eo_design design;

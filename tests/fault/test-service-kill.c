@@ -35,7 +35,7 @@ static int count_rows(void)
 {
   struct eo_store *store = NULL;
   int64_t last = 0;
-  if (!eo_store_open(&store, folder, EO_STORE_WRITE, &error))
+  if (!eo_store_open(&store, folder, EO_STORE_READ, &error))
     eo_store_last_evaluation(store, &last, &error);
   eo_store_close(store);
   return (int)last;
@@ -54,7 +54,7 @@ static bool serve_and_kill(int rows)
       pause();
   }
   for (int i = 0; i < 30000 && count_rows() < rows; i++)
-    pause_for(2);
+    pause_for(20);
   kill(child, SIGKILL);
   waitpid(child, &status, 0);
   return WIFSIGNALED(status);

@@ -506,6 +506,7 @@ static void *watch_ends(void *argument)
 /* A job that is done says so with its last numbers, whenever it is looked at. */
 static void test_ends(void)
 {
+  enum { JOBS = 6 };
   struct eo_service *service = start();
   struct watching watching = {.service = service};
   struct eo_design small = design;
@@ -514,13 +515,14 @@ static void test_ends(void)
   small.optimization.search.true_evaluations = 12;
   small.optimization.search.population = 12;
   pthread_create(&thread, NULL, watch_ends, &watching);
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < JOBS; i++) {
     small.optimization.search.seed = (uint64_t)(1 + i);
     wait_for(service, submit(service, EO_JOB_OPTIMIZE, &small, NULL, &outcome), "done");
   }
   atomic_store(&watching.stop, true);
   pthread_join(thread, NULL);
-  ok(watching.ends > 12 && !watching.torn, "seen done %d times, %d times before it was", watching.ends, watching.torn);
+  ok(watching.ends > JOBS && !watching.torn, "seen done %d times, %d times before it was", watching.ends,
+     watching.torn);
   eo_service_free(service);
 }
 
