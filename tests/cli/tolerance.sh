@@ -43,6 +43,10 @@ near()
   result $? "$what: $verdict"
 }
 
+# With sanitizers fewer ranks and ends go through the same code.
+some_ranks="1 2 3" ends="KILL-0 KILL-2 TERM-0"
+[ ! "${SANITIZED-}" ] || some_ranks=3 ends=KILL-2
+
 # ---- linear response: apex offsets displace the mean transmission error by tan(beta_b)/2 um per um ----
 
 write_design '{"vibration": false, "inputs": [{"key": "alignment.pinion_apex_offset_um", "sigma": 12}, {"key": "alignment.gear_apex_offset_um", "sigma": 9}]}'
@@ -174,7 +178,7 @@ kept() # rows of a run on ranks, 0 before it begins
 if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 EASEOFF_TEST="$folder"
   tolerance --pairs 24 --csv "$folder/one.csv"
-  for ranks in 1 2 3; do
+  for ranks in $some_ranks; do
     ranked $ranks --pairs 24 --json --csv "$folder/ranks.csv"
     same "$folder/out" "$folder/one.json" "the same bytes with $ranks ranks"
     same "$folder/ranks.csv" "$folder/one.csv" "and the same lines"
@@ -193,8 +197,8 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
   result $? "which has the pair"
   tolerance --pairs 400 --json
   cp "$folder/out" "$folder/many.json"
-  for end in 'KILL 0' 'KILL 2' 'TERM 0'; do
-    victim=${end#* }
+  for end in $ends; do
+    victim=${end#*-}
     rm -f "$folder/ranked"
     ranked 3 --pairs 400 --json --keep "$folder/ranked" &
     pid='' found=0 looks=0
@@ -203,12 +207,12 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
       found=$(kept)
       looks=$((looks + 1))
     done
-    [ -z "$pid" ] || kill -s "${end% *}" "$pid" 2>/dev/null
+    [ -z "$pid" ] || kill -s "${end%-*}" "$pid" 2>/dev/null
     wait
     found=$(kept)
     [ "$found" -ge 10 ] && [ "$found" -lt 400 ]
-    result $? "SIG${end% *} to rank $victim after $found of 400 pairs ends the run"
-    [ "${end% *}" = KILL ] || grep -q "Stopped. The same command goes on from here." "$folder/err"
+    result $? "SIG${end%-*} to rank $victim after $found of 400 pairs ends the run"
+    [ "${end%-*}" = KILL ] || grep -q "Stopped. The same command goes on from here." "$folder/err"
     result $? "with a word where there is one"
     ranked 3 --pairs 400 --json --keep "$folder/ranked"
     same "$folder/out" "$folder/many.json" "and the next start goes on with the same bytes"

@@ -68,9 +68,11 @@ prints "P3 .* FAIL"
 
 verify 0 "gears as made, their statistics, closed forms" --json "$CASES/tolerance.json"
 checks 1200
-changed tolerance.json 's/"std":0.47972/"std":0.48012/'
-verify 1 "another standard deviation" "$folder/tolerance.json"
-prints "MC-H1 .* FAIL"
+if [ ! "${SANITIZED-}" ]; then # the same code again, the longest here
+  changed tolerance.json 's/"std":0.47972/"std":0.48012/'
+  verify 1 "another standard deviation" "$folder/tolerance.json"
+  prints "MC-H1 .* FAIL"
+fi
 
 verify 0 "encoder" --json "$CASES/encoder.json"
 checks 28
