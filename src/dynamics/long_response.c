@@ -5,38 +5,36 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dynamics/long_motion.h"
 #include "dynamics/propagator.h"
 #include "numerics/dense.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
 
-/* STEPS_PER_CYCLE as time integration by mesh cycles takes at least; SAMPLES_PER_CYCLE: accelerations that are kept;
-   LEAD_CYCLES: before the period that is looked at, and once more while the motion has not come back. */
-enum { STEPS_PER_CYCLE = 256, SAMPLES_PER_CYCLE = 64, LEAD_CYCLES = 300, MOST_TRIES = 16, ROWS = 2 };
-enum { N = EO_MAX_COORDINATES };
-
-/* Forces beside the meshes of constant stiffness, straight over a step: f(t) along mesh j has the particular solution
-   r = place f + lag f', with K place = mesh, K lag = -C place and the meshes in K and C. */
-struct push {
-  double place[N], lag[N];
-  double gain[2 * N]; /* d state at the end of a step / d f there */
+/* SAMPLES_PER_CYCLE: accelerations that are kept, at least; LEAD_CYCLES: before the period that is looked at, and once
+   more while the motion has not come back. */
+enum {
+  STEPS_PER_CYCLE = 64,
+  MOST_PER_CYCLE = 1024,
+  SAMPLES_PER_CYCLE = 64,
+  LEAD_CYCLES = 300,
+  MOST_TRIES = 16,
+  ROWS = 2
 };
+enum { N = EO_MAX_COORDINATES };
 
 struct response {
   const struct eo_long_case *load;
   struct eo_long_response *result;
   struct eo_dynamics_model model;
   struct eo_law law[2];
-  int steps, stride, samples; /* of a period */
-  double step, scale;         /* s; velocities are kept over it, 1/s */
-  double *row[2];             /* [end]: [steps][ROWS] Z, k_tan */
-  double propagator[4 * N * N];
-  double still[N]; /* under the constant loads */
-  struct push push[2];
-  double state[2 * N];                  /* r - still, r' / scale */
+  int steps, stride, samples;           /* of a period */
+  double *row[2];                       /* [end]: [steps][ROWS] Z, k_tan */
+  struct eo_long_motion motion;         /* beside where the constant loads leave the meshes at their mean stiffness */
+  double still[2];                      /* [end] X there, m */
+  double deflection[2], rate[2];        /* [end] X, X' */
   double force[2], before[2];           /* [end] pushes at this instant and the last, N */
   double mesh_force[2], contact[2];     /* [end] with damping, N; share of the step in contact */
-  double reading[EO_READINGS][2][N];    /* [reading][end]: by coordinate */
   double *acceleration[EO_READINGS][2]; /* [samples] */
 };
 
@@ -48,43 +46,58 @@ static double dot(int n, const double *a, const double *b)
   return sum;
 }
 
-static int power_of_two(double least)
+/* The least number of the kind 4, 5, 6 or 7 times a power of two: quick to transform. */
+static int even_number(double least)
 {
-  int n = 1;
-  while (n < least)
-    n *= 2;
+  int n = 4, part = 1;
+  while (n < least) {
+    n += part;
+    part *= n == 8 * part ? 2 : 1;
+  }
   return n;
 }
 
-/* Samples of a period to as many as there are steps, by the lines that are kept: to[steps], ROWS apart. */
-static enum eo_code resample(const struct response *response, const double *from, double *to, struct eo_error *error)
+/* Z and k_tan of an end, samples of a period, to as many as there are steps, by the lines that are kept: one is the
+   real part of a transform, the other, made as large, the imaginary one. */
+static enum eo_code resample(const struct response *response, int end, double *row, struct eo_error *error)
 {
-  int n = response->load->cycles * response->load->positions,
-      lines = response->load->harmonics * response->load->cycles + 1;
-  double complex *line = malloc(sizeof *line * (size_t)(n / 2 + 1)), *x = calloc((size_t)response->steps, sizeof *x);
-  enum eo_code code = line && x ? eo_fft_spectrum(n, from, line, error) : eo_error_memory(error);
-  for (int k = 0; k < lines && k <= n / 2 && !code; k++)
-    x[k] = conj(line[k]);
+  const struct eo_long_case *load = response->load;
+  const double *z = load->deflection[end], *k = load->tangent[end];
+  int n = load->cycles * load->positions, steps = response->steps;
+  double size = sqrt(dot(n, z, z) / dot(n, k, k));
+  double complex *x = malloc(sizeof *x * (size_t)n), *y = calloc((size_t)steps, sizeof *y);
+  enum eo_code code = x && y ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < n && !code; i++)
+    x[i] = (z[i] + I * size * k[i]) / n;
   if (!code)
-    code = eo_fft_forward(response->steps, x, error);
-  for (int i = 0; i < response->steps && !code; i++)
-    to[(size_t)i * ROWS] = creal(x[i]);
-  free(line);
+    code = eo_fft_forward(n, x, error);
+  for (int line = -load->harmonics * load->cycles; line <= load->harmonics * load->cycles && !code; line++)
+    y[line > 0 ? steps - line : -line] = x[line < 0 ? n + line : line];
+  if (!code)
+    code = eo_fft_forward(steps, y, error);
+  for (int i = 0; i < steps && !code; i++) {
+    row[(size_t)i * ROWS] = creal(y[i]);
+    row[(size_t)i * ROWS + 1] = cimag(y[i]) / size;
+  }
   free(x);
+  free(y);
   return code;
 }
 
 /* The oscillator between kicks has the mean stiffness of the meshes; steps as small as a march by cycles takes. */
 static void set_steps(struct response *response, double mean_stiffness)
 {
-  static const double ANGLE = 0.15; /* rad, see struct eo_march_options */
+  static const double ANGLE = 0.5; /* rad */
   const double mean[2] = {mean_stiffness, mean_stiffness};
   double cycle = 2 * M_PI / (response->load->speed * response->load->pinion_teeth),
          least = cycle * eo_propagator_mesh_rate(&response->model.oscillator, mean) / ANGLE;
   response->model.oscillator.shift = mean_stiffness;
-  response->steps = power_of_two(response->load->cycles * fmin(fmax(least, STEPS_PER_CYCLE), 4 * STEPS_PER_CYCLE));
-  response->samples = power_of_two((double)response->load->cycles * SAMPLES_PER_CYCLE);
-  response->stride = response->steps / response->samples;
+  response->steps = even_number(response->load->cycles * fmin(fmax(least, STEPS_PER_CYCLE), MOST_PER_CYCLE));
+  response->stride = 1;
+  while (response->steps % (2 * response->stride) == 0 &&
+         response->steps >= 2 * response->stride * response->load->cycles * SAMPLES_PER_CYCLE)
+    response->stride *= 2;
+  response->samples = response->steps / response->stride;
 }
 
 /* Rows of the tangent law; false in *lawful where its stiffness is not positive. */
@@ -100,8 +113,7 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
     response->row[end] = malloc(sizeof(double) * ROWS * (size_t)response->steps);
     if (!response->row[end])
       return eo_error_memory(error);
-    EO_TRY(resample(response, load->deflection[end], response->row[end], error));
-    EO_TRY(resample(response, load->tangent[end], response->row[end] + 1, error));
+    EO_TRY(resample(response, end, response->row[end], error));
     for (int i = 0; i < response->steps; i++)
       *lawful = *lawful && response->row[end][(size_t)i * ROWS + 1] > 0;
     response->law[end] = (struct eo_law){.kind = EO_MESH_TANGENT,
@@ -115,94 +127,63 @@ static enum eo_code set_rows(struct response *response, bool *lawful, struct eo_
 
 static enum eo_code make_storage(struct response *response, struct eo_error *error)
 {
-  const struct eo_dynamics_model *model = &response->model;
   bool complete = true;
   for (int reading = 0; reading < EO_READINGS; reading++)
     for (int end = 0; end < response->load->parameters->ends; end++) {
       response->acceleration[reading][end] = calloc((size_t)response->samples, sizeof(double));
       complete = complete && response->acceleration[reading][end];
-      for (int k = 0; k < model->oscillator.n; k++)
-        for (int i = 0; i < model->freedoms; i++)
-          response->reading[reading][end][k] += model->reading[reading][end][i] *
-                                                model->basis[i * model->oscillator.n + k];
     }
   return complete ? EO_OK : eo_error_memory(error);
 }
 
-/* K and C with the meshes at their mean stiffness and their damping. */
-static void set_meshed(const struct response *response, double *stiffness, double *damping)
+/* X of the meshes at their mean stiffness under the constant loads; false: there is no such place. */
+static bool settle(struct response *response)
 {
   const struct eo_oscillator *oscillator = &response->model.oscillator;
-  int n = oscillator->n;
+  double k[N * N], place[N];
+  int n = oscillator->n, pivot[N];
+  memcpy(place, oscillator->load, sizeof place);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      stiffness[i * n + j] = oscillator->stiffness[i * n + j];
-      damping[i * n + j] = oscillator->damping[i * n + j];
-      for (int end = 0; end < oscillator->ends; end++) {
-        stiffness[i * n + j] += oscillator->shift * oscillator->mesh[end][i] * oscillator->mesh[end][j];
-        damping[i * n + j] += response->load->parameters->mesh_damping * oscillator->mesh[end][i] *
-                              oscillator->mesh[end][j];
-      }
+      k[i * n + j] = oscillator->stiffness[i * n + j];
+      for (int end = 0; end < oscillator->ends; end++)
+        k[i * n + j] += oscillator->shift * oscillator->mesh[end][i] * oscillator->mesh[end][j];
     }
+  bool found = eo_dense_solve(n, k, pivot, 1, place) == 0;
+  for (int end = 0; end < oscillator->ends; end++)
+    response->still[end] = dot(n, oscillator->mesh[end], place);
+  return found;
 }
 
-/* x = K^-1 b; false: there is no such place. */
-static bool settle(int n, const double *stiffness, const double *b, double *x)
+/* Readings that are looked at. */
+static int readings_of(const struct response *response)
 {
-  double k[N * N];
-  int pivot[N];
-  memcpy(k, stiffness, sizeof *k * (size_t)n * (size_t)n);
-  memcpy(x, b, sizeof *x * (size_t)n);
-  return eo_dense_solve(n, k, pivot, 1, x) == 0;
+  return response->load->levels_alone ? EO_READING_NORMAL + 1 : EO_READINGS;
 }
 
-/* b = A a, both [2 n]. */
-static void apply(int size, const double *matrix, const double *a, double *b)
+/* Of accelerations: reading by reading, end by end. */
+static int reading_of(const struct response *response, int reading, int end)
 {
-  for (int i = 0; i < size; i++)
-    b[i] = dot(size, matrix + (size_t)i * (size_t)size, a);
-}
-
-/* Adds what pushes of value f and rate f' have as their particular solution, times sign. */
-static void add_push(const struct response *response, const double *force, const double *rate, double sign,
-                     double *state)
-{
-  int n = response->model.oscillator.n;
-  for (int end = 0; end < response->model.oscillator.ends; end++)
-    for (int i = 0; i < n; i++) {
-      state[i] += sign * (response->push[end].place[i] * force[end] + response->push[end].lag[i] * rate[end]);
-      state[n + i] += sign * response->push[end].place[i] * rate[end] / response->scale;
-    }
+  return reading * response->load->parameters->ends + end;
 }
 
 static enum eo_code set_motion(struct response *response, struct eo_error *error)
 {
-  const struct eo_oscillator *oscillator = &response->model.oscillator;
-  const double mean[2] = {oscillator->shift, oscillator->shift};
-  double stiffness[N * N], damping[N * N], drag[N];
-  int n = oscillator->n;
-  set_meshed(response, stiffness, damping);
-  response->step = 2 * M_PI * response->load->cycles / (response->load->speed * response->load->pinion_teeth) /
-                   response->steps;
-  response->scale = eo_propagator_mesh_rate(oscillator, mean);
-  eo_propagator_fill(oscillator, response->load->parameters->mesh_damping, mean, response->scale, response->step,
-                     response->propagator);
-  bool found = settle(n, stiffness, oscillator->load, response->still);
-  for (int end = 0; end < oscillator->ends && found; end++) {
-    struct push *push = &response->push[end];
-    found = settle(n, stiffness, oscillator->mesh[end], push->place);
-    for (int i = 0; i < n; i++)
-      drag[i] = -dot(n, damping + (size_t)i * (size_t)n, push->place);
-    found = found && settle(n, stiffness, drag, push->lag);
-  }
-  for (int end = 0; end < oscillator->ends && found; end++) {
-    double none[2] = {0}, one[2] = {end == 0, end == 1}, rate[2] = {one[0] / response->step, one[1] / response->step};
-    double start[2 * N] = {0};
-    add_push(response, none, rate, -1, start);
-    apply(2 * n, response->propagator, start, response->push[end].gain);
-    add_push(response, one, rate, 1, response->push[end].gain);
-  }
-  return found ? EO_OK : eo_error_set(error, EO_ERROR_NUMERIC, "", "The lumped model has no place at rest.");
+  const struct eo_dynamics_model *model = &response->model;
+  const struct eo_oscillator *oscillator = &model->oscillator;
+  double weight[2 * EO_READINGS][N] = {{0}}, step = 2 * M_PI * response->load->cycles /
+                                                    (response->load->speed * response->load->pinion_teeth) /
+                                                    response->steps;
+  for (int reading = 0; reading < readings_of(response); reading++)
+    for (int end = 0; end < oscillator->ends; end++)
+      for (int k = 0; k < oscillator->n; k++)
+        for (int i = 0; i < model->freedoms; i++)
+          weight[reading_of(response, reading, end)][k] += model->reading[reading][end][i] *
+                                                           model->basis[i * oscillator->n + k];
+  if (!settle(response))
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The lumped model has no place at rest.");
+  return eo_long_motion_init(&response->motion, oscillator, response->load->parameters->mesh_damping, oscillator->shift,
+                             step, readings_of(response) * oscillator->ends, (const double(*)[N])weight, error);
 }
 
 /* Share of the step about an instant that contact lasts, the margin taken as straight. */
@@ -211,67 +192,70 @@ static double contact_share(double margin, double moved)
   return moved > 0 ? fmin(fmax(0.5 + margin / moved, 0), 1) : margin > 0;
 }
 
-/* Pushes at a state: what the mesh forces differ from constant stiffness and damping. */
-static void find_pushes(struct response *response, int i, const double *state, double *force)
+/* Force of a mesh with its damping, which acts for the share of the step that contact lasts. */
+static double mesh_force(const struct response *response, int i, int end, double x, double v, double *contact)
 {
-  const struct eo_oscillator *oscillator = &response->model.oscillator;
-  double c = response->load->parameters->mesh_damping;
-  int n = oscillator->n;
-  for (int end = 0; end < oscillator->ends; end++) {
-    double x = dot(n, oscillator->mesh[end], state) + dot(n, oscillator->mesh[end], response->still),
-           v = dot(n, oscillator->mesh[end], state + n) * response->scale;
-    struct eo_mesh_force mesh_force = eo_law_force(&response->law[end], response->row[end] + (size_t)i * ROWS, x, 0);
-    response->contact[end] = contact_share(mesh_force.margin, fabs(v) * response->step);
-    response->mesh_force[end] = mesh_force.force + c * response->contact[end] * v;
-    force[end] = oscillator->shift * x + c * v - response->mesh_force[end];
+  const double *row = response->row[end] + (size_t)i * ROWS;
+  double c = response->load->parameters->mesh_damping, moved = fabs(v) * response->motion.step,
+         force = response->law[end].nominal + row[1] * (x - row[0]); /* theory (L2) */
+  *contact = 1;
+  if (force > row[1] * moved)
+    return force + c * v;
+  struct eo_mesh_force of_law = eo_law_force(&response->law[end], row, x, 0);
+  *contact = contact_share(of_law.margin, moved);
+  return of_law.force + c * *contact * v;
+}
+
+/* Pushes where the meshes are: what their forces differ from constant stiffness and damping. */
+static void find_pushes(struct response *response, int i, double *force)
+{
+  double c = response->load->parameters->mesh_damping, k = response->model.oscillator.shift;
+  for (int end = 0; end < response->motion.ends; end++) {
+    double x = response->deflection[end], v = response->rate[end];
+    response->mesh_force[end] = mesh_force(response, i, end, x, v, &response->contact[end]);
+    force[end] = k * x + c * v - response->mesh_force[end];
+  }
+}
+
+/* Where pushes at the end of a step put the meshes: x and v with none there. */
+static void place_meshes(struct response *response, const double x[2], const double v[2], const double force[2])
+{
+  const struct eo_long_motion *motion = &response->motion;
+  for (int i = 0; i < motion->ends; i++) {
+    response->deflection[i] = x[i] + response->still[i];
+    response->rate[i] = v[i];
+    for (int j = 0; j < motion->ends; j++) {
+      response->deflection[i] += motion->gain[i][j] * force[j];
+      response->rate[i] += motion->rate_gain[i][j] * force[j];
+    }
   }
 }
 
 /* theory (P5): one step to instant i, exact but for the pushes, which are straight in it; those at its end follow from
-   the state there, which they hardly change. */
+   where the meshes are there, which they hardly change. */
 static void take_step(struct response *response, int i)
 {
   enum { CORRECTIONS = 2 };
-  int n = response->model.oscillator.n;
   double next[2] = {2 * response->force[0] - response->before[0], 2 * response->force[1] - response->before[1]},
-         state[2 * N], found[2] = {0};
-  double rate[2] = {(next[0] - response->force[0]) / response->step, (next[1] - response->force[1]) / response->step};
-  add_push(response, response->force, rate, -1, response->state);
-  apply(2 * n, response->propagator, response->state, state);
-  add_push(response, next, rate, 1, state);
+         x[2] = {0}, v[2] = {0};
+  eo_long_motion_go(&response->motion, response->before, response->force, x, v);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
-    find_pushes(response, i, state, found);
-    for (int end = 0; end < response->model.oscillator.ends; end++) {
-      for (int k = 0; k < 2 * n; k++)
-        state[k] += response->push[end].gain[k] * (found[end] - next[end]);
-      next[end] = found[end];
-    }
+    place_meshes(response, x, v, next);
+    find_pushes(response, i, next);
   }
-  find_pushes(response, i, state, found);
+  eo_long_motion_arrive(&response->motion, next);
+  place_meshes(response, x, v, next);
   memcpy(response->before, response->force, sizeof response->before);
-  memcpy(response->force, found, sizeof response->force);
-  memcpy(response->state, state, sizeof *state * 2 * (size_t)n);
+  find_pushes(response, i, response->force);
 }
 
-/* Accelerations r" = load - K r - C r' - sum mesh F at one instant, as the readings see them. */
+/* Accelerations at one instant, as the readings see them. */
 static void keep_accelerations(struct response *response, int sample)
 {
-  const struct eo_oscillator *oscillator = &response->model.oscillator;
-  double acceleration[N], position[N], velocity[N];
-  for (int i = 0; i < oscillator->n; i++) {
-    position[i] = response->state[i] + response->still[i];
-    velocity[i] = response->state[oscillator->n + i] * response->scale;
-  }
-  for (int i = 0; i < oscillator->n; i++) {
-    acceleration[i] = oscillator->load[i] -
-                      dot(oscillator->n, oscillator->stiffness + (size_t)i * (size_t)oscillator->n, position) -
-                      dot(oscillator->n, oscillator->damping + (size_t)i * (size_t)oscillator->n, velocity);
-    for (int end = 0; end < oscillator->ends; end++)
-      acceleration[i] -= oscillator->mesh[end][i] * response->mesh_force[end];
-  }
-  for (int reading = 0; reading < EO_READINGS; reading++)
-    for (int end = 0; end < oscillator->ends; end++)
-      response->acceleration[reading][end][sample] = dot(oscillator->n, response->reading[reading][end], acceleration);
+  for (int reading = 0; reading < readings_of(response); reading++)
+    for (int end = 0; end < response->motion.ends; end++)
+      response->acceleration[reading][end][sample] =
+          eo_long_motion_read(&response->motion, reading_of(response, reading, end), response->force);
 }
 
 static void look(struct response *response, int i)
@@ -288,22 +272,26 @@ static void look(struct response *response, int i)
     keep_accelerations(response, i / response->stride);
 }
 
-/* One period under observation, and how far its end is from its start, of the swing. */
+/* One period under observation, and how far its end is from its start, of the swing of the meshes. */
 static double pass_period(struct response *response)
 {
-  int n = response->model.oscillator.n;
-  double start[2 * N], swing[2] = {0}, change[2] = {0};
-  memcpy(start, response->state, sizeof start);
+  double start[2][2], swing[2] = {0}, change[2] = {0};
+  memcpy(start[0], response->deflection, sizeof start[0]);
+  memcpy(start[1], response->rate, sizeof start[1]);
   memset(response->result->contact_loss, 0, sizeof response->result->contact_loss);
   memset(response->result->force_most, 0, sizeof response->result->force_most);
   for (int i = 1; i <= response->steps; i++) {
     take_step(response, i % response->steps);
     look(response, i % response->steps);
-    for (int k = 0; k < 2 * n; k++)
-      swing[k / n] = fmax(swing[k / n], fabs(response->state[k] - start[k]));
+    for (int end = 0; end < response->motion.ends; end++) {
+      swing[0] = fmax(swing[0], fabs(response->deflection[end] - start[0][end]));
+      swing[1] = fmax(swing[1], fabs(response->rate[end] - start[1][end]));
+    }
   }
-  for (int k = 0; k < 2 * n; k++)
-    change[k / n] = fmax(change[k / n], fabs(response->state[k] - start[k]));
+  for (int end = 0; end < response->motion.ends; end++) {
+    change[0] = fmax(change[0], fabs(response->deflection[end] - start[0][end]));
+    change[1] = fmax(change[1], fabs(response->rate[end] - start[1][end]));
+  }
   return fmax(swing[0] > 0 ? change[0] / swing[0] : 0, swing[1] > 0 ? change[1] / swing[1] : 0);
 }
 
@@ -314,13 +302,12 @@ static void march(struct response *response)
   struct eo_long_response *result = response->result;
   int lead = (int)fmin(response->steps, (double)response->steps / response->load->cycles * LEAD_CYCLES),
       first = (response->steps - lead) % response->steps;
-  memset(response->state, 0, sizeof response->state);
   /* at rest where the teeth of mean stiffness stand at Z: a push of k Z - P */
   for (int end = 0; end < response->model.oscillator.ends; end++)
     response->force[end] = response->model.oscillator.shift * response->row[end][(size_t)first * ROWS] -
                            response->law[end].nominal;
   memcpy(response->before, response->force, sizeof response->before);
-  add_push(response, response->force, (const double[2]){0}, 1, response->state);
+  eo_long_motion_rest(&response->motion, response->force);
   for (int i = first + 1; i <= first + lead; i++)
     take_step(response, i % response->steps);
   result->change = INFINITY;
@@ -330,6 +317,18 @@ static void march(struct response *response)
   result->outcome = !(result->change <= SETTLED) ? EO_LONG_NOT_SETTLED
                     : lost                       ? EO_LONG_CONTACT_LOST
                                                  : EO_LONG_IN_CONTACT;
+}
+
+/* Mean of the ends' RMS, reading by reading. */
+static void read_levels(struct response *response)
+{
+  int ends = response->load->parameters->ends, n = response->samples;
+  for (int reading = 0; reading < readings_of(response); reading++)
+    for (int end = 0; end < ends; end++) {
+      double level = eo_periodic_mean(n, response->acceleration[reading][end]),
+             square = dot(n, response->acceleration[reading][end], response->acceleration[reading][end]) / n;
+      response->result->rms[reading] += sqrt(fmax(0, square - level * level)) / ends;
+    }
 }
 
 static enum eo_code read_spectra(struct response *response, struct eo_error *error)
@@ -344,11 +343,6 @@ static enum eo_code read_spectra(struct response *response, struct eo_error *err
   enum eo_code code = EO_OK;
   for (int reading = 0; reading < EO_READINGS && !code; reading++) {
     double *mean = response->acceleration[reading][0];
-    for (int end = 0; end < ends; end++) {
-      double level = eo_periodic_mean(n, response->acceleration[reading][end]),
-             square = dot(n, response->acceleration[reading][end], response->acceleration[reading][end]) / n;
-      result->rms[reading] += sqrt(fmax(0, square - level * level)) / ends;
-    }
     for (int i = 0; i < n && ends == 2; i++)
       mean[i] = (mean[i] + response->acceleration[reading][1][i]) / 2;
     result->acceleration[reading] = malloc(sizeof *line * (size_t)result->lines);
@@ -373,7 +367,8 @@ static enum eo_code find(struct response *response, struct eo_error *error)
   EO_TRY(make_storage(response, error));
   EO_TRY(set_motion(response, error));
   march(response);
-  return read_spectra(response, error);
+  read_levels(response);
+  return response->load->levels_alone ? EO_OK : read_spectra(response, error);
 }
 
 enum eo_code eo_long_response_find(struct eo_long_response *response, const struct eo_long_case *load,

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The vibration under a sequence of mesh cycles that differ from each other and repeat after many: the lumped model
-   with the tangent law sample by sample, by equal steps in time, exact for forces that are
-   straight in a step (doc/theory/single-teeth.md). Stiffness varies with the
+   with the tangent law sample by sample, by equal steps in time, exact for forces that are a
+   parabola in a step (doc/theory/single-teeth.md). Stiffness varies with the
    teeth and they may part; impact pulses are not in it. */
 #ifndef EASEOFF_DYNAMICS_LONG_RESPONSE_H
 #define EASEOFF_DYNAMICS_LONG_RESPONSE_H
 
 #include <complex.h>
+#include <stdbool.h>
 
 #include "dynamics/model.h"
 
@@ -23,6 +24,7 @@ struct eo_long_case {
   const double *deflection[2]; /* [end]: [cycles positions] in the order of time: Z at which the end carries P, m */
   const double *tangent[2];    /* k_tan, N/m */
   double back;                 /* X at which the back flanks touch, m */
+  bool levels_alone;           /* of the accelerations the RMS normal to the teeth, no more */
 };
 
 enum eo_long_outcome {

@@ -3,6 +3,7 @@
 
 #include <cblas.h>
 #include <lapacke.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 /* LAPACK sees the transpose of a row-major matrix, so every solve asks for the transposed system. */
@@ -65,6 +66,24 @@ int eo_dense_eigenvalues(int n, double *a, double complex *values)
   int failed = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, a, n, part, part + n, NULL, 1, NULL, 1);
   for (int i = 0; i < n && !failed; i++)
     values[i] = part[i] + part[n + i] * I;
+  free(part);
+  return failed;
+}
+
+int eo_dense_eigenvectors(int n, double *a, double complex *values, double complex *vectors)
+{
+  double *part = malloc(sizeof *part * (size_t)(n * (n + 2))), *vector = part + 2 * n;
+  if (!part)
+    return 1;
+  int failed = LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'V', n, a, n, part, part + n, NULL, 1, vector, n);
+  for (int m = 0; m < n && !failed; m++) {
+    bool first = part[n + m] > 0, second = part[n + m] < 0;
+    values[m] = part[m] + part[n + m] * I;
+    for (int i = 0; i < n; i++)
+      vectors[i * n + m] = first    ? vector[i * n + m] + vector[i * n + m + 1] * I
+                           : second ? vector[i * n + m - 1] - vector[i * n + m] * I
+                                    : vector[i * n + m];
+  }
   free(part);
   return failed;
 }

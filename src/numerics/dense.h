@@ -34,4 +34,8 @@ int eo_dense_symmetric_eigen(int n, double *a, double *values);
 /* Eigenvalues of a general a[n][n], which is destroyed; order as LAPACK finds them. Allocates. Returns as above. */
 int eo_dense_eigenvalues(int n, double *a, double complex *values);
 
+/* The same with the eigenvectors as the columns of vectors[n][n], of unit length; conjugates stand beside each other.
+ */
+int eo_dense_eigenvectors(int n, double *a, double complex *values, double complex *vectors);
+
 #endif
