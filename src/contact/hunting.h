@@ -21,6 +21,10 @@ struct eo_tooth_deviation {
   double profile_crowning, lead_crowning; /* C_alpha as a barrel, C_beta, m, + takes off at both ends */
 };
 
+/* More than an index deviation: of a tooth, of any of a table. NULL has none. */
+bool eo_tooth_has_form(const struct eo_tooth_deviation *tooth);
+bool eo_tooth_any_form(const struct eo_tooth_deviation *tooth, int teeth);
+
 enum { EO_HUNTING_MOST_INSTANTS = 1 << 19 };
 
 /* lcm(z_1, z_2), mesh cycles. */

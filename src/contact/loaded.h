@@ -114,6 +114,10 @@ void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_co
 void eo_loaded_find_nearby(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
                            double compliance_factor, struct eo_loaded_end *result);
 
+/* What each point of the position solved last takes of 1 N more, [points]; and so the change of Z with its gap. */
+void eo_loaded_last_shares(const struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
+                           double *share);
+
 /* Makes Newton's matrix of the position solved last at its solution, for the answers below. */
 void eo_loaded_prepare_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position);
 

@@ -60,6 +60,17 @@ double eo_loaded_tangent(struct eo_loaded_workspace *ws, const struct eo_contact
   return square / (sum * sum); /* theory (C4) */
 }
 
+/* As the tangent left them, theory (P8). */
+void eo_loaded_last_shares(const struct eo_loaded_workspace *ws, const struct eo_contact_position *position,
+                           double *share)
+{
+  double sum = 0;
+  for (int i = 0; i < position->points; i++)
+    sum += ws->load[i];
+  for (int i = 0; i < position->points; i++)
+    share[i] = ws->load[i] / sum;
+}
+
 /* Keeps the solution as the point from which neighbouring loads are reached, with its rates over the load. */
 static void keep_course(struct eo_loaded_workspace *ws, const struct eo_contact_position *position)
 {

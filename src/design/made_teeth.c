@@ -9,7 +9,7 @@ void eo_design_state_teeth(struct eo_design *design)
   struct eo_pitch *pitch = &design->pitch;
   if (!settings->single_teeth)
     return;
-  if (!pitch->stated && !pitch->sketched)
+  if (!pitch->stated && pitch->level != EO_TEETH_SKETCHED)
     pitch->positions = eo_pitch_usual_positions(design->resolution.positions);
   pitch->stated = true;
   for (int member = 0; member < 2; member++) {

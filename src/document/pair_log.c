@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "evaluation/scatter_levels.h"
+
 #include <config.h>
 
 struct eo_pair_log {
@@ -26,7 +28,8 @@ enum eo_code eo_pair_log_hash(const struct eo_design *design, char hash[EO_HASH_
     own->tolerance.pairs = 1;
   memset(own->tolerance.limit, 0, sizeof own->tolerance.limit);
   own->tolerance.limits = 0;
-  own->tolerance.method = EO_SCATTER_AUTO;
+  bool followed = design->tolerance.single_teeth && eo_scatter_is_coarse_first(design);
+  own->tolerance.method = followed ? EO_SCATTER_COARSE_FIRST : EO_SCATTER_AUTO;
   enum eo_code code = eo_design_hash(own, hash, error);
   free(own);
   return code;

@@ -307,7 +307,7 @@ bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char
       "%d of %d pairs were computed in full, the others on a coarse grid%s and corrected by these: a pair's "
       "peak-to-peak error%s is off by %.2g um%s (root mean square of pairs left out, worst load case). The intervals "
       "have this in them; the method \"full\" computes every pair.",
-      eo_scatter_full_pairs(run), run->pairs, teeth ? ", their teeth as springs," : "",
+      eo_scatter_full_pairs(run), run->pairs, teeth ? " with fewer solutions for their teeth" : "",
       teeth ? " over the hunting period" : "", largest_error(report, swing_of(report)), rms);
   return true;
 }

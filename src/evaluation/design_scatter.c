@@ -18,7 +18,16 @@ struct eo_scatter_bench {
   bool vibration, root_stress;
   struct eo_evaluator *evaluator;
   struct eo_design *design; /* the nominal one with the values of a pair in it */
+  enum eo_teeth_level level;
 };
+
+/* Few pairs, or all in full as asked for, have every instant of their hunting period solved. */
+static enum eo_teeth_level level_of(const struct eo_design *design)
+{
+  return design->pitch.level == EO_TEETH_SOLVED && design->tolerance.single_teeth && eo_scatter_is_coarse_first(design)
+             ? EO_TEETH_FOLLOWED
+             : design->pitch.level;
+}
 
 enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **result, const struct eo_pair *pair,
                                   const struct eo_design *design, const struct eo_scatter *scatter, bool vibration,
@@ -31,6 +40,7 @@ enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **result, const struct
   bench->scatter = scatter;
   bench->vibration = vibration || root_stress;
   bench->root_stress = root_stress;
+  bench->level = level_of(design);
   bench->design = malloc(sizeof *bench->design);
   enum eo_code code = bench->design ? eo_evaluator_new(&bench->evaluator, pair, design->load_cases, error)
                                     : eo_error_memory(error);
@@ -94,6 +104,7 @@ enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *
   const struct eo_evaluation *evaluation;
   struct eo_scenario scenario = {NAN, NAN, 1, 1};
   memcpy(bench->design, bench->nominal, sizeof *bench->design);
+  bench->design->pitch.level = bench->level;
   eo_design_state_teeth(bench->design);
   if (input)
     eo_scatter_apply(bench->scatter, input, bench->design, &scenario.compliance, &scenario.speed);

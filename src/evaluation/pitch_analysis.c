@@ -6,11 +6,14 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "contact/tooth_springs.h"
+#include "contact/tooth_courses.h"
 #include "dynamics/long_sketch.h"
 #include "evaluation/evaluator_private.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
+
+/* How far interpolated contact may be off where it is looked at, m. */
+static const double WITHIN = 2e-8;
 
 /* What a run works with beside the result. */
 struct work {
@@ -94,7 +97,18 @@ static enum eo_code sketch(const struct work *work, const struct eo_hunting_inpu
 {
   enum { TURNS = 3 }; /* of the gear */
   int cycles = EO_LONG_SKETCH_LEAD + TURNS * input->grid[EO_LEFT]->geometry.teeth[EO_GEAR];
-  return eo_hunting_sketch(&own->hunting, &own->stretch, work->question->vibration ? cycles : 0, input, error);
+  return eo_hunting_follow(&own->hunting, &own->stretch, work->question->vibration ? cycles : 0, INFINITY, input,
+                           error);
+}
+
+/* Teeth whose flanks differ: gaps of more than one number each. */
+static bool any_form(const struct eo_hunting_input *input)
+{
+  bool any = false;
+  for (int end = 0; end < input->ends; end++)
+    for (int member = 0; member < 2; member++)
+      any = any || eo_tooth_any_form(input->tooth[end][member], input->grid[end]->geometry.teeth[member]);
+  return any;
 }
 
 static enum eo_code hunt(struct work *work, const struct eo_case_result *load_case, struct eo_pitch_case *own,
@@ -117,8 +131,10 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
   for (int end = 0; end < 2 && work->question->root && pair->root; end++)
     input.root[end] = eo_pair_half(pair, end)->root;
-  if (work->design->pitch.sketched)
+  if (work->design->pitch.level == EO_TEETH_SKETCHED)
     return sketch(work, &input, own, error);
+  if (work->design->pitch.level == EO_TEETH_FOLLOWED && !any_form(&input))
+    return eo_hunting_follow(&own->hunting, &own->stretch, 0, WITHIN, &input, error);
   struct share share = {work->question->progress, (int)(own - work->result->load_case), work->result->cases};
   const struct eo_progress progress = {report_share, &share};
   return eo_hunting_run(&own->hunting, &input, &progress, error);
@@ -206,7 +222,7 @@ static bool hands_alike(const struct work *work, const struct eo_pitch_case *own
 /* The contact by which the pair vibrates. */
 static const struct eo_hunting *heard(const struct eo_pitch_case *own, const struct eo_design *design)
 {
-  return design->pitch.sketched ? &own->stretch : &own->hunting;
+  return design->pitch.level == EO_TEETH_SKETCHED ? &own->stretch : &own->hunting;
 }
 
 /* Z at which an end would carry P, from the load it has; both in the order of time. */
@@ -258,9 +274,10 @@ static enum eo_code respond_with(const struct work *work, const struct eo_case_r
                                     .deflection = {scratch[0], scratch[1]},
                                     .tangent = {scratch[2], scratch[3]},
                                     .back = load_case->end[EO_LEFT].deflection.part[0][EO_DEFLECTION_NODES / 2] -
-                                            design->gear_pair.backlash};
-  return design->pitch.sketched ? sketch_response(&own->response, &load, error)
-                                : eo_long_response_find(&own->response, &load, error);
+                                            design->gear_pair.backlash,
+                                    .levels_alone = design->pitch.level != EO_TEETH_SOLVED};
+  return design->pitch.level == EO_TEETH_SKETCHED ? sketch_response(&own->response, &load, error)
+                                                  : eo_long_response_find(&own->response, &load, error);
 }
 
 static void add_order(struct eo_pitch_case *own, double order, const char *name)

@@ -29,8 +29,8 @@ static const struct levels *levels_of(const struct eo_design *design)
   return design->tolerance.single_teeth ? &HUNTING_PERIOD : &MESH_CYCLE;
 }
 
-/* Springs know nothing of a pinion that is held along its axis. */
-static bool has_springs(const struct eo_design *design)
+/* A pinion that is held along its axis couples the teeth of both ends. */
+static bool ends_float(const struct eo_design *design)
 {
   return design->gear_pair.ends == 1 || design->alignment.pinion_axial == EO_AXIAL_FLOATING ||
          design->alignment.pinion_axial == EO_AXIAL_STOPS;
@@ -43,7 +43,7 @@ bool eo_scatter_is_coarse_first(const struct eo_design *design)
   bool teeth = settings->single_teeth, can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) &&
                                              settings->pairs >= 2 * (levels->first + levels->more);
   bool pays = settings->pairs >= EO_COARSE_FIRST_FROM && design->resolution.positions >= 2 * COARSE_POSITIONS;
-  return can && (!teeth || has_springs(design)) &&
+  return can && (!teeth || ends_float(design)) &&
          (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && (teeth || pays)));
 }
 
@@ -68,9 +68,10 @@ void eo_scatter_make_coarse(struct eo_design *coarse, const struct eo_design *de
   at_most(&coarse->resolution.cells_per_line, COARSE_CELLS);
   at_most(&coarse->resolution.harmonics, COARSE_HARMONICS);
   at_most(&coarse->resolution.te_harmonics, COARSE_POSITIONS / 2);
-  coarse->pitch.sketched = design->tolerance.single_teeth;
-  if (coarse->pitch.sketched)
-    coarse->pitch.positions = coarse_divisor(coarse->resolution.positions);
+  if (!design->tolerance.single_teeth)
+    return;
+  coarse->pitch.level = EO_TEETH_SKETCHED;
+  coarse->pitch.positions = coarse_divisor(coarse->resolution.positions);
 }
 
 enum eo_code eo_scatter_coarse_pair(struct eo_pair **coarse, const struct eo_pair *pair, const struct eo_design *design,

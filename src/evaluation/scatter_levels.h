@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairs as made at two levels: all on a coarse grid, single teeth as springs (contact/tooth_springs.h), and in full as
-   many as the percentiles take. Which ones follows from the rows alone, so that threads, ranks and a resumed run change
-   nothing. */
+/* Pairs as made at two levels: all on a coarse grid, and in full as many as the percentiles take; what single teeth do
+   follows from few solutions (contact/tooth_courses.h), more of them in full. Which ones follows from the rows alone,
+   so that threads, ranks and a resumed run change nothing. */
 #ifndef EASEOFF_EVALUATION_SCATTER_LEVELS_H
 #define EASEOFF_EVALUATION_SCATTER_LEVELS_H
 

@@ -41,12 +41,16 @@ const double *eo_tooth_table_at(const struct eo_tooth_tables *tables, enum eo_fl
 enum eo_code eo_tooth_tables_add(struct eo_tooth_tables *tables, enum eo_flank_side side, int member, int end,
                                  enum eo_tooth_term term, int teeth, const double *value, struct eo_error *error);
 
+/* How the contact over the hunting period is found: every instant solved; what comes between few solutions
+   (contact/tooth_courses.h); the same at fewer positions of a coarse grid. */
+enum eo_teeth_level { EO_TEETH_SOLVED, EO_TEETH_FOLLOWED, EO_TEETH_SKETCHED };
+
 /* What a design says of single teeth. */
 struct eo_pitch {
-  bool stated;    /* false: teeth are alike, and the hunting period is not computed */
-  bool sketched;  /* pairs of teeth are springs: contact/tooth_springs.h; no document says so */
-  int positions;  /* of a mesh cycle; 0: 32, at most those of the resolution */
-  int gear_tooth; /* whose drive flank meets that of the pinion's tooth 0 */
+  bool stated;               /* false: teeth are alike, and the hunting period is not computed */
+  enum eo_teeth_level level; /* no document says so */
+  int positions;             /* of a mesh cycle; 0: 32, at most those of the resolution */
+  int gear_tooth;            /* whose drive flank meets that of the pinion's tooth 0 */
   struct eo_pitch_member {
     int tolerance_class; /* of ISO 1328-1, from which flanks without a table of index deviations are drawn; 0: none */
     int flank_class;     /* from which the slopes and crownings without a table are drawn, tooth by tooth; 0: none */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact over the hunting period: what holds for it exactly (no deviations, constants, rigid teeth, linear
-   response, hands of their own, slopes that all teeth have, threads), and how far pairs of teeth as springs come to it.
-   Closed-form compliance, the paper's pair. */
+   response, hands of their own, slopes that all teeth have, threads), and how near what follows from few solutions
+   comes. Closed-form compliance, the paper's pair. */
 #include "contact/hunting.h"
-#include "contact/tooth_springs.h"
+#include "contact/tooth_courses.h"
 #include "numerics/fft.h"
 #include "support/contact-fixture.h"
 
@@ -379,23 +379,23 @@ static void test_fewer_positions(void)
   eo_hunting_done(&half);
 }
 
-struct sketched {
+struct followed {
   struct eo_hunting period, stretch;
 };
 
-static struct sketched sketch(const struct eo_hunting_input *input, int stretch)
+static struct followed follow(const struct eo_hunting_input *input, double within, int stretch)
 {
-  struct sketched sketched;
+  struct followed followed;
   struct eo_error error;
-  if (eo_hunting_sketch(&sketched.period, &sketched.stretch, stretch, input, &error))
+  if (eo_hunting_follow(&followed.period, &followed.stretch, stretch, within, input, &error))
     stop(&error);
-  return sketched;
+  return followed;
 }
 
-static void sketched_done(struct sketched *sketched)
+static void followed_done(struct followed *followed)
 {
-  eo_hunting_done(&sketched->period);
-  eo_hunting_done(&sketched->stretch);
+  eo_hunting_done(&followed->period);
+  eo_hunting_done(&followed->stretch);
 }
 
 static double swing_of(const struct eo_hunting *hunting)
@@ -416,15 +416,15 @@ static double mean_square(const struct eo_hunting *a, const struct eo_hunting *b
   return sum;
 }
 
-/* Springs pass through the solution of one cycle, and follow a tooth that stands forward by its own approach. */
-static void test_springs_alike(void)
+/* Teeth alike are one solution at each position, and a tooth that stands forward is followed by its own approach. */
+static void test_followed_alike(void)
 {
   struct eo_hunting_input input = plain_input(1);
   struct eo_hunting full = run(&input);
-  struct sketched alike = sketch(&input, 3);
+  struct followed alike = follow(&input, INFINITY, 3);
   double most = apart(full.instants, alike.period.approach[0], full.approach[0], 0);
   ok(most < 1e-11 && alike.period.failures == 0,
-     "springs without deviations: the approach of the full contact (%.1e m)", most);
+     "followed without deviations: the approach of the full contact (%.1e m)", most);
   close_to(alike.period.most_load[0].value / full.most_load[0].value, 1, 1e-6, "the largest load of a pair");
   close_to(alike.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6, "the largest pressure");
   ok(apart(alike.stretch.instants, alike.stretch.approach[0], alike.period.approach[0], 0) < 1e-11 &&
@@ -433,16 +433,51 @@ static void test_springs_alike(void)
   for (int i = 0; i < GEAR; i++)
     table[0][0][i] = (struct eo_tooth_deviation){.index = 5e-6};
   input.tooth[0][0] = table[0][0];
-  struct sketched forward = sketch(&input, 0);
+  struct followed forward = follow(&input, INFINITY, 0);
   most = apart(full.instants, forward.period.approach[0], full.approach[0], -5e-6 * normal);
   ok(most < 1e-11, "a constant moves Z by -F cos alpha_t cos beta_b and nothing else (%.1e m)", most);
-  sketched_done(&forward);
-  sketched_done(&alike);
+  followed_done(&forward);
+  followed_done(&alike);
   eo_hunting_done(&full);
 }
 
-/* Drawn teeth, with forms of their own on one member. */
-static void test_springs_drawn(void)
+static double stiffness_off(const struct eo_hunting *a, const struct eo_hunting *b)
+{
+  double sum = 0;
+  for (int i = 0; i < a->instants; i++)
+    sum += pow(a->tangent[0][i] / b->tangent[0][i] - 1, 2) / a->instants;
+  return sqrt(sum);
+}
+
+/* Teeth that stand apart by more than they are deflected: with more solutions what is between them comes nearer. */
+static void test_followed_drawn(void)
+{
+  draw_tables(6e-6, 3e-6);
+  struct eo_hunting_input input = plain_input(1);
+  put_tables(&input);
+  struct eo_hunting full = run(&input);
+  struct followed rough = follow(&input, INFINITY, 0), fine = follow(&input, 2e-9, 0);
+  double swing = swing_of(&full), far = sqrt(mean_square(&rough.period, &full)),
+         near = sqrt(mean_square(&fine.period, &full)),
+         worst = apart(full.instants, fine.period.approach[0], full.approach[0], 0);
+  ok(far < 0.005 * swing, "three solutions of each pair: %.1f nm off a swing of %.2f um (root mean square)", 1e9 * far,
+     1e6 * swing);
+  ok(near < far / 3 && near < 5e-9 && worst < 2e-7, "solutions within 2 nm: %.2f nm off, %.1f nm at most", 1e9 * near,
+     1e9 * worst);
+  ok(stiffness_off(&fine.period, &full) < 0.01 &&
+         stiffness_off(&fine.period, &full) < stiffness_off(&rough.period, &full),
+     "the stiffness is %.3f %% off, of three solutions %.3f %%", 100 * stiffness_off(&fine.period, &full),
+     100 * stiffness_off(&rough.period, &full));
+  close_to(swing_of(&fine.period) / swing, 1, 5e-4, "the swing over the period");
+  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 2e-3, "the largest load of a tooth");
+  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 5e-3, "its largest pressure");
+  followed_done(&rough);
+  followed_done(&fine);
+  eo_hunting_done(&full);
+}
+
+/* Forms of their own on one member are taken at their mean. */
+static void test_followed_forms(void)
 {
   draw_tables(6e-6, 3e-6);
   for (int i = 0; i < GEAR; i++) {
@@ -452,26 +487,26 @@ static void test_springs_drawn(void)
   struct eo_hunting_input input = plain_input(1);
   put_tables(&input);
   struct eo_hunting full = run(&input);
-  struct sketched drawn = sketch(&input, 0);
+  struct followed drawn = follow(&input, INFINITY, 0);
   double swing = swing_of(&full), off = sqrt(mean_square(&drawn.period, &full)),
          load = drawn.period.most_load[0].value / full.most_load[0].value,
          pressure = drawn.period.most_pressure[0].value / full.most_pressure[0].value;
-  ok(drawn.period.failures == 0 && off < 0.01 * swing, "springs are %.3f um off a swing of %.2f um (root mean square)",
+  ok(drawn.period.failures == 0 && off < 0.01 * swing, "with forms %.3f um off a swing of %.2f um (root mean square)",
      1e6 * off, 1e6 * swing);
   close_to(swing_of(&drawn.period) / swing, 1, 0.01, "the swing over the period");
   close_to(load, 1, 0.03, "the largest load of a tooth");
   close_to(pressure, 1, 0.05, "the largest pressure of a tooth");
   struct eo_hunting_input few = input;
   few.positions = POSITIONS / 4;
-  struct sketched seldom = sketch(&few, 2);
+  struct followed seldom = follow(&few, INFINITY, 2);
   double most = 0;
   for (int i = 0; i < seldom.period.instants; i++)
     most = fmax(most, fabs(seldom.period.approach[0][i] - drawn.period.approach[0][4 * i]));
   ok(most < 1e-10, "fewer positions: the same numbers there (%.1e m)", most);
   ok(apart(seldom.stretch.instants, seldom.stretch.approach[0], drawn.period.approach[0], 0) < 1e-10,
      "and a stretch has all of them");
-  sketched_done(&seldom);
-  sketched_done(&drawn);
+  followed_done(&seldom);
+  followed_done(&drawn);
   eo_hunting_done(&full);
 }
 
@@ -487,8 +522,9 @@ int main(void)
   test_forms();
   test_one_full_tooth();
   test_fewer_positions();
-  test_springs_alike();
-  test_springs_drawn();
+  test_followed_alike();
+  test_followed_drawn();
+  test_followed_forms();
   close_bench();
   return tap_done();
 }

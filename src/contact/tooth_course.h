@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How the contact of one mesh position goes on as one pair of teeth is moved away from the others: solutions at a few
+   nodes of its distance, and all between them. */
+#ifndef EASEOFF_CONTACT_TOOTH_COURSE_H
+#define EASEOFF_CONTACT_TOOTH_COURSE_H
+
+#include <stdbool.h>
+
+/* PAIRS: at once, that teeth of a ring are coupled over, and more. */
+enum { EO_COURSE_PAIRS = 32, EO_COURSE_NODES = 33 };
+
+/* What a solution leaves, or what stands between two. Of pairs in their order. */
+struct eo_course_state {
+  double approach, tangent;                                                      /* Z, m; k_tan, N/m */
+  double load[EO_COURSE_PAIRS], share[EO_COURSE_PAIRS], square[EO_COURSE_PAIRS]; /* N; of 1 N more, and so dZ/dw; of the
+                                                                                    largest pressure, Pa2 */
+};
+
+struct eo_tooth_course {
+  int mover; /* pair that is moved */
+  int nodes;
+  double at[EO_COURSE_NODES]; /* m, ascending */
+  struct eo_course_state state[EO_COURSE_NODES];
+  double bend[EO_COURSE_NODES]; /* slope of k_tan at the nodes */
+};
+
+/* Makes room for a node and returns its state; NULL: there is none left. */
+struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, double at);
+
+/* Slopes of what has none of its own, once all nodes are there. */
+void eo_tooth_course_settle(struct eo_tooth_course *course);
+
+/* All of it there, of so many pairs: approach and tangent by cubics, the others straight between the nodes. loads: with
+   load and square. */
+void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, double at, bool loads,
+                          struct eo_course_state *state);
+
+/* The same where another pair moves as well: across[course->nodes] are the courses of that one from the nodes of this.
+ */
+void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,
+                           double at, double other, bool loads, struct eo_course_state *state);
+
+#endif

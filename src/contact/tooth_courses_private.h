@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One position of the mesh cycle with its courses, shared by the files that make it and go through the period. */
+#ifndef EASEOFF_CONTACT_TOOTH_COURSES_PRIVATE_H
+#define EASEOFF_CONTACT_TOOTH_COURSES_PRIVATE_H
+
+#include "contact/hunting.h"
+#include "contact/tooth_course.h"
+
+/* One position of the mesh cycle of an end. */
+struct eo_follow_place {
+  int j;                                          /* of the grid */
+  int pairs, first;                               /* first: number of the first pair */
+  int leader;                                     /* carries most where all teeth are alike */
+  double touch[EO_COURSE_PAIRS];                  /* least gap of a pair, m; INFINITY: it is not there */
+  struct eo_course_state alike;                   /* where all pairs stand as they do without deviations */
+  int courses;                                    /* of pairs that can carry beside the leader */
+  struct eo_tooth_course course[EO_COURSE_PAIRS]; /* [courses], that of the pair that carries most first */
+  struct eo_tooth_course across[EO_COURSE_NODES]; /* of the second one's pair, from the nodes of the first */
+  bool crossed;                                   /* they are there */
+};
+
+struct eo_follow {
+  const struct eo_hunting_input *input;
+  double within;
+  int end, places, step;       /* of a mesh cycle, step of the grid's positions apart */
+  int teeth[2], cycles, lines; /* of the hunting period; pairs at most */
+  bool formed;                 /* teeth of the end have forms of their own */
+  int failures;
+  struct eo_loaded_workspace *workspace;
+  struct eo_loaded_end solved;
+  double *gap;            /* [points of the grid] with a pair moved away */
+  double *start, *weight; /* [most points] line loads of teeth alike; share of the load of its pair */
+  double *share;          /* [most points] of 1 N more */
+  double *off[2];         /* [member]: [teeth] what each adds to the gap of the pair at hand */
+  double *apart;          /* [lines][cycles] gap of each pair, m */
+  struct eo_follow_place place;
+};
+
+/* Makes the courses of a place: step times `at` of the grid's positions. From the place before where there is one. */
+void eo_follow_prepare(struct eo_follow *follow, int at);
+
+/* Contact there in a cycle of the hunting period. loads: with load and square. */
+void eo_follow_find(const struct eo_follow *follow, int cycle, bool loads, struct eo_course_state *state);
+
+#endif

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <string.h>
+
+#include "contact/tooth_courses_private.h"
+
+enum { MOST = EO_COURSE_PAIRS };
+
+static const struct eo_contact_grid *grid_of(const struct eo_follow *follow)
+{
+  return follow->input->grid[follow->end];
+}
+
+static const struct eo_contact_position *position_of(const struct eo_follow *follow)
+{
+  return &grid_of(follow)->position[follow->place.j];
+}
+
+static void number_pairs(struct eo_follow_place *place, const struct eo_contact_position *position)
+{
+  int last = position->line[0].pair;
+  place->first = last;
+  for (int l = 1; l < position->lines; l++) {
+    place->first = position->line[l].pair < place->first ? position->line[l].pair : place->first;
+    last = position->line[l].pair > last ? position->line[l].pair : last;
+  }
+  place->pairs = last - place->first + 1;
+}
+
+static void find_touches(struct eo_follow *follow)
+{
+  struct eo_follow_place *place = &follow->place;
+  const struct eo_contact_position *position = position_of(follow);
+  for (int k = 0; k < place->pairs; k++)
+    place->touch[k] = INFINITY;
+  for (int l = 0; l < position->lines; l++) {
+    int k = position->line[l].pair - place->first;
+    for (int i = position->line[l].first; i < position->line[l].first + position->line[l].cells; i++)
+      place->touch[k] = fmin(place->touch[k], follow->gap[position->first + i]);
+  }
+}
+
+/* Moves a pair away from where the flanks are without deviations. */
+static void move_pair(struct eo_follow *follow, int k, double by)
+{
+  const struct eo_contact_position *position = position_of(follow);
+  const double *gap = follow->input->gap[follow->end] + position->first;
+  for (int l = 0; l < position->lines; l++)
+    for (int i = position->line[l].first;
+         position->line[l].pair - follow->place.first == k && i < position->line[l].first + position->line[l].cells;
+         i++)
+      follow->gap[position->first + i] = gap[i] + by;
+}
+
+/* Solves the position with the gaps at hand. */
+static void solve(struct eo_follow *follow, struct eo_course_state *state)
+{
+  const struct eo_contact_grid *grid = grid_of(follow);
+  const struct eo_contact_position *position = position_of(follow);
+  int j = follow->place.j;
+  eo_loaded_resolve(follow->workspace, grid, follow->gap, follow->input->compliance_factor, j,
+                    follow->input->load[follow->end], &follow->solved);
+  eo_loaded_last_shares(follow->workspace, position, follow->share);
+  memset(state, 0, sizeof *state);
+  state->approach = follow->solved.approach[j];
+  state->tangent = follow->solved.tangent[j];
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
+    int k = line->pair - follow->place.first;
+    for (int i = line->first; i < line->first + line->cells; i++) {
+      double q = follow->solved.line_load[position->first + i],
+             pressure = q > 0 ? eo_loaded_pressure(grid, q, position->radius[i]) : 0;
+      state->load[k] += q * position->length[i];
+      state->share[k] += follow->share[i];
+      state->square[k] = fmax(state->square[k], pressure * pressure);
+    }
+  }
+}
+
+/* Puts what lines of the same teeth carry at another position, zero where they are not there, in the place of this
+   one's solution. */
+static void go_on_from(struct eo_follow *follow, int from)
+{
+  const struct eo_contact_position *position = position_of(follow), *before = &grid_of(follow)->position[from];
+  double *load = follow->solved.line_load;
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l], *same = NULL;
+    for (int i = 0; i < before->lines && !same; i++)
+      if (before->line[i].pair == line->pair && before->line[i].kind == line->kind &&
+          before->line[i].cells == line->cells)
+        same = &before->line[i];
+    size_t bytes = sizeof *load * (size_t)line->cells;
+    if (same)
+      memcpy(load + position->first + line->first, load + before->first + same->first, bytes);
+    else
+      memset(load + position->first + line->first, 0, bytes);
+  }
+  follow->solved.approach[follow->place.j] = follow->solved.approach[from];
+}
+
+/* Teeth alike: with their solution where it can be gone on from. */
+static void solve_alike(struct eo_follow *follow, int at)
+{
+  struct eo_follow_place *place = &follow->place;
+  const struct eo_contact_position *position = position_of(follow);
+  size_t bytes = sizeof(double) * (size_t)position->points;
+  memcpy(follow->gap + position->first, follow->input->gap[follow->end] + position->first, bytes);
+  if (at > 0)
+    go_on_from(follow, place->j - follow->step);
+  else
+    memset(follow->solved.line_load + position->first, 0, bytes);
+  solve(follow, &place->alike);
+  memcpy(follow->start, follow->solved.line_load + position->first, bytes);
+  place->leader = 0;
+  for (int k = 1; k < place->pairs; k++)
+    place->leader = place->alike.load[k] > place->alike.load[place->leader] ? k : place->leader;
+}
+
+/* Begins from teeth alike. */
+static void go_back(struct eo_follow *follow)
+{
+  const struct eo_contact_position *position = position_of(follow);
+  memcpy(follow->solved.line_load + position->first, follow->start, sizeof(double) * (size_t)position->points);
+  follow->solved.approach[follow->place.j] = follow->place.alike.approach;
+}
+
+/* Where on its flanks a pair carries: as with teeth alike, evenly where it carries nothing. */
+static void weigh(struct eo_follow *follow)
+{
+  const struct eo_follow_place *place = &follow->place;
+  const struct eo_contact_position *position = position_of(follow);
+  int cells[MOST] = {0};
+  for (int l = 0; l < position->lines; l++)
+    cells[position->line[l].pair - place->first] += position->line[l].cells;
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
+    int k = line->pair - place->first;
+    for (int i = line->first; i < line->first + line->cells; i++)
+      follow->weight[i] = place->alike.load[k] > 0 ? follow->start[i] * position->length[i] / place->alike.load[k]
+                                                   : 1. / cells[k];
+  }
+}
+
+/* What 1 m of each deviation of a member's tooth adds to the gap of a pair, where that carries. */
+static struct eo_tooth_deviation unit_gaps(const struct eo_follow *follow, int k, int member)
+{
+  static const struct eo_tooth_deviation UNIT[] = {
+      {.index = 1}, {.profile_slope = 1}, {.helix_slope = 1}, {.profile_crowning = 1}, {.lead_crowning = 1}};
+  const struct eo_contact_grid *grid = grid_of(follow);
+  const struct eo_contact_position *position = position_of(follow);
+  double sum[5] = {0};
+  for (int l = 0; l < position->lines; l++) {
+    const struct eo_contact_line *line = &position->line[l];
+    for (int i = line->first; line->pair - follow->place.first == k && i < line->first + line->cells; i++)
+      for (int term = 0; term < 5 && (follow->formed || (term == 0 && sum[0] == 0)); term++) {
+        const struct eo_tooth_deviation *tooth[2] = {NULL, NULL};
+        tooth[member] = &UNIT[term];
+        double gap = eo_hunting_gap(&grid->geometry, &position->point[i], follow->input->inwards, tooth);
+        sum[term] = term == 0 ? gap : sum[term] + follow->weight[i] * gap;
+      }
+  }
+  return (struct eo_tooth_deviation){sum[0], sum[1], sum[2], sum[3], sum[4]};
+}
+
+static int wrap(int number, int by)
+{
+  int rest = number % by;
+  return rest < 0 ? rest + by : rest;
+}
+
+/* Gap of a pair in every cycle. */
+static void set_apart(struct eo_follow *follow, int k)
+{
+  const struct eo_hunting_input *input = follow->input;
+  double *apart = follow->apart + (size_t)k * (size_t)follow->cycles;
+  memset(apart, 0, sizeof *apart * (size_t)follow->cycles);
+  for (int member = 0; member < 2 && !isinf(follow->place.touch[k]); member++) {
+    const struct eo_tooth_deviation *tooth = input->tooth[follow->end][member];
+    int teeth = follow->teeth[member], number = wrap(-follow->place.first - k, teeth);
+    if (!tooth)
+      continue;
+    struct eo_tooth_deviation unit = unit_gaps(follow, k, member);
+    for (int i = 0; i < teeth; i++)
+      follow->off[member][i] = unit.index * tooth[i].index + unit.profile_slope * tooth[i].profile_slope +
+                               unit.helix_slope * tooth[i].helix_slope +
+                               unit.profile_crowning * tooth[i].profile_crowning +
+                               unit.lead_crowning * tooth[i].lead_crowning;
+    for (int n = 0; n < follow->cycles; n++, number = number + 1 < teeth ? number + 1 : 0)
+      apart[n] += follow->off[member][number];
+  }
+}
+
+/* How far a solution is off what its neighbours let expect, m: its approach, and how that would answer to a tenth more
+   of the load. */
+static double off_of(const struct eo_follow *follow, const struct eo_course_state *found,
+                     const struct eo_course_state *guess)
+{
+  double more = follow->input->load[follow->end] / 10;
+  return fmax(fabs(found->approach - guess->approach), more * fabs(1 / found->tangent - 1 / guess->tangent));
+}
+
+/* Halves a stretch of a course, and its halves while what is half way is too far off what was expected. */
+static void refine(struct eo_follow *follow, struct eo_tooth_course *course, double from, double to, int depth)
+{
+  double at = (from + to) / 2;
+  struct eo_course_state guess;
+  eo_tooth_course_settle(course);
+  eo_tooth_course_find(course, 0, at, false, &guess);
+  struct eo_course_state *state = eo_tooth_course_add(course, at);
+  if (!state)
+    return;
+  move_pair(follow, course->mover, at);
+  solve(follow, state);
+  if (depth == 0 || off_of(follow, state, &guess) <= follow->within)
+    return;
+  refine(follow, course, at, to, depth - 1);
+  refine(follow, course, from, at, depth - 1);
+}
+
+/* How far a pair is from the leader over the period, and nothing between. */
+static void find_range(const struct eo_follow *follow, int k, double range[2])
+{
+  const double *apart = follow->apart + (size_t)k * (size_t)follow->cycles,
+               *leader = follow->apart + (size_t)follow->place.leader * (size_t)follow->cycles;
+  range[0] = range[1] = 0;
+  for (int n = 0; n < follow->cycles; n++) {
+    range[0] = fmin(range[0], apart[n] - leader[n]);
+    range[1] = fmax(range[1], apart[n] - leader[n]);
+  }
+}
+
+/* A pair carries, or would where it is nearest. */
+static bool is_reached(const struct eo_follow *follow, int k, const struct eo_course_state *state,
+                       const double range[2])
+{
+  return range[1] > range[0] && (state->load[k] > 0 || follow->place.touch[k] + range[0] < state->approach);
+}
+
+/* Solves where a pair is nearest, farthest, and on the way as often as it takes; from a state in which it stands as it
+   does without deviations. */
+static void make_course(struct eo_follow *follow, struct eo_tooth_course *course, int k,
+                        const struct eo_course_state *from)
+{
+  enum { DEPTH = 3 }; /* halves at most: as many nodes as there are */
+  double range[2];
+  find_range(follow, k, range);
+  course->mover = k;
+  course->nodes = 0;
+  *eo_tooth_course_add(course, 0) = *from;
+  for (int i = 0; i < 2 && is_reached(follow, k, from, range); i++) {
+    if (range[i] == 0)
+      continue;
+    go_back(follow);
+    move_pair(follow, k, range[i]);
+    solve(follow, eo_tooth_course_add(course, range[i]));
+    if (isfinite(follow->within))
+      refine(follow, course, fmin(range[i], 0), fmax(range[i], 0), DEPTH);
+  }
+  move_pair(follow, k, 0);
+  eo_tooth_course_settle(course);
+}
+
+/* Of the second pair, with the first where its nodes are. */
+static void make_across(struct eo_follow *follow)
+{
+  struct eo_follow_place *place = &follow->place;
+  const struct eo_tooth_course *first = &place->course[0];
+  for (int i = 0; i < first->nodes; i++) {
+    move_pair(follow, first->mover, first->at[i]);
+    make_course(follow, &place->across[i], place->course[1].mover, &first->state[i]);
+  }
+  move_pair(follow, first->mover, 0);
+}
+
+/* Courses of the pairs that can carry beside the leader, those that carry more first. */
+static void make_courses(struct eo_follow *follow)
+{
+  struct eo_follow_place *place = &follow->place;
+  int mover[MOST], movers = 0;
+  for (int k = 0; k < place->pairs; k++) {
+    double range[2];
+    find_range(follow, k, range);
+    if (k == place->leader || !is_reached(follow, k, &place->alike, range))
+      continue;
+    int i = movers++;
+    for (; i > 0 && place->alike.load[mover[i - 1]] < place->alike.load[k]; i--)
+      mover[i] = mover[i - 1];
+    mover[i] = k;
+  }
+  place->courses = movers;
+  place->crossed = movers > 1 && isfinite(follow->within);
+  for (int i = 0; i < movers; i++)
+    if (i != 1 || !place->crossed)
+      make_course(follow, &place->course[i], mover[i], &place->alike);
+    else
+      place->course[i] = (struct eo_tooth_course){.mover = mover[i]};
+  if (place->crossed)
+    make_across(follow);
+}
+
+void eo_follow_prepare(struct eo_follow *follow, int at)
+{
+  struct eo_follow_place *place = &follow->place;
+  place->j = at * follow->step;
+  number_pairs(place, position_of(follow));
+  solve_alike(follow, at);
+  find_touches(follow);
+  if (follow->formed)
+    weigh(follow);
+  for (int k = 0; k < place->pairs; k++)
+    set_apart(follow, k);
+  make_courses(follow);
+}
+
+/* What a course adds to teeth alike, with what it and the others bend each other, to first order. */
+static void add_course(const struct eo_follow *follow, int c, const struct eo_course_state *moved, const double *apart,
+                       bool loads, struct eo_course_state *state)
+{
+  const struct eo_follow_place *place = &follow->place;
+  size_t cycles = (size_t)follow->cycles;
+  double lead = apart[(size_t)place->leader * cycles];
+  state->approach += moved->approach - place->alike.approach;
+  state->tangent += moved->tangent - place->alike.tangent;
+  for (int other = 0; other < place->courses && place->courses > 1; other++) {
+    int k = place->course[other].mover;
+    if (other != c && !(place->crossed && c + other == 1))
+      state->approach += (moved->share[k] - place->alike.share[k]) * (apart[(size_t)k * cycles] - lead) / 2;
+  }
+  for (int k = 0; k < place->pairs && loads; k++) {
+    state->load[k] += moved->load[k] - place->alike.load[k];
+    state->square[k] += moved->square[k] - place->alike.square[k];
+  }
+}
+
+void eo_follow_find(const struct eo_follow *follow, int cycle, bool loads, struct eo_course_state *state)
+{
+  const struct eo_follow_place *place = &follow->place;
+  const double *apart = follow->apart + cycle;
+  size_t cycles = (size_t)follow->cycles;
+  double lead = apart[(size_t)place->leader * cycles];
+  int pairs = place->courses > 1 ? place->pairs : 0;
+  *state = place->alike;
+  state->approach += lead; /* theory (P6) */
+  for (int c = 0; c < place->courses; c++) {
+    const struct eo_tooth_course *course = &place->course[c];
+    double at = apart[(size_t)course->mover * cycles] - lead;
+    struct eo_course_state moved;
+    if (c == 1 && place->crossed)
+      continue;
+    if (c == 0 && place->crossed)
+      eo_tooth_course_cross(course, place->across, pairs, at, apart[(size_t)place->course[1].mover * cycles] - lead,
+                            loads, &moved);
+    else
+      eo_tooth_course_find(course, pairs, at, loads, &moved);
+    add_course(follow, c, &moved, apart, loads, state);
+  }
+}
