@@ -67,7 +67,7 @@ static enum eo_code weigh_points(struct eo_root_tables *tables, int member, stru
 {
   const struct eo_contact_grid *grid = tables->grid;
   const struct eo_root_modes *modes = tables->modes[member];
-  size_t stride = (size_t)eo_root_modes_stride(modes), far = (size_t)eo_root_modes_remote_stride(modes);
+  size_t stride = (size_t)eo_root_modes_stride(modes, EO_ROOT_ALL), far = (size_t)eo_root_modes_remote_stride(modes);
   tables->own[member] = eo_gram_allocate((long)(((size_t)grid->points * stride + 1) / 2));
   tables->remote[member] = far ? eo_gram_allocate((long)(((size_t)grid->points * far + 1) / 2)) : NULL;
   if (!tables->own[member] || (far && !tables->remote[member]))
@@ -217,7 +217,8 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
     return eo_error_memory(error);
   ws->tables = tables;
   for (int member = 0; member < 2; member++) {
-    long own = eo_root_modes_stride(tables->modes[member]), all = eo_root_modes_stress_stride(tables->modes[member]);
+    long own = eo_root_modes_stride(tables->modes[member], EO_ROOT_ALL),
+         all = eo_root_modes_stress_stride(tables->modes[member]);
     stride = own > stride ? own : stride;
     length = all > length ? all : length;
   }
@@ -284,51 +285,72 @@ static double largest_principal(int nodes, const float *stress, int *where)
   return largest;
 }
 
-/* What the tooth itself carries, of all ends at one position after the other: they read the same rows. */
-static void add_own(struct eo_root_workspace *ws, int member, int tooth, int ends,
+/* Positions of a tooth's mesh, first .. last - 1 of those that count, over which it may carry load itself, or others
+   alone do; as coefficients of that. */
+struct stretch {
+  int first, last;
+  enum eo_root_carriers carriers;
+};
+
+/* stretch[3]: before, while and after the tooth can touch. */
+static void find_stretches(const struct eo_root_tables *tables, int tooth, int step, struct stretch *stretch)
+{
+  const int *present = tables->present + 2 * (tooth - tables->first_pair);
+  int count = counted(tables, step), first = (present[0] + step - 1) / step, last = (present[1] + step - 1) / step;
+  stretch[0] = (struct stretch){0, first, EO_ROOT_OTHERS};
+  stretch[1] = (struct stretch){first, last, EO_ROOT_ALL};
+  stretch[2] = (struct stretch){last, count, EO_ROOT_OTHERS};
+}
+
+/* What the tooth itself carries, of all ends at one position after the other: they read the same rows.
+   coefficient[ends][positions of the stretch][stride]. */
+static void add_own(struct eo_root_workspace *ws, int member, int tooth, const struct stretch *stretch, int ends,
                     const struct eo_root_loads *const *loads)
 {
   const struct eo_root_tables *tables = ws->tables;
   const struct eo_root_modes *modes = tables->modes[member];
-  int stride = eo_root_modes_stride(modes), step = loads[0]->step, count = counted(tables, step);
-  for (int j = 0; j < count; j++) {
-    const struct eo_contact_position *position = &tables->grid->position[j * step];
+  int stride = eo_root_modes_stride(modes, EO_ROOT_ALL), step = loads[0]->step, rows = stretch->last - stretch->first;
+  for (int j = 0; j < rows; j++) {
+    const struct eo_contact_position *position = &tables->grid->position[(stretch->first + j) * step];
     for (int l = 0; l < position->lines; l++) {
       const struct eo_contact_line *line = &position->line[l];
       int first = position->first + line->first;
       for (int e = 0; e < ends && line->pair == tooth; e++)
         eo_root_modes_add(modes, line->cells, loads[e]->force + first,
                           tables->own[member] + (size_t)first * (size_t)stride, stride,
-                          ws->coefficient + (size_t)(e * count + j) * (size_t)stride);
+                          ws->coefficient + (size_t)(e * rows + j) * (size_t)stride);
     }
   }
 }
 
 /* What the others carry, each while it can touch. */
-static void add_others(struct eo_root_workspace *ws, int member, int tooth, int ends,
+static void add_others(struct eo_root_workspace *ws, int member, int tooth, const struct stretch *stretch, int ends,
                        const struct eo_root_loads *const *loads)
 {
   const struct eo_root_tables *tables = ws->tables;
   const struct eo_root_modes *modes = tables->modes[member];
-  int reach = eo_root_modes_reach(modes), step = loads[0]->step, count = counted(tables, step);
-  size_t stride = (size_t)eo_root_modes_stride(modes), far = (size_t)eo_root_modes_remote_stride(modes);
+  int reach = eo_root_modes_reach(modes), step = loads[0]->step, rows = stretch->last - stretch->first;
+  size_t stride = (size_t)eo_root_modes_stride(modes, stretch->carriers),
+         far = (size_t)eo_root_modes_remote_stride(modes);
   for (int pair = tables->first_pair; pair < tables->first_pair + tables->pairs; pair++) {
     const int *present = tables->present + 2 * (pair - tables->first_pair);
     int first = (present[0] + step - 1) / step, last = (present[1] + step - 1) / step;
+    first = first > stretch->first ? first : stretch->first;
+    last = last < stretch->last ? last : stretch->last;
     for (int e = 0; e < ends && first < last && pair != tooth && abs(pair - tooth) <= reach; e++)
-      eo_root_modes_pass(modes, pair - tooth, last - first,
+      eo_root_modes_pass(modes, stretch->carriers, pair - tooth, last - first,
                          remote_of(loads[e], tables, member, pair) + (size_t)first * far,
-                         ws->coefficient + (size_t)(e * count + first) * stride);
+                         ws->coefficient + (size_t)(e * rows + first - stretch->first) * stride);
   }
 }
 
 /* Largest stress, and its node, at `rows` positions. */
-static void read_rows(struct eo_root_workspace *ws, int member, int rows, const float *coefficient, double *stress,
-                      struct eo_root_peak *peak)
+static void read_rows(struct eo_root_workspace *ws, int member, enum eo_root_carriers carriers, int rows,
+                      const float *coefficient, double *stress, struct eo_root_peak *peak)
 {
   const struct eo_root_modes *modes = ws->tables->modes[member];
   int nodes = eo_root_modes_nodes(modes), stride = eo_root_modes_stress_stride(modes);
-  eo_root_modes_stress(modes, rows, coefficient, ws->stress);
+  eo_root_modes_stress(modes, carriers, rows, coefficient, ws->stress);
   for (int j = 0; j < rows; j++) {
     int node = 0;
     stress[j] = largest_principal(nodes, ws->stress + (size_t)j * (size_t)stride, &node);
@@ -337,25 +359,43 @@ static void read_rows(struct eo_root_workspace *ws, int member, int rows, const 
   }
 }
 
+/* A stretch of a tooth whose histories begin at `start`. */
+static void compute_stretch(struct eo_root_workspace *ws, int member, int tooth, const struct stretch *stretch,
+                            int ends, const struct eo_root_loads *const *loads, struct eo_root_history *const *history,
+                            int start, struct eo_root_peak *peak)
+{
+  size_t stride = (size_t)eo_root_modes_stride(ws->tables->modes[member], stretch->carriers);
+  int rows = stretch->last - stretch->first;
+  memset(ws->coefficient, 0, sizeof *ws->coefficient * (size_t)(ends * rows) * stride);
+  if (stretch->carriers == EO_ROOT_ALL)
+    add_own(ws, member, tooth, stretch, ends, loads);
+  add_others(ws, member, tooth, stretch, ends, loads);
+  for (int e = 0; e < ends; e++)
+    for (int j = 0; j < rows; j += ROWS)
+      read_rows(ws, member, stretch->carriers, rows - j < ROWS ? rows - j : ROWS,
+                ws->coefficient + (size_t)(e * rows + j) * stride, history[e]->stress + start + stretch->first + j,
+                &peak[e]);
+}
+
 void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, int ends,
                            const struct eo_root_loads *const *loads, struct eo_root_history *const *history,
                            struct eo_root_peak *peak)
 {
   const struct eo_root_tables *tables = ws->tables;
   const struct eo_contact_grid *grid = tables->grid;
-  int step = loads[0]->step, count = counted(tables, step), first = (tooth - tables->first_pair) * count;
-  size_t stride = (size_t)eo_root_modes_stride(tables->modes[member]);
-  memset(ws->coefficient, 0, sizeof *ws->coefficient * (size_t)(ends * count) * stride);
-  add_own(ws, member, tooth, ends, loads);
-  add_others(ws, member, tooth, ends, loads);
+  int step = loads[0]->step, count = counted(tables, step), start = (tooth - tables->first_pair) * count;
+  struct stretch stretch[3];
   for (int e = 0; e < ends; e++) {
     peak[e] = (struct eo_root_peak){0};
-    for (int j = 0; j < count; j++)
-      history[e]->phase[first + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
-    for (int j = 0; j < count; j += ROWS)
-      read_rows(ws, member, count - j < ROWS ? count - j : ROWS, ws->coefficient + (size_t)(e * count + j) * stride,
-                history[e]->stress + first + j, &peak[e]);
+    for (int j = 0; j < count; j++) {
+      history[e]->phase[start + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
+      history[e]->stress[start + j] = 0; /* of others that do not count */
+    }
   }
+  find_stretches(tables, tooth, step, stretch);
+  for (int i = 0; i < 3; i++)
+    if (stretch[i].first < stretch[i].last && eo_root_modes_stride(tables->modes[member], stretch[i].carriers) > 0)
+      compute_stretch(ws, member, tooth, &stretch[i], ends, loads, history, start, peak);
 }
 
 void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root,

@@ -10,17 +10,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Shapes of the stress, and what makes their coefficients of the loads on other teeth. */
+struct shapes {
+  int rank, stride; /* stride: rank, padded with zeros as the kernel wants it */
+  float *passed;    /* [2 reach + 1][remote_rank][stride]: coefficients that `remote` makes, by distance */
+  float *shape;     /* [rank][shape_stride]: [EO_STRESSES][nodes] */
+};
+
 struct eo_root_modes {
   const struct eo_flank_table *table;
   int reach; /* loads on pairs k - reach .. k + reach count */
   const struct eo_gram *gram;
-  int member, rank, length;       /* length = nodes x EO_STRESSES */
-  int rank_stride, shape_stride;  /* rank and length, padded with zeros as the kernel wants them */
-  int remote_rank, remote_stride; /* of the loads on other teeth; 0: they do not count */
-  float *own;                     /* [flank.points][rank_stride]: coefficients of the shapes */
-  float *remote;                  /* [next.points][remote_stride] */
-  float *passed;                  /* [2 reach + 1][remote_rank][rank_stride]: those that `remote` makes, by distance */
-  float *shape;                   /* [rank][shape_stride]: [EO_STRESSES][nodes] */
+  int member, length, shape_stride;       /* length = nodes x EO_STRESSES; padded */
+  int remote_rank, remote_stride;         /* of the loads on other teeth; 0: they do not count */
+  struct shapes shapes[EO_ROOT_CARRIERS]; /* [carrier]; those of the others alone are few */
+  float *own;                             /* [flank.points][stride of EO_ROOT_ALL]: coefficients of the shapes */
+  float *remote;                          /* [next.points][remote_stride] */
 };
 
 /* Influence rows below each other, Pa/N, from the root's first point on: those of the tooth itself, then those of the
@@ -28,8 +33,13 @@ struct eo_root_modes {
 struct influence {
   int own, remote, others; /* rows: of the tooth itself, of one other tooth; how many others there are */
   int rows, length;
-  double *row;  /* [rows][length] */
-  double *gram; /* [rows][rows]: their products */
+  double *row;                      /* [rows][length] */
+  double *gram;                     /* [rows][rows]: their products, until the modes are found */
+  double *others_gram;              /* those of the others alone, until then */
+  double *far;                      /* [remote][remote]: products over all distances, until the numbers are found */
+  double largest;                   /* of the products */
+  double *factor[EO_ROOT_CARRIERS]; /* of what a carrier's rows are in its shapes: [its rows][stride] */
+  int factor_stride[EO_ROOT_CARRIERS];
 };
 
 static int behind_or_ahead(const struct eo_root_modes *modes, int other)
@@ -45,15 +55,34 @@ static void copy_rows(const struct eo_root_modes *modes, int ahead_by, size_t sk
     memcpy(to, row, sizeof *to * (size_t)modes->length);
 }
 
+/* What is needed of the products once the modes have taken their place. */
+static void copy_products(struct influence *influence)
+{
+  size_t n = (size_t)influence->remote, rows = (size_t)influence->rows, own = (size_t)influence->own;
+  for (size_t i = 0; i < rows; i++)
+    influence->largest = fmax(influence->largest, influence->gram[i * rows + i]);
+  for (size_t i = own; i < rows; i++)
+    memcpy(influence->others_gram + (i - own) * (rows - own), influence->gram + i * rows + own,
+           sizeof *influence->gram * (rows - own));
+  for (int other = 0; other < influence->others; other++) {
+    size_t first = own + (size_t)other * n;
+    for (size_t i = 0; i < n * n; i++)
+      influence->far[i] += influence->gram[(first + i / n) * rows + first + i % n];
+  }
+}
+
 static enum eo_code stack_rows(struct influence *influence, const struct eo_root_modes *modes, size_t skip,
                                struct eo_error *error)
 {
   int others = 2 * modes->reach, own = modes->table->flank.points, remote = modes->table->next.points;
   size_t rows = (size_t)own + (size_t)others * (size_t)remote, length = (size_t)modes->length;
-  *influence = (struct influence){own, remote, others, (int)rows, modes->length, NULL, NULL};
+  *influence =
+      (struct influence){.own = own, .remote = remote, .others = others, .rows = (int)rows, .length = modes->length};
   influence->row = malloc(sizeof(double) * rows * length);
   influence->gram = malloc(sizeof(double) * rows * rows);
-  if (!influence->row || !influence->gram)
+  influence->others_gram = malloc(sizeof(double) * (rows - (size_t)own) * (rows - (size_t)own) + 1);
+  influence->far = calloc((size_t)remote * (size_t)remote + 1, sizeof(double));
+  if (!influence->row || !influence->gram || !influence->others_gram || !influence->far)
     return eo_error_memory(error);
   copy_rows(modes, 0, skip, influence->row);
   for (int i = 0; i < others; i++)
@@ -61,6 +90,7 @@ static enum eo_code stack_rows(struct influence *influence, const struct eo_root
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, influence->rows, influence->rows, influence->length, 1,
               influence->row, influence->length, influence->row, influence->length, 0, influence->gram,
               influence->rows);
+  copy_products(influence);
   return EO_OK;
 }
 
@@ -102,105 +132,105 @@ static enum eo_code fit(int rows, int rank, int stride, const double *factor, in
   return code;
 }
 
-static enum eo_code fit_shapes(struct eo_root_modes *modes, const struct influence *influence, int stride,
-                               const double *factor, struct eo_error *error)
+/* Of squares, of the largest influence there is; of the others less, since several carry at once. */
+static const double TOLERANCE[EO_ROOT_CARRIERS] = {[EO_ROOT_ALL] = 3e-6, [EO_ROOT_OTHERS] = 3e-7};
+
+static int first_row(const struct influence *influence, enum eo_root_carriers carriers)
 {
-  int rank = modes->rank;
-  size_t length = (size_t)modes->length, size = (size_t)rank * length;
-  double *shape = malloc(sizeof *shape * size);
-  modes->shape_stride = padded(modes->length);
-  modes->shape = make_floats(rank, modes->shape_stride);
-  enum eo_code code = shape && modes->shape ? EO_OK : eo_error_memory(error);
+  return carriers == EO_ROOT_ALL ? 0 : influence->own;
+}
+
+static enum eo_code fit_shapes(struct eo_root_modes *modes, const struct influence *influence,
+                               enum eo_root_carriers carriers, struct eo_error *error)
+{
+  struct shapes *shapes = &modes->shapes[carriers];
+  size_t length = (size_t)modes->length, size = (size_t)shapes->rank * length;
+  int first = first_row(influence, carriers);
+  double *shape = malloc(sizeof *shape * size + 1);
+  shapes->shape = make_floats(shapes->rank, modes->shape_stride);
+  enum eo_code code = shape && shapes->shape ? EO_OK : eo_error_memory(error);
   if (!code)
-    code = fit(influence->rows, rank, stride, factor, modes->length, modes->length, influence->row, shape, error);
+    code = fit(influence->rows - first, shapes->rank, influence->factor_stride[carriers], influence->factor[carriers],
+               modes->length, modes->length, influence->row + (size_t)first * length, shape, error);
   for (size_t i = 0; !code && i < size; i++) {
     size_t row = i / length, node = i % length / EO_STRESSES, part = i % EO_STRESSES;
-    modes->shape[row * (size_t)modes->shape_stride + part * (length / EO_STRESSES) + node] = (float)shape[i];
+    shapes->shape[row * (size_t)modes->shape_stride + part * (length / EO_STRESSES) + node] = (float)shape[i];
   }
   free(shape);
   return code;
 }
 
-/* Of squares, of the largest influence there is. */
-static const double TOLERANCE = 3e-6;
-
-static double largest_diagonal(const struct influence *influence)
+/* gram: the products of the carriers' rows; destroyed. */
+static enum eo_code find_shapes(struct eo_root_modes *modes, struct influence *influence,
+                                enum eo_root_carriers carriers, double *gram, struct eo_error *error)
 {
-  double largest = 0;
-  for (size_t i = 0, n = (size_t)influence->rows; i < n; i++)
-    largest = fmax(largest, influence->gram[i * n + i]);
-  return largest;
+  struct shapes *shapes = &modes->shapes[carriers];
+  int rows = influence->rows - first_row(influence, carriers);
+  double most = 0;
+  for (size_t i = 0; i < (size_t)rows; i++)
+    most = fmax(most, gram[i * (size_t)rows + i]);
+  EO_TRY(eo_lowrank_factor(rows, gram, fmin(TOLERANCE[carriers] * influence->largest / most, 0.5), &shapes->rank,
+                           &influence->factor_stride[carriers], &influence->factor[carriers], error));
+  shapes->stride = padded(shapes->rank);
+  return fit_shapes(modes, influence, carriers, error);
 }
 
-/* gram[remote][remote]: products of the influences that a point of another tooth has, over all distances. */
-static void add_remote_products(const struct influence *influence, double *gram)
+/* What each distance makes of the remote numbers, in coefficients of the shapes. */
+static enum eo_code fit_distances(struct eo_root_modes *modes, const struct influence *influence,
+                                  enum eo_root_carriers carriers, int remote_stride, const double *remote,
+                                  struct eo_error *error)
 {
-  size_t n = (size_t)influence->remote, rows = (size_t)influence->rows;
-  memset(gram, 0, sizeof *gram * n * n);
-  for (int other = 0; other < influence->others; other++) {
-    size_t first = (size_t)influence->own + (size_t)other * n;
-    for (size_t i = 0; i < n * n; i++)
-      gram[i] += influence->gram[(first + i / n) * rows + first + i % n];
-  }
-}
-
-/* What each distance makes of the remote numbers, in coefficients of the shapes: factor[rows][stride]. */
-static enum eo_code fit_distances(struct eo_root_modes *modes, const struct influence *influence, int remote_stride,
-                                  const double *remote, int stride, const double *factor, struct eo_error *error)
-{
-  int rank = modes->remote_rank;
-  double *x = malloc(sizeof *x * (size_t)rank * (size_t)modes->rank);
-  modes->passed = make_floats((2 * modes->reach + 1) * rank, modes->rank_stride);
-  enum eo_code code = x && modes->passed ? EO_OK : eo_error_memory(error);
+  struct shapes *shapes = &modes->shapes[carriers];
+  int rank = modes->remote_rank, stride = influence->factor_stride[carriers],
+      first = influence->own - first_row(influence, carriers);
+  double *x = malloc(sizeof *x * (size_t)rank * (size_t)shapes->rank);
+  shapes->passed = make_floats((2 * modes->reach + 1) * rank, shapes->stride);
+  enum eo_code code = x && shapes->passed ? EO_OK : eo_error_memory(error);
   for (int other = 0; other < influence->others && !code; other++) {
-    const double *of_other = factor + (size_t)(influence->own + other * influence->remote) * (size_t)stride;
+    const double *of_other = influence->factor[carriers] + (size_t)(first + other * influence->remote) * (size_t)stride;
     int distance = behind_or_ahead(modes, other) + modes->reach;
-    code = fit(influence->remote, rank, remote_stride, remote, modes->rank, stride, of_other, x, error);
-    for (int i = 0; i < rank * modes->rank && !code; i++)
-      modes->passed[(size_t)(distance * rank + i / modes->rank) * (size_t)modes->rank_stride + i % modes->rank] =
+    code = fit(influence->remote, rank, remote_stride, remote, shapes->rank, stride, of_other, x, error);
+    for (int i = 0; i < rank * shapes->rank && !code; i++)
+      shapes->passed[(size_t)(distance * rank + i / shapes->rank) * (size_t)shapes->stride + i % shapes->rank] =
           (float)x[i];
   }
   free(x);
   return code;
 }
 
-/* Numbers that tell the loads on other teeth apart as far as the shapes do: left out is as little. largest: of the
-   products of all influences. */
-static enum eo_code find_remote(struct eo_root_modes *modes, const struct influence *influence, double largest,
-                                int stride, const double *factor, struct eo_error *error)
+/* Numbers that tell the loads on other teeth apart as far as the shapes do: left out is as little. */
+static enum eo_code find_remote(struct eo_root_modes *modes, const struct influence *influence, struct eo_error *error)
 {
   size_t n = (size_t)influence->remote;
-  double *gram = malloc(sizeof *gram * n * n), *remote = NULL, most = 0;
-  int remote_stride = 0;
-  if (!gram)
-    return eo_error_memory(error);
-  add_remote_products(influence, gram);
+  double *remote = NULL, most = 0;
+  int stride = 0;
   for (size_t i = 0; i < n; i++)
-    most = fmax(most, gram[i * n + i]);
-  enum eo_code code = eo_lowrank_factor((int)n, gram, fmin(1e-8 * largest / most, 0.5), &modes->remote_rank,
-                                        &remote_stride, &remote, error);
+    most = fmax(most, influence->far[i * n + i]);
+  enum eo_code code = eo_lowrank_factor((int)n, influence->far, fmin(1e-8 * influence->largest / most, 0.5),
+                                        &modes->remote_rank, &stride, &remote, error);
   modes->remote_stride = padded(modes->remote_rank);
   if (!code)
-    code = keep_rows(&modes->remote, (int)n, modes->remote_rank, remote_stride, remote, modes->remote_stride, error);
-  if (!code)
-    code = fit_distances(modes, influence, remote_stride, remote, stride, factor, error);
-  free(gram);
+    code = keep_rows(&modes->remote, (int)n, modes->remote_rank, stride, remote, modes->remote_stride, error);
+  for (int carriers = 0; carriers < EO_ROOT_CARRIERS && !code; carriers++)
+    code = fit_distances(modes, influence, (enum eo_root_carriers)carriers, stride, remote, error);
   free(remote);
   return code;
 }
 
 /* skip: stresses before the root's first point. */
-static enum eo_code find_modes(struct eo_root_modes *modes, size_t skip, struct influence *influence, double **factor,
+static enum eo_code find_modes(struct eo_root_modes *modes, size_t skip, struct influence *influence,
                                struct eo_error *error)
 {
-  int stride = 0;
+  const struct shapes *shapes = &modes->shapes[EO_ROOT_ALL];
+  modes->shape_stride = padded(modes->length);
   EO_TRY(stack_rows(influence, modes, skip, error));
-  double largest = largest_diagonal(influence);
-  EO_TRY(eo_lowrank_factor(influence->rows, influence->gram, TOLERANCE, &modes->rank, &stride, factor, error));
-  modes->rank_stride = padded(modes->rank);
-  EO_TRY(fit_shapes(modes, influence, stride, *factor, error));
-  EO_TRY(keep_rows(&modes->own, influence->own, modes->rank, stride, *factor, modes->rank_stride, error));
-  return modes->reach ? find_remote(modes, influence, largest, stride, *factor, error) : EO_OK;
+  EO_TRY(find_shapes(modes, influence, EO_ROOT_ALL, influence->gram, error));
+  EO_TRY(keep_rows(&modes->own, influence->own, shapes->rank, influence->factor_stride[EO_ROOT_ALL],
+                   influence->factor[EO_ROOT_ALL], shapes->stride, error));
+  if (!modes->reach)
+    return EO_OK;
+  EO_TRY(find_shapes(modes, influence, EO_ROOT_OTHERS, influence->others_gram, error));
+  return find_remote(modes, influence, error);
 }
 
 enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_flexibility *flexibility, int member,
@@ -209,7 +239,6 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   struct eo_root root = eo_flexibility_root(flexibility, member);
   struct eo_root_modes *modes = calloc(1, sizeof *modes);
   struct influence influence = {0};
-  double *factor = NULL;
   if (!modes)
     return eo_error_memory(error);
   modes->table = &flexibility->table[member];
@@ -217,11 +246,13 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   modes->gram = eo_gram_select();
   modes->member = member;
   modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
-  enum eo_code code = find_modes(modes, (size_t)root.first * (root.layers + 1) * EO_STRESSES, &influence, &factor,
-                                 error);
+  enum eo_code code = find_modes(modes, (size_t)root.first * (root.layers + 1) * EO_STRESSES, &influence, error);
   free(influence.row);
   free(influence.gram);
-  free(factor);
+  free(influence.others_gram);
+  free(influence.far);
+  for (int carriers = 0; carriers < EO_ROOT_CARRIERS; carriers++)
+    free(influence.factor[carriers]);
   if (code)
     eo_root_modes_free(modes);
   else
@@ -235,8 +266,10 @@ void eo_root_modes_free(struct eo_root_modes *modes)
     return;
   free(modes->own);
   free(modes->remote);
-  free(modes->passed);
-  free(modes->shape);
+  for (int carriers = 0; carriers < EO_ROOT_CARRIERS; carriers++) {
+    free(modes->shapes[carriers].passed);
+    free(modes->shapes[carriers].shape);
+  }
   free(modes);
 }
 
@@ -245,9 +278,9 @@ int eo_root_modes_reach(const struct eo_root_modes *modes)
   return modes->reach;
 }
 
-int eo_root_modes_stride(const struct eo_root_modes *modes)
+int eo_root_modes_stride(const struct eo_root_modes *modes, enum eo_root_carriers carriers)
 {
-  return modes->rank_stride;
+  return modes->shapes[carriers].stride;
 }
 
 int eo_root_modes_remote_stride(const struct eo_root_modes *modes)
@@ -281,7 +314,7 @@ static void weigh(const struct eo_grid *grid, double s, double eta, int stride, 
 
 void eo_root_modes_own(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *own)
 {
-  weigh(&modes->table->flank, point->s[modes->member], point->eta, modes->rank_stride, modes->own, own);
+  weigh(&modes->table->flank, point->s[modes->member], point->eta, modes->shapes[EO_ROOT_ALL].stride, modes->own, own);
 }
 
 void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_flank_point *point, float *remote)
@@ -295,17 +328,20 @@ void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *fo
   modes->gram->multiply(1, n, stride, force, n, row, stride, true, sum, stride);
 }
 
-void eo_root_modes_pass(const struct eo_root_modes *modes, int ahead_by, int count, const float *remote,
-                        float *coefficient)
+void eo_root_modes_pass(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int ahead_by, int count,
+                        const float *remote, float *coefficient)
 {
-  long size = (long)modes->remote_rank * modes->rank_stride;
+  const struct shapes *shapes = &modes->shapes[carriers];
+  long size = (long)modes->remote_rank * shapes->stride;
   int distance = ahead_by + modes->reach;
-  modes->gram->multiply(count, modes->remote_rank, modes->rank_stride, remote, modes->remote_stride,
-                        modes->passed + distance * size, modes->rank_stride, true, coefficient, modes->rank_stride);
+  modes->gram->multiply(count, modes->remote_rank, shapes->stride, remote, modes->remote_stride,
+                        shapes->passed + distance * size, shapes->stride, true, coefficient, shapes->stride);
 }
 
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const float *coefficient, float *stress)
+void eo_root_modes_stress(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
+                          const float *coefficient, float *stress)
 {
-  modes->gram->multiply(count, modes->rank, modes->shape_stride, coefficient, modes->rank_stride, modes->shape,
+  const struct shapes *shapes = &modes->shapes[carriers];
+  modes->gram->multiply(count, shapes->rank, modes->shape_stride, coefficient, shapes->stride, shapes->shape,
                         modes->shape_stride, false, stress, modes->shape_stride);
 }

@@ -9,6 +9,9 @@
 
 #include "flexibility/flexibility.h"
 
+/* Whose loads the coefficients are of: shapes of what the others carry alone are a quarter as many. */
+enum eo_root_carriers { EO_ROOT_ALL, EO_ROOT_OTHERS, EO_ROOT_CARRIERS };
+
 struct eo_root_modes; /* constant once made; borrows the flexibility */
 
 /* Error of the stress under distributed flank loads below about 1e-3 of the largest. Errors: memory, EO_ERROR_NUMERIC.
@@ -17,8 +20,9 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **modes, const struct eo_fle
                                struct eo_error *error);
 void eo_root_modes_free(struct eo_root_modes *modes);
 
-int eo_root_modes_reach(const struct eo_root_modes *modes);  /* teeth on either side whose loads count */
-int eo_root_modes_stride(const struct eo_root_modes *modes); /* floats of the coefficients of a distribution */
+int eo_root_modes_reach(const struct eo_root_modes *modes); /* teeth on either side whose loads count */
+/* Floats of the coefficients of a distribution; 0 of others that do not count. */
+int eo_root_modes_stride(const struct eo_root_modes *modes, enum eo_root_carriers carriers);
 int eo_root_modes_remote_stride(
     const struct eo_root_modes *modes); /* floats of what other teeth carry; 0: none counts */
 int eo_root_modes_stress_stride(const struct eo_root_modes *modes); /* floats between the stresses of two loads */
@@ -33,16 +37,17 @@ void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_fla
    rows alone, to the last bit, whatever else is asked for. */
 
 /* sum[stride] += what the forces force[n], N, at points are whose own (or remote) rows follow each other in
-   row[n][stride]. stride: that of own or of remote rows. */
+   row[n][stride]. stride: that of own (EO_ROOT_ALL) or of remote rows. */
 void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *force, const float *row, int stride,
                        float *sum);
 
 /* coefficient[count][stride] += that of remote[count][remote stride], the loads of the tooth `ahead_by` pairs ahead,
    not 0, within reach. */
-void eo_root_modes_pass(const struct eo_root_modes *modes, int ahead_by, int count, const float *remote,
-                        float *coefficient);
+void eo_root_modes_pass(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int ahead_by, int count,
+                        const float *remote, float *coefficient);
 
 /* stress[count][stress stride], Pa: [EO_STRESSES][nodes] and zeros, of coefficient[count][stride]. */
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const float *coefficient, float *stress);
+void eo_root_modes_stress(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
+                          const float *coefficient, float *stress);
 
 #endif
