@@ -44,7 +44,8 @@ struct eo_hunting_input {
   double load[2];                               /* P of each end, N */
   double shared_load;                           /* P per end of a held pinion, N */
   struct eo_axial_hold hold;
-  const struct eo_root_tables *root[2]; /* [end]; NULL: no root stress */
+  const struct eo_root_tables *root[2];     /* [end]; NULL: no root stress */
+  struct eo_loaded_workspace *workspace[2]; /* [end] lent to eo_hunting_follow(), of the grid; NULL: it makes one */
   int threads;
 };
 

@@ -24,7 +24,8 @@ static void look_at(const struct eo_follow *follow, const struct eo_course_state
 {
   for (int k = 0; k < follow->place.pairs; k++) {
     raise_to(&hunting->most_load[follow->end], follow->end, state->load[k]);
-    raise_to(&hunting->most_pressure[follow->end], follow->end, sqrt(fmax(0, state->square[k])));
+    if (state->square[k] > hunting->most_pressure[follow->end].value * hunting->most_pressure[follow->end].value)
+      raise_to(&hunting->most_pressure[follow->end], follow->end, sqrt(state->square[k]));
   }
 }
 
@@ -106,13 +107,13 @@ static enum eo_code make_room(struct eo_follow *follow, struct eo_hunting *perio
 
 static void grid_done(struct eo_follow *follow)
 {
-  eo_loaded_workspace_free(follow->workspace);
+  eo_loaded_workspace_free(follow->own);
   eo_loaded_end_done(&follow->solved);
   free(follow->gap);
   free(follow->start);
   free(follow->weight);
   free(follow->share);
-  follow->workspace = NULL;
+  follow->workspace = follow->own = NULL;
 }
 
 static enum eo_code grid_begin(struct eo_follow *follow, struct eo_error *error)
@@ -123,7 +124,10 @@ static enum eo_code grid_begin(struct eo_follow *follow, struct eo_error *error)
   follow->start = make_numbers(grid->most_points, &complete);
   follow->weight = make_numbers(grid->most_points, &complete);
   follow->share = make_numbers(grid->most_points, &complete);
-  EO_TRY(eo_loaded_workspace_new(&follow->workspace, grid, error));
+  follow->workspace = follow->input->workspace[follow->end];
+  if (!follow->workspace)
+    EO_TRY(eo_loaded_workspace_new(&follow->own, grid, error));
+  follow->workspace = follow->own ? follow->own : follow->workspace;
   EO_TRY(eo_loaded_end_init(&follow->solved, grid, error));
   return complete ? EO_OK : eo_error_memory(error);
 }

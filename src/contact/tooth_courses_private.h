@@ -26,7 +26,7 @@ struct eo_follow {
   int teeth[2], cycles, lines; /* of the hunting period; pairs at most */
   bool formed;                 /* teeth of the end have forms of their own */
   int failures;
-  struct eo_loaded_workspace *workspace;
+  struct eo_loaded_workspace *workspace, *own; /* own: where none is lent */
   struct eo_loaded_end solved;
   double *gap;            /* [points of the grid] with a pair moved away */
   double *start, *weight; /* [most points] line loads of teeth alike; share of the load of its pair */

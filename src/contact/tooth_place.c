@@ -222,11 +222,14 @@ static void find_range(const struct eo_follow *follow, int k, double range[2])
 {
   const double *apart = follow->apart + (size_t)k * (size_t)follow->cycles,
                *leader = follow->apart + (size_t)follow->place.leader * (size_t)follow->cycles;
-  range[0] = range[1] = 0;
+  double low = 0, high = 0;
   for (int n = 0; n < follow->cycles; n++) {
-    range[0] = fmin(range[0], apart[n] - leader[n]);
-    range[1] = fmax(range[1], apart[n] - leader[n]);
+    double from = apart[n] - leader[n];
+    low = from < low ? from : low;
+    high = from > high ? from : high;
   }
+  range[0] = low;
+  range[1] = high;
 }
 
 /* A pair carries, or would where it is nearest. */
@@ -238,12 +241,10 @@ static bool is_reached(const struct eo_follow *follow, int k, const struct eo_co
 
 /* Solves where a pair is nearest, farthest, and on the way as often as it takes; from a state in which it stands as it
    does without deviations. */
-static void make_course(struct eo_follow *follow, struct eo_tooth_course *course, int k,
+static void make_course(struct eo_follow *follow, struct eo_tooth_course *course, int k, const double range[2],
                         const struct eo_course_state *from)
 {
   enum { DEPTH = 3 }; /* halves at most: as many nodes as there are */
-  double range[2];
-  find_range(follow, k, range);
   course->mover = k;
   course->nodes = 0;
   *eo_tooth_course_add(course, 0) = *from;
@@ -261,13 +262,13 @@ static void make_course(struct eo_follow *follow, struct eo_tooth_course *course
 }
 
 /* Of the second pair, with the first where its nodes are. */
-static void make_across(struct eo_follow *follow)
+static void make_across(struct eo_follow *follow, const double range[2])
 {
   struct eo_follow_place *place = &follow->place;
   const struct eo_tooth_course *first = &place->course[0];
   for (int i = 0; i < first->nodes; i++) {
     move_pair(follow, first->mover, first->at[i]);
-    make_course(follow, &place->across[i], place->course[1].mover, &first->state[i]);
+    make_course(follow, &place->across[i], place->course[1].mover, range, &first->state[i]);
   }
   move_pair(follow, first->mover, 0);
 }
@@ -277,10 +278,10 @@ static void make_courses(struct eo_follow *follow)
 {
   struct eo_follow_place *place = &follow->place;
   int mover[MOST], movers = 0;
+  double range[MOST][2];
   for (int k = 0; k < place->pairs; k++) {
-    double range[2];
-    find_range(follow, k, range);
-    if (k == place->leader || !is_reached(follow, k, &place->alike, range))
+    find_range(follow, k, range[k]);
+    if (k == place->leader || !is_reached(follow, k, &place->alike, range[k]))
       continue;
     int i = movers++;
     for (; i > 0 && place->alike.load[mover[i - 1]] < place->alike.load[k]; i--)
@@ -291,11 +292,11 @@ static void make_courses(struct eo_follow *follow)
   place->crossed = movers > 1 && isfinite(follow->within);
   for (int i = 0; i < movers; i++)
     if (i != 1 || !place->crossed)
-      make_course(follow, &place->course[i], mover[i], &place->alike);
+      make_course(follow, &place->course[i], mover[i], range[mover[i]], &place->alike);
     else
       place->course[i] = (struct eo_tooth_course){.mover = mover[i]};
   if (place->crossed)
-    make_across(follow);
+    make_across(follow, range[mover[1]]);
 }
 
 void eo_follow_prepare(struct eo_follow *follow, int at)

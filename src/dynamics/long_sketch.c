@@ -97,7 +97,7 @@ static void find_pushes(const struct sketch *sketch, const double deflection[2],
     for (int m = 0; m < sketch->modes; m++)
       x += sketch->mode[m].mesh[end] * (sketch->mode[m].state[0] + sketch->mode[m].still);
     double force = sketch->nominal[end] + tangent[end] * (x - deflection[end]);
-    push[end] = sketch->stiffness * x - fmax(0, force);
+    push[end] = sketch->stiffness * x - (force > 0 ? force : 0);
   }
 }
 

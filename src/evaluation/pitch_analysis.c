@@ -95,7 +95,7 @@ static void arrange(struct work *work, struct eo_case_result *load_case, const s
 static enum eo_code sketch(const struct work *work, const struct eo_hunting_input *input, struct eo_pitch_case *own,
                            struct eo_error *error)
 {
-  enum { TURNS = 3 }; /* of the gear */
+  enum { TURNS = 1 }; /* of the gear */
   int cycles = EO_LONG_SKETCH_LEAD + TURNS * input->grid[EO_LEFT]->geometry.teeth[EO_GEAR];
   return eo_hunting_follow(&own->hunting, &own->stretch, work->question->vibration ? cycles : 0, INFINITY, input,
                            error);
@@ -126,6 +126,8 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
       .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
       .shared_load = load_case->force,
       .hold = eo_meeting_hold(work->evaluator, work->design, load_case),
+      .workspace = {eo_evaluator_workspace(work->evaluator, 0, EO_LEFT),
+                    eo_evaluator_workspace(work->evaluator, 0, EO_RIGHT)},
       .threads = work->question->threads};
   for (int i = 0; i < 4; i++)
     input.tooth[i / 2][i % 2] = work->ordered[i / 2][i % 2];
