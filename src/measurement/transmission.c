@@ -103,6 +103,23 @@ static void measure_speed(struct eo_order_fit *fit)
   result->speed_high = fmax(result->parts.measured.speed_high, result->speed);
 }
 
+/* Rows whose number per turn is a multiple of the teeth: orders beyond half of the rate look like those below it. Said
+   where the lowest of them is one that a pair may well have. */
+static void judge_folding(struct eo_order_fit *fit)
+{
+  double interval = fmax(fit->angles->interval, fit->angles->interpolated.step);
+  int teeth = fit->settings->teeth[EO_PINION];
+  double per_turn = 2 * M_PI / (interval * fit->result->speed);
+  double multiple = round(per_turn / teeth), lowest = multiple - fit->result->harmonics;
+  if (fabs(per_turn - multiple * teeth) * fit->turns < 1 && lowest <= 2 * EO_USUAL_ORDERS)
+    eo_findings_add(
+        fit->findings, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING, -1, per_turn,
+        "%.4g samples per turn of the pinion are %.0f times its %d teeth: the mesh order %.0f looks like order %.0f at "
+        "these rows, and so on down to the first; what the pair has of them is in the orders below. Record at another "
+        "rate.",
+        per_turn, multiple, teeth, lowest, multiple - lowest);
+}
+
 static void judge_axis(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
@@ -136,6 +153,8 @@ static void judge_axis(struct eo_order_fit *fit)
                     result->harmonics ? EO_SEVERITY_WARNING : EO_SEVERITY_REFUSED, -1, per_turn,
                     "%.4g samples per turn of the pinion carry %d mesh orders of %d teeth, not the %d wanted.",
                     per_turn, result->harmonics, fit->settings->teeth[EO_PINION], result->asked);
+  if (result->harmonics)
+    judge_folding(fit);
 }
 
 static enum eo_code add_to_fit(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)

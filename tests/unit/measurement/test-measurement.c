@@ -483,8 +483,9 @@ static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum
 }
 
 /* Rows of a recording brought to `rate` on straight lines, or by the last value, as programs do that export with one
-   time. orders: asked for, 0: the usual ones. */
-static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate, bool last, int orders)
+   time, the first of them `first` rows behind the first one. orders: asked for, 0: the usual ones. */
+static const struct eo_measurement *measure_resampled_from(const struct eo_synthetic *s, double first, double rate,
+                                                           bool last, int orders)
 {
   const struct eo_measurement_settings settings = {
       .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}, .harmonics = orders},
@@ -500,7 +501,7 @@ static const struct eo_measurement *measure_resampled(const struct eo_synthetic 
   if (!code)
     code = eo_recording_new(&resampled, 2, "/tmp", &error);
   eo_synthetic_tracks(s, &own);
-  for (double at = 0; !code && at + 1 < (double)eo_recording_rows(recording); at += s->sample_rate / rate) {
+  for (double at = first; !code && at + 1 < (double)eo_recording_rows(recording); at += s->sample_rate / rate) {
     code = eo_recording_read(recording, (int64_t)at, 2, rows[0], &error);
     way = last ? 0 : at - floor(at);
     for (int i = 0; i < 2; i++) {
@@ -517,6 +518,11 @@ static const struct eo_measurement *measure_resampled(const struct eo_synthetic 
   eo_recording_free(recording);
   eo_recording_free(resampled);
   return &measurement;
+}
+
+static const struct eo_measurement *measure_resampled(const struct eo_synthetic *s, double rate, bool last, int orders)
+{
+  return measure_resampled_from(s, 0, rate, last, orders);
 }
 
 static void check_resampled(void)
@@ -548,6 +554,21 @@ static void check_resampled(void)
      m->transmission.rms_sigma, truth);
 }
 
+/* Rows that are a multiple of the teeth take the orders beyond half of their rate for those below it. */
+static void check_folded_orders(void)
+{
+  struct eo_synthetic s = usual();
+  for (int off = 0; off < 2; off++) {
+    s.sample_rate = (14 * teeth[0] + off * 0.3) * s.speed / (2 * M_PI);
+    const struct eo_measurement *m = measure(&s);
+    bool told = false;
+    for (int i = 0; i < m->findings.count; i++)
+      told = told || strstr(m->findings.finding[i].text, "looks like order");
+    ok(told == !off, "%.4g rows to the turn: orders that are folded in are %s", s.sample_rate * 2 * M_PI / s.speed,
+       off ? "not there" : "named");
+  }
+}
+
 /* What is looked for does not depend on what is asked for, nor on orders that the recorded rows hardly carry. */
 static void check_resampled_orders(void)
 {
@@ -568,6 +589,22 @@ static void check_resampled_orders(void)
        "240 rows per turn brought to %.3g times as many on straight lines are refused", places[i]);
 }
 
+/* At two thirds of the rate the beat changes its sign from row to row: the images on either side of the rate are one,
+   and a quarter of a row from the recorded ones neither images nor noise differ from row to row. */
+static void check_resampled_by_turns(void)
+{
+  static const double places[] = {0, 0.1, 0.25, 0.4, 0.75};
+  for (size_t i = 0; i < sizeof places / sizeof *places; i++)
+    for (int few = 0; few < 2; few++) {
+      struct eo_synthetic s = usual();
+      s.sample_rate *= few ? 0.9 : 1.2;
+      const struct eo_measurement *m = measure_resampled_from(&s, places[i], s.sample_rate / 1.5, false, 0);
+      ok(m->refused && said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
+         "two rows of three from the place %.2g on, %.3g to the turn: refused (RMS %.4f, truth %.4f)", places[i],
+         s.sample_rate / 1.5 * 2 * M_PI / s.speed, m->transmission.rms, eo_synthetic_rms(&s, 8));
+    }
+}
+
 /* Where nothing beats, or too slowly, the noise of neighbouring rows tells. */
 static void check_alike_neighbours(void)
 {
@@ -579,6 +616,14 @@ static void check_alike_neighbours(void)
        "rows brought to %.5g times their rate on straight lines are a question: RMS %.4f, truth %.4f", slow[i],
        m->transmission.rms, eo_synthetic_rms(&s, 8));
   }
+  for (int few = 0; few < 2; few++) {
+    s.sample_rate *= few ? 0.7 : 1;
+    const struct eo_measurement *m = measure_resampled_from(&s, 0.5, s.sample_rate, false, 0);
+    ok(m->refused || said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING),
+       "rows of %.4g Hz on the middle between those that were recorded are a question: RMS %.4f, truth %.4f",
+       s.sample_rate, m->transmission.rms, eo_synthetic_rms(&s, 8));
+  }
+  s = usual();
   s.interpolation = 4;
   s.lines[EO_PINION] = 2048;
   ok(!said(measure(&s), EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "the steps of a coarse encoder are none");
@@ -759,6 +804,8 @@ int main(int argc, char **argv)
   check_parts();
   check_resampled();
   check_resampled_orders();
+  check_resampled_by_turns();
+  check_folded_orders();
   check_alike_neighbours();
   check_half_precision();
   check_rounded_times();
