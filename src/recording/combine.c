@@ -1,105 +1,40 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two recordings of one run are put side by side, each column with the clock of its file. */
 #include "recording/layout_private.h"
+#include "recording/tables.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 4096
-
-static const char *const member_names[2] = {"pinion", "gear"};
-
 struct pair {
   const struct eo_recording *side[2];
-  int columns[2];
-  int64_t rows[2];
   int time[2]; /* column of the times in each file; -1: none */
 };
 
-static enum eo_code look_for_time(struct eo_guess *guess, const char *chosen, int *column, struct eo_error *error)
+static enum eo_code chosen_time(const struct eo_recording *recording, const char *chosen, int *column,
+                                struct eo_error *error)
 {
-  for (int c = 0; c < guess->columns; c++)
-    EO_TRY(eo_column_look(guess->recording, c, &guess->look[c], error));
-  if (chosen)
-    return strcmp(chosen, "none") ? eo_layout_chosen(guess, chosen, "/time", column, error) : EO_OK;
-  if (guess->columns <= 1 || guess->choice->sample_rate > 0)
-    return EO_OK;
-  eo_layout_mark_times(guess);
-  *column = eo_layout_pick_time(guess, guess->columns - 1);
-  if (*column < 0 && !(eo_recording_clock(guess->recording, 0).interval > 0) && guess->look[0].spread < 1e-3 &&
-      guess->look[0].step > 0 && !guess->look[0].resets && !guess->number[0])
-    *column = 0; /* the first of two columns */
-  return EO_OK;
+  struct eo_guess *guess = calloc(1, sizeof *guess);
+  if (!guess)
+    return eo_error_memory(error);
+  guess->recording = recording;
+  guess->columns = eo_recording_columns(recording);
+  enum eo_code code = eo_layout_chosen(guess, chosen, "/time", column, error);
+  free(guess);
+  return code;
 }
 
 /* The column of times in one file, as chosen or found. */
 static enum eo_code find_time(const struct eo_recording *recording, const struct eo_layout_choice *choice,
                               const char *chosen, int *column, struct eo_error *error)
 {
-  static const struct eo_layout_choice none;
-  struct eo_guess *guess = calloc(1, sizeof *guess);
   *column = -1;
-  if (!guess)
-    return eo_error_memory(error);
-  guess->recording = recording;
-  guess->choice = choice ? choice : &none;
-  guess->columns = eo_recording_columns(recording);
-  enum eo_code code = look_for_time(guess, chosen, column, error);
-  free(guess);
-  return code;
-}
-
-/* Names, units, lengths and clocks of one file's columns. */
-static void describe(const struct pair *pair, int side, struct eo_recording *out)
-{
-  const struct eo_recording *recording = pair->side[side];
-  int base = side ? pair->columns[0] : 0;
-  for (int c = 0; c < pair->columns[side]; c++) {
-    char name[EO_RECORDING_NAME + 16];
-    struct eo_clock clock = eo_recording_clock(recording, c);
-    const char *unit = eo_recording_unit(recording, c);
-    bool pulses = pair->columns[side] == 1 && !(clock.interval > 0);
-    if (clock.column < 0 && c != pair->time[side])
-      clock.column = pair->time[side];
-    clock.column += clock.column < 0 ? 0 : base;
-    snprintf(name, sizeof name, "%.40s%s%s", eo_recording_name(recording, c),
-             *eo_recording_name(recording, c) ? " " : "", member_names[side]);
-    eo_recording_set_column(out, base + c, name, pulses && !*unit ? "s" : unit);
-    eo_recording_set_length(out, base + c, eo_recording_length(recording, c));
-    eo_recording_set_clock(out, base + c, &clock);
-    eo_recording_set_turn(out, base + c, eo_recording_turn(recording, c));
-    if (eo_recording_tick(recording) > 0)
-      eo_recording_set_tick(out, eo_recording_tick(recording));
-  }
-}
-
-static enum eo_code copy_rows(const struct pair *pair, struct eo_recording *out, struct eo_error *error)
-{
-  int columns = pair->columns[0] + pair->columns[1], base = 0;
-  int64_t most = pair->rows[0] > pair->rows[1] ? pair->rows[0] : pair->rows[1];
-  double *rows = malloc(BLOCK * (size_t)columns * sizeof *rows),
-         *block = malloc(BLOCK * (size_t)columns * sizeof *block);
-  enum eo_code code = rows && block ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; !code && first < most; first += BLOCK) {
-    int64_t n = most - first < BLOCK ? most - first : BLOCK;
-    base = 0;
-    for (int s = 0; s < 2 && !code; s++) {
-      int64_t left = pair->rows[s] - first, got = left < 0 ? 0 : left < n ? left : n;
-      if (got)
-        code = eo_recording_read(pair->side[s], first, got, block, error);
-      for (int64_t i = 0; i < n; i++)
-        for (int c = 0; c < pair->columns[s]; c++)
-          rows[i * columns + base + c] = i < got ? block[i * pair->columns[s] + c] : NAN;
-      base += pair->columns[s];
-    }
-    if (!code)
-      code = eo_recording_append(out, rows, n, error);
-  }
-  free(rows);
-  free(block);
-  return code;
+  if (chosen)
+    return strcmp(chosen, "none") ? chosen_time(recording, chosen, column, error) : EO_OK;
+  if (choice && choice->sample_rate > 0)
+    return EO_OK;
+  return eo_tables_find_time(recording, column, error);
 }
 
 static int64_t epoch_of(const struct pair *pair, int side)
@@ -109,7 +44,21 @@ static int64_t epoch_of(const struct pair *pair, int side)
 
 static bool is_pulses(const struct pair *pair)
 {
-  return pair->columns[0] == 1 && pair->columns[1] == 1 && !(eo_recording_clock(pair->side[0], 0).interval > 0);
+  return eo_recording_columns(pair->side[0]) == 1 && eo_recording_columns(pair->side[1]) == 1 &&
+         !(eo_recording_clock(pair->side[0], 0).interval > 0);
+}
+
+/* A file of one column without a rate holds times of pulses. */
+static void name_pulses(const struct pair *pair, struct eo_recording *combined)
+{
+  for (int s = 0, base = 0; s < 2; base += eo_recording_columns(pair->side[s++])) {
+    char name[EO_RECORDING_NAME];
+    bool alone = eo_recording_columns(pair->side[s]) == 1 && !(eo_recording_clock(pair->side[s], 0).interval > 0);
+    if (!alone || *eo_recording_unit(combined, base))
+      continue;
+    snprintf(name, sizeof name, "%s", eo_recording_name(combined, base));
+    eo_recording_set_column(combined, base, name, "s");
+  }
 }
 
 /* What the clocks of the two files have to do with each other. */
@@ -129,27 +78,15 @@ enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct e
                                const struct eo_layout_choice *choice, const char *spool_directory,
                                struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error)
 {
+  static const char *const member_names[2] = {"pinion", "gear"};
   struct pair pair = {.side = {pinion, gear}};
-  struct eo_recording *out = NULL;
-  enum eo_code code = EO_OK;
-  for (int s = 0; s < 2 && !code; s++) {
+  for (int s = 0; s < 2; s++) {
     const char *chosen = !choice ? NULL : s && choice->gear_time ? choice->gear_time : choice->time;
-    pair.columns[s] = eo_recording_columns(pair.side[s]);
-    pair.rows[s] = eo_recording_rows(pair.side[s]);
-    code = find_time(pair.side[s], choice, chosen, &pair.time[s], error);
+    EO_TRY(find_time(pair.side[s], choice, chosen, &pair.time[s], error));
   }
-  if (!code)
-    code = eo_recording_new(&out, pair.columns[0] + pair.columns[1], spool_directory, error);
-  if (!code)
-    code = copy_rows(&pair, out, error);
-  if (code) {
-    eo_recording_free(out);
-    return code;
-  }
-  describe(&pair, 0, out);
-  describe(&pair, 1, out);
+  EO_TRY(eo_tables_beside(pair.side, member_names, pair.time, 2, spool_directory, combined, error));
+  name_pulses(&pair, *combined);
   if (!is_pulses(&pair))
     note_clocks(&pair, notes);
-  *combined = out;
   return EO_OK;
 }

@@ -4,6 +4,7 @@
 #include "recording/compound.h"
 #include "recording/isolate.h"
 #include "recording/readers.h"
+#include "recording/tables.h"
 #include "recording/zip_files.h"
 
 #include <fcntl.h>
@@ -289,12 +290,20 @@ static enum eo_code read_kind(const char *path, const struct sign *sign, const s
   return (sign->gzip ? read_inflated : read_series)(reader, path, options, recording, notes, error);
 }
 
+/* Names of the files in an archive. */
+struct names {
+  int count;
+  char name[EO_TABLES][EO_RECORDING_NAME];
+};
+
 /* What the process that unpacks says of it. */
-static enum eo_code take_name(void *context, const struct eo_series *column, int columns, struct eo_error *error)
+static enum eo_code take_names(void *context, const struct eo_series *column, int columns, struct eo_error *error)
 {
-  (void)columns;
+  struct names *names = context;
   (void)error;
-  memcpy(context, column->name, sizeof column->name);
+  names->count = columns < EO_TABLES ? columns : EO_TABLES;
+  for (int i = 0; i < names->count; i++)
+    memcpy(names->name[i], column[i].name, sizeof column[i].name);
   return EO_OK;
 }
 
@@ -307,23 +316,57 @@ static enum eo_code take_no_rows(void *context, const double *rows, int64_t coun
   return EO_OK;
 }
 
-static enum eo_code read_unpacked(const char *path, const char *unpacked, const struct eo_reader_options *options,
-                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_unpacked(const char *path, const char *unpacked, int number, struct names *names,
+                                  const struct eo_reader_options *options, struct eo_recording **recording,
+                                  struct eo_notes *notes, struct eo_error *error)
 {
-  char name[EO_RECORDING_NAME] = "";
   struct eo_reader_options own = *options;
-  struct eo_series_sink sink = {take_name, take_no_rows, name};
+  struct eo_series_sink sink = {take_names, take_no_rows, names};
   struct sign sign = {0};
   own.unpack_to = unpacked;
+  own.unpack_number = number;
   EO_TRY(eo_isolate_read(eo_archive_unpack, path, &own, &sink, notes, error));
   EO_TRY(read_sign(unpacked, &sign, error));
   if (sign.kind == EO_READER_ARCHIVE)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The zip file holds another zip file or a spreadsheet; unpack it.");
-  eo_notes_add(notes, "Read from \"%.60s\" in the archive.", name);
+  eo_notes_add(notes, "Read from \"%.60s\" in the archive.", names->name[number]);
   return read_kind(unpacked, &sign, options, recording, notes, error);
 }
 
-/* One file out of a zip, or one table out of a spreadsheet, is unpacked in a process of its own and then read like any
+/* The name of a file without its folders and its kind. */
+static void set_label(struct eo_table *table, const char *name)
+{
+  const char *base = strrchr(name, '/'), *dot = strrchr(name, '.');
+  base = base ? base + 1 : name;
+  int length = dot > base ? (int)(dot - base) : (int)strlen(base);
+  snprintf(table->label, sizeof table->label, "%.*s", length, base);
+}
+
+/* Every file of the archive that holds a recording is a table of it; others are left out with a word. Where none does,
+   the first says why. */
+static enum eo_code read_files(const char *path, const char *unpacked, const struct eo_reader_options *options,
+                               struct eo_tables *tables, struct eo_notes *notes, struct eo_error *error)
+{
+  struct names names = {.count = 1};
+  struct eo_error first = {0};
+  for (int i = 0; i < names.count; i++) {
+    struct eo_table *table = &tables->table[tables->count];
+    *table = (struct eo_table){0};
+    enum eo_code code = read_unpacked(path, unpacked, i, &names, options, &table->recording, notes, error);
+    if (code && (code != EO_ERROR_INPUT || names.count == 1))
+      return code;
+    if (code)
+      eo_notes_add(notes, "\"%.60s\" in the archive was left out: %.160s", names.name[i], error->text);
+    if (code && !first.code)
+      first = *error;
+    set_label(table, names.name[i]);
+    tables->count += !code;
+  }
+  *error = tables->count ? (struct eo_error){0} : first;
+  return tables->count ? EO_OK : first.code;
+}
+
+/* The files of a zip, or one table out of a spreadsheet, are unpacked in a process of its own and then read like any
    other; archives in archives are not. */
 static enum eo_code read_archive(const char *path, const struct eo_reader_options *options,
                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
@@ -336,8 +379,15 @@ static enum eo_code read_archive(const char *path, const struct eo_reader_option
   if (file < 0)
     return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s.", options->spool_directory);
   close(file);
-  enum eo_code code = read_unpacked(path, unpacked, options, recording, notes, error);
+  struct eo_tables *tables = calloc(1, sizeof *tables);
+  enum eo_code code = tables ? read_files(path, unpacked, options, tables, notes, error) : eo_error_memory(error);
   unlink(unpacked);
+  if (!code) {
+    tables->files = true;
+    code = eo_tables_join(tables, options->spool_directory, recording, notes, error);
+  } else if (tables)
+    eo_tables_free(tables);
+  free(tables);
   return code;
 }
 

@@ -19,7 +19,7 @@ enum eo_reader_kind {
   EO_READER_UFF,    /* universal file, data sets 58 and 58b */
   EO_READER_HDF5,
   EO_READER_MDF,     /* ASAM MDF 4 */
-  EO_READER_ARCHIVE, /* zip with one of these in it, .xlsx, .ods */
+  EO_READER_ARCHIVE, /* zip with files of these kinds in it, .xlsx, .ods */
   EO_READER_KINDS
 };
 
@@ -36,7 +36,8 @@ struct eo_reader_options {
   double seconds;              /* of a processor, for formats that are read in a process of their own; 0: ten minutes */
   struct eo_text_choice text;
   const struct eo_progress *progress; /* NULL: nobody watches */
-  const char *unpack_to;              /* only between the readers: file for what comes out of an archive */
+  const char *unpack_to;              /* only between the readers: file for what comes out of an archive, */
+  int unpack_number;                  /* and which of its files that is, from 0 */
 };
 
 #define EO_READER_BYTES ((int64_t)16 << 30)

@@ -9,6 +9,8 @@
 #define LINES 2000    /* of the head that are looked at */
 #define STEADY_ROWS 5 /* rows after which odd lines do not end a run, */
 #define ODD_LINES 3   /* unless so many follow each other */
+#define TABLE_ROWS 20 /* of numbers alone are a table, unless another has */
+#define TABLE_SHARE 4 /* times as much */
 
 struct line {
   const char *start, *end;
@@ -173,7 +175,8 @@ static struct run find_run(const struct lines *lines, char separator, char point
     fill_shape(&run.shape, &shape);
     run.lines++;
     run.score += shape.points;
-    if (run.score > best.score)
+    bool earlier = run.first != best.first && best.lines >= TABLE_ROWS && !best.shape.text;
+    if (run.score > (earlier ? TABLE_SHARE : 1) * best.score)
       best = run;
   }
   return best;
@@ -317,6 +320,7 @@ static enum eo_code guess_from(struct eo_text_format *format, struct lines *line
                         format->cells, run.first + skipped + 1, EO_RECORDING_COLUMNS);
   format->first_line = run.first + skipped + 1;
   format->first_byte = (size_t)(lines->line[run.first].start - head);
+  format->rows = run.lines;
   return EO_OK;
 }
 

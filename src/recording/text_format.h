@@ -31,6 +31,7 @@ struct eo_text_format {
   enum eo_text_content content[EO_TEXT_CELLS]; /* [cells] */
   int date[EO_TEXT_CELLS];                     /* [cells] of a time of day: place of its date, -1: none */
   int64_t first_line;                          /* of the first row, from 1 */
+  int rows;                                    /* of the head that are known to be rows */
   size_t first_byte;                           /* of the first row, in the text */
   size_t header_byte;                          /* where the header starts: behind a byte order mark */
   struct eo_clock clock[EO_TEXT_CELLS];        /* [cells] as the heading states it */

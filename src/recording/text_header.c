@@ -179,6 +179,15 @@ static void drop_key(const struct eo_text_format *format, struct eo_header_line 
       line->start = at;
 }
 
+/* What looks like a time of day is an angle where the heading gives it the unit of one. */
+static void settle_arcs(struct eo_text_format *format)
+{
+  double factor;
+  for (int c = 0; c < format->cells; c++)
+    if (format->content[c] == EO_TEXT_MOMENT && eo_unit_find(format->unit[c], &factor) == EO_QUANTITY_ANGLE)
+      format->content[c] = EO_TEXT_ARC;
+}
+
 void eo_text_read_header(struct eo_text_format *format, const char *head)
 {
   struct eo_header *header = malloc(sizeof *header);
@@ -198,5 +207,6 @@ void eo_text_read_header(struct eo_text_format *format, const char *head)
   if (names >= 0)
     take_names(format, &header->line[names], header_separator(format, &header->line[names]));
   eo_header_facts(header, format, names);
+  settle_arcs(format);
   free(header);
 }

@@ -3,12 +3,12 @@
 /* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
    numbers are looked at twice. */
 #include "recording/decimal.h"
-#include "recording/moment.h"
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_format.h"
 #include "recording/text_sections.h"
-#include "recording/recorded_unit.h"
+#include "recording/text_tables.h"
+#include "recording/text_values.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +20,8 @@
 #define FAULTS_NAMED 8          /* odd rows that get a note of their own */
 #define FAULTS_FREE 10          /* odd rows that every file may have, */
 #define FAULT_SHARE 100         /* and one in so many rows */
+#define TRIED 64                /* places between rows where another table may begin */
+#define TABLE_ROWS 20           /* behind which one is looked for */
 
 _Static_assert(BLOCK > EO_TEXT_HEAD, "the layout is found in the first block");
 
@@ -33,16 +35,24 @@ struct text {
   int64_t faults; /* rows with cells that are no numbers, or of another length */
   int64_t missing, missing_line;
   int missing_cell;
-  int64_t expected;             /* line of the next row when no line is skipped */
-  int batched, batch_rows;      /* rows in batch, rows that fit */
-  bool based[EO_TEXT_CELLS];    /* [cells] of moments: day and before are known */
-  int64_t day[EO_TEXT_CELLS];   /* from whose beginning moments are counted */
-  double before[EO_TEXT_CELLS]; /* s, the moment of the row before */
+  int64_t kept, table_rows; /* rows so far, of them those of the current table */
+  int64_t expected;         /* line of the next row when no line is skipped */
+  int batched, batch_rows;  /* rows in batch, rows that fit */
+  struct eo_text_moments moments;
   struct eo_text_sections sections;
+  const char *spool_directory;
+  struct eo_tables tables; /* those that are read, and those of channels */
+  struct eo_text_channels channels;
+  char label[EO_RECORDING_NAME]; /* of the current table */
+  bool heading;                  /* the block begins with what may be the heading of another table */
+  int tried;
+  int64_t passed;                     /* line where none began */
+  int64_t first_line;                 /* of the first row of all */
+  struct eo_text_format next;         /* of another table */
   struct eo_cell cell[EO_TEXT_CELLS]; /* of the row that is being read */
   double batch[BATCH];                /* [batched][columns] and the row that is being read */
   size_t filled;                      /* bytes in block */
-  bool ended;                         /* the block holds the end of the file */
+  bool ended, open;                   /* the block holds the end of the file; it has no line end */
   char block[BLOCK + 2];              /* one byte for a line end that the file lacks, one for a final 0 */
 };
 
@@ -58,9 +68,24 @@ static enum eo_code flush(struct text *text, struct eo_error *error)
   return eo_recording_append(text->recording, text->batch, rows, error);
 }
 
+/* Takes the row that was split to the table of its channel. */
+static enum eo_code keep_channel(struct text *text, struct eo_error *error)
+{
+  const struct eo_cell *unit = text->channels.unit < 0 ? NULL : &text->cell[text->channels.unit];
+  struct eo_table *table;
+  EO_TRY(eo_text_channel_table(&text->tables, &text->format, &text->cell[text->channels.cell], unit,
+                               text->spool_directory, &table, error));
+  eo_recording_set_line(table->recording, text->line);
+  return eo_recording_append(table->recording, next_row(text), 1, error);
+}
+
 /* Takes the row that was read to the end of the batch. */
 static enum eo_code keep_row(struct text *text, struct eo_error *error)
 {
+  text->kept++;
+  text->table_rows++;
+  if (text->channels.cell >= 0)
+    return keep_channel(text, error);
   if (text->sections.used) {
     enum eo_code code = eo_text_sections_place(&text->sections, next_row(text), text->line, error);
     if (code)
@@ -81,7 +106,7 @@ static enum eo_code keep_row(struct text *text, struct eo_error *error)
 /* An odd row or cell: said once with its place; too many of them are an error. */
 static enum eo_code add_fault(struct text *text, int cell, const char *what, struct eo_error *error)
 {
-  int64_t rows = eo_recording_rows(text->recording) + text->batched;
+  int64_t rows = text->kept;
   text->faults++;
   if (text->faults > FAULTS_FREE + rows / FAULT_SHARE)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld, column %d: %s; that makes %lld such rows of %lld.",
@@ -121,7 +146,7 @@ static enum eo_code odd_length(struct text *text, int cells, struct eo_error *er
   for (int c = 0; c < text->format.columns; c++)
     row[c] = NAN;
   enum eo_code code = add_fault(text, more ? cells - 1 : cells, what, error);
-  return code ? code : keep_row(text, error);
+  return code || text->channels.cell >= 0 ? code : keep_row(text, error);
 }
 
 /* True when nothing but empty cells follows. */
@@ -134,71 +159,6 @@ static bool only_empty_cells(const char *at, const char *end, char separator)
   return true;
 }
 
-/* A number with a unit behind it, in the unit of the column's first one. */
-static enum eo_cell_kind unit_value(const struct text *text, int c, double *value)
-{
-  char unit[EO_RECORDING_UNIT];
-  double own, first;
-  enum eo_cell_kind kind = eo_text_cell_value(&text->cell[c], text->format.point, value);
-  if (kind != EO_CELL_UNIT)
-    return kind;
-  eo_text_cell_unit(&text->cell[c], text->format.point, unit, (int)sizeof unit);
-  if (eo_unit_find(unit, &own) != eo_unit_find(text->format.unit[c], &first))
-    return EO_CELL_TEXT;
-  *value *= own / first;
-  return EO_CELL_NUMBER;
-}
-
-/* Seconds from the beginning of the first row's day. A time of day without a date goes on over midnight. */
-static enum eo_cell_kind moment_value(struct text *text, int c, double *value)
-{
-  const struct eo_cell *cell = &text->cell[c],
-                       *date = text->format.date[c] < 0 ? NULL : &text->cell[text->format.date[c]];
-  struct eo_moment moment, day;
-  if (!cell->length || !eo_moment_read(cell->text, cell->length, &moment))
-    return eo_text_cell_value(cell, text->format.point, value) == EO_CELL_MISSING ? EO_CELL_MISSING : EO_CELL_TEXT;
-  if (date && eo_moment_read(date->text, date->length, &day) && day.has_day)
-    moment.has_day = true, moment.day = day.day;
-  if (!text->based[c]) {
-    struct eo_clock clock = {.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
-    text->day[c] = moment.day;
-    if (moment.has_day)
-      clock.epoch = moment.day * 86400000000000LL;
-    text->format.clock[c] = clock;
-  }
-  *value = (double)(moment.day - text->day[c]) * EO_MOMENT_DAY + moment.seconds;
-  if (text->based[c] && !moment.has_day) {
-    double turn = moment.minutes ? 3600 : EO_MOMENT_DAY;
-    *value = moment.seconds + (double)text->day[c] * turn; /* whole days, or hours, passed so far */
-    if (*value < text->before[c] - turn / 2) {
-      *value += turn;
-      text->day[c]++;
-    }
-  }
-  text->based[c] = true;
-  text->before[c] = *value;
-  return EO_CELL_NUMBER;
-}
-
-static enum eo_cell_kind cell_value(struct text *text, int c, double *value)
-{
-  *value = NAN;
-  if (text->format.content[c] == EO_TEXT_MOMENT)
-    return moment_value(text, c, value);
-  if (text->format.content[c] == EO_TEXT_UNIT)
-    return unit_value(text, c, value);
-  if (text->format.content[c] == EO_TEXT_ARC &&
-      eo_text_cell_sexagesimal(&text->cell[c], text->format.point, true, value))
-    return EO_CELL_NUMBER;
-  if (text->format.content[c] == EO_TEXT_HEX && eo_text_cell_hex(&text->cell[c], value))
-    return EO_CELL_NUMBER;
-  enum eo_cell_kind kind = eo_text_cell_value(&text->cell[c], text->format.point, value);
-  bool number = kind == EO_CELL_NUMBER || kind == EO_CELL_GROUPED;
-  if (!number)
-    *value = NAN;
-  return number || kind == EO_CELL_MISSING ? kind : EO_CELL_TEXT;
-}
-
 /* Converts the cells of the row that was split; returns the place of the first that is no number, -1: none is. */
 static int convert_cells(struct text *text)
 {
@@ -208,7 +168,7 @@ static int convert_cells(struct text *text)
   for (int c = 0; c < format->cells; c++) {
     if (format->content[c] == EO_TEXT_WORDS || format->content[c] == EO_TEXT_DATE)
       continue;
-    enum eo_cell_kind kind = cell_value(text, c, row++);
+    enum eo_cell_kind kind = eo_text_value(&text->format, &text->moments, text->cell, c, row++);
     if (kind == EO_CELL_MISSING)
       count_missing(text, c);
     if (kind == EO_CELL_TEXT && odd < 0)
@@ -224,8 +184,7 @@ static enum eo_code read_slowly(struct text *text, const char *line, const char 
   const struct eo_text_format *format = &text->format;
   if (eo_text_empty(line, end) || eo_text_comment(line, end, format->separator))
     return EO_OK;
-  if (text->sections.used &&
-      eo_text_sections_take(&text->sections, line, end, eo_recording_rows(text->recording) + text->batched))
+  if (text->sections.used && eo_text_sections_take(&text->sections, line, end, text->kept))
     return EO_OK;
   const char *at = line;
   int c = 0;
@@ -291,13 +250,21 @@ static const char *read_quickly(const struct eo_text_format *format, const char 
   return read_numbers(format, p, format->separator, ',', row);
 }
 
-/* Reads all whole lines of the block and moves what is left to its beginning. */
+static bool may_begin_table(const struct text *text, const char *line, const char *end)
+{
+  bool looked = text->sections.used || text->channels.cell >= 0 || text->table_rows < TABLE_ROWS ||
+                text->tried == TRIED || text->line <= text->passed;
+  return !looked && eo_text_may_begin_table(&text->format, line, end);
+}
+
+/* Reads all whole lines of the block, or those before another table, and moves what is left to its beginning. */
 static enum eo_code read_lines(struct text *text, size_t from, struct eo_error *error)
 {
   char line_end = text->format.line_end;
-  bool open = text->ended && text->filled > from && text->block[text->filled - 1] != line_end;
-  if (open)
+  if (text->ended && text->filled > from && text->block[text->filled - 1] != line_end) {
+    text->open = true;
     text->block[text->filled++] = line_end;
+  }
   const char *at = text->block + from, *end = memrchr(at, line_end, text->filled - from);
   end = end ? end + 1 : at;
   if (end == at && text->filled - from >= BLOCK)
@@ -308,7 +275,11 @@ static enum eo_code read_lines(struct text *text, size_t from, struct eo_error *
     bool quick = last;
     if (!quick)
       last = memchr(at, line_end, (size_t)(end - at));
-    enum eo_code code = quick ? keep_row(text, error) : read_slowly(text, at, last, open && last + 1 == end, error);
+    text->heading = !quick && may_begin_table(text, at, last);
+    if (text->heading)
+      break;
+    bool cut = text->open && text->ended && last + 1 == end;
+    enum eo_code code = quick ? keep_row(text, error) : read_slowly(text, at, last, cut, error);
     if (code)
       return code;
     text->line++;
@@ -316,6 +287,40 @@ static enum eo_code read_lines(struct text *text, size_t from, struct eo_error *
   }
   text->filled -= (size_t)(at - text->block);
   memmove(text->block, at, text->filled);
+  return EO_OK;
+}
+
+static enum eo_code make_recording(struct text *text, struct eo_error *error)
+{
+  const struct eo_text_format *format = &text->format;
+  for (int c = 0; c < format->cells; c++)
+    if (format->content[c] == EO_TEXT_WORDS && c != text->channels.cell && c != text->channels.unit)
+      eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, format->name[c]);
+  text->batch_rows = BATCH / format->columns;
+  if (text->channels.cell >= 0)
+    return EO_OK;
+  EO_TRY(eo_recording_new(&text->recording, format->columns, text->spool_directory, error));
+  eo_text_name_columns(format, text->recording);
+  return EO_OK;
+}
+
+/* The table that was read is one of them. */
+static enum eo_code end_table(struct text *text, struct eo_error *error)
+{
+  if (text->channels.cell >= 0) {
+    for (int i = 0; i < text->tables.count; i++)
+      eo_text_state_columns(&text->format, text->tables.table[i].recording);
+    return EO_OK;
+  }
+  EO_TRY(flush(text, error));
+  eo_text_state_columns(&text->format, text->recording);
+  if (text->tables.count == EO_TABLES)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The text holds more than %d tables; line %lld begins one more.",
+                        EO_TABLES, (long long)text->line);
+  struct eo_table *table = &text->tables.table[text->tables.count++];
+  *table = (struct eo_table){.recording = text->recording};
+  memcpy(table->label, text->label, sizeof table->label);
+  text->recording = NULL;
   return EO_OK;
 }
 
@@ -328,55 +333,54 @@ static enum eo_code fill(struct text *text, struct eo_error *error)
   return code;
 }
 
+/* Looks whether another table begins where the block does, and goes over to it; from: byte of its first row, 0 where
+   none begins. */
+static enum eo_code try_table(struct text *text, size_t *from, struct eo_error *error)
+{
+  struct eo_error none;
+  struct eo_text_choice choice = {0};
+  char label[EO_RECORDING_NAME];
+  *from = 0;
+  text->tried++;
+  text->passed = text->line;
+  if (!text->ended)
+    EO_TRY(fill(text, error));
+  size_t size = text->filled < EO_TEXT_HEAD ? text->filled : EO_TEXT_HEAD;
+  char byte = text->block[size];
+  text->block[size] = '\0';
+  bool other = !eo_text_guess(&text->next, text->block, size, text->ended && size == text->filled, &choice, &none);
+  if (other) {
+    eo_text_read_header(&text->next, text->block);
+    eo_text_table_label(&text->next, text->block, label);
+    other = eo_text_is_other_table(&text->format, text->label, &text->next, label);
+  }
+  text->block[size] = byte;
+  if (!other)
+    return EO_OK;
+  EO_TRY(end_table(text, error));
+  eo_text_inherit_rate(&text->format, &text->next);
+  text->format = text->next;
+  memcpy(text->label, label, sizeof text->label);
+  memset(text->moments.based, 0, sizeof text->moments.based);
+  text->table_rows = 0;
+  text->expected = 0;
+  text->line += text->format.first_line - 1;
+  *from = text->format.first_byte;
+  return make_recording(text, error);
+}
+
 static enum eo_code read_rows(struct text *text, struct eo_error *error)
 {
   enum eo_code code = read_lines(text, text->format.first_byte, error);
-  while (!code && !text->ended) {
+  while (!code && (text->heading || !text->ended)) {
+    size_t from = 0;
     if (eo_progress_report(text->progress, "rig file", eo_source_fraction(text->source)))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
-    code = fill(text, error);
+    code = text->heading ? try_table(text, &from, error) : fill(text, error);
     if (!code)
-      code = read_lines(text, 0, error);
+      code = read_lines(text, from, error);
   }
-  return code ? code : flush(text, error);
-}
-
-/* What looks like a time of day is an angle where the heading gives it the unit of one. */
-static void settle_arcs(struct eo_text_format *format)
-{
-  double factor;
-  for (int c = 0; c < format->cells; c++)
-    if (format->content[c] == EO_TEXT_MOMENT && eo_unit_find(format->unit[c], &factor) == EO_QUANTITY_ANGLE)
-      format->content[c] = EO_TEXT_ARC;
-}
-
-static enum eo_code make_recording(struct text *text, const char *spool_directory, struct eo_error *error)
-{
-  const struct eo_text_format *format = &text->format;
-  enum eo_code code = eo_recording_new(&text->recording, format->columns, spool_directory, error);
-  if (code)
-    return code;
-  for (int c = 0, column = 0; c < format->cells; c++)
-    if (format->content[c] == EO_TEXT_WORDS)
-      eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, format->name[c]);
-    else if (format->content[c] != EO_TEXT_DATE)
-      eo_recording_set_column(text->recording, column++, format->name[c],
-                              format->content[c] == EO_TEXT_MOMENT ? "s" : format->unit[c]);
-  text->batch_rows = BATCH / format->columns;
-  text->line = format->first_line;
-  return EO_OK;
-}
-
-/* What the heading and the moments say of each column's clock and counts. */
-static void state_columns(const struct text *text)
-{
-  const struct eo_text_format *format = &text->format;
-  for (int c = 0, column = 0; c < format->cells; c++)
-    if (format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE) {
-      eo_recording_set_clock(text->recording, column, &format->clock[c]);
-      eo_recording_set_turn(text->recording, column++, format->turn[c]);
-    }
-  eo_recording_set_tick(text->recording, format->tick);
+  return code ? code : end_table(text, error);
 }
 
 static const char *separator_name(char separator)
@@ -391,11 +395,11 @@ static const char *separator_name(char separator)
 static void note_format(const struct text *text)
 {
   const struct eo_text_format *format = &text->format;
-  int64_t rows = eo_recording_rows(text->recording);
+  int64_t rows = text->kept;
   eo_notes_add(text->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.",
                format->cells, format->cells == 1 ? "" : "s", format->cells == 1 ? "" : " separated by ",
                format->cells == 1 ? "" : separator_name(format->separator), format->point == ',' ? "comma" : "point",
-               (long long)rows, (long long)format->first_line);
+               (long long)rows, (long long)text->first_line);
   if (text->missing)
     eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
                  (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,
@@ -418,17 +422,15 @@ static enum eo_code read_text(struct text *text, const struct eo_reader_options 
   if (code)
     return code;
   eo_text_read_header(&text->format, text->block);
-  settle_arcs(&text->format);
   eo_text_sections_find(&text->sections, &text->format, text->block);
+  text->channels = eo_text_find_channels(&text->format, text->block, size);
+  eo_text_table_label(&text->format, text->block, text->label);
   text->block[size] = next;
-  code = make_recording(text, options->spool_directory, error);
-  if (!code)
-    code = read_rows(text, error);
-  if (!code) {
-    state_columns(text);
-    note_format(text);
-  }
-  return code;
+  text->line = text->first_line = text->format.first_line;
+  EO_TRY(make_recording(text, error));
+  EO_TRY(read_rows(text, error));
+  note_format(text);
+  return EO_OK;
 }
 
 enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options,
@@ -439,14 +441,16 @@ enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_
     return eo_error_memory(error);
   memset(text, 0, offsetof(struct text, batch));
   text->filled = 0;
+  text->open = false;
   text->source = source;
   text->progress = options->progress;
   text->notes = notes;
+  text->spool_directory = options->spool_directory;
   enum eo_code code = read_text(text, options, error);
-  if (code)
-    eo_recording_free(text->recording);
-  else
-    *recording = text->recording;
+  if (!code)
+    code = eo_tables_join(&text->tables, options->spool_directory, recording, notes, error);
+  eo_recording_free(text->recording);
+  eo_tables_free(&text->tables);
   free(text);
   return code;
 }

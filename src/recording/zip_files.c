@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/zip_files.h"
 #include "recording/source.h"
+#include "recording/tables.h"
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -14,7 +15,7 @@
 struct contents {
   int files;
   bool workbook, opendocument, numpy;
-  char name[EO_RECORDING_NAME * 2], list[160]; /* the last rig file; some names for people */
+  struct eo_series file[EO_TABLES]; /* names of rig files, the ends of long ones */
 };
 
 static enum eo_code damaged(struct eo_archive *archive)
@@ -89,26 +90,31 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
   if (is_by_the_way(name))
     return true;
   contents->numpy = contents->numpy || (length > 4 && !strcmp(name + length - 4, ".npy"));
-  size_t used = strlen(contents->list);
-  if (contents->files < 4)
-    snprintf(contents->list + used, sizeof contents->list - used, "%s%.30s", used ? ", " : "", name);
+  if (contents->files < EO_TABLES) {
+    size_t most = sizeof contents->file->name - 1;
+    eo_series_init(&contents->file[contents->files], "", 0);
+    snprintf(contents->file[contents->files].name, most + 1, "%s", name + (length > most ? length - most : 0));
+  }
   contents->files++;
-  snprintf(contents->name, sizeof contents->name, "%s", name);
   return contents->files < 10000;
 }
 
 struct copy {
-  const char *name;
+  int number; /* of the file among those that are not by the way */
   FILE *file;
 };
 
 static bool copy_file(void *context, struct eo_archive *archive, const char *name)
 {
-  const struct copy *copy = context;
-  char *bytes = strcmp(name, copy->name) ? NULL : malloc(EO_ARCHIVE_PIECE);
-  int64_t got = 1;
-  if (!bytes)
+  struct copy *copy = context;
+  if (is_by_the_way(name) || copy->number-- > 0)
     return true;
+  char *bytes = malloc(EO_ARCHIVE_PIECE);
+  int64_t got = 1;
+  if (!bytes) {
+    eo_error_memory(archive->error);
+    return false;
+  }
   while (got > 0 && (got = eo_archive_read(archive, bytes, EO_ARCHIVE_PIECE)) > 0)
     if (fwrite(bytes, 1, (size_t)got, copy->file) != (size_t)got) {
       eo_error_set(archive->error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.", strerror(errno));
@@ -118,47 +124,48 @@ static bool copy_file(void *context, struct eo_archive *archive, const char *nam
   return false;
 }
 
-static enum eo_code unpack(struct eo_archive *archive, FILE *file, char *name, size_t size)
+/* One table of a spreadsheet, or one file of a zip; contents: names of all that could be asked for. */
+static enum eo_code unpack(struct eo_archive *archive, int number, FILE *file, struct contents *contents)
 {
-  struct contents contents = {0};
-  enum eo_code code = eo_archive_visit(archive, look, &contents);
-  if (code)
-    return code;
-  if (contents.workbook)
-    return eo_workbook_write(archive, file, name, size);
-  if (contents.opendocument)
-    return eo_opendocument_write(archive, file, name, size);
-  if (contents.numpy)
+  struct copy copy = {number, file};
+  EO_TRY(eo_archive_visit(archive, look, contents));
+  bool sheets = contents->workbook || contents->opendocument;
+  if (!sheets && contents->numpy)
     return eo_error_set(archive->error, EO_ERROR_INPUT, "",
                         "The file is a NumPy archive (.npz); save the arrays as text or .mat (numpy.savetxt, "
                         "scipy.io.savemat).");
-  if (contents.files != 1)
+  if (!sheets && (contents->files < 1 || contents->files > EO_TABLES))
     return eo_error_set(archive->error, EO_ERROR_INPUT, "",
-                        "The zip file holds %d files (%s%s); upload the one with the recording, or zip it alone.",
-                        contents.files, contents.list, contents.files > 4 ? ", ..." : "");
-  snprintf(name, size, "%s", contents.name);
-  struct copy copy = {contents.name, file};
-  return eo_archive_visit(archive, copy_file, &copy);
+                        "The zip file holds %d files; zip those of one recording, %d at most.", contents->files,
+                        EO_TABLES);
+  if (!sheets)
+    return eo_archive_visit(archive, copy_file, &copy);
+  contents->files = 1;
+  eo_series_init(&contents->file[0], "", 0);
+  return contents->workbook
+             ? eo_workbook_write(archive, file, contents->file[0].name, sizeof contents->file[0].name)
+             : eo_opendocument_write(archive, file, contents->file[0].name, sizeof contents->file[0].name);
 }
 
 enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options *options,
                                const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   struct stat state;
-  struct eo_series series;
-  char name[EO_RECORDING_NAME * 2] = "";
-  FILE *file = fopen(options->unpack_to, "w");
+  struct contents *contents = calloc(1, sizeof *contents);
+  FILE *file = contents ? fopen(options->unpack_to, "w") : NULL;
   (void)notes;
   if (!file || stat(path, &state)) {
     if (file)
       fclose(file);
+    free(contents);
     return eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be made in %.200s.", options->unpack_to);
   }
   struct eo_archive archive = {.path = path, .bytes = state.st_size, .limit = options->max_bytes, .error = error};
-  enum eo_code code = unpack(&archive, file, name, sizeof name);
+  enum eo_code code = unpack(&archive, options->unpack_number, file, contents);
   if (fclose(file) && !code)
     code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written.");
-  eo_series_init(&series, "", 0);
-  snprintf(series.name, sizeof series.name, "%.63s", name);
-  return code ? code : sink->begin(sink->context, &series, 1, error);
+  if (!code)
+    code = sink->begin(sink->context, contents->file, contents->files, error);
+  free(contents);
+  return code;
 }

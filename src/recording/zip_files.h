@@ -33,8 +33,8 @@ int64_t eo_archive_read(struct eo_archive *archive, void *bytes, size_t size);
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size);
 enum eo_code eo_opendocument_write(struct eo_archive *archive, FILE *file, char *name, size_t size);
 
-/* Unpacks what is to be read to options->unpack_to; the sink gets one column without rows whose name says what it is.
-   Only by eo_isolate_read. */
+/* Unpacks the file options->unpack_number, or the table of a spreadsheet, to options->unpack_to; the sink gets a column
+   without rows for each file of the archive, with its name. Only by eo_isolate_read. */
 eo_series_reader eo_archive_unpack;
 
 #endif

@@ -88,10 +88,28 @@ static void test_zip(void)
   ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "run/data.csv"), "one file in a zip%s",
      r ? "" : error.text);
   eo_recording_free(r);
-  add("a.csv", "1;2\n3;4\n");
-  add("b.csv", "1;2\n3;4\n");
+  add("README.txt", "Recorded on the rig in March.\n");
+  add("pinion.csv", "t;deg\n0;1.5\n1;2.5\n2;3.5\n");
+  add("gear.csv", "t;deg\n0.5;1\n1.5;2\n2.5;3\n3.5;4\n");
   finish();
-  refuse("holds 2 files (a.csv, b.csv)", "two files in a zip");
+  memset(&notes, 0, sizeof notes);
+  r = take(&notes, &error);
+  ok(r && eo_recording_columns(r) == 4 && eo_recording_rows(r) == 4 && isnan(cell_of(r, 3, 1)) &&
+         cell_of(r, 3, 3) == 4 && strstr(eo_recording_name(r, 1), "pinion") &&
+         strstr(eo_recording_name(r, 3), "gear") && eo_recording_clock(r, 3).column == 2 &&
+         eo_recording_length(r, 1) == 3,
+     "a file for each channel: side by side, each with its times%s", r ? "" : error.text);
+  ok(noted(&notes, "\"README.txt\" in the archive was left out") && noted(&notes, "do not all state when they began"),
+     "what was left out is said, and that each file may count from its own start");
+  eo_recording_free(r);
+  for (int run = 0; run < 2; run++) {
+    char text[4096] = "t;pinion;gear\n", *end = text + strlen(text);
+    for (int i = 0; i < 40; i++)
+      end += sprintf(end, "%d;%d;%d\n", i, 44 * i + i % 3, 17 * i + i % 2);
+    add(run ? "run2.csv" : "run1.csv", text);
+  }
+  finish();
+  refuse("run1 (40 rows), run2 (40 rows)", "two recordings in a zip");
   add("a.zip", "PK\003\004 and so on");
   finish();
   refuse("another zip file", "a zip in a zip");

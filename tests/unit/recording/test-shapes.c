@@ -150,6 +150,90 @@ static void test_negative_arcs(void)
   }
 }
 
+/* One row for each value, with the name of its channel: by turns, each channel with times of its own. */
+static FILE *rows_of_channels(const char *header, const char *format, const char *const name[2], double delay)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / RATE;
+    fprintf(f, format, t, name[0], degrees(pinion(t)));
+    fprintf(f, format, t + delay, name[1], degrees(gear(t + delay)));
+  }
+  return f;
+}
+
+static void test_channels_in_rows(void)
+{
+  static const char *const plain[2] = {"pinion", "gear"}, *const odd[2] = {"ENC1", "ENC2"},
+                           *const number[2] = {"0x101", "0x102"};
+  right(rows_of_channels("time [s],channel,value [deg]\n", "%.9f,%s,%.12g\n", plain, 0), NULL, 1e-7, "side by side",
+        "a column of names");
+  right(rows_of_channels("time [s];Kanal;Wert;Einheit\n", "%.9f;%s;%.12g;deg\n", odd, 1e-4), NULL, 1e-7,
+        "times of their own", "a column of names, one of units, times of their own");
+  right(rows_of_channels("time [s];id;angle [deg]\n", "%.9f;%s;%.12g\n", number, 1e-4), NULL, 1e-7,
+        "times of their own", "a column of numbers");
+  right(rows_of_channels("", "%.9f,%s,%.12g\n", plain, 0), NULL, 1e-3, "side by side", "without a heading");
+  FILE *f = begin("name;t_s;deg\n");
+  for (int m = 1; m >= 0; m--)
+    for (int i = 0; i < ROWS; i++) {
+      double t = i / (m ? 3300 : RATE);
+      fprintf(f, "%s;%.9f;%.12g\n", plain[m], t, degrees(m ? gear(t) : pinion(t)));
+    }
+  right(f, NULL, 2e-6, "times of their own", "one channel after the other, the gear's first");
+  f = begin("t_s;status;pinion_deg;gear_deg;channel\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.9f;%s;%.12g;%.12g;%d\n", i / RATE, i % 50 ? "OK" : "WARN", degrees(pinion(i / RATE)),
+            degrees(gear(i / RATE)), i % 2);
+  right(f, NULL, 1e-7, "in degrees", "words and numbers beside both encoders are no channels");
+}
+
+/* Tables one below the other; first, second: what stands above each. */
+static FILE *stacked(const char *first, const char *second, const char *format, bool times, double rate)
+{
+  FILE *f = begin(first);
+  for (int m = 0; m < 2; m++) {
+    for (int i = 0; i < ROWS; i++) {
+      double t = i / (m ? rate : RATE), angle = degrees(m ? gear(t) : pinion(t));
+      if (times)
+        fprintf(f, format, t, angle);
+      else
+        fprintf(f, format, angle);
+    }
+    fputs(m ? "" : second, f);
+  }
+  return f;
+}
+
+static void test_stacked(void)
+{
+  right(stacked("t_s,pinion_deg\n", "\nt_s,gear_deg\n", "%.9f,%.12g\n", true, 3300), NULL, 2e-6, "times of their own",
+        "tables with names of their own");
+  right(stacked("Channel 1: pinion\ntime_s,angle_deg\n", "Channel 2: gear\ntime_s,angle_deg\n", "%.9f,%.12g\n", true,
+                RATE),
+        NULL, 1e-7, "side by side", "tables with labels");
+  right(stacked("# pinion\n# t [s]  angle [deg]\n", "\n\n# gear\n# t [s]  angle [deg]\n", "%.9f %.12g\n", true, RATE),
+        NULL, 1e-7, "side by side", "blocks with comments above them");
+  right(stacked("Signal;pinion\nUnit;deg\nRate [Hz];4000\n", "\nSignal;gear\nUnit;deg\nRate [Hz];3300\n", "%.12g\n",
+                false, 3300),
+        NULL, 2e-3, "times of their own", "rates instead of times");
+  right(stacked("Sample rate: 4000 Hz\npinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, 1e-7, "side by side",
+        "one rate for both");
+  asked(stacked("pinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, "/sample_rate_Hz", "give one",
+        "no rate at all");
+  for (int way = 0; way < 2; way++) {
+    FILE *f = begin("Table: run 1\nt_s,pinion_deg,gear_deg\n");
+    for (int i = 0; i < ROWS; i++) {
+      if (i == ROWS / 2)
+        fputs(way ? "operator: warm now\n" : "Table: run 2\nt_s,pinion_deg,gear_deg\n", f);
+      fprintf(f, "%.9f,%.12g,%.12g\n", i / RATE, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+    }
+    if (way)
+      right(f, NULL, 1e-7, "left empty", "a remark between rows begins no table");
+    else
+      asked(f, NULL, "", "run 1 (2000 rows), run 2 (2000 rows)", "two tables with both encoders");
+  }
+}
+
 int main(void)
 {
   fixture_open();
@@ -157,5 +241,7 @@ int main(void)
   test_steps();
   test_arcs();
   test_negative_arcs();
+  test_channels_in_rows();
+  test_stacked();
   return fixture_close();
 }
