@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest sheet of an Excel workbook as text with tabs, small ones before it. Source: ECMA-376, SpreadsheetML:
-   sheets in xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
+/* The largest sheet of an Excel workbook, or all large ones, as text with tabs, small ones before it. Source: ECMA-376,
+   SpreadsheetML: sheets in xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml.
+ */
 #include "recording/zip_files.h"
 #include "recording/sheet_text.h"
 
@@ -16,7 +17,16 @@
   ((size_t)512 << 10) /* bytes of a cell's value at most: a grid of a flank as one list; longer texts are cut */
 #define NAME 64
 
-enum { FACT_SHEETS = 8, FACT_CELLS = 200 }; /* sheets that are no table, and what they hold at most */
+enum {
+  FACT_SHEETS = 8,  /* sheets that are no table, */
+  FACT_CELLS = 200, /* and what they hold at most */
+  SHEETS = 64       /* that are told apart */
+};
+
+/* A sheet is called by its name in the book, which refers to its file by an identity. */
+struct sheet {
+  char name[NAME], id[NAME];
+};
 
 struct workbook {
   struct eo_archive *archive;
@@ -35,6 +45,12 @@ struct workbook {
   int64_t cells, most; /* of the current sheet, of the best one */
   char small[FACT_SHEETS][NAME];
   int smalls;
+  struct sheet named[SHEETS], filed[SHEETS]; /* names of sheets; their files */
+  struct {
+    char file[NAME];
+    int64_t cells;
+  } sheet[SHEETS];
+  int names, files, sheets, tables; /* tables: sheets that are nearly as large as the best */
   /* the cell or text that is being read */
   bool in_value, in_text, writing;
   char type[16], value[VALUE];
@@ -146,12 +162,39 @@ static void XMLCALL end_style(void *context, const char *name)
     workbook->in_formats = false;
 }
 
+static void keep_sheet(struct sheet *sheet, const char *name, const char *id)
+{
+  snprintf(sheet->name, sizeof sheet->name, "%s", name ? name : "");
+  snprintf(sheet->id, sizeof sheet->id, "%s", id ? id : "");
+}
+
 static void XMLCALL begin_book(void *context, const char *name, const char **attributes)
 {
   struct workbook *workbook = context;
   const char *since = attribute(attributes, "date1904");
   if (!strcmp(local(name), "workbookPr") && since)
     workbook->since_1904 = !strcmp(since, "1") || !strcmp(since, "true");
+  if (!strcmp(local(name), "sheet") && workbook->names < SHEETS)
+    keep_sheet(&workbook->named[workbook->names++], attribute(attributes, "name"), attribute(attributes, "r:id"));
+}
+
+static void XMLCALL begin_relation(void *context, const char *name, const char **attributes)
+{
+  struct workbook *workbook = context;
+  const char *target = attribute(attributes, "Target");
+  if (!strcmp(local(name), "Relationship") && target && strstr(target, "worksheets/") && workbook->files < SHEETS)
+    keep_sheet(&workbook->filed[workbook->files++], strrchr(target, '/') + 1, attribute(attributes, "Id"));
+}
+
+/* What the book calls the sheet in this file; the file where it says nothing. */
+static const char *name_of(const struct workbook *workbook, const char *file)
+{
+  const char *base = strrchr(file, '/') + 1;
+  for (int f = 0; f < workbook->files; f++)
+    for (int n = 0; n < workbook->names && !strcmp(workbook->filed[f].name, base); n++)
+      if (!strcmp(workbook->named[n].id, workbook->filed[f].id))
+        return workbook->named[n].name;
+  return base;
 }
 
 static void XMLCALL end_nothing(void *context, const char *name)
@@ -281,10 +324,16 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
     return parse(workbook, begin_style, end_style);
   if (!strcmp(name, "xl/workbook.xml"))
     return parse(workbook, begin_book, end_nothing);
+  if (!strcmp(name, "xl/_rels/workbook.xml.rels"))
+    return parse(workbook, begin_relation, end_nothing);
   if (!is_sheet(name))
     return true;
   workbook->cells = 0;
   bool good = parse(workbook, begin_cell, end_cell);
+  if (workbook->sheets < SHEETS) {
+    snprintf(workbook->sheet[workbook->sheets].file, NAME, "%s", name);
+    workbook->sheet[workbook->sheets++].cells = workbook->cells;
+  }
   if (workbook->cells > 0 && workbook->cells <= FACT_CELLS && workbook->smalls < FACT_SHEETS)
     snprintf(workbook->small[workbook->smalls++], sizeof *workbook->small, "%s", name);
   if (workbook->cells > workbook->most) {
@@ -310,26 +359,44 @@ static bool write_facts(void *context, struct eo_archive *archive, const char *n
   return good;
 }
 
-static bool write_best(void *context, struct eo_archive *archive, const char *name)
+static bool is_table(const struct workbook *workbook, int sheet)
 {
-  struct workbook *workbook = context;
-  (void)archive;
-  if (strcmp(name, workbook->best))
-    return true;
-  workbook->writing = true;
-  parse(workbook, begin_cell, end_cell);
-  return false;
+  int64_t cells = workbook->sheet[sheet].cells;
+  return cells > FACT_CELLS && cells > workbook->most / EO_ARCHIVE_SHARE;
 }
 
-/* Every sheet is looked at before the best and what stands beside it are written. */
+/* The best sheet, or one of several tables below its name. */
+static bool write_table(void *context, struct eo_archive *archive, const char *name)
+{
+  struct workbook *workbook = context;
+  bool several = archive->tables && workbook->tables > 1, table = !strcmp(name, workbook->best);
+  for (int i = 0; i < workbook->sheets && several; i++)
+    table = table || (!strcmp(workbook->sheet[i].file, name) && is_table(workbook, i));
+  if (!table)
+    return true;
+  if (several) {
+    char label[NAME + 16];
+    snprintf(label, sizeof label, "Sheet: %s", name_of(workbook, name));
+    eo_sheet_text_cell(&workbook->out, 0, label);
+    eo_sheet_text_row(&workbook->out);
+  }
+  workbook->writing = true;
+  bool good = parse(workbook, begin_cell, end_cell);
+  workbook->writing = false;
+  return good && several;
+}
+
+/* Every sheet is looked at before the best, or several, and what stands beside them are written. */
 static enum eo_code write_sheets(struct workbook *workbook)
 {
   struct eo_archive *archive = workbook->archive;
   EO_TRY(eo_archive_visit(archive, look, workbook));
   if (!workbook->most)
     return eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
+  for (int i = 0; i < workbook->sheets; i++)
+    workbook->tables += is_table(workbook, i);
   EO_TRY(eo_archive_visit(archive, write_facts, workbook));
-  return eo_archive_visit(archive, write_best, workbook);
+  return eo_archive_visit(archive, write_table, workbook);
 }
 
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size)

@@ -160,7 +160,8 @@ enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options 
     free(contents);
     return eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be made in %.200s.", options->unpack_to);
   }
-  struct eo_archive archive = {.path = path, .bytes = state.st_size, .limit = options->max_bytes, .error = error};
+  struct eo_archive archive = {
+      .path = path, .bytes = state.st_size, .limit = options->max_bytes, .error = error, .tables = true};
   enum eo_code code = unpack(&archive, options->unpack_number, file, contents);
   if (fclose(file) && !code)
     code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written.");

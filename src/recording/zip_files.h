@@ -18,7 +18,11 @@ struct eo_archive {
   int64_t bytes, taken, limit; /* size of the file; bytes that came out of it so far and may come out */
   struct archive *handle;
   struct eo_error *error;
+  bool
+      tables; /* of a spreadsheet all that are nearly as large as the largest are written, below a line with the name */
 };
+
+#define EO_ARCHIVE_SHARE 4 /* of the cells of the largest table: one in so many is nearly as large */
 
 /* Calls visit for each file in the archive, in order; visit returns false to stop. Errors: EO_ERROR_INPUT. */
 enum eo_code eo_archive_visit(struct eo_archive *archive,
@@ -28,8 +32,9 @@ enum eo_code eo_archive_visit(struct eo_archive *archive,
 /* Bytes of the file that is visited, 0 at its end, -1 with an error. */
 int64_t eo_archive_read(struct eo_archive *archive, void *bytes, size_t size);
 
-/* Writes the largest table of a workbook (.xlsx) or of an OpenDocument spreadsheet (.ods) as text with tabs; name: of
-   the table. Errors: EO_ERROR_INPUT, EO_ERROR_MEMORY, EO_ERROR_FILE. */
+/* Writes the largest table of a workbook (.xlsx) or of an OpenDocument spreadsheet (.ods) as text with tabs, or several
+   (archive->tables), each below "Sheet: NAME" where there are more than one; name: of the largest. Errors:
+   EO_ERROR_INPUT, EO_ERROR_MEMORY, EO_ERROR_FILE. */
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size);
 enum eo_code eo_opendocument_write(struct eo_archive *archive, FILE *file, char *name, size_t size);
 

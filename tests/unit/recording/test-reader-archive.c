@@ -215,6 +215,51 @@ static void test_names(void)
   }
 }
 
+/* A sheet for each channel, called in the book as the files with the sheets are not: they come out side by side. */
+static void test_sheets(bool workbook)
+{
+  static char content[60000];
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  char *end = content;
+  if (workbook) {
+    add("xl/workbook.xml", "<workbook><sheets><sheet name=\"pinion\" r:id=\"a\"/><sheet name=\"gear\" r:id=\"b\"/>"
+                           "</sheets></workbook>");
+    add("xl/_rels/workbook.xml.rels", "<Relationships><Relationship Id=\"b\" Target=\"worksheets/sheet1.xml\"/>"
+                                      "<Relationship Id=\"a\" Target=\"worksheets/sheet2.xml\"/></Relationships>");
+  } else
+    add("mimetype", "application/vnd.oasis.opendocument.spreadsheet");
+  for (int sheet = 1; sheet <= 2; sheet++) {
+    end = workbook ? content : end;
+    end += sprintf(end, workbook ? "<worksheet><sheetData>" : "<table:table table:name=\"%s\">",
+                   sheet == 1 ? "gear" : "pinion");
+    for (int i = 0; i < 110; i++)
+      end += sprintf(end,
+                     workbook ? "<row><c><v>%d.5</v></c><c><v>%d</v></c></row>"
+                              : "<table:table-row><table:table-cell office:value-type=\"float\" office:value=\"%d.5\"/>"
+                                "<table:table-cell office:value-type=\"float\" office:value=\"%d\"/></table:table-row>",
+                     i, (sheet == 1 ? 17 : 44) * i + i % 3);
+    end += sprintf(end, workbook ? "</sheetData></worksheet>" : "</table:table>");
+    if (workbook)
+      add(sheet == 1 ? "xl/worksheets/sheet1.xml" : "xl/worksheets/sheet2.xml", content);
+  }
+  if (!workbook) {
+    memmove(content + 5, content, (size_t)(end - content));
+    memcpy(content, "<doc>", 5);
+    snprintf(end + 5, 8, "</doc>");
+    add("content.xml", content);
+  }
+  finish();
+  struct eo_recording *r = take(&notes, &error);
+  bool right = r && eo_recording_columns(r) == 4 && eo_recording_rows(r) == 110;
+  for (int c = 1; right && c < 4; c += 2)
+    right = cell_of(r, 109, c) == 109 * (strstr(eo_recording_name(r, c), "pinion") ? 44 : 17) + 1 &&
+            eo_recording_clock(r, c).column == c - 1;
+  ok(right && strcmp(eo_recording_name(r, 1), eo_recording_name(r, 3)) != 0, "a sheet for each channel, %s%s%s",
+     workbook ? "in a workbook" : "in an OpenDocument spreadsheet", r ? "" : ": ", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -223,6 +268,8 @@ int main(void)
   test_facts_beside(1);
   test_facts_beside(2);
   test_opendocument();
+  test_sheets(true);
+  test_sheets(false);
   test_names();
   return fixture_close();
 }
