@@ -69,10 +69,38 @@ struct changes {
   double sum, squares;    /* of the steps of time */
 };
 
-static void count_change(const struct eo_guess *guess, const struct encoder encoder[2], const double *row,
-                         struct changes *changes)
+/* One way through the rows. */
+struct pass {
+  const struct eo_guess *guess;
+  struct encoder *encoder; /* [2] */
+  struct changes changes;
+};
+
+static enum eo_code each_row(struct pass *pass,
+                             enum eo_code (*take)(struct pass *pass, const double *row, int64_t number,
+                                                  struct eo_error *error),
+                             struct eo_error *error)
 {
-  double time = time_of(&guess->clock[0], row, 0), step = time - changes->time;
+  const struct eo_guess *guess = pass->guess;
+  int64_t rows = eo_recording_rows(guess->recording);
+  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(guess->recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++)
+      code = take(pass, block + i * guess->columns, first + i, error);
+  }
+  free(block);
+  return code;
+}
+
+static enum eo_code count_change(struct pass *pass, const double *row, int64_t number, struct eo_error *error)
+{
+  const struct encoder *encoder = pass->encoder;
+  struct changes *changes = &pass->changes;
+  (void)error;
+  double time = time_of(&pass->guess->clock[0], row, number), step = time - changes->time;
   bool changed = false;
   for (int i = 0; i < 4; i++) {
     double value = i % 2 < encoder[i / 2].tracks ? row[encoder[i / 2].column[i % 2]] : 0;
@@ -81,52 +109,35 @@ static void count_change(const struct eo_guess *guess, const struct encoder enco
   }
   changes->time = time;
   if (changes->rows++ == 0)
-    return;
+    return EO_OK;
   changes->changed += changed;
   changes->sum += step;
   changes->squares += step * step;
+  return EO_OK;
 }
 
 /* Logic analysers write a row where a track changes and none between. Nearly all rows change something then, at times
    that are anything but even. */
-static enum eo_code look_for_changes(const struct eo_guess *guess, struct encoder encoder[2], struct eo_error *error)
+static enum eo_code look_for_changes(struct pass *pass, struct eo_error *error)
 {
   static const double NEARLY = 0.9, UNEVEN = 0.1; /* of the rows; standard deviation of the steps over their mean */
-  struct changes changes = {0};
-  int64_t rows = eo_recording_rows(guess->recording);
-  if (guess->clock[0].column < 0 || guess->clock[0].column != guess->clock[1].column)
+  const struct changes *changes = &pass->changes;
+  if (pass->guess->clock[0].column < 0 || pass->guess->clock[0].column != pass->guess->clock[1].column)
     return EO_OK;
-  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
-  enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
-    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(guess->recording, first, n, block, error);
-    for (int64_t i = 0; !code && i < n; i++)
-      count_change(guess, encoder, block + i * guess->columns, &changes);
-  }
-  free(block);
-  double steps = (double)(changes.rows - 1), mean = changes.sum / steps,
-         uneven = sqrt(fmax(0, changes.squares / steps - mean * mean)) / mean;
-  encoder[0].exact = encoder[1].exact = (double)changes.changed > NEARLY * steps && uneven > UNEVEN;
-  return code;
+  EO_TRY(each_row(pass, count_change, error));
+  double steps = (double)(changes->rows - 1), mean = changes->sum / steps,
+         uneven = sqrt(fmax(0, changes->squares / steps - mean * mean)) / mean;
+  pass->encoder[0].exact = pass->encoder[1].exact = (double)changes->changed > NEARLY * steps && uneven > UNEVEN;
+  return EO_OK;
 }
 
-static enum eo_code find_edges(const struct eo_guess *guess, struct encoder encoder[2], struct eo_error *error)
+static enum eo_code find_edges(struct pass *pass, const double *row, int64_t number, struct eo_error *error)
 {
-  int64_t rows = eo_recording_rows(guess->recording);
-  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
-  enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
-    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(guess->recording, first, n, block, error);
-    for (int64_t i = 0; !code && i < n; i++)
-      for (int s = 0; s < 2 && !code; s++) {
-        const double *row = block + i * guess->columns;
-        code = take_row(&encoder[s], row, time_of(&guess->clock[s], row, first + i) + guess->clock[s].shift, error);
-      }
+  for (int s = 0; s < 2; s++) {
+    const struct eo_layout_clock *clock = &pass->guess->clock[s];
+    EO_TRY(take_row(&pass->encoder[s], row, time_of(clock, row, number) + clock->shift, error));
   }
-  free(block);
-  return code;
+  return EO_OK;
 }
 
 static enum eo_code check(const struct eo_guess *guess, const struct encoder *encoder, int member,
@@ -218,11 +229,12 @@ static enum eo_code decode(struct eo_guess *guess, struct encoder encoder[2], co
     }
     EO_TRY(eo_recording_new(&encoder[s].pulses, 1, spool_directory, error));
   }
-  EO_TRY(look_for_changes(guess, encoder, error));
+  struct pass pass = {.guess = guess, .encoder = encoder};
+  EO_TRY(look_for_changes(&pass, error));
   if (encoder[0].exact)
     eo_notes_add(guess->notes, "The rows are the changes of the tracks, as logic analysers list them: their times are "
                                "those of the edges.");
-  EO_TRY(find_edges(guess, encoder, error));
+  EO_TRY(each_row(&pass, find_edges, error));
   for (int s = 0; s < 2; s++)
     EO_TRY(check(guess, &encoder[s], s, error));
   EO_TRY(join(encoder, spool_directory, pulses, error));

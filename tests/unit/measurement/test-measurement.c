@@ -629,38 +629,50 @@ static void check_alike_neighbours(void)
   ok(!said(measure(&s), EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "the steps of a coarse encoder are none");
 }
 
-/* Eleven bits, as half precision has them: many rows seem to lie on lines, and no program made them up. */
-static void check_half_precision(void)
+/* A recording whose rows a program wrote in its own way: time and both angles. NULL on an error. */
+static const struct eo_measurement *measure_rewritten(const struct eo_synthetic *s, void (*rewrite)(double row[3]))
 {
   const struct eo_measurement_settings settings = {
       .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
-  struct eo_synthetic s = usual();
-  struct eo_recording *recording = NULL, *rounded = NULL;
+  struct eo_recording *recording = NULL, *rewritten = NULL;
   struct eo_tracks tracks;
   double row[3];
-  int exponent;
-  s.wrapped = true;
-  s.sample_rate = 12012.3;
-  eo_synthetic_tracks(&s, &tracks);
-  enum eo_code code = eo_synthetic_record(&s, &recording, &error);
-  if (!code)
-    code = eo_recording_new(&rounded, 3, "/tmp", &error);
-  for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
-    code = eo_recording_read(recording, i, 1, row, &error);
-    for (int c = 1; c < 3; c++) {
-      double part = frexp(row[c], &exponent);
-      row[c] = ldexp(round(2048 * part), exponent - 11);
-    }
-    if (!code)
-      code = eo_recording_append(rounded, row, 1, &error);
-  }
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
+  eo_synthetic_tracks(s, &tracks);
+  enum eo_code code = eo_synthetic_record(s, &recording, &error);
   if (!code)
-    code = eo_measurement_run(&measurement, rounded, &tracks, &settings, NULL, &error);
-  ok(!code && !said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED), "half precision is no straight line");
+    code = eo_recording_new(&rewritten, 3, "/tmp", &error);
+  for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
+    code = eo_recording_read(recording, i, 1, row, &error);
+    rewrite(row);
+    if (!code)
+      code = eo_recording_append(rewritten, row, 1, &error);
+  }
+  if (!code)
+    code = eo_measurement_run(&measurement, rewritten, &tracks, &settings, NULL, &error);
   eo_recording_free(recording);
-  eo_recording_free(rounded);
+  eo_recording_free(rewritten);
+  return code ? NULL : &measurement;
+}
+
+/* Eleven bits, as half precision has them: many rows seem to lie on lines, and no program made them up. */
+static void halve_precision(double row[3])
+{
+  int exponent;
+  for (int c = 1; c < 3; c++) {
+    double part = frexp(row[c], &exponent);
+    row[c] = ldexp(round(2048 * part), exponent - 11);
+  }
+}
+
+static void check_half_precision(void)
+{
+  struct eo_synthetic s = usual();
+  s.wrapped = true;
+  s.sample_rate = 12012.3;
+  const struct eo_measurement *m = measure_rewritten(&s, halve_precision);
+  ok(m && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED), "half precision is no straight line");
 }
 
 /* Angles that were computed have no noise of which neighbours could be means: all digits, or twelve decimals of a turn.
@@ -700,39 +712,25 @@ static void check_computed_angles(void)
 }
 
 /* Even rows whose times were written as days of a spreadsheet: rounded by ten decimals, and as a sum with the date. */
+static void write_days(double row[3])
+{
+  static const double DAY = 86400, DATE = 45356.375;
+  row[0] = (round((DATE + row[0] / DAY) * 1e10) / 1e10 - DATE) * DAY;
+}
+
 static void check_rounded_times(void)
 {
-  static const double rates[] = {4000, 6000, 8192, 9999}, DAY = 86400, DATE = 45356.375;
-  const struct eo_measurement_settings settings = {
-      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  static const double rates[] = {4000, 6000, 8192, 9999};
   for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
     struct eo_synthetic s = usual();
-    struct eo_recording *recording = NULL, *rounded = NULL;
-    struct eo_tracks tracks;
-    double row[3];
     s.noise = 0;
     s.sample_rate = rates[k];
     s.speed = 2 * M_PI * 10;
-    eo_synthetic_tracks(&s, &tracks);
-    enum eo_code code = eo_synthetic_record(&s, &recording, &error);
-    if (!code)
-      code = eo_recording_new(&rounded, 3, "/tmp", &error);
-    for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
-      code = eo_recording_read(recording, i, 1, row, &error);
-      row[0] = (round((DATE + row[0] / DAY) * 1e10) / 1e10 - DATE) * DAY;
-      if (!code)
-        code = eo_recording_append(rounded, row, 1, &error);
-    }
-    eo_measurement_done(&measurement);
-    memset(&measurement, 0, sizeof measurement);
-    if (!code)
-      code = eo_measurement_run(&measurement, rounded, &tracks, &settings, NULL, &error);
-    ok(!code && !measurement.refused, "times of %.6g rows per second as days are no straight lines: %s", rates[k],
-       code                             ? error.text
-       : measurement.findings.count > 0 ? measurement.findings.finding[0].text
-                                        : "");
-    eo_recording_free(recording);
-    eo_recording_free(rounded);
+    const struct eo_measurement *m = measure_rewritten(&s, write_days);
+    ok(m && !m->refused, "times of %.6g rows per second as days are no straight lines: %s", rates[k],
+       !m                      ? error.text
+       : m->findings.count > 0 ? m->findings.finding[0].text
+                               : "");
   }
 }
 
