@@ -72,9 +72,10 @@ int eo_dense_eigenvalues(int n, double *a, double complex *values)
 
 int eo_dense_eigenvectors(int n, double *a, double complex *values, double complex *vectors)
 {
-  double *part = malloc(sizeof *part * (size_t)(n * (n + 2))), *vector = part + 2 * n;
+  double *part = malloc(sizeof *part * (size_t)(n * (n + 2)));
   if (!part)
     return 1;
+  double *vector = part + 2 * n;
   int failed = LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'V', n, a, n, part, part + n, NULL, 1, vector, n);
   for (int m = 0; m < n && !failed; m++) {
     bool first = part[n + m] > 0, second = part[n + m] < 0;

@@ -362,7 +362,10 @@ static enum eo_code read_files(const char *path, const char *unpacked, const str
     set_label(table, names.name[i]);
     tables->count += !code;
   }
-  *error = tables->count ? (struct eo_error){0} : first;
+  if (tables->count == 0)
+    *error = first;
+  else
+    memset(error, 0, sizeof *error);
   return tables->count ? EO_OK : first.code;
 }
 
