@@ -69,6 +69,8 @@ enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recor
     *column[i] = (struct eo_load_column){NAN, NAN, NAN};
     wanted += beside[i]->scale != 0;
   }
+  for (int member = 0; member < 2; member++)
+    load->open[member] = !tracks->speed[member].stated;
   load->pinion_torque = NAN;
   if (!wanted || tracks->channel[0].track == EO_TRACK_PULSES)
     return EO_OK;
@@ -125,13 +127,42 @@ static void judge_torque(struct eo_load *load, const struct eo_load_known *known
                     load->pinion_torque, known->torque);
 }
 
+/* The pinion's speed by the column of a member over that by the encoder. */
+static double speed_ratio(const struct eo_load *load, const struct eo_load_known *known, int member)
+{
+  double ratio = member == EO_GEAR ? (double)known->teeth[EO_GEAR] / known->teeth[EO_PINION] : 1;
+  return load->speed[member].mean * ratio / known->measured;
+}
+
+/* A column that states no unit and contradicts the encoder in rpm may agree with it in another one. */
+static void settle_unit(struct eo_load *load, const struct eo_load_known *known, int member,
+                        struct eo_findings *findings)
+{
+  static const struct {
+    const char *name;
+    double rpm; /* that one of them is */
+  } units[] = {{"rad/s", 30 / M_PI}, {"turns per second", 60}, {"degrees per second", 1. / 6}};
+  struct eo_load_column *column = &load->speed[member];
+  double off = speed_ratio(load, known, member);
+  for (size_t i = 0; load->open[member] && fabs(off - 1) > SAME_SPEED && i < sizeof units / sizeof *units; i++)
+    if (fabs(off * units[i].rpm - 1) <= SAME_SPEED) {
+      load->open[member] = false;
+      column->mean *= units[i].rpm;
+      column->low *= units[i].rpm;
+      column->high *= units[i].rpm;
+      eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_NOTE, member, column->mean,
+                      "The speed column of the %s states no unit; in %s it is that of the encoder.",
+                      member_name[member], units[i].name);
+    }
+}
+
 /* True when the column speaks for the encoder's speed. */
-static bool judge_column(const struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
+static bool judge_column(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
 {
   bool agrees = false;
   for (int member = 0; member < 2; member++) {
-    double ratio = member == EO_GEAR ? (double)known->teeth[EO_GEAR] / known->teeth[EO_PINION] : 1,
-           speed = load->speed[member].mean * ratio, off = fabs(speed / known->measured - 1);
+    settle_unit(load, known, member, findings);
+    double off = fabs(speed_ratio(load, known, member) - 1), speed = speed_ratio(load, known, member) * known->measured;
     bool backed = !isnan(known->speed) && fabs(known->measured / known->speed - 1) < SAME_TORQUE;
     if (isnan(speed))
       continue;
@@ -147,7 +178,7 @@ static bool judge_column(const struct eo_load *load, const struct eo_load_known 
 }
 
 /* A speed that no load case comes near, and that nobody stated, is a question. */
-static void judge_speed(const struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
+static void judge_speed(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
 {
   bool agrees = judge_column(load, known, findings);
   double low = known->expected[0], high = known->expected[1];

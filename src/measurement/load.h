@@ -15,6 +15,7 @@ struct eo_load_column {
 
 struct eo_load {
   struct eo_load_column torque[2], speed[2]; /* [member] */
+  bool open[2];                              /* [member]: nothing states the unit of the speed; rpm are a guess */
   double pinion_torque;                      /* N m, from the columns; NaN: none tells */
 };
 
@@ -29,8 +30,8 @@ struct eo_load_known {
 enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recording, const struct eo_tracks *tracks,
                           double from, double to, struct eo_error *error);
 
-/* Adds findings: a torque that is not steady or not the stated one, a speed that is not the encoder's, a speed far from
-   every load case of which nothing else tells. */
+/* Settles the unit of a speed that states none by the encoder, and adds findings: a torque that is not steady or not
+   the stated one, a speed that is not the encoder's, a speed far from every load case of which nothing else tells. */
 void eo_load_judge(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings);
 
 #endif

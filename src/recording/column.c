@@ -97,6 +97,17 @@ static void find_steps(struct eo_column *look, const double *values)
   look->period = look->resets ? height / look->resets + fabs(look->step) : 0;
 }
 
+/* A column that is called by a unit of time alone: "ms", "millis", "seconds". Single letters name anything, and "min"
+   what is least. */
+static void take_name(struct eo_column *look, const char *name)
+{
+  double factor;
+  if (strlen(name) < 2 || !strncasecmp(name, "min", 3) || eo_unit_find(name, &factor) != EO_QUANTITY_TIME)
+    return;
+  look->quantity = EO_QUANTITY_TIME;
+  look->factor = factor;
+}
+
 enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look,
                             struct eo_error *error)
 {
@@ -107,6 +118,8 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
     return eo_error_memory(error);
   memset(look, 0, sizeof *look);
   look->quantity = eo_unit_find(eo_recording_unit(recording, column), &look->factor);
+  if (look->quantity == EO_QUANTITY_NONE)
+    take_name(look, eo_recording_name(recording, column));
   enum eo_code code = read_column(recording, column, rows, values, look, error);
   if (!code) {
     find_range(look, values);

@@ -206,7 +206,7 @@ void eo_text_read_header(struct eo_text_format *format, const char *head)
   }
   if (names >= 0)
     take_names(format, &header->line[names], header_separator(format, &header->line[names]));
-  eo_header_facts(header, format, names);
+  eo_header_facts(header, format, format->cells > 1 ? names : -1); /* a fact may stand in the place of one name */
   settle_arcs(format);
   free(header);
 }

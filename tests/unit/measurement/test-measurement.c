@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Synthetic recordings of known truth through the whole chain: the truth stands within the stated uncertainty, and
    every fault is found. */
+#include "measurement/load.h"
 #include "measurement/measurement.h"
 #include "recording/layout.h"
 #include "recording/recorded_unit.h"
@@ -787,6 +788,30 @@ static void check_load(void)
   ok(!measure_with(&s, &settings)->refused, "or a column tells it too");
 }
 
+/* A column of speed without a unit is read as rpm unless the encoder says that it is another one; a unit that is stated
+   stays. */
+static void check_open_speed(void)
+{
+  static const double of_rpm[] = {30 / M_PI, 60, 1. / 6, 2};
+  for (size_t i = 0; i < 4; i++)
+    for (int stated = 0; stated < 2; stated++) {
+      struct eo_findings findings = {0};
+      const struct eo_load_known known = {
+          .teeth = {17, 44}, .torque = NAN, .speed = NAN, .measured = 62.8, .expected = {62.8, 62.8}};
+      double mean = known.measured / of_rpm[i];
+      struct eo_load load = {.torque = {{NAN, NAN, NAN}, {NAN, NAN, NAN}},
+                             .speed = {{mean, mean, mean}, {NAN, NAN, NAN}},
+                             .open = {!stated, !stated},
+                             .pinion_torque = NAN};
+      eo_load_judge(&load, &known, &findings);
+      bool right = !stated && i < 3;
+      ok((eo_findings_worst(&findings) == EO_SEVERITY_REFUSED) == !right &&
+             fabs(load.speed[0].mean - (right ? known.measured : mean)) < 1e-9,
+         "a speed of which one is %.4g rpm, its unit %s: %s", of_rpm[i], stated ? "stated" : "open",
+         findings.count ? findings.finding[0].text : "nothing is said");
+    }
+}
+
 int main(int argc, char **argv)
 {
   int recordings = argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW : SHORT;
@@ -809,6 +834,7 @@ int main(int argc, char **argv)
   check_rounded_times();
   check_computed_angles();
   check_load();
+  check_open_speed();
   check_run_out();
   check_slow_clock();
   check_own_interpolation();

@@ -67,6 +67,10 @@ static void test_steps(void)
     fprintf(f, "%.12g;%.12g;%.12g\n", step, degrees(pinion(t)), degrees(gear(t)));
   }
   right(f, NULL, 1e-7, "steps of time", "steps that differ");
+  f = begin("micros;pinion [deg];gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%d;%.12g;%.12g\n", 250 * i, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  right(f, NULL, 1e-7, "in units of 1e-06 s", "a time that is called by its unit");
   const char *rows[2] = {"time [ms];pinion [deg];gear [deg]\n", "t_s;dt_s;pinion [deg];gear [deg]\n"};
   for (int kind = 0; kind < 2; kind++) {
     f = begin(rows[kind]);
@@ -216,6 +220,9 @@ static void test_stacked(void)
   right(stacked("Signal;pinion\nUnit;deg\nRate [Hz];4000\n", "\nSignal;gear\nUnit;deg\nRate [Hz];3300\n", "%.12g\n",
                 false, 3300),
         NULL, 2e-3, "times of their own", "rates instead of times");
+  right(stacked("Channel: pinion_deg\nSample rate: 4000 Hz\n", "Channel: gear_deg\nSample rate: 4000 Hz\n", "%.12g\n",
+                false, RATE),
+        NULL, 1e-7, "in degrees", "a rate next to the rows");
   right(stacked("Sample rate: 4000 Hz\npinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, 1e-7, "side by side",
         "one rate for both");
   asked(stacked("pinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, "/sample_rate_Hz", "give one",
