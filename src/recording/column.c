@@ -170,25 +170,11 @@ static const char *next_word(const char *name, const char **word)
   return name;
 }
 
-static bool is_listed(const char *word, size_t length, const char *words)
-{
-  char plain[EO_RECORDING_NAME];
-  eo_letters_plain(word, length, plain, sizeof plain);
-  length = strlen(plain);
-  for (const char *p = words; *p;) {
-    size_t n = strcspn(p, "|");
-    if (n == length && !memcmp(p, plain, n))
-      return true;
-    p += n + (p[n] == '|');
-  }
-  return false;
-}
-
 bool eo_column_named(const char *name, const char *words)
 {
   const char *word;
   for (const char *end = next_word(name, &word); *word; end = next_word(end, &word))
-    if (is_listed(word, (size_t)(end - word), words))
+    if (eo_letters_listed(word, (size_t)(end - word), words))
       return true;
   return false;
 }
@@ -201,7 +187,7 @@ int eo_column_shared_words(const char *name, const char *other, const char *igno
   for (const char *end = next_word(name, &word); *word; end = next_word(end, &word)) {
     size_t length = (size_t)(end - word);
     int place = 0;
-    if (is_listed(word, length, ignored))
+    if (eo_letters_listed(word, length, ignored))
       continue;
     for (const char *stop = next_word(other, &again); *again; stop = next_word(stop, &again), place++)
       if (place < 64 && !(used >> place & 1) && (size_t)(stop - again) == length && !strncasecmp(word, again, length)) {

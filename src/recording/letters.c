@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <stdbool.h>
+#include <string.h>
 
 /* Letters from 0xc0 on without their accents; a blank where there is no such letter. */
 static const char bases[] = "aaaaaaaceeeeiiiidnooooo ouuuuy saaaaaaaceeeeiiiidnooooo ouuuuy y";
@@ -28,4 +29,18 @@ void eo_letters_plain(const char *text, size_t length, char *plain, size_t size)
     at += base ? bytes : 1;
   }
   plain[n] = '\0';
+}
+
+bool eo_letters_listed(const char *text, size_t length, const char *words)
+{
+  char plain[64]; /* no word is as long */
+  eo_letters_plain(text, length, plain, sizeof plain);
+  length = strlen(plain);
+  for (const char *p = words; *p;) {
+    size_t n = strcspn(p, "|");
+    if (n == length && !memcmp(p, plain, n))
+      return true;
+    p += n + (p[n] == '|');
+  }
+  return false;
 }

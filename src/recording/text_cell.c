@@ -235,6 +235,11 @@ bool eo_text_cell_sexagesimal(const struct eo_cell *cell, char point, bool colon
   return at == end && parts > 1;
 }
 
+void eo_text_cell_copy(char *to, size_t size, const struct eo_cell *cell)
+{
+  snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
+}
+
 void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size)
 {
   double value, factor;

@@ -47,6 +47,9 @@ bool eo_text_cell_hex(const struct eo_cell *cell, double *value);
    12:34:56.7; seconds may be missing. False when the cell is none. */
 bool eo_text_cell_sexagesimal(const struct eo_cell *cell, char point, bool colons, double *value);
 
+/* What a cell holds, as much of it as there is room for. */
+void eo_text_cell_copy(char *to, size_t size, const struct eo_cell *cell);
+
 /* The unit behind a number, as the cell has it; "" when there is none. */
 void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size);
 

@@ -207,11 +207,6 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
   }
 }
 
-static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
-{
-  snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
-}
-
 /* Names in one line and their numbers in the next: "..., Start, Increment" over "..., 0, 2.5e-4". */
 static void take_below(struct eo_text_format *format, const struct eo_header_line *names,
                        const struct eo_header_line *values)
@@ -223,7 +218,7 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
     char key[KEY];
     double number;
     const char *end = value.length ? number_at(format, value.text, value.text + value.length, true, &number) : NULL;
-    copy_cell(key, sizeof key, &name);
+    eo_text_cell_copy(key, sizeof key, &name);
     if (end != value.text + value.length)
       continue;
     struct eo_stated stated = eo_stated_read(key, number, "");
@@ -243,7 +238,7 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   if (format->separator == ' ' || !eo_text_next_cell(&at, line->end, format->separator, &cell))
     return;
   int first = eo_header_cells(line, format->separator) == format->cells + 1 ? 0 : 1;
-  copy_cell(key, sizeof key, &cell);
+  eo_text_cell_copy(key, sizeof key, &cell);
   for (int c = first; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;
     if (!cell.length || number_at(format, cell.text, cell.text + cell.length, true, &number) != cell.text + cell.length)

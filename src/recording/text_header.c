@@ -19,11 +19,6 @@
   "torque|moment|drehmoment|speed|drehzahl|count|counts|value|x|y|sin|cos|input|output|antrieb|abtrieb"
 #define UNIT_WORDS "unit|units|einheit|einheiten|sequence"
 
-static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
-{
-  snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
-}
-
 /* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. A line
    with the rows' own separator may have more cells. 0: none does. */
 static char header_separator(const struct eo_text_format *format, const struct eo_header_line *line)
@@ -44,7 +39,7 @@ static bool is_unit(const struct eo_cell *cell)
 {
   char text[EO_RECORDING_UNIT];
   double factor;
-  copy_cell(text, sizeof text, cell);
+  eo_text_cell_copy(text, sizeof text, cell);
   return cell->length < sizeof text && ((cell->length >= 2 && text[0] == '[') || !strcmp(text, "-") ||
                                         eo_unit_find(text, &factor) != EO_QUANTITY_NONE);
 }
@@ -59,7 +54,7 @@ static int units_score(const struct eo_header_line *line, char separator, int ce
   for (int c = 0; c < cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char text[EO_RECORDING_NAME];
     bool unit = cell.length && is_unit(&cell);
-    copy_cell(text, sizeof text, &cell);
+    eo_text_cell_copy(text, sizeof text, &cell);
     filled += cell.length > 0;
     known += unit;
     if (c == 0)
@@ -80,7 +75,7 @@ static int name_score(const struct eo_cell *cell, char point)
     return 0;
   if (eo_text_cell_value(cell, point, &value) != EO_CELL_TEXT || memchr(cell->text, '=', cell->length))
     return -2;
-  copy_cell(text, sizeof text, cell);
+  eo_text_cell_copy(text, sizeof text, cell);
   eo_unit_split(text, name, (int)sizeof name, unit, (int)sizeof unit);
   bool known = *unit && eo_unit_find(unit, &factor) != EO_QUANTITY_NONE;
   return 1 + (known || eo_column_named(name, TELLING_WORDS) ? 2 : 0);
@@ -116,7 +111,7 @@ static void take_units(struct eo_text_format *format, const struct eo_header_lin
   for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char text[EO_RECORDING_UNIT + 2];
     double factor;
-    copy_cell(text, sizeof text, &cell);
+    eo_text_cell_copy(text, sizeof text, &cell);
     size_t length = strlen(text);
     bool bracketed = length >= 2 && text[0] == '[' && text[length - 1] == ']';
     if (!cell.length || (!bracketed && eo_unit_find(text, &factor) == EO_QUANTITY_NONE))
@@ -131,7 +126,7 @@ static void take_names(struct eo_text_format *format, const struct eo_header_lin
   const char *at = line->start;
   for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char label[EO_RECORDING_NAME + EO_RECORDING_UNIT], unit[EO_RECORDING_UNIT];
-    copy_cell(label, sizeof label, &cell);
+    eo_text_cell_copy(label, sizeof label, &cell);
     if (*format->unit[c])
       snprintf(format->name[c], sizeof format->name[c], "%.*s", (int)sizeof format->name[c] - 1, label);
     else {
@@ -172,7 +167,7 @@ static void drop_key(const struct eo_text_format *format, struct eo_header_line 
   if (format->separator == ' ' || eo_header_cells(line, format->separator) != format->cells + 1 ||
       !eo_text_next_cell(&at, line->end, format->separator, &cell) || !at)
     return;
-  copy_cell(text, sizeof text, &cell);
+  eo_text_cell_copy(text, sizeof text, &cell);
   text[strcspn(text, ":")] = '\0';
   for (size_t i = 0; i < sizeof KEYS / sizeof *KEYS; i++)
     if (!strcasecmp(text, KEYS[i]))

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_tables.h"
 #include "recording/column.h"
+#include "recording/letters.h"
 #include "recording/text_facts.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #define LEAST_ROWS 20 /* of a table */
 #define FEW 16        /* numbers of channels at most that tell a column of them from one of values */
@@ -21,17 +21,6 @@
   "_field|source|id|can id|canid|voie|canal|canale|quantity|item|series|node|device|ch"
 #define TABLE_KEYS CHANNEL_NAMES "|trace|curve|table|tabelle|sheet|blatt|group|gruppe|data set|dataset|kurve|encoder"
 #define UNIT_NAMES "unit|units|einheit|einheiten|unite|unita|unidad"
-
-static bool is_listed(const char *name, size_t length, const char *names)
-{
-  for (const char *p = names; *p;) {
-    size_t n = strcspn(p, "|");
-    if (n == length && !strncasecmp(name, p, n))
-      return true;
-    p += n + (p[n] == '|');
-  }
-  return false;
-}
 
 /* The different texts of one place in the rows of the head. */
 struct words {
@@ -52,7 +41,7 @@ static void add_word(struct words *words, const struct eo_cell *cell, char point
   enum eo_cell_kind kind = eo_text_cell_value(cell, point, &value);
   bool number = kind == EO_CELL_NUMBER || kind == EO_CELL_HEX;
   words->whole = words->whole && (kind == EO_CELL_HEX || (number && value == floor(value)));
-  snprintf(text, sizeof text, "%.*s", (int)(cell->length < sizeof text ? cell->length : sizeof text - 1), cell->text);
+  eo_text_cell_copy(text, sizeof text, cell);
   words->pinion = words->pinion || eo_column_named(text, EO_PINION_WORDS);
   words->gear = words->gear || eo_column_named(text, EO_GEAR_WORDS);
   words->word[words->count++] = *cell;
@@ -82,7 +71,7 @@ static struct words words_of(const struct eo_text_format *format, const char *he
 static bool names_channels(const struct eo_text_format *format, const char *head, size_t size, int place)
 {
   enum eo_text_content content = format->content[place];
-  bool called = is_listed(format->name[place], strlen(format->name[place]), CHANNEL_NAMES),
+  bool called = eo_letters_listed(format->name[place], strlen(format->name[place]), CHANNEL_NAMES),
        number = content == EO_TEXT_NUMBER || content == EO_TEXT_HEX;
   if ((content != EO_TEXT_WORDS && !number) || (number && !called) || *format->unit[place])
     return false;
@@ -110,14 +99,9 @@ struct eo_text_channels eo_text_find_channels(struct eo_text_format *format, con
   format->plain = false;
   for (int c = 0; c < format->cells; c++)
     if (format->content[c] == EO_TEXT_WORDS && c != channels.cell &&
-        is_listed(format->name[c], strlen(format->name[c]), UNIT_NAMES))
+        eo_letters_listed(format->name[c], strlen(format->name[c]), UNIT_NAMES))
       channels.unit = c;
   return channels;
-}
-
-static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
-{
-  snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
 }
 
 enum eo_code eo_text_channel_table(struct eo_tables *tables, const struct eo_text_format *format,
@@ -125,7 +109,7 @@ enum eo_code eo_text_channel_table(struct eo_tables *tables, const struct eo_tex
                                    const char *spool_directory, struct eo_table **table, struct eo_error *error)
 {
   char label[EO_RECORDING_NAME];
-  copy_cell(label, sizeof label, channel);
+  eo_text_cell_copy(label, sizeof label, channel);
   for (int i = 0; i < tables->count; i++)
     if (!strcmp(tables->table[i].label, label)) {
       *table = &tables->table[i];
@@ -141,7 +125,7 @@ enum eo_code eo_text_channel_table(struct eo_tables *tables, const struct eo_tex
   tables->count++;
   memcpy(made->label, label, sizeof label);
   if (unit)
-    copy_cell(made->unit, sizeof made->unit, unit);
+    eo_text_cell_copy(made->unit, sizeof made->unit, unit);
   eo_text_name_columns(format, made->recording);
   *table = made;
   return EO_OK;
@@ -172,7 +156,7 @@ static bool read_label(const struct eo_text_format *format, const struct eo_head
   const char *end = mark;
   while (end > key && strchr("\" #0123456789", end[-1])) /* "Channel 1: pinion" */
     end--;
-  if (mark < line->end && is_listed(key, (size_t)(end - key), TABLE_KEYS)) {
+  if (mark < line->end && eo_letters_listed(key, (size_t)(end - key), TABLE_KEYS)) {
     copy_plain(label, mark, line->end);
     return *label && eo_header_cells(line, format->separator) <= 2;
   }
