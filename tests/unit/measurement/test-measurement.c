@@ -624,6 +624,19 @@ static void check_alike_neighbours(void)
        "rows of %.4g Hz on the middle between those that were recorded are a question: RMS %.4f, truth %.4f",
        s.sample_rate, m->transmission.rms, eo_synthetic_rms(&s, 8));
   }
+  for (int loud = 0; loud < 3; loud++) { /* noise that leaves no more than the uppermost orders */
+    s = usual();
+    s.noise = 1e-6 * (1 << loud);
+    s.sample_rate = 400 * s.speed / (2 * M_PI);
+    s.turns = 80;
+    s.seed = 11 + loud;
+    const struct eo_measurement *m = measure_resampled_from(&s, 0.5, s.sample_rate, false, 0);
+    ok(said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING),
+       "so are those of a noise of %.2g rad: RMS %.4f, truth %.4f", s.noise, m->transmission.rms,
+       eo_synthetic_rms(&s, 8));
+    m = measure(&s);
+    ok(!m->refused && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "and as they were recorded they are none");
+  }
   s = usual();
   s.interpolation = 4;
   s.lines[EO_PINION] = 2048;
