@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/root.h"
 
+#include "numerics/dense.h"
 #include "numerics/gram.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, 
 
 struct eo_root_tables {
   const struct eo_contact_grid *grid;
-  const struct eo_root_modes *modes[2]; /* [member] */
+  struct eo_root_modes *modes[2]; /* [member] */
   int first_pair, pairs;
   int *present;     /* [pairs][2]: positions of the grid between which a pair can touch, the last one not among them */
   float *own[2];    /* [member]: [grid->points][stride] */
@@ -63,15 +64,11 @@ static void find_present(struct eo_root_tables *tables)
   }
 }
 
-static enum eo_code weigh_points(struct eo_root_tables *tables, int member, struct eo_error *error)
+static void weigh_points(struct eo_root_tables *tables, int member)
 {
   const struct eo_contact_grid *grid = tables->grid;
   const struct eo_root_modes *modes = tables->modes[member];
   size_t stride = (size_t)eo_root_modes_stride(modes, EO_ROOT_ALL), far = (size_t)eo_root_modes_remote_stride(modes);
-  tables->own[member] = eo_gram_allocate((long)(((size_t)grid->points * stride + 1) / 2));
-  tables->remote[member] = far ? eo_gram_allocate((long)(((size_t)grid->points * far + 1) / 2)) : NULL;
-  if (!tables->own[member] || (far && !tables->remote[member]))
-    return eo_error_memory(error);
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *position = &grid->position[j];
     for (int i = 0; i < position->points; i++) {
@@ -81,38 +78,6 @@ static enum eo_code weigh_points(struct eo_root_tables *tables, int member, stru
         eo_root_modes_remote(modes, &position->point[i], tables->remote[member] + row * far);
     }
   }
-  return EO_OK;
-}
-
-static enum eo_code fill_tables(struct eo_root_tables *tables, struct eo_error *error)
-{
-  int range[2];
-  eo_contact_grid_pairs(tables->grid, range);
-  tables->first_pair = range[0];
-  tables->pairs = range[1] - range[0] + 1;
-  tables->present = calloc((size_t)tables->pairs, sizeof *tables->present * 2);
-  if (!tables->present)
-    return eo_error_memory(error);
-  find_present(tables);
-  EO_TRY(weigh_points(tables, EO_PINION, error));
-  return weigh_points(tables, EO_GEAR, error);
-}
-
-enum eo_code eo_root_tables_new(struct eo_root_tables **result, const struct eo_contact_grid *grid,
-                                const struct eo_root_modes *const modes[2], struct eo_error *error)
-{
-  struct eo_root_tables *tables = calloc(1, sizeof *tables);
-  if (!tables)
-    return eo_error_memory(error);
-  tables->grid = grid;
-  tables->modes[EO_PINION] = modes[EO_PINION];
-  tables->modes[EO_GEAR] = modes[EO_GEAR];
-  enum eo_code code = fill_tables(tables, error);
-  if (code)
-    eo_root_tables_free(tables);
-  else
-    *result = tables;
-  return code;
 }
 
 void eo_root_tables_free(struct eo_root_tables *tables)
@@ -186,11 +151,9 @@ static void find_remote(struct eo_root_loads *loads, const struct eo_root_tables
   }
 }
 
-void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables *tables,
-                        const struct eo_loaded_end *end)
+/* What the forces are to the roots of other teeth. */
+static void pass_forces(struct eo_root_loads *loads, const struct eo_root_tables *tables)
 {
-  for (int j = 0; j < tables->grid->positions; j += loads->step)
-    find_forces(loads->force, &tables->grid->position[j], end->line_load);
   for (int member = 0; member < 2; member++) {
     size_t stride = (size_t)eo_root_modes_remote_stride(tables->modes[member]);
     memset(loads->remote[member], 0,
@@ -200,12 +163,20 @@ void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables
   }
 }
 
+void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables *tables,
+                        const struct eo_loaded_end *end)
+{
+  for (int j = 0; j < tables->grid->positions; j += loads->step)
+    find_forces(loads->force, &tables->grid->position[j], end->line_load);
+  pass_forces(loads, tables);
+}
+
 enum { MOST_TEETH = 64, ROWS = 64 }; /* ROWS: stresses at a time, so that they stay in the cache until they are read */
 
 struct eo_root_workspace {
   const struct eo_root_tables *tables;
   float *coefficient; /* [ends][positions][stride] */
-  float *stress;      /* [ROWS][stress stride] */
+  float *room;        /* [ROWS][room of the modes] */
 };
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_root_tables *tables, int ends,
@@ -218,13 +189,13 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
   ws->tables = tables;
   for (int member = 0; member < 2; member++) {
     long own = eo_root_modes_stride(tables->modes[member], EO_ROOT_ALL),
-         all = eo_root_modes_stress_stride(tables->modes[member]);
+         all = eo_root_modes_room(tables->modes[member]);
     stride = own > stride ? own : stride;
     length = all > length ? all : length;
   }
   ws->coefficient = eo_gram_allocate((long)ends * tables->grid->positions * stride / 2 + 1);
-  ws->stress = eo_gram_allocate(ROWS * length / 2 + 1);
-  if (!ws->coefficient || !ws->stress) {
+  ws->room = eo_gram_allocate(ROWS * length / 2 + 1);
+  if (!ws->coefficient || !ws->room) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -237,52 +208,8 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
   if (!ws)
     return;
   free(ws->coefficient);
-  free(ws->stress);
+  free(ws->room);
   free(ws);
-}
-
-/* Whether the larger principal stress (s + t + sqrt((s - t)^2 + 4 u^2))/2 passes the largest so far. */
-static inline bool passes(float s, float t, float u, float largest)
-{
-  float sum = s + t, room = 2 * largest - sum, difference = s - t, square = difference * difference + 4 * u * u;
-  return !(room >= 0 && square <= room * room);
-}
-
-enum { LANE = 4, BLOCK = 4 * LANE };
-typedef float lane __attribute__((vector_size(4 * LANE), aligned(4), may_alias));
-typedef int lane_mask __attribute__((vector_size(4 * LANE)));
-
-/* Whether any of a block of nodes does. */
-static inline bool any_passes(const float *s, const float *t, const float *u, float largest)
-{
-  lane_mask none = ~(lane_mask){0};
-  for (int i = 0; i < BLOCK; i += LANE) {
-    lane a = *(const lane *)(s + i), b = *(const lane *)(t + i), shear = *(const lane *)(u + i);
-    lane sum = a + b, room = 2 * largest - sum, difference = a - b,
-         square = difference * difference + 4 * shear * shear;
-    none &= (room >= 0) & (square <= room * room);
-  }
-  return !(none[0] & none[1] & none[2] & none[3]);
-}
-
-/* stress[EO_STRESSES][nodes]; the root is taken only where it raises the largest so far. */
-static double largest_principal(int nodes, const float *stress, int *where)
-{
-  const float *s = stress, *t = stress + nodes, *u = stress + 2 * nodes;
-  float largest = 0;
-  for (int first = 0; first < nodes; first += BLOCK) {
-    int last = first + BLOCK < nodes ? first + BLOCK : nodes;
-    if (last - first == BLOCK && !any_passes(s + first, t + first, u + first, largest))
-      continue;
-    for (int i = first; i < last; i++) {
-      if (!passes(s[i], t[i], u[i], largest))
-        continue;
-      float difference = s[i] - t[i];
-      largest = (s[i] + t[i] + sqrtf(difference * difference + 4 * u[i] * u[i])) / 2; /* theory (B11) */
-      *where = i;
-    }
-  }
-  return largest;
 }
 
 /* Positions of a tooth's mesh, first .. last - 1 of those that count, over which it may carry load itself, or others
@@ -344,19 +271,27 @@ static void add_others(struct eo_root_workspace *ws, int member, int tooth, cons
   }
 }
 
+/* The coefficients of a stretch under the loads of all ends. */
+static void add_up(struct eo_root_workspace *ws, int member, int tooth, const struct stretch *stretch, int ends,
+                   const struct eo_root_loads *const *loads)
+{
+  size_t stride = (size_t)eo_root_modes_stride(ws->tables->modes[member], stretch->carriers),
+         rows = (size_t)(stretch->last - stretch->first);
+  memset(ws->coefficient, 0, sizeof *ws->coefficient * (size_t)ends * rows * stride);
+  if (stretch->carriers == EO_ROOT_ALL)
+    add_own(ws, member, tooth, stretch, ends, loads);
+  add_others(ws, member, tooth, stretch, ends, loads);
+}
+
 /* Largest stress, and its node, at `rows` positions. */
 static void read_rows(struct eo_root_workspace *ws, int member, enum eo_root_carriers carriers, int rows,
                       const float *coefficient, double *stress, struct eo_root_peak *peak)
 {
-  const struct eo_root_modes *modes = ws->tables->modes[member];
-  int nodes = eo_root_modes_nodes(modes), stride = eo_root_modes_stress_stride(modes);
-  eo_root_modes_stress(modes, carriers, rows, coefficient, ws->stress);
-  for (int j = 0; j < rows; j++) {
-    int node = 0;
-    stress[j] = largest_principal(nodes, ws->stress + (size_t)j * (size_t)stride, &node);
+  int node[ROWS];
+  eo_root_modes_find_largest(ws->tables->modes[member], carriers, rows, coefficient, ws->room, stress, node);
+  for (int j = 0; j < rows; j++)
     if (stress[j] > peak->stress)
-      *peak = (struct eo_root_peak){stress[j], node};
-  }
+      *peak = (struct eo_root_peak){stress[j], node[j]};
 }
 
 /* A stretch of a tooth whose histories begin at `start`. */
@@ -366,10 +301,7 @@ static void compute_stretch(struct eo_root_workspace *ws, int member, int tooth,
 {
   size_t stride = (size_t)eo_root_modes_stride(ws->tables->modes[member], stretch->carriers);
   int rows = stretch->last - stretch->first;
-  memset(ws->coefficient, 0, sizeof *ws->coefficient * (size_t)(ends * rows) * stride);
-  if (stretch->carriers == EO_ROOT_ALL)
-    add_own(ws, member, tooth, stretch, ends, loads);
-  add_others(ws, member, tooth, stretch, ends, loads);
+  add_up(ws, member, tooth, stretch, ends, loads);
   for (int e = 0; e < ends; e++)
     for (int j = 0; j < rows; j += ROWS)
       read_rows(ws, member, stretch->carriers, rows - j < ROWS ? rows - j : ROWS,
@@ -423,4 +355,114 @@ void eo_root_history_compute(struct eo_root_history *history, struct eo_root_wor
   for (int i = 0; i < tables->pairs; i++)
     eo_root_tooth_compute(ws, member, tables->first_pair + i, 1, &loads, &history, &peak[i]);
   eo_root_history_finish(history, root, tables->grid, loads->step, peak, 1);
+}
+
+enum { WAVES = 4 }; /* more, or all alike, prune no more of the search; the constant load alone a third less */
+
+/* A line load that is a wave over the face, of amplitude 1 N/m. */
+static void make_wave(struct eo_root_loads *loads, const struct eo_root_tables *tables, int wave)
+{
+  for (int j = 0; j < tables->grid->positions; j++) {
+    const struct eo_contact_position *position = &tables->grid->position[j];
+    for (int i = 0; i < position->points; i++)
+      loads->force[position->first + i] =
+          (float)(position->length[i] *
+                  cos(wave * M_PI * (position->point[i].eta / tables->grid->geometry.face_width + 0.5)));
+  }
+  pass_forces(loads, tables);
+}
+
+/* What flanks carry is smooth for the most part: the second moment, of coefficients, of a constant line load and of
+   waves over the face, longer ones larger. moment[stride][stride]; wide[positions][stride]: scratch. */
+static void add_waves(struct eo_root_workspace *ws, struct eo_root_loads *loads, int member, double *wide,
+                      double *moment)
+{
+  const struct eo_root_tables *tables = ws->tables;
+  const struct eo_root_loads *load = loads;
+  int stride = eo_root_modes_stride(tables->modes[member], EO_ROOT_ALL);
+  for (int wave = 0; wave < WAVES; wave++) {
+    make_wave(loads, tables, wave);
+    for (int tooth = tables->first_pair; tooth < tables->first_pair + tables->pairs; tooth++) {
+      struct stretch stretch[3];
+      find_stretches(tables, tooth, loads->step, stretch);
+      int rows = stretch[1].last - stretch[1].first;
+      add_up(ws, member, tooth, &stretch[1], 1, &load);
+      for (int i = 0; i < rows * stride; i++)
+        wide[i] = (double)ws->coefficient[i] / (1 + wave);
+      eo_dense_add_gram(rows, stride, wide, moment);
+    }
+  }
+}
+
+static enum eo_code turn_modes(struct eo_root_tables *tables, struct eo_root_workspace *ws, struct eo_root_loads *loads,
+                               int member, struct eo_error *error)
+{
+  struct eo_root_modes *modes = tables->modes[member];
+  size_t stride = (size_t)eo_root_modes_stride(modes, EO_ROOT_ALL);
+  double *wide = malloc(sizeof *wide * (size_t)tables->grid->positions * stride),
+         *moment = calloc(stride * stride, sizeof *moment);
+  enum eo_code code = wide && moment ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    add_waves(ws, loads, member, wide, moment);
+    code = eo_root_modes_turn(modes, moment, error);
+  }
+  free(wide);
+  free(moment);
+  return code;
+}
+
+static enum eo_code turn_both(struct eo_root_tables *tables, struct eo_error *error)
+{
+  struct eo_root_workspace *ws = NULL;
+  struct eo_root_loads loads = {0};
+  enum eo_code code = eo_root_workspace_new(&ws, tables, 1, error);
+  if (!code)
+    code = eo_root_loads_init(&loads, tables, 1, error);
+  for (int member = 0; member < 2 && !code; member++)
+    code = turn_modes(tables, ws, &loads, member, error);
+  eo_root_workspace_free(ws);
+  eo_root_loads_done(&loads);
+  return code;
+}
+
+static enum eo_code fill_tables(struct eo_root_tables *tables, struct eo_error *error)
+{
+  int range[2];
+  eo_contact_grid_pairs(tables->grid, range);
+  tables->first_pair = range[0];
+  tables->pairs = range[1] - range[0] + 1;
+  tables->present = calloc((size_t)tables->pairs, sizeof *tables->present * 2);
+  if (!tables->present)
+    return eo_error_memory(error);
+  find_present(tables);
+  for (int member = 0; member < 2; member++) {
+    long points = tables->grid->points, stride = eo_root_modes_stride(tables->modes[member], EO_ROOT_ALL),
+         far = eo_root_modes_remote_stride(tables->modes[member]);
+    tables->own[member] = eo_gram_allocate((points * stride + 1) / 2);
+    tables->remote[member] = far ? eo_gram_allocate((points * far + 1) / 2) : NULL;
+    if (!tables->own[member] || (far && !tables->remote[member]))
+      return eo_error_memory(error);
+    weigh_points(tables, member);
+  }
+  EO_TRY(turn_both(tables, error));
+  weigh_points(tables, EO_PINION);
+  weigh_points(tables, EO_GEAR);
+  return EO_OK;
+}
+
+enum eo_code eo_root_tables_new(struct eo_root_tables **result, const struct eo_contact_grid *grid,
+                                struct eo_root_modes *const modes[2], struct eo_error *error)
+{
+  struct eo_root_tables *tables = calloc(1, sizeof *tables);
+  if (!tables)
+    return eo_error_memory(error);
+  tables->grid = grid;
+  tables->modes[EO_PINION] = modes[EO_PINION];
+  tables->modes[EO_GEAR] = modes[EO_GEAR];
+  enum eo_code code = fill_tables(tables, error);
+  if (code)
+    eo_root_tables_free(tables);
+  else
+    *result = tables;
+  return code;
 }

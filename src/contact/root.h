@@ -37,14 +37,14 @@ void eo_root_history_done(struct eo_root_history *history);
 /* The largest stress of a tooth in its mesh under one end's loads. */
 struct eo_root_peak {
   double stress; /* Pa */
-  int node;      /* of the root's nodes, see eo_root_modes_nodes() */
+  int node;      /* of the root's nodes, see eo_root_modes_find_largest() */
 };
 
 /* What the loads of a contact grid's points are to the roots of both members; constant once made, shared by all
-   threads. Borrows the grid and the modes [member]. */
+   threads. Borrows the grid and the modes [member], which are turned to its loads. */
 struct eo_root_tables;
 enum eo_code eo_root_tables_new(struct eo_root_tables **tables, const struct eo_contact_grid *grid,
-                                const struct eo_root_modes *const modes[2], struct eo_error *error);
+                                struct eo_root_modes *const modes[2], struct eo_error *error);
 void eo_root_tables_free(struct eo_root_tables *tables);
 
 /* The loads of one end at every step-th position of the grid, as the roots of both members feel them. */

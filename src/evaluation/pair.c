@@ -48,9 +48,7 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
                              progress, error));
   for (int side = 0; side < 2; side++)
     pair->grid->corner[side].rule = options->tilt_rule;
-  return pair->flexibility
-             ? eo_root_tables_new(&pair->root, pair->grid, (const struct eo_root_modes *const *)pair->root_modes, error)
-             : EO_OK;
+  return pair->flexibility ? eo_root_tables_new(&pair->root, pair->grid, pair->root_modes, error) : EO_OK;
 }
 
 /* Half of the way of a preparation that makes both halves, one after the other. */

@@ -2,6 +2,8 @@
 #include "flexibility/root_modes.h"
 
 #include "flexibility/prepared.h"
+#include "flexibility/root_field.h"
+#include "numerics/dense.h"
 #include "numerics/gram.h"
 #include "numerics/lowrank.h"
 
@@ -14,14 +16,14 @@
 struct shapes {
   int rank, stride; /* stride: rank, padded with zeros as the kernel wants it */
   float *passed;    /* [2 reach + 1][remote_rank][stride]: coefficients that `remote` makes, by distance */
-  float *shape;     /* [rank][shape_stride]: [EO_STRESSES][nodes] */
+  struct eo_root_field field;
 };
 
 struct eo_root_modes {
   const struct eo_flank_table *table;
   int reach; /* loads on pairs k - reach .. k + reach count */
   const struct eo_gram *gram;
-  int member, length, shape_stride;       /* length = nodes x EO_STRESSES; padded */
+  int member, length;                     /* length = nodes x EO_STRESSES */
   int remote_rank, remote_stride;         /* of the loads on other teeth; 0: they do not count */
   struct shapes shapes[EO_ROOT_CARRIERS]; /* [carrier]; those of the others alone are few */
   float *own;                             /* [flank.points][stride of EO_ROOT_ALL]: coefficients of the shapes */
@@ -147,15 +149,12 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, const struct influen
   size_t length = (size_t)modes->length, size = (size_t)shapes->rank * length;
   int first = first_row(influence, carriers);
   double *shape = malloc(sizeof *shape * size + 1);
-  shapes->shape = make_floats(shapes->rank, modes->shape_stride);
-  enum eo_code code = shape && shapes->shape ? EO_OK : eo_error_memory(error);
+  enum eo_code code = shape ? EO_OK : eo_error_memory(error);
   if (!code)
     code = fit(influence->rows - first, shapes->rank, influence->factor_stride[carriers], influence->factor[carriers],
                modes->length, modes->length, influence->row + (size_t)first * length, shape, error);
-  for (size_t i = 0; !code && i < size; i++) {
-    size_t row = i / length, node = i % length / EO_STRESSES, part = i % EO_STRESSES;
-    shapes->shape[row * (size_t)modes->shape_stride + part * (length / EO_STRESSES) + node] = (float)shape[i];
-  }
+  if (!code)
+    code = eo_root_field_init(&shapes->field, shapes->rank, modes->length / EO_STRESSES, shape, error);
   free(shape);
   return code;
 }
@@ -222,7 +221,6 @@ static enum eo_code find_modes(struct eo_root_modes *modes, size_t skip, struct 
                                struct eo_error *error)
 {
   const struct shapes *shapes = &modes->shapes[EO_ROOT_ALL];
-  modes->shape_stride = padded(modes->length);
   EO_TRY(stack_rows(influence, modes, skip, error));
   EO_TRY(find_shapes(modes, influence, EO_ROOT_ALL, influence->gram, error));
   EO_TRY(keep_rows(&modes->own, influence->own, shapes->rank, influence->factor_stride[EO_ROOT_ALL],
@@ -268,7 +266,7 @@ void eo_root_modes_free(struct eo_root_modes *modes)
   free(modes->remote);
   for (int carriers = 0; carriers < EO_ROOT_CARRIERS; carriers++) {
     free(modes->shapes[carriers].passed);
-    free(modes->shapes[carriers].shape);
+    eo_root_field_done(&modes->shapes[carriers].field);
   }
   free(modes);
 }
@@ -288,14 +286,46 @@ int eo_root_modes_remote_stride(const struct eo_root_modes *modes)
   return modes->remote_stride;
 }
 
-int eo_root_modes_stress_stride(const struct eo_root_modes *modes)
+int eo_root_modes_room(const struct eo_root_modes *modes)
 {
-  return modes->shape_stride;
+  int all = modes->shapes[EO_ROOT_ALL].field.columns, others = modes->shapes[EO_ROOT_OTHERS].field.columns;
+  return all > others ? all : others;
 }
 
-int eo_root_modes_nodes(const struct eo_root_modes *modes)
+/* Of `count` times `rank` numbers the ones that the rows of vectors[rank][rank] make of them; the numbers lie a step
+   apart. row[rank]: scratch. */
+static void turn(int rank, const double *vectors, int count, int next, int step, float *number, double *row)
 {
-  return modes->length / EO_STRESSES;
+  for (int i = 0; i < count; i++, number += next) {
+    for (int r = 0; r < rank; r++)
+      row[r] = number[r * step];
+    for (int r = 0; r < rank; r++)
+      number[r * step] = (float)cblas_ddot(rank, vectors + r * rank, 1, row, 1);
+  }
+}
+
+enum eo_code eo_root_modes_turn(struct eo_root_modes *modes, const double *moment, struct eo_error *error)
+{
+  struct shapes *shapes = &modes->shapes[EO_ROOT_ALL];
+  int rank = shapes->rank, stride = shapes->stride;
+  double *vectors = malloc(sizeof *vectors * (size_t)rank * (size_t)rank),
+         *values = malloc(sizeof *values * (size_t)rank);
+  enum eo_code code = vectors && values ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < rank && !code; i++) /* minus: largest first */
+    for (int k = 0; k < rank; k++)
+      vectors[i * rank + k] = -moment[i < k ? i * stride + k : k * stride + i];
+  if (!code && eo_dense_symmetric_eigen(rank, vectors, values))
+    code = eo_error_set(error, EO_ERROR_NUMERIC, NULL, "the shapes of the root stress cannot be put in order");
+  if (!code) {
+    turn(rank, vectors, modes->table->flank.points, stride, 1, modes->own, values);
+    if (shapes->passed)
+      turn(rank, vectors, (2 * modes->reach + 1) * modes->remote_rank, stride, 1, shapes->passed, values);
+    turn(rank, vectors, shapes->field.columns, 1, shapes->field.columns, shapes->field.shape, values);
+    eo_root_field_bound(&shapes->field);
+  }
+  free(vectors);
+  free(values);
+  return code;
 }
 
 /* row[stride]: the sixteen rows of from[][stride] that count at a point, by their weights. */
@@ -338,10 +368,9 @@ void eo_root_modes_pass(const struct eo_root_modes *modes, enum eo_root_carriers
                         shapes->passed + distance * size, shapes->stride, true, coefficient, shapes->stride);
 }
 
-void eo_root_modes_stress(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
-                          const float *coefficient, float *stress)
+void eo_root_modes_find_largest(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
+                                const float *coefficient, float *room, double *largest, int *node)
 {
   const struct shapes *shapes = &modes->shapes[carriers];
-  modes->gram->multiply(count, shapes->rank, modes->shape_stride, coefficient, shapes->stride, shapes->shape,
-                        modes->shape_stride, false, stress, modes->shape_stride);
+  eo_root_field_find_largest(&shapes->field, modes->gram, count, coefficient, shapes->stride, room, largest, node);
 }

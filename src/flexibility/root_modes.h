@@ -14,19 +14,23 @@ enum eo_root_carriers { EO_ROOT_ALL, EO_ROOT_OTHERS, EO_ROOT_CARRIERS };
 
 struct eo_root_modes; /* constant once made; borrows the flexibility */
 
-/* Error of the stress under distributed flank loads below about 1e-3 of the largest. Errors: memory, EO_ERROR_NUMERIC.
+/* Shapes in the order in which they were picked. Error of the stress under distributed flank loads below about 1e-3 of
+ * the largest. Errors: memory, EO_ERROR_NUMERIC.
  */
 enum eo_code eo_root_modes_new(struct eo_root_modes **modes, const struct eo_flexibility *flexibility, int member,
                                struct eo_error *error);
 void eo_root_modes_free(struct eo_root_modes *modes);
 
+/* Turns the shapes of EO_ROOT_ALL, so that the first ones carry most of such loads: moment[stride][stride] = sum of c
+   c' over their coefficients c, its upper triangle. Stresses stay what they are. Errors: memory, EO_ERROR_NUMERIC. */
+enum eo_code eo_root_modes_turn(struct eo_root_modes *modes, const double *moment, struct eo_error *error);
+
 int eo_root_modes_reach(const struct eo_root_modes *modes); /* teeth on either side whose loads count */
 /* Floats of the coefficients of a distribution; 0 of others that do not count. */
 int eo_root_modes_stride(const struct eo_root_modes *modes, enum eo_root_carriers carriers);
 int eo_root_modes_remote_stride(
-    const struct eo_root_modes *modes); /* floats of what other teeth carry; 0: none counts */
-int eo_root_modes_stress_stride(const struct eo_root_modes *modes); /* floats between the stresses of two loads */
-int eo_root_modes_nodes(const struct eo_root_modes *modes);         /* of the root: [point][layer] from root.first on */
+    const struct eo_root_modes *modes);                    /* floats of what other teeth carry; 0: none counts */
+int eo_root_modes_room(const struct eo_root_modes *modes); /* floats that a search takes for each distribution */
 
 /* What 1 N at a flank point is to the root of its own tooth, own[stride], and to those of others, remote[remote
    stride]. The same for every tooth, load and time. */
@@ -46,8 +50,9 @@ void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *fo
 void eo_root_modes_pass(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int ahead_by, int count,
                         const float *remote, float *coefficient);
 
-/* stress[count][stress stride], Pa: [EO_STRESSES][nodes] and zeros, of coefficient[count][stride]. */
-void eo_root_modes_stress(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
-                          const float *coefficient, float *stress);
+/* The largest principal stress largest[count], Pa, 0 where nothing is in tension, and its node[count] of the root,
+   [point][layer] from root.first on, of coefficient[count][stride]. room[count][room]: scratch. */
+void eo_root_modes_find_largest(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int count,
+                                const float *coefficient, float *room, double *largest, int *node);
 
 #endif

@@ -55,6 +55,10 @@ struct eo_gram {
      alone, to the last bit, whatever the number of rows. */
   void (*multiply)(int rows, int inner, int columns, const float *a, int a_stride, const float *b, int b_stride,
                    bool add, float *c, int c_stride);
+  /* The first of the blocks first .. blocks - 1 of EO_GRAM_COLUMNS plane stresses in which a larger principal one may
+     pass `largest`, 0 or more, else `blocks`. stress[blocks][3][EO_GRAM_COLUMNS]: s, t, u, each uncertain by no more
+     than left times rest[blocks][EO_GRAM_COLUMNS]. */
+  int (*find_passing)(int first, int blocks, const float *stress, float left, const float *rest, float largest);
   /* The loads of a line contact and their rates, load[points] and rate[points], from the local approach and half its
      change over each cell, local[points] and spread[points], which lie in aligned arrays; law as eo_line_law says.
      Returns the sum of the loads, in the order of the points. Every version gives the same bytes. */

@@ -13,6 +13,7 @@
 #define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
 #define MADD_FLOAT(a, b, c) _mm256_fmadd_ps(a, b, c)
 #define ANY(mask) (_mm256_movemask_pd((__m256d)(mask)) != 0)
+#define ANY_FLOAT(mask) (_mm256_movemask_ps((__m256)(mask)) != 0)
 #define APPLY_ROWS 4
 #define GATHER_UNITS 6
 #define TILE_ROWS 6

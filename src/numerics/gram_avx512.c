@@ -13,6 +13,7 @@
 #define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
 #define MADD_FLOAT(a, b, c) _mm512_fmadd_ps(a, b, c)
 #define ANY(mask) (_mm512_movepi64_mask((__m512i)(mask)) != 0)
+#define ANY_FLOAT(mask) (_mm512_movepi32_mask((__m512i)(mask)) != 0)
 #define APPLY_ROWS 8
 #define GATHER_UNITS 6
 #define TILE_ROWS 8

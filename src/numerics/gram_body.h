@@ -6,7 +6,7 @@
    SPLAT, SPLAT_FLOAT   a vector of equal numbers
    WIDEN                WIDTH floats of the memory as doubles
    MADD, MADD_FLOAT     a b + c
-   ANY                  a lane of the mask is set
+   ANY, ANY_FLOAT       a lane of the mask is set, of doubles and of floats
    APPLY_ROWS           rows of a product with a vector at a time
    GATHER_UNITS         sets of eight sums over points at a time
    TILE_ROWS, TILE_LANES  rows and vectors of a product of matrices at a time
@@ -15,6 +15,7 @@
 #include "numerics/gram_private.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum {
@@ -375,31 +376,36 @@ INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_
     *(float_lane *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
 }
 
+enum { ROW_LANES = 6 };
+
+/* Of one row, `lanes` vectors of columns. */
+INLINE void multiply_lanes(int lanes, int inner, const float *a, const float *b, int b_stride, bool add, float *c)
+{
+  float_lane sum[ROW_LANES];
+  UNROLL
+  for (int l = 0; l < lanes; l++)
+    sum[l] = add ? *(const float_lane *)(c + l * FLOATS) : (float_lane){0};
+  for (int k = 0; k < inner; k++) {
+    float_lane left = SPLAT_FLOAT(a[k]);
+    UNROLL
+    for (int l = 0; l < lanes; l++)
+      sum[l] = MADD_FLOAT(left, *(const float_lane *)(b + (long)k * b_stride + l * FLOATS), sum[l]);
+  }
+  UNROLL
+  for (int l = 0; l < lanes; l++)
+    *(float_lane *)(c + l * FLOATS) = sum[l];
+}
+
 /* One row: several vectors of columns at a time, as a sum has to wait for the one before it. */
 INLINE void multiply_row(int inner, int columns, const float *a, const float *b, int b_stride, bool add, float *c)
 {
-  enum { LANES = 6 };
-  for (int column = 0, lanes; column < columns; column += lanes * FLOATS) {
-    float_lane sum[LANES];
-    lanes = (columns - column) / FLOATS < LANES ? 1 : LANES;
-    UNROLL
-    for (int l = 0; l < LANES; l++)
-      sum[l] = add && l < lanes ? *(const float_lane *)(c + column + l * FLOATS) : (float_lane){0};
-    if (lanes == 1)
-      for (int k = 0; k < inner; k++)
-        sum[0] = MADD_FLOAT(SPLAT_FLOAT(a[k]), *(const float_lane *)(b + (long)k * b_stride + column), sum[0]);
-    else
-      for (int k = 0; k < inner; k++) {
-        float_lane left = SPLAT_FLOAT(a[k]);
-        UNROLL
-        for (int l = 0; l < LANES; l++)
-          sum[l] = MADD_FLOAT(left, *(const float_lane *)(b + (long)k * b_stride + column + l * FLOATS), sum[l]);
-      }
-    UNROLL
-    for (int l = 0; l < LANES; l++)
-      if (l < lanes)
-        *(float_lane *)(c + column + l * FLOATS) = sum[l];
-  }
+  int column = 0;
+  for (; column + ROW_LANES * FLOATS <= columns; column += ROW_LANES * FLOATS)
+    multiply_lanes(ROW_LANES, inner, a, b + column, b_stride, add, c + column);
+  for (; column + ROW_LANES / 2 * FLOATS <= columns; column += ROW_LANES / 2 * FLOATS)
+    multiply_lanes(ROW_LANES / 2, inner, a, b + column, b_stride, add, c + column);
+  for (; column < columns; column += FLOATS)
+    multiply_lanes(1, inner, a, b + column, b_stride, add, c + column);
 }
 
 /* Strips of columns, so that b's strip stays in the cache while all rows pass over it. Every number of c is one sum in
@@ -421,6 +427,28 @@ TARGET static void multiply(int rows, int inner, int columns, const float *a, in
     multiply_row(inner, columns, a + (long)row * a_stride, b, b_stride, add, c + (long)row * c_stride);
 }
 
+/* s + t + sqrt((s - t)^2 + 4 u^2) > 2 largest, without the root; what is not a number passes. */
+TARGET static int find_passing(int first, int blocks, const float *stress, float left, const float *rest, float largest)
+{
+  typedef int32_t float_mask __attribute__((vector_size(8 * WIDTH), may_alias));
+  float_lane come = SPLAT_FLOAT(left), most = SPLAT_FLOAT(largest), zero = {0};
+  for (int block = first; block < blocks; block++) {
+    const float *at = stress + 3L * EO_GRAM_COLUMNS * block;
+    float_mask any = {0};
+    UNROLL
+    for (int i = 0; i < EO_GRAM_COLUMNS; i += FLOATS) {
+      float_lane s = *(const float_lane *)(at + i), t = *(const float_lane *)(at + EO_GRAM_COLUMNS + i),
+                 u = *(const float_lane *)(at + 2 * EO_GRAM_COLUMNS + i),
+                 least = most - come * *(const float_lane *)(rest + (long)EO_GRAM_COLUMNS * block + i),
+                 difference = s - t, room = least + least - (s + t);
+      any |= ~((float_mask)(room >= zero) & (float_mask)(difference * difference + 4 * (u * u) <= room * room));
+    }
+    if (ANY_FLOAT(any))
+      return block;
+  }
+  return blocks;
+}
+
 #include "numerics/gram_carry.h"
 
-const struct eo_gram VERSION = {NAME, apply, gather, blend, assemble, invert, solve, multiply, carry};
+const struct eo_gram VERSION = {NAME, apply, gather, blend, assemble, invert, solve, multiply, find_passing, carry};

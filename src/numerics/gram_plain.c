@@ -16,6 +16,7 @@
 #define MADD(a, b, c) ((a) * (b) + (c))
 #define MADD_FLOAT(a, b, c) ((a) * (b) + (c))
 #define ANY(mask) (((mask)[0] | (mask)[1]) != 0)
+#define ANY_FLOAT(mask) (((mask)[0] | (mask)[1] | (mask)[2] | (mask)[3]) != 0)
 #define APPLY_ROWS 2
 #define GATHER_UNITS 3
 #define TILE_ROWS 4

@@ -287,6 +287,42 @@ static void test_carry(const struct eo_gram *gram, int points)
   eo_local_inverse_done(&inverse);
 }
 
+/* Blocks in which a principal stress may pass, against the root itself, for stresses that are certain and that are not.
+   Where it comes within rounding of the largest, either answer is right. */
+static void test_find_passing(const struct eo_gram *gram)
+{
+  enum { BLOCKS = 40, NODES = BLOCKS * EO_GRAM_COLUMNS };
+  float *stress = make_floats(3 * NODES), *rest = make_floats(NODES);
+  int wrong = 0, passing = 0;
+  for (int i = 0; i < 3 * NODES; i++)
+    stress[i] = (float)draw(30, i);
+  for (int i = 0; i < NODES; i++)
+    rest[i] = (float)fabs(draw(31, i));
+  for (int step = 0; step < 60; step++) {
+    float largest = 0.05F * (float)step, left = step % 2 ? 0.4F : 0;
+    for (int block = 0; block < BLOCKS; block++) {
+      double most = -INFINITY;
+      for (int i = 0; i < EO_GRAM_COLUMNS; i++) {
+        const float *at = stress + 3 * EO_GRAM_COLUMNS * block + i;
+        double s = at[0], t = at[EO_GRAM_COLUMNS], u = at[2 * EO_GRAM_COLUMNS];
+        most = fmax(most, (s + t + hypot(s - t, 2 * u)) / 2 + left * rest[block * EO_GRAM_COLUMNS + i]);
+      }
+      bool passes = gram->find_passing(block, block + 1, stress, left, rest, largest) == block;
+      wrong += passes != (most > largest) && fabs(most - largest) > 1e-6;
+      passing += passes;
+    }
+    int one_by_one = 0;
+    while (one_by_one < BLOCKS &&
+           gram->find_passing(one_by_one, one_by_one + 1, stress, left, rest, largest) > one_by_one)
+      one_by_one++;
+    wrong += gram->find_passing(0, BLOCKS, stress, left, rest, largest) != one_by_one;
+  }
+  ok(wrong == 0 && passing > 100 && passing < 60 * BLOCKS - 100, "%s: blocks that pass, %d of %d, %d wrong", gram->name,
+     passing, 60 * BLOCKS, wrong);
+  free(stress);
+  free(rest);
+}
+
 /* Matrices that are not positive definite. */
 static void test_refusals(void)
 {
@@ -325,6 +361,8 @@ int main(void)
   for (int version = 0; eo_gram_version(version); version++) {
     test_multiply(eo_gram_version(version), 13, 31, 7 * EO_GRAM_COLUMNS);
     test_multiply(eo_gram_version(version), 7, 5, EO_GRAM_COLUMNS);
+    test_multiply(eo_gram_version(version), 3, 16, 3 * EO_GRAM_COLUMNS);
+    test_find_passing(eo_gram_version(version));
     test_carry(eo_gram_version(version), 131);
     test_carry(eo_gram_version(version), 19);
     test_carry(eo_gram_version(version), 3);
