@@ -171,7 +171,9 @@ void eo_root_loads_find(struct eo_root_loads *loads, const struct eo_root_tables
   pass_forces(loads, tables);
 }
 
-enum { MOST_TEETH = 64, ROWS = 64 }; /* ROWS: stresses at a time, so that they stay in the cache until they are read */
+/* ROWS: stresses at a time, so that they stay in the cache until they are read; every kernel takes them in whole tiles.
+ */
+enum { MOST_TEETH = 64, ROWS = 72 };
 
 struct eo_root_workspace {
   const struct eo_root_tables *tables;

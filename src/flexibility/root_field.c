@@ -8,18 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* LEVEL: shapes that are added before the sums are looked at again. */
-enum { BLOCK = EO_GRAM_COLUMNS, SPAN = EO_STRESSES * BLOCK, LEVEL = 16, MOST_LEVELS = 128 };
+/* FIRST: shapes that are summed before the sums are looked at; then twice as many, and so on. */
+enum { BLOCK = EO_GRAM_COLUMNS, SPAN = EO_STRESSES * BLOCK, FIRST = 24, MOST_LEVELS = 16 };
 
 enum eo_code eo_root_field_init(struct eo_root_field *field, int rank, int nodes, const double *shape,
                                 struct eo_error *error)
 {
-  int blocks = (nodes + BLOCK - 1) / BLOCK, levels = rank > LEVEL ? (rank + LEVEL - 1) / LEVEL : 1;
-  *field = (struct eo_root_field){.rank = rank,
-                                  .nodes = nodes,
-                                  .blocks = blocks,
-                                  .columns = blocks * SPAN,
-                                  .levels = levels < MOST_LEVELS ? levels : MOST_LEVELS};
+  int blocks = (nodes + BLOCK - 1) / BLOCK, levels = 1;
+  while (levels < MOST_LEVELS && FIRST << (levels - 1) < rank)
+    levels++;
+  *field = (struct eo_root_field){
+      .rank = rank, .nodes = nodes, .blocks = blocks, .columns = blocks * SPAN, .levels = levels};
   field->shape = eo_gram_allocate((long)rank * field->columns / 2 + 1);
   field->rest = eo_gram_allocate((long)field->levels * blocks * BLOCK / 2 + 1);
   if (!field->shape || !field->rest)
@@ -43,7 +42,7 @@ void eo_root_field_done(struct eo_root_field *field)
 /* Shapes that are in a sum once it has reached the level. */
 static int shapes_until(const struct eo_root_field *field, int level)
 {
-  return level == field->levels - 1 ? field->rank : (level + 1) * LEVEL;
+  return level == field->levels - 1 ? field->rank : FIRST << level;
 }
 
 void eo_root_field_bound(struct eo_root_field *field)
