@@ -14,11 +14,6 @@ static const struct eo_stage *const stages[] = {
 };
 enum { STAGES = sizeof stages / sizeof stages[0] };
 
-const struct eo_stage *eo_stage_at(int index)
-{
-  return index < STAGES ? stages[index] : NULL;
-}
-
 static int list_stages(void)
 {
   struct eo_text text = {0};

@@ -111,13 +111,6 @@ static void deflection_parts(const struct eo_deflection *deflection, double face
     part[k] = deflection->part[k][i] + (u - i) * (deflection->part[k][i + 1] - deflection->part[k][i]);
 }
 
-double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta)
-{
-  double part[2];
-  deflection_parts(deflection, face_width, eta, part);
-  return part[0] + s * part[1]; /* theory (K12) */
-}
-
 /* The corner under the errors, and the least d at which it can strike anywhere on the face. */
 static double tilt_corner(const struct eo_gap_field *field, const struct eo_corner_gap *corner,
                           struct eo_tilted_corner *tilted)

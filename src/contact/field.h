@@ -14,8 +14,6 @@ struct eo_deflection {
   double part[2][EO_DEFLECTION_NODES]; /* m, normal; m per m of s */
 };
 
-double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta);
-
 /* The tip corners of flanks whose profile changes over the face: at equal steps from eta = -b/2 to +b/2, linear between
    them. */
 enum { EO_CORNER_STATIONS = 9 };

@@ -248,14 +248,3 @@ void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct e
   eo_dense_multiply(influence->size, influence->size, influence->matrix, in, out);
   memcpy(deflection, out, sizeof *out * (size_t)influence->size);
 }
-
-void eo_shaft_load_add(struct eo_deflection *load, double face_width, double s, double eta, double force)
-{
-  double u = (eta / face_width + 0.5) * (NODES - 1);
-  int i = (int)fmax(0, fmin(NODES - 2, floor(u)));
-  double upper = force * (u - i), lower = force - upper;
-  load->part[0][i] += lower;
-  load->part[0][i + 1] += upper;
-  load->part[1][i] += s * lower;
-  load->part[1][i + 1] += s * upper;
-}

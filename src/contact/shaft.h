@@ -65,9 +65,6 @@ void eo_shaft_influence_done(struct eo_shaft_influence *influence);
 void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct eo_deflection *load,
                       struct eo_deflection *deflection);
 
-/* Adds the normal force (N) at (s, eta) to a load. */
-void eo_shaft_load_add(struct eo_deflection *load, double face_width, double s, double eta, double force);
-
 /* Root diameter + 0.75 m_n: its torsion constant is that of the toothed section (Saint-Venant; 17 and 44 teeth of the
    basic rack ISO 53). */
 double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int member);

@@ -340,15 +340,6 @@ enum eo_code eo_design_evaluation_hash_document(const json_t *document, char hex
   return code;
 }
 
-enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
-                                       struct eo_error *error)
-{
-  json_t *document = eo_design_encode(design);
-  enum eo_code code = eo_design_evaluation_hash_document(document, hex, error);
-  json_decref(document);
-  return code;
-}
-
 /* Scenarios, root stress: what of the objective decides which values a row has. */
 static json_t *encode_wants(const struct eo_design *design)
 {

@@ -80,11 +80,6 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */
 enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
-/* The same over what the raw values of one evaluation depend on: without name, rating, pitch, objective and
- * optimization. */
-enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
-                                       struct eo_error *error);
-
 /* Both of a design that is encoded already; NULL: that had no memory. */
 enum eo_code eo_design_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 enum eo_code eo_design_evaluation_hash_document(const json_t *document, char hex[EO_HASH_LENGTH + 1],

@@ -152,8 +152,3 @@ struct eo_scatter_log eo_pair_log_of(struct eo_pair_log *log)
 {
   return log ? (struct eo_scatter_log){find, keep, log} : (struct eo_scatter_log){0};
 }
-
-int eo_pair_log_known(const struct eo_pair_log *log)
-{
-  return log->known;
-}

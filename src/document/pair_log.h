@@ -23,7 +23,4 @@ void eo_pair_log_close(struct eo_pair_log *log);
 /* For a run. */
 struct eo_scatter_log eo_pair_log_of(struct eo_pair_log *log);
 
-/* Rows that were there already. */
-int eo_pair_log_known(const struct eo_pair_log *log);
-
 #endif

@@ -93,10 +93,6 @@ int eo_balance_harmonics(const struct eo_balance *workspace)
 {
   return workspace->harmonics;
 }
-int eo_balance_samples(const struct eo_balance *workspace)
-{
-  return workspace->fine->samples;
-}
 const struct eo_alternating *eo_balance_grid(const struct eo_balance *workspace)
 {
   return workspace->fine;

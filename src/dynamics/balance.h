@@ -26,7 +26,6 @@ struct eo_balance_report {
 enum eo_code eo_balance_new(struct eo_balance **workspace, int harmonics, int samples, struct eo_error *error);
 void eo_balance_free(struct eo_balance *workspace); /* NULL is fine */
 int eo_balance_harmonics(const struct eo_balance *workspace);
-int eo_balance_samples(const struct eo_balance *workspace);
 
 /* Solves at the frequency of the cycle, for which harmonic[0..harmonics] was condensed. x[2][1 + 2 harmonics] holds the
    deflections, m: the result, and with warm the guess as well (no linear solve is tried then). Not converging is an

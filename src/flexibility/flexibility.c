@@ -124,24 +124,6 @@ static const double *stress_table(const struct eo_flexibility *flexibility, int 
              : eo_flank_table_stress(&flexibility->table[member], ahead_by, grid);
 }
 
-void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,
-                                   const struct eo_flank_point *point, int from, int to, double *influence)
-{
-  const struct eo_flank_table *table = &flexibility->table[member];
-  size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
-  for (int j = 0; j < n; j++, influence += length) {
-    const struct eo_grid *grid;
-    const double *stress = stress_table(flexibility, member, point[j].pair - pair, &grid);
-    struct eo_grid_weights at;
-    if (!stress) {
-      memset(influence, 0, length * sizeof *influence);
-      continue;
-    }
-    eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
-    combine(grid, &at, stress + (size_t)from * line, table->stresses, length, influence);
-  }
-}
-
 void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int member, int pair, int n,
                                 const struct eo_flank_point *point, const double *force, int from, int to,
                                 double *stress)

@@ -135,10 +135,6 @@ void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int me
                                 const struct eo_flank_point *point, const double *force, int from, int to,
                                 double *stress);
 
-/* influence[n][to - from][layers + 1][EO_STRESSES], Pa/N: the same per point and unit force. */
-void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,
-                                   const struct eo_flank_point *point, int from, int to, double *influence);
-
 /* The larger principal stress of a plane state. */
 double eo_stress_principal(const double stress[EO_STRESSES]);
 

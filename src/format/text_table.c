@@ -63,14 +63,6 @@ void eo_text_table_number(struct eo_text_table *sheet, double value, const struc
   add_cell(sheet, text, true);
 }
 
-void eo_text_table_fill(struct eo_text_table *sheet, int rows, const double *const *column,
-                        const struct eo_unit *const *units, int digits)
-{
-  for (int i = 0; i < rows; i++)
-    for (int j = 0; j < sheet->columns; j++)
-      eo_text_table_number(sheet, column[j][i], units ? units[j] : NULL, digits);
-}
-
 /* Characters, not bytes, of a UTF-8 string. */
 static int width(const char *string)
 {

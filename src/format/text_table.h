@@ -28,10 +28,6 @@ void eo_text_table_string(struct eo_text_table *sheet, const char *string);
 /* In the document's unit; digits 0: the shortest that reads back equal; not finite: an empty cell. */
 void eo_text_table_number(struct eo_text_table *sheet, double value, const struct eo_unit *unit, int digits);
 
-/* A curve sheet at once: column j holds column[j][0 .. rows). units: [columns], entries may be NULL. */
-void eo_text_table_fill(struct eo_text_table *sheet, int rows, const double *const *column,
-                        const struct eo_unit *const *units, int digits);
-
 /* Numbers to the right, the rest to the left, two blanks between columns, each line indented. */
 void eo_text_table_print(const struct eo_text_table *sheet, int indent, struct eo_text *text);
 void eo_text_table_csv(const struct eo_text_table *sheet, struct eo_text *text);

@@ -79,12 +79,6 @@ static inline double eo_gear_pair_face_width(const struct eo_gear_pair *pair, in
   return end == EO_RIGHT && pair->right_face_width > 0 ? pair->right_face_width : pair->face_width;
 }
 
-/* beta of an end, rad. */
-static inline double eo_gear_pair_helix_angle(const struct eo_gear_pair *pair, int end)
-{
-  return end == EO_RIGHT && pair->right_helix_angle > 0 ? pair->right_helix_angle : pair->helix_angle;
-}
-
 /* The halves of a herringbone pair differ in their helices. */
 static inline bool eo_gear_pair_has_two_helices(const struct eo_gear_pair *pair)
 {

@@ -24,11 +24,6 @@ struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding
   return finding;
 }
 
-const char *eo_finding_name(enum eo_finding_kind kind)
-{
-  return eo_finding_names[kind];
-}
-
 const char *const eo_severity_names[] = {"note", "repaired", "warning", "refused", NULL};
 
 const char *eo_severity_name(enum eo_severity severity)

@@ -61,10 +61,9 @@ struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding
                                    int channel, double value, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 
-/* "swapped", "reversed", ...; "note", "repaired", ... */
-const char *eo_finding_name(enum eo_finding_kind kind);
-const char *eo_severity_name(enum eo_severity severity);
-extern const char *const eo_finding_names[], *const eo_severity_names[]; /* by number; end with NULL */
+const char *eo_severity_name(enum eo_severity severity); /* "note", "repaired", ... */
+/* "swapped", "reversed", ... and the severities, by number; end with NULL. */
+extern const char *const eo_finding_names[], *const eo_severity_names[];
 
 /* The first of a kind; NULL when there is none. */
 const struct eo_finding *eo_findings_find(const struct eo_findings *findings, enum eo_finding_kind kind);

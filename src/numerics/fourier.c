@@ -67,13 +67,3 @@ double eo_fourier_value(int order, const double *series, double phase)
   }
   return value;
 }
-
-void eo_fourier_derivative(int order, const double *series, double *derivative)
-{
-  derivative[0] = 0;
-  for (int k = 1; k <= order; k++) {
-    double c = series[2 * k - 1], s = series[2 * k];
-    derivative[2 * k - 1] = 2 * M_PI * k * s;
-    derivative[2 * k] = -2 * M_PI * k * c;
-  }
-}

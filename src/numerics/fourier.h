@@ -18,7 +18,4 @@ void eo_fourier_basis(int order, double phase, double *basis);
 
 double eo_fourier_value(int order, const double *series, double phase);
 
-/* d f / d phase as a series of the same order. */
-void eo_fourier_derivative(int order, const double *series, double *derivative);
-
 #endif

@@ -23,8 +23,4 @@ void eo_pareto_order(const int *rank, const double *crowding, int count, int *or
 /* The front of the feasible (else least violating) true rows, see eo_optimizer_front(). */
 struct eo_front eo_pareto_front(const struct eo_archive *archive, int *front);
 
-/* Volume dominated within the box up to reference[objectives], by slicing (exact; meant for 2 and 3 objectives).
-   Points beyond the reference count nothing. point: [count][objectives], reordered. */
-double eo_pareto_hypervolume(double *point, int count, int objectives, const double *reference);
-
 #endif

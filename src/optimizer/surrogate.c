@@ -176,15 +176,6 @@ bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double 
   return true;
 }
 
-double eo_surrogate_error(const struct eo_surrogate *surrogate, int output)
-{
-  const double *e = surrogate->residual + (size_t)output * surrogate->rows_max;
-  double sum = 0;
-  for (int j = 0; j < surrogate->rows; j++)
-    sum += e[j] * e[j];
-  return sqrt(sum / surrogate->rows);
-}
-
 void eo_surrogate_visit(struct eo_surrogate *surrogate, const double *x)
 {
   for (int k = 0; k < surrogate->variables; k++)

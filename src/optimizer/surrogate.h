@@ -55,9 +55,6 @@ enum eo_code eo_surrogate_set_blocks(struct eo_surrogate *surrogate, int blocks,
 bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double ridge, const double *x, const double *y,
                       int rows, int outputs);
 
-/* Root mean square of the leave-one-out residuals of an output. */
-double eo_surrogate_error(const struct eo_surrogate *surrogate, int output);
-
 /* Goes to a point; what follows is the surrogate there. */
 void eo_surrogate_visit(struct eo_surrogate *surrogate, const double *x);
 double eo_surrogate_value(const struct eo_surrogate *surrogate, int output);

@@ -6,11 +6,6 @@
 #include "gear/entry.h"
 #include "gear/geometry.h"
 
-double eo_backlash_recommended(double centre_distance, double normal_module)
-{
-  return eo_gear_pair_backlash(centre_distance, normal_module);
-}
-
 /* inv alpha = inv alpha_t + (2 tan alpha_n sum x + sum A_sn/m_n)/sum z: where the (thinned) teeth touch on both flanks
    (ISO 21771). */
 static double tight_involute(const struct eo_backlash_input *in, double transverse, double allowance)

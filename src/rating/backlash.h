@@ -28,7 +28,4 @@ struct eo_backlash {
    share. EO_ERROR_INPUT: a distance not above the sum of the base radii, shifts without a working pressure angle. */
 enum eo_code eo_backlash(struct eo_backlash *backlash, const struct eo_backlash_input *input, struct eo_error *error);
 
-/* Recommended least normal backlash, 2/3 (0.06 mm + 0.0005 a + 0.03 m_n); unchecked. */
-double eo_backlash_recommended(double centre_distance, double normal_module);
-
 #endif

@@ -92,28 +92,6 @@ double eo_life_damage(const struct eo_life_line *line, int count, const double *
   return damage_at(line, count, stress_ratio, cycles, 1);
 }
 
-/* Bisection on the logarithm: the sum grows with the safety (ISO 6336-6). */
-double eo_life_safety(const struct eo_life_line *line, int count, const double *stress_ratio, const double *cycles)
-{
-  enum { HALVINGS = 60 };
-  double low = 0, largest = 0; /* of log safety and of the stresses */
-  for (int i = 0; i < count; i++)
-    largest = cycles[i] > 0 ? fmax(largest, stress_ratio[i]) : largest;
-  if (!(largest > 0))
-    return INFINITY;
-  const double widest = 100; /* far beyond any S-N line, either way */
-  low = -log(widest * largest);
-  double high = log(widest / largest);
-  for (int i = 0; i < HALVINGS; i++) {
-    double middle = (low + high) / 2;
-    if (damage_at(line, count, stress_ratio, cycles, exp(middle)) > 1)
-      high = middle;
-    else
-      low = middle;
-  }
-  return exp((low + high) / 2);
-}
-
 double eo_life_class_stress(double stress, double torque, double factor, double other_torque, double other_factor)
 {
   return stress * sqrt(other_torque * other_factor / (torque * factor));

@@ -34,8 +34,6 @@ double eo_life_share(const struct eo_life_line *line, double cycles);
 
 /* Miner's sum n_i/N_i of stresses over the endurance limit. */
 double eo_life_damage(const struct eo_life_line *line, int count, const double *stress_ratio, const double *cycles);
-/* The S for which the sum of S times the stress ratios is 1 (ISO 6336-6); INFINITY when nothing is loaded. */
-double eo_life_safety(const struct eo_life_line *line, int count, const double *stress_ratio, const double *cycles);
 
 /* Flank stress of a class from that of another: goes with the root of torque times K_Hbeta (and K_V K_Halpha). */
 double eo_life_class_stress(double stress, double torque, double factor, double other_torque, double other_factor);

@@ -169,11 +169,6 @@ double eo_helix_deviation(double shaft_deviation, double mesh_deviation, double 
   return fmax(1.33 * b1 * shaft_deviation + b2 * mesh_deviation, least);
 }
 
-double eo_helix_deviation_proven(double shaft_deviation, double slope_grade_five, double b1, double least)
-{
-  return fmax(fabs(1.33 * b1 * shaft_deviation - slope_grade_five), least);
-}
-
 /* ISO 6336-1 clause 7, method C: B_1 and B_2 of (52). */
 void eo_helix_measure_factors(enum eo_helix_measure measure, double *b1, double *b2)
 {

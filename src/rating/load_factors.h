@@ -93,9 +93,6 @@ enum eo_helix_measure {
 void eo_helix_measure_factors(enum eo_helix_measure measure, double *b1, double *b2);
 /* F_beta_x = 1.33 B_1 f_sh + B_2 f_ma, at least `least` (52). */
 double eo_helix_deviation(double shaft_deviation, double mesh_deviation, double b1, double b2, double least);
-/* The same with a contact pattern proven favourable: |1.33 B_1 f_sh - f_Hbeta5| (53), f_Hbeta5: f_Hbeta of ISO 1328
-   grade 5. Unchecked; one program takes B_2 f_ma there. */
-double eo_helix_deviation_proven(double shaft_deviation, double slope_grade_five, double b1, double least);
 /* K_Hbeta (39) to (42) from F_beta_y = F_beta_x - y_beta, c_gamma_beta and F_m/b. */
 double eo_face_load_factor(double effective_deviation, double mesh_stiffness, double mean_load);
 /* K_Fbeta = K_Hbeta^N_F with the smaller b/h of the two members; double helical: b_B (69), (70). */

@@ -301,7 +301,7 @@ static double damage(const struct spectrum *spectrum, double safety)
   return sum;
 }
 
-/* Bisection on the logarithm, as eo_life_safety() does for one line. */
+/* Bisection on the logarithm. */
 static double spectrum_safety(const struct spectrum *spectrum)
 {
   enum { HALVINGS = 60 };

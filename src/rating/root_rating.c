@@ -89,11 +89,6 @@ enum eo_code eo_rim_factor(double *factor, double ratio, struct eo_error *error)
   return EO_OK;
 }
 
-double eo_grinding_notch(double stress_correction, double depth_over_radius)
-{
-  return 1.3 * stress_correction / (1.3 - 0.6 * sqrt(depth_over_radius));
-}
-
 /* Slip layer thickness rho', mm, over proof stress, N/mm2; straight between, level outside. */
 struct slip {
   double stress, thickness;
@@ -169,27 +164,6 @@ double eo_root_size_factor(enum eo_rating_material material, double normal_modul
   bool soft = material == EO_THROUGH_HARDENED_ALLOY || material == EO_THROUGH_HARDENED_CARBON ||
               material == EO_STRUCTURAL;
   return soft ? fmin(1, fmax(1.03 - 0.006 * m, 0.85)) : fmin(1, fmax(1.05 - 0.01 * m, 0.80));
-}
-
-/* Y_M = 1/(1 - R (1 - M)/(1 + M)). */
-double eo_mean_stress_factor(enum eo_rating_material material, double stress_correction, double load_ratio)
-{
-  double sensitivity;
-  switch (material) {
-  case EO_CASE_HARDENED:
-  case EO_FLAME_HARDENED:
-    sensitivity = 0.8 - 0.15 * stress_correction;
-    break;
-  case EO_NITRIDED_NITRIDING_STEEL:
-  case EO_NITRIDED_THROUGH_STEEL:
-  case EO_NITROCARBURISED:
-    sensitivity = 0.3;
-    break;
-  default:
-    sensitivity = 0.4;
-    break;
-  }
-  return 1 / (1 - load_ratio * (1 - sensitivity) / (1 + sensitivity));
 }
 
 double eo_root_strength(double allowable, const struct eo_root_influence *influence)

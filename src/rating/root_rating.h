@@ -40,8 +40,6 @@ enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pa
 
 /* Y_B of a rim s_R thick under a tooth h deep. EO_ERROR_INPUT: s_R/h not above 0.5. */
 enum eo_code eo_rim_factor(double *factor, double rim_over_depth, struct eo_error *error);
-/* Y_Sg of a grinding notch t_g deep with radius rho_g in the fillet. */
-double eo_grinding_notch(double stress_correction, double depth_over_radius);
 
 /* proof_stress (sigma_0.2 or sigma_S, Pa): of through hardened and structural steel; others do not need it. NaN there:
    EO_ERROR_INPUT. */
@@ -49,8 +47,6 @@ enum eo_code eo_notch_sensitivity(double *factor, enum eo_rating_material materi
                                   struct eo_error *error);                              /* Y_drelT */
 double eo_root_surface_factor(enum eo_rating_material material, double peak_to_valley); /* Y_RrelT */
 double eo_root_size_factor(enum eo_rating_material material, double normal_module);     /* Y_X */
-/* Y_M by the load ratio R of both directions' stresses, 0 pulsating .. -1.2 idler. */
-double eo_mean_stress_factor(enum eo_rating_material material, double stress_correction, double load_ratio);
 
 struct eo_root_influence {
   double life, notch, surface, size, mean; /* Y_NT, Y_drelT, Y_RrelT, Y_X, Y_M */

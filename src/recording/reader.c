@@ -17,14 +17,6 @@
 
 #define HEAD 4096 /* bytes from which a kind is told */
 
-static const char *const kind_names[EO_READER_KINDS] = {
-    "delimited text", "MATLAB .mat", "NI TDMS", "universal file (UFF 58)", "HDF5", "ASAM MDF", "zip or spreadsheet"};
-
-const char *eo_reader_kind_name(enum eo_reader_kind kind)
-{
-  return kind_names[kind];
-}
-
 static bool begins(const unsigned char *head, size_t size, const char *with, size_t length)
 {
   return size >= length && !memcmp(head, with, length);
@@ -208,18 +200,6 @@ static enum eo_code read_sign(const char *path, struct sign *sign, struct eo_err
   sign->wide = !code && sign->kind == EO_READER_TEXT ? wide_order(head, size) : 0;
   eo_source_close(source);
   return code;
-}
-
-enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error)
-{
-  struct sign sign;
-  enum eo_code code = read_sign(path, &sign, error);
-  if (code)
-    return code;
-  *kind = sign.kind;
-  if (gzip)
-    *gzip = sign.gzip;
-  return EO_OK;
 }
 
 static enum eo_code read_text(const char *path, int wide, const struct eo_reader_options *options,

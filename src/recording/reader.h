@@ -42,12 +42,6 @@ struct eo_reader_options {
 
 #define EO_READER_BYTES ((int64_t)16 << 30)
 
-const char *eo_reader_kind_name(enum eo_reader_kind kind); /* for instance "NI TDMS" */
-
-/* What the file at path holds, by its content; *gzip: 1 when that is compressed with gzip, may be NULL.
-   Errors: EO_ERROR_FILE; EO_ERROR_INPUT for content that no reader reads, saying what it seems to be. */
-enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error);
-
 /* Reads the file into a new recording that the caller frees. notes: what was found, guessed or left out (added to, may
    be NULL). options may be NULL. Errors: EO_ERROR_INPUT (what is wrong with the file and where), EO_ERROR_FILE,
    EO_ERROR_MEMORY, EO_ERROR_CANCELLED. */

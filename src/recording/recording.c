@@ -159,13 +159,6 @@ struct eo_clock eo_recording_clock(const struct eo_recording *recording, int col
   return recording->column[column].clock;
 }
 
-void eo_recording_set_interval(struct eo_recording *recording, double interval, double start)
-{
-  for (int c = 0; c < recording->columns; c++)
-    recording->column[c].clock =
-        (struct eo_clock){.column = -1, .interval = interval, .start = start, .epoch = EO_CLOCK_NO_EPOCH};
-}
-
 void eo_recording_set_turn(struct eo_recording *recording, int column, double counts)
 {
   recording->column[column].turn = counts;

@@ -60,9 +60,6 @@ struct eo_clock {
 void eo_recording_set_clock(struct eo_recording *recording, int column, const struct eo_clock *clock);
 struct eo_clock eo_recording_clock(const struct eo_recording *recording, int column);
 
-/* One even clock for all columns. */
-void eo_recording_set_interval(struct eo_recording *recording, double interval, double start);
-
 /* What the file states of an encoder's counts: per turn of the one in this column; 0: nothing. */
 void eo_recording_set_turn(struct eo_recording *recording, int column, double counts);
 double eo_recording_turn(const struct eo_recording *recording, int column);

@@ -18,9 +18,6 @@ struct eo_stage {
   enum eo_code (*run)(const void *input, void *output, struct eo_error *error);
 };
 
-/* NULL after the last. */
-const struct eo_stage *eo_stage_at(int index);
-
 extern const struct eo_stage eo_stage_geometry, eo_stage_modification, eo_stage_surface, eo_stage_gap, eo_stage_tca,
     eo_stage_flexibility, eo_stage_hertz, eo_stage_contact, eo_stage_impact, eo_stage_root_stress, eo_stage_iso6336,
     eo_stage_dynamics, eo_stage_sdof, eo_stage_objective, eo_stage_evaluation;

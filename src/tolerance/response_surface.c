@@ -194,18 +194,6 @@ void eo_surface_done(struct eo_surface *surface)
   *surface = (struct eo_surface){0};
 }
 
-double eo_surface_at(const struct eo_surface *surface, const double *input)
-{
-  double y = surface->constant;
-  for (int i = 0; i < surface->inputs; i++)
-    y += surface->slope[i] * standard(surface, i, input);
-  for (int i = 0; i < surface->leading; i++)
-    for (int j = i; j < surface->leading; j++)
-      y += surface->square[i * surface->leading + j] * standard(surface, surface->lead[i], input) *
-           standard(surface, surface->lead[j], input);
-  return y;
-}
-
 /* theory (A10): variance of b z + q z^2 with E z = 0, E z^2 = 1, and of q z_i z_j. */
 void eo_surface_indices(const struct eo_surface *surface, double *first, double *total)
 {

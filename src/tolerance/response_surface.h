@@ -28,8 +28,6 @@ void eo_surface_done(struct eo_surface *surface);
 /* Bytes that the fit takes; 0: the rows are too few for one. */
 double eo_surface_memory(int n, int inputs);
 
-double eo_surface_at(const struct eo_surface *surface, const double *input);
-
 /* Sobol indices of the surface for independent inputs with these moments, exact: first[inputs], total[inputs]. */
 void eo_surface_indices(const struct eo_surface *surface, double *first, double *total);
 

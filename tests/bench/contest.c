@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "optimizer/optimizer.h"
 #include "optimizer/pareto.h"
+#include "support/hypervolume.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -59,7 +60,7 @@ static void measure_front(struct trace *trace)
   for (int m = 0; m < CONTEST_MARKS; m++) {
     const int last = mark(trace->budget, m), count = trace->count < last ? trace->count : last;
     memcpy(point, trace->front, sizeof *point * (size_t)count);
-    trace->at[m] = 1 - eo_pareto_hypervolume(*point, count, CONTEST_OBJECTIVES, reference);
+    trace->at[m] = 1 - hypervolume(*point, count, CONTEST_OBJECTIVES, reference);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "evaluation/evaluator.h"
 #include "flexibility/closed_form.h"
 #include "support/paper-pair.h"
+#include "support/shaft-load.h"
 #include "support/tap.h"
 
 #include <stdlib.h>
@@ -164,7 +165,7 @@ static void set_load(const struct bench *b, int end, int j, struct eo_deflection
   const struct eo_contact_position *p = &b->grid->position[j];
   memset(load, 0, sizeof *load);
   for (int i = 0; i < p->points; i++) {
-    eo_shaft_load_add(load, b->geometry.face_width, p->path[i], p->point[i].eta,
+    shaft_load_add(load, b->geometry.face_width, p->path[i], p->point[i].eta,
                       b->result[end].line_load[p->first + i] * p->length[i]);
   }
 }
@@ -195,7 +196,7 @@ static int iterate(struct bench *b, const struct eo_shafts *shafts, double most)
       for (int end = 0; end < 2; end++)
         for (int i = 0; i < p->points; i++) {
           double gap = b->gaps[end].gap[p->first + i] +
-                       eo_deflection_at(&deflection[end], b->geometry.face_width, p->path[i], p->point[i].eta);
+                       shaft_deflection_at(&deflection[end], b->geometry.face_width, p->path[i], p->point[i].eta);
           change = fmax(change, fabs(gap - bent[end].gap[p->first + i]));
           bent[end].gap[p->first + i] = gap;
         }

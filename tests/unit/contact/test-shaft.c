@@ -16,6 +16,7 @@
 #include "contact/shaft.h"
 #include "numerics/dense.h"
 #include "support/paper-pair.h"
+#include "support/shaft-load.h"
 #include "support/tap.h"
 
 #include <stdlib.h>
@@ -208,7 +209,7 @@ static void test_even_load(void)
   struct eo_deflection load = {{{0}}}, deflection;
   double b = geometry.face_width, w = 1 / b, expected = 0, twist = 0;
   for (int i = 0; i < 4000; i++)
-    eo_shaft_load_add(&load, b, 0, b * ((i + 0.5) / 4000 - 0.5), 1. / 4000);
+    shaft_load_add(&load, b, 0, b * ((i + 0.5) / 4000 - 0.5), 1. / 4000);
   eo_shaft_deflect(&influence, &load, &deflection);
   for (int member = 0; member < 2; member++) {
     struct eo_shaft_section section = eo_shaft_section_of(&steel, shafts.shaft_diameter[member], 0);

@@ -156,12 +156,14 @@ static void check_root(const struct eo_flexibility *flexibility)
   double force[POINTS], worst = 0, largest = 0;
   struct eo_root root = eo_flexibility_root(flexibility, EO_PINION);
   size_t from = 1, to = (size_t)root.points - 1, length = (to - from) * (size_t)(root.layers + 1) * EO_STRESSES;
-  double *stress = malloc(length * sizeof *stress), *influence = malloc(POINTS * length * sizeof *influence);
+  double *stress = malloc(length * sizeof *stress), *influence = malloc(POINTS * length * sizeof *influence), one = 1;
   scatter(point);
   for (int i = 0; i < POINTS; i++)
     force[i] = 10 + i;
   eo_flexibility_root_stress(flexibility, EO_PINION, 1, POINTS, point, force, (int)from, (int)to, stress);
-  eo_flexibility_root_influence(flexibility, EO_PINION, 1, POINTS, point, (int)from, (int)to, influence);
+  for (int i = 0; i < POINTS; i++)
+    eo_flexibility_root_stress(flexibility, EO_PINION, 1, 1, &point[i], &one, (int)from, (int)to,
+                               influence + (size_t)i * length);
   for (size_t k = 0; k < length; k++) {
     double sum = 0;
     for (int i = 0; i < POINTS; i++)

@@ -68,11 +68,14 @@ static void test_tables(void)
   ok(unsound(&eo_design_table, "") == 0,
      "design tables: unique keys, units in the suffix, defaults within ranges, help");
   ok(unsound(&eo_geometry_table, "") == 0, "geometry table likewise");
-  const struct eo_stage *stage;
-  int i;
-  for (i = 0; (stage = eo_stage_at(i)); i++)
-    ok(unsound(stage->input, "") + unsound(stage->output, "") == 0, "tables of the stage %s likewise", stage->name);
-  for (i = 0; eo_routes[i]; i++)
+  const struct eo_stage *const stage[] = {
+      &eo_stage_geometry,    &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,       &eo_stage_tca,
+      &eo_stage_flexibility, &eo_stage_hertz,        &eo_stage_contact, &eo_stage_impact,    &eo_stage_root_stress,
+      &eo_stage_iso6336,     &eo_stage_dynamics,     &eo_stage_sdof,    &eo_stage_objective, &eo_stage_evaluation};
+  for (size_t i = 0; i < sizeof stage / sizeof *stage; i++)
+    ok(unsound(stage[i]->input, "") + unsound(stage[i]->output, "") == 0, "tables of the stage %s likewise",
+       stage[i]->name);
+  for (int i = 0; eo_routes[i]; i++)
     for (const struct eo_route *route = eo_routes[i]; route->pattern; route++)
       ok(!route->order || unsound(route->order, "") == 0, "the table of what %s takes likewise", route->name);
 }

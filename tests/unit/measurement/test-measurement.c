@@ -73,7 +73,7 @@ static void show(const struct eo_measurement *m)
 {
   for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
     printf("#   %s %s row %lld: %s\n", eo_severity_name(m->findings.finding[i].severity),
-           eo_finding_name(m->findings.finding[i].kind), (long long)m->findings.finding[i].row,
+           eo_finding_names[m->findings.finding[i].kind], (long long)m->findings.finding[i].row,
            m->findings.finding[i].text);
 }
 

@@ -80,8 +80,6 @@ static void test_face(void)
   double b1, b2;
   eo_helix_measure_factors(EO_HELIX_END_RELIEF, &b1, &b2);
   close_to(1e6 * eo_helix_deviation(10e-6, 10e-6, b1, b2, 0), 7 * 2.33, 1e-12, "F_beta_x of end relief");
-  close_to(1e6 * eo_helix_deviation_proven(10e-6, 9e-6, 1, 0), 4.3, 1e-9, "F_beta_x of a proven contact pattern");
-  close_to(1e6 * eo_helix_deviation_proven(10e-6, 13.3e-6, 1, 4e-6), 4, 1e-9, "never below the least");
   near(eo_root_face_factor(1.5, 1), eo_root_face_factor(1.5, 3), 1e-15, "b/h below 3 counts as 3");
 }
 
@@ -125,17 +123,13 @@ static void test_life(void)
   close_to(eo_life_share(&lines[0], 5e7), 1, 1e-15, "and count fully from the knee on");
 }
 
-/* The S that makes the sum 1: of one class it is that of its life factor. */
+/* The S that makes the sum 1 is, of one class, that of its life factor; what is not loaded does no damage. */
 static void test_damage(void)
 {
   struct eo_life_line line = eo_life_flank(EO_CASE_HARDENED, false, 0.85);
-  const double ratio[] = {0.9, 0.8, 0}, cycles[] = {3e6, 4e7, 1e9};
-  near(eo_life_safety(&line, 1, ratio, cycles), eo_life_factor(&line, 3e6) / 0.9, 1e-12, "safety of one class");
-  double safety = eo_life_safety(&line, 3, ratio, cycles), scaled[3];
-  for (int i = 0; i < 3; i++)
-    scaled[i] = safety * ratio[i];
-  near(eo_life_damage(&line, 3, scaled, cycles), 1, 1e-10, "at that safety the sum is 1");
-  ok(isinf(eo_life_safety(&line, 1, ratio + 2, cycles + 2)), "an unloaded pair lasts");
+  const double ratio[] = {eo_life_factor(&line, 3e6), 0}, cycles[] = {3e6, 1e9};
+  near(eo_life_damage(&line, 1, ratio, cycles), 1, 1e-10, "at the safety of one class the sum is 1");
+  near(eo_life_damage(&line, 2, ratio, cycles), 1, 1e-10, "an unloaded class adds nothing");
 }
 
 static void test_permissible(void)
@@ -150,8 +144,6 @@ static void test_permissible(void)
   ok(eo_notch_sensitivity(&factor, EO_THROUGH_HARDENED_ALLOY, 2, NAN, &error) == EO_ERROR_INPUT, "%s", error.text);
   ok(eo_notch_sensitivity(&factor, EO_THROUGH_HARDENED_ALLOY, 2.5, 700e6, &error) == EO_OK, "with it");
   near(factor, 1, 1e-12, "Y_drelT is 1 at q_s = 2.5, whatever the material");
-  near(eo_mean_stress_factor(EO_THROUGH_HARDENED_ALLOY, 2, 0), 1, 1e-15, "Y_M of a pulsating load");
-  near(eo_mean_stress_factor(EO_CASE_HARDENED, 2, -1.2), 0.71, 0.02, "Y_M of an idler is near 0.7");
   ok(eo_rim_factor(&factor, 0.5, &error) == EO_ERROR_INPUT, "%s", error.text);
   eo_rim_factor(&factor, 1.2, &error);
   near(factor, 1, 1e-15, "Y_B of a thick rim");

@@ -78,8 +78,6 @@ static void test_vectors(enum mat_ft version, enum matio_compression compression
   if (version != MAT_FT_MAT4)
     put(file, "remark", text, MAT_C_CHAR, MAT_T_UINT8, 1, 5, compression);
   Mat_Close(file);
-  enum eo_reader_kind kind;
-  ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_MATLAB, "told as MATLAB");
   struct eo_reader_options options = {.spool_directory = fixture_directory};
   struct eo_recording *r = read_fixture(&options, &notes, &error);
   int c = column_of(r, "counts");

@@ -86,9 +86,7 @@ static void put_binary_set(const char *title, double (*value)(int), int type, in
 static struct eo_recording *read_back(struct eo_notes *notes, const char *what)
 {
   struct eo_error error;
-  enum eo_reader_kind kind;
   write_bytes(w.bytes, w.size);
-  ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_UFF, "told as UFF");
   struct eo_recording *r = read_fixture(NULL, notes, &error);
   ok(r != NULL, "%s%s%s", what, r ? "" : ": ", r ? "" : error.text);
   return r;

@@ -201,7 +201,6 @@ static void test_surface(void)
     moments[d] = d < 3 ? eo_distribution_moments(&normal) : (struct eo_moments){.mean = 5, .fourth = 3};
   ok(eo_surface_fit(&surface, ROWS, INPUTS, moments, input[0], output, &error) == EO_OK, "surface of 200 rows");
   close_to(surface.q2, 1, 1e-9, "it carries a quadratic response");
-  close_to(eo_surface_at(&surface, (const double[]){1, 2, 3, 5}), quadratic((const double[]){1, 2, 3}), 1e-9, "value");
   eo_surface_indices(&surface, first, total);
   close_to(first[0], 1.5 / 5.5, 1e-9, "first index of z0");
   close_to(total[1], 4 / 5.5, 1e-9, "total index of z1");
