@@ -65,6 +65,15 @@ wrong=$(for file in */*.[ch]; do echo "${file##*/}"; done | sort | uniq -d | tr 
 [ -z "$wrong" ]
 result $? "no two files have one name: $wrong"
 
+# A name that stands twice, declared and defined, is called by nobody but perhaps a test. Known: what tests record, sweep and look up with.
+known='eo_rexs_role_known eo_synthetic_record eo_synthetic_tracks eo_vibration_sweep eo_vibration_trace'
+wrong=$(for name in $(cat ./*/*.[ch] | grep -oE '\beo_[a-z0-9_]+\b' | sort | uniq -c | awk '$1 < 3 { print $2 }'); do
+  case " $known " in *" $name "*) continue ;; esac
+  grep -hE "^[a-z][a-z_ *]*[ *]$name\(" ./[!l]*/*.h ./library/[!e]*.h 2>/dev/null | grep -qvE "^(typedef|static)" && printf " %s" "$name"
+done)
+[ -z "$wrong" ]
+result $? "the program calls what its headers declare:$wrong"
+
 for floor in $core; do
   [ -d "$floor" ] || continue
   wrong=$(grep -lE '\b(printf|fprintf|puts|getenv|rand|srand|exit)\(' "$floor"/*.c)
