@@ -166,7 +166,7 @@ static void set_load(const struct bench *b, int end, int j, struct eo_deflection
   memset(load, 0, sizeof *load);
   for (int i = 0; i < p->points; i++) {
     shaft_load_add(load, b->geometry.face_width, p->path[i], p->point[i].eta,
-                      b->result[end].line_load[p->first + i] * p->length[i]);
+                   b->result[end].line_load[p->first + i] * p->length[i]);
   }
 }
 
