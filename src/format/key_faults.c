@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/key_faults.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -22,6 +23,21 @@ static int key_distance(const char *a, const char *b)
   return row[n];
 }
 
+/* The way down from a table to a key of one of its objects, for instance "pinion/left/"; false: there is none. */
+static bool find_below(const struct eo_table *table, const char *key, int levels, char *way, size_t size)
+{
+  for (int i = 0; i < table->count && levels > 0; i++) {
+    const struct eo_table *inner = table->field[i].table;
+    bool here = false;
+    int length = inner ? snprintf(way, size, "%s/", table->field[i].key) : 0;
+    for (int k = 0; inner && k < inner->count && !here; k++)
+      here = strcmp(inner->field[k].key, key) == 0;
+    if (here || (inner && (size_t)length < size && find_below(inner, key, levels - 1, way + length, size - length)))
+      return true;
+  }
+  return false;
+}
+
 void eo_key_unknown(const struct eo_table *table, const char *key, const struct eo_path *path, struct eo_faults *faults)
 {
   for (const struct eo_refused_key *refused = table->refused; refused && refused->key; refused++)
@@ -29,6 +45,12 @@ void eo_key_unknown(const struct eo_table *table, const char *key, const struct 
       eo_faults_at(faults, path, "%s", refused->text);
       return;
     }
+  enum { LEVELS = 4 }; /* of objects in each other; a design has three */
+  char way[200];
+  if (find_below(table, key, LEVELS, way, sizeof way)) {
+    eo_faults_at(faults, path, "Unknown key in %s; it stands at %s%s.", table->name, way, key);
+    return;
+  }
   const char *nearest = NULL;
   int best = (int)strnlen(key, 63) / 3 + 1;
   for (int i = 0; i < table->count; i++) {

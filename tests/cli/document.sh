@@ -98,6 +98,8 @@ expect 1 "a duplicate key" with_input '{"gear_pair":{"ends":2,"ends":1}}' "$EASE
 says "duplicate object key"
 expect 1 "an unknown key" with_input "{$pair,\"gear_pear\":1}" "$EASEOFF" stage geometry -
 says '/gear_pear: Unknown key; did you mean "gear_pair"'
+expect 1 "a key in the wrong place" with_input "{$pair,\"pinion_teeth\":17}" "$EASEOFF" stage geometry -
+says '/pinion_teeth: Unknown key in .*; it stands at gear_pair/pinion_teeth'
 expect 1 "a string for a number" with_input '{"gear_pair":{"pinion_teeth":"17","gear_teeth":44,"normal_module_mm":6,"helix_angle_deg":24,"face_width_mm":55}}' "$EASEOFF" stage geometry -
 says '/gear_pair/pinion_teeth: Must be a number, not a string'
 expect 1 "1e999" with_input '{"gear_pair":{"pinion_teeth":1e999}}' "$EASEOFF" stage geometry -
