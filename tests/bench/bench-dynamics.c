@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "dynamics/speed_sweep.h"
+#include "support/speed-sweep.h"
 #include "support/dynamics-fixture.h"
 
 enum { REPEATS = 200, SPEEDS = 200, HARMONICS = 24 };
@@ -64,7 +64,7 @@ static double sweep(struct eo_vibration_solver *solver, double damping, int *los
   struct eo_vibration_case load = paper_case(&law, &law);
   double start = seconds();
   eo_vibration_set_model(solver, &p, NULL);
-  eo_vibration_sweep(solver, &load, SPEEDS, speed, up, down, NULL, NULL);
+  sweep_speeds(solver, &load, SPEEDS, speed, up, down);
   double taken = seconds() - start;
   *lost = 0;
   for (int i = 0; i < SPEEDS; i++)

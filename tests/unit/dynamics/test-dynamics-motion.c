@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "support/dynamics-fixture.h"
+#include "support/speed-sweep.h"
 #include "support/tap.h"
-#include "dynamics/speed_sweep.h"
+#include "dynamics/continuation.h"
+#include "dynamics/vibration_private.h"
 #include "numerics/ode.h"
 
 enum { HARMONICS = 32 };
@@ -281,7 +283,7 @@ static void *run_sweep(void *context)
     speed[i] = (9000 + 100.0 * i) * M_PI / 30;
   struct eo_vibration_case load = paper_case(&law, &law);
   if (eo_vibration_new(&solver, 16, 0, NULL) || eo_vibration_set_model(solver, &p, NULL) ||
-      eo_vibration_sweep(solver, &load, SPEEDS, speed, run->up, run->down, NULL, NULL))
+      !sweep_speeds(solver, &load, SPEEDS, speed, run->up, run->down))
     memset(run, 0, sizeof *run);
   eo_vibration_free(solver);
   eo_law_done(&law);
@@ -315,21 +317,61 @@ static void sweeps(void)
      "two threads give the same bytes as one");
 }
 
+struct branch_state {
+  double speed; /* of the pinion, rad/s */
+  bool fold;    /* the branch turns here */
+};
+
+struct branch_record {
+  int teeth, capacity, count;
+  struct branch_state *point;
+};
+
+static int note_point(void *context, const struct eo_branch_point *branch_point)
+{
+  struct branch_record *record = context;
+  record->point[record->count++] = (struct branch_state){.speed = branch_point->frequency / record->teeth,
+                                                         .fold = branch_point->fold};
+  return record->count >= record->capacity;
+}
+
+/* Follows the branch through the solution at load->speed upwards and through folds, up to `high`, rad/s, or as far as
+   there is room for points. Their number; 0: there is no branch. */
+static int trace_branch(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, double high,
+                        int capacity, struct branch_state *point, enum eo_branch_end *end)
+{
+  struct eo_vibration start;
+  struct eo_cycle cycle;
+  if (eo_vibration_solve(solver, load, EO_START_COLD, &start, NULL) ||
+      eo_vibration_prepare(solver, load, &cycle, NULL) || start.outcome == EO_VIBRATION_NOT_CONVERGED)
+    return 0;
+  struct branch_record record = {load->pinion_teeth, capacity, 0, point};
+  struct eo_branch_options options = eo_branch_defaults;
+  options.low = load->speed * load->pinion_teeth * (1 - 1e-12);
+  options.high = high * load->pinion_teeth * (1 + 1e-12);
+  options.max_points = capacity;
+  options.size = fmax(start.deflection_swing[0], start.force_mean[0] / solver->model.oscillator.shift);
+  bool failed = eo_branch_follow(solver->balance, &solver->model.oscillator, &cycle, solver->x, 1, &options, note_point,
+                                 &record, end, NULL);
+  solver->solved = false;
+  return failed ? 0 : record.count;
+}
+
 static void trace(void)
 {
-  static struct eo_trace_point point[2000];
+  static struct branch_state point[2000];
   struct eo_dynamics_parameters p = paper_pair();
   struct eo_law law = {0};
-  int count = 0, folds = 0;
-  enum eo_branch_end end;
+  int folds = 0;
+  enum eo_branch_end end = EO_BRANCH_LIMIT;
   double up = 0, down = INFINITY;
   scale_damping(&p, 0.2);
   stiffness_law(&law, 3);
   struct eo_vibration_solver *solver = solver_for(&p, 12, 0);
   struct eo_vibration_case load = paper_case(&law, &law);
   load.speed = 9000 * M_PI / 30;
-  int failed = eo_vibration_trace(solver, &load, load.speed, 15000 * M_PI / 30, 1, 2000, point, &count, &end, NULL);
-  ok(!failed && end == EO_BRANCH_LIMIT, "the branch is traced to its end over %d points", count);
+  int count = trace_branch(solver, &load, 15000 * M_PI / 30, 2000, point, &end);
+  ok(count > 0 && end == EO_BRANCH_LIMIT, "the branch is traced to its end over %d points", count);
   for (int i = 0; i < count; i++) {
     folds += point[i].fold;
     up = point[i].fold ? fmax(up, point[i].speed) : up;

@@ -83,10 +83,12 @@ static void cases(void)
   load.impact = EO_IMPACT_PAPER;
   load.pulse[0] = (struct eo_pulse){EO_PULSE_HALF_SINE, 100, 0, 0};
   refused(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error), &error, "");
-  double falling[2] = {100, 50};
   load.impact = EO_IMPACT_NONE;
-  refused(eo_vibration_sweep(solver, &load, 2, falling, &r, NULL, NULL, &error), &error, "");
-  refused(eo_vibration_sweep(solver, &load, 0, falling, &r, NULL, NULL, &error), &error, "");
+  struct eo_vibration_case falling[2] = {load, load};
+  falling[0].speed = 100;
+  falling[1].speed = 50;
+  refused(eo_vibration_follow(solver, 2, falling, &r, 1, &r, &error), &error, "");
+  refused(eo_vibration_follow(solver, 0, falling, &r, 1, &r, &error), &error, "");
   eo_vibration_free(solver);
   eo_vibration_free(NULL);
   eo_law_done(&law);
