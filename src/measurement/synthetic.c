@@ -381,40 +381,6 @@ int eo_synthetic_decimals(const struct eo_synthetic *synthetic, int column)
   return counted ? 0 : synthetic->radians ? 11 : 9;
 }
 
-static int column_of(const struct eo_synthetic *synthetic, enum content content, int channel)
-{
-  struct column list[EO_SYNTHETIC_COLUMNS];
-  int columns = list_columns(synthetic, list);
-  for (int c = 0; c < columns; c++)
-    if (list[c].content == content && list[c].channel == channel)
-      return c;
-  return -1;
-}
-
-void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks *tracks)
-{
-  bool pulses = synthetic->output == EO_SYNTHETIC_PULSES, raw = synthetic->output == EO_SYNTHETIC_SINE_COSINE;
-  *tracks = (struct eo_tracks){.time_column = pulses ? -1 : 0, .time_scale = 1, .interval = 1 / synthetic->sample_rate};
-  for (int i = 0; i < 2; i++) {
-    struct eo_track_channel *channel = &tracks->channel[i];
-    channel->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
-    channel->column[0] = column_of(synthetic, pulses ? PULSE : raw ? TRACK : ANGLE, i);
-    channel->column[1] = channel->column[0] + 1;
-    channel->scale = synthetic->output == EO_SYNTHETIC_COUNTS ? step_of(synthetic, i)
-                     : synthetic->radians                     ? 1
-                                                              : M_PI / 180;
-    channel->lines = synthetic->lines[i];
-    channel->unit = EO_TRACK_VOLT;
-    channel->factor = 1;
-  }
-  if (synthetic->torque != 0 && !pulses)
-    tracks->torque[EO_PINION] =
-        (struct eo_track_beside){.scale = 1, .column = column_of(synthetic, TORQUE, 0), .stated = true};
-  if (synthetic->shows_speed && !pulses)
-    tracks->speed[EO_PINION] =
-        (struct eo_track_beside){.scale = M_PI / 30, .column = column_of(synthetic, SPEED, 0), .stated = true};
-}
-
 static enum eo_code check_kind(const struct eo_synthetic *synthetic, struct eo_error *error)
 {
   bool pulses = synthetic->output == EO_SYNTHETIC_PULSES, counted = synthetic->output == EO_SYNTHETIC_COUNTS;
@@ -452,25 +418,6 @@ enum eo_code eo_synthetic_check(const struct eo_synthetic *synthetic, struct eo_
   if (!code && whole_duration(synthetic) * synthetic->sample_rate > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.",
                         whole_duration(synthetic) * synthetic->sample_rate);
-  return code;
-}
-
-enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording,
-                                 struct eo_error *error)
-{
-  enum { BLOCK = 1024 };
-  double rows[BLOCK * EO_SYNTHETIC_COLUMNS];
-  int64_t total = eo_synthetic_rows(synthetic);
-  enum eo_code code = eo_recording_new(recording, eo_synthetic_columns(synthetic), NULL, error);
-  for (int64_t first = 0; first < total && !code; first += BLOCK) {
-    int64_t count = total - first < BLOCK ? total - first : BLOCK;
-    eo_synthetic_fill(synthetic, first, count, rows);
-    code = eo_recording_append(*recording, rows, count, error);
-  }
-  if (!code && synthetic->output == EO_SYNTHETIC_PULSES)
-    for (int channel = 0; channel < 2; channel++)
-      eo_recording_set_length(*recording, channel ^ (synthetic->fault == EO_FAULT_SWAPPED),
-                              pulses_of(synthetic, channel));
   return code;
 }
 

@@ -96,13 +96,6 @@ int eo_synthetic_decimals(const struct eo_synthetic *synthetic, int column);
 /* rows[count][columns]; where pulse times of the shorter column end: NaN. */
 void eo_synthetic_fill(const struct eo_synthetic *synthetic, int64_t first, int64_t count, double *rows);
 
-/* What the columns are stated to mean (also where a fault makes that untrue). */
-void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks *tracks);
-
-/* The whole as a recording that the caller frees. */
-enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording,
-                                 struct eo_error *error);
-
 /* Mean speed of the pinion without run-up and rests, slow swings included, rad/s. */
 double eo_synthetic_speed(const struct eo_synthetic *synthetic);
 

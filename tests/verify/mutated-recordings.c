@@ -5,6 +5,7 @@
    mutated-recordings [FILES [FIRST]] */
 #include "document/measure_file.h"
 #include "support/drawn-recordings.h"
+#include "support/synthetic-recording.h"
 #include "support/tap.h"
 
 #include <stdarg.h>
@@ -430,8 +431,8 @@ static double value_unwritten(const struct plan *p)
   struct eo_measurement m = {0};
   struct eo_tracks tracks;
   struct eo_error error;
-  eo_synthetic_tracks(&p->truth, &tracks);
-  if (eo_synthetic_record(&p->truth, &recording, &error) ||
+  synthetic_tracks(&p->truth, &tracks);
+  if (synthetic_record(&p->truth, &recording, &error) ||
       eo_measurement_run(&m, recording, &tracks, &settings, NULL, &error))
     m.transmission.rms = NAN;
   double value = m.transmission.rms;

@@ -8,6 +8,7 @@
 #include "measurement/measurement.h"
 #include "measurement/synthetic.h"
 #include "numerics/least_squares.h"
+#include "support/synthetic-recording.h"
 #include "support/tap.h"
 
 enum { POINTS = 6 };
@@ -42,8 +43,8 @@ static bool record(const struct eo_design *rig, bool unmodified, double torque, 
   s.orders = 6;
   for (int h = 0; h < 6; h++)
     s.order[h] = scale * truth.order[h];
-  eo_synthetic_tracks(&s, &tracks);
-  good = good && !eo_synthetic_record(&s, &recording, &error) &&
+  synthetic_tracks(&s, &tracks);
+  good = good && !synthetic_record(&s, &recording, &error) &&
          !eo_measurement_run(m, recording, &tracks, &settings, NULL, &error) && !m->refused;
   memset(measured, 0, sizeof *measured);
   if (good)

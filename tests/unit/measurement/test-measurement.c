@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "support/drawn-recordings.h"
+#include "support/synthetic-recording.h"
 #include "support/tap.h"
 
 enum { SHORT = 96, SLOW = 512, MOST_RECORDINGS = 4096 };
@@ -49,8 +50,8 @@ static const struct eo_measurement *measure_with(const struct eo_synthetic *s,
   struct eo_tracks tracks;
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
-  eo_synthetic_tracks(s, &tracks);
-  if (eo_synthetic_record(s, &recording, &error) ||
+  synthetic_tracks(s, &tracks);
+  if (synthetic_record(s, &recording, &error) ||
       eo_measurement_run(&measurement, recording, &tracks, settings, NULL, &error))
     printf("# %s\n", error.text);
   eo_recording_free(recording);
@@ -94,7 +95,7 @@ static const struct eo_measurement *measure_columns(const struct eo_synthetic *s
                                                          : s->lines[i];
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
-  enum eo_code code = eo_synthetic_record(s, &recording, &error);
+  enum eo_code code = synthetic_record(s, &recording, &error);
   for (int c = 0; !code && c < eo_synthetic_columns(s); c++) {
     eo_unit_split(eo_synthetic_heading(s, c), name, sizeof name, unit, sizeof unit);
     eo_recording_set_column(recording, c, name, unit);
@@ -318,8 +319,8 @@ static void check_printed_radii(void)
   const struct eo_measurement_settings settings = {
       .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[1], radius[0]}}, .stated_speed = NAN};
   s.pinion_share = 0.879;
-  eo_synthetic_tracks(&s, &tracks);
-  eo_synthetic_record(&s, &recording, &error);
+  synthetic_tracks(&s, &tracks);
+  synthetic_record(&s, &recording, &error);
   eo_measurement_done(&measurement);
   eo_measurement_run(&measurement, recording, &tracks, &settings, NULL, &error);
   close_to(measurement.transmission.rms / eo_synthetic_rms(&s, 8),
@@ -498,10 +499,10 @@ static const struct eo_measurement *measure_resampled_from(const struct eo_synth
   double rows[2][3], row[2], way;
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
-  enum eo_code code = eo_synthetic_record(s, &recording, &error);
+  enum eo_code code = synthetic_record(s, &recording, &error);
   if (!code)
     code = eo_recording_new(&resampled, 2, "/tmp", &error);
-  eo_synthetic_tracks(s, &own);
+  synthetic_tracks(s, &own);
   for (double at = first; !code && at + 1 < (double)eo_recording_rows(recording); at += s->sample_rate / rate) {
     code = eo_recording_read(recording, (int64_t)at, 2, rows[0], &error);
     way = last ? 0 : at - floor(at);
@@ -653,8 +654,8 @@ static const struct eo_measurement *measure_rewritten(const struct eo_synthetic 
   double row[3];
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
-  eo_synthetic_tracks(s, &tracks);
-  enum eo_code code = eo_synthetic_record(s, &recording, &error);
+  synthetic_tracks(s, &tracks);
+  enum eo_code code = synthetic_record(s, &recording, &error);
   if (!code)
     code = eo_recording_new(&rewritten, 3, "/tmp", &error);
   for (int64_t i = 0; !code && i < eo_recording_rows(recording); i++) {
@@ -699,7 +700,7 @@ static void check_computed_angles(void)
     struct eo_synthetic s = usual();
     struct eo_recording *recording = NULL;
     struct eo_tracks tracks;
-    eo_synthetic_tracks(&s, &tracks);
+    synthetic_tracks(&s, &tracks);
     enum eo_code code = eo_recording_new(&recording, 3, "/tmp", &error);
     for (int i = 0; !code && i < 8800; i++) {
       double time = i / 4000., pinion = 1.29 + 20 * M_PI * time, vibration = 0, row[3];
