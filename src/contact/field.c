@@ -206,7 +206,7 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   if (field->deflection) {
     double body[2];
     deflection_parts(field->deflection, geometry->face_width, eta, body);
-    gap += body[0] + s * body[1];
+    gap += body[0] + s * body[1]; /* theory (K12) */
     rate += body[1];
   }
   if (path)
