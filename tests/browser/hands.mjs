@@ -327,7 +327,10 @@ await chapter('undo knows whose design it is', async () => {
   await page.waitForFunction(id => location.hash.includes(`id=${id}`), b);
   ok((await field('Tip relief').inputValue()) === '11', 'undo after opening shows the design before');
   await field('Tip relief').fill('12');
+  /* the notice of "Store as new" may still be there */
+  const stored = page.waitForResponse(response => response.request().method() === 'PUT');
   await page.keyboard.press('Control+s');
+  await stored;
   await page.locator('.notice', { hasText: 'Stored' }).waitFor();
   const [first, second] = [await api(`designs/${a}`), await api(`designs/${b}`)];
   ok(
