@@ -12,7 +12,7 @@
 
 struct eo_pair_log {
   FILE *file;
-  int outputs, pairs, known;
+  int outputs, pairs;
   double *row; /* [pairs][outputs] */
   bool *there; /* [pairs] */
   char path[200];
@@ -61,7 +61,6 @@ static bool read_row(struct eo_pair_log *log)
   }
   if (fscanf(log->file, " ;%n", &end) == EOF || end == 0)
     return false;
-  log->known += !log->there[pair];
   log->there[pair] = true;
   return true;
 }

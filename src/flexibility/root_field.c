@@ -17,8 +17,7 @@ enum eo_code eo_root_field_init(struct eo_root_field *field, int rank, int nodes
   int blocks = (nodes + BLOCK - 1) / BLOCK, levels = 1;
   while (levels < MOST_LEVELS && FIRST << (levels - 1) < rank)
     levels++;
-  *field = (struct eo_root_field){
-      .rank = rank, .nodes = nodes, .blocks = blocks, .columns = blocks * SPAN, .levels = levels};
+  *field = (struct eo_root_field){.rank = rank, .blocks = blocks, .columns = blocks * SPAN, .levels = levels};
   field->shape = eo_gram_allocate((long)rank * field->columns / 2 + 1);
   field->rest = eo_gram_allocate((long)field->levels * blocks * BLOCK / 2 + 1);
   if (!field->shape || !field->rest)

@@ -10,7 +10,7 @@
 #include "numerics/gram.h"
 
 struct eo_root_field {
-  int rank, nodes;
+  int rank;
   int blocks, columns; /* of a few nodes each; floats of all of them, with padding */
   int levels;          /* of a sum, each some shapes more */
   float *shape;        /* [rank][columns]: [blocks][EO_STRESSES][nodes of a block] */
