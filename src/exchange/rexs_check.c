@@ -164,13 +164,61 @@ static bool exists(const struct check *check, int id)
   return bsearch(&id, check->id, (size_t)check->model->components, sizeof id, compare) != NULL;
 }
 
+/* A role of a relation that nothing stands in: a reference with an unknown role may be meant for it. */
+static const char *free_role(const struct eo_rexs_relation *relation)
+{
+  const char *role = NULL;
+  while ((role = eo_rexs_role_after(relation->type, role)))
+    if (!eo_rexs_role(relation, role))
+      return role;
+  return NULL;
+}
+
+static void name_roles(char *text, size_t size, const char *relation)
+{
+  size_t used = 0;
+  const char *role = NULL;
+  *text = 0;
+  while ((role = eo_rexs_role_after(relation, role)) && used < size)
+    used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", role);
+}
+
+/* A component with a misspelt role is as if it were not there, and a flank that is not there is one without relief. */
+static void check_role(const struct check *check, const struct eo_rexs_relation *relation,
+                       const struct eo_rexs_reference *reference, const struct eo_rexs_component *component)
+{
+  char roles[120];
+  const char *types, *missing;
+  switch (eo_rexs_role_judge(relation->type, reference->role, component->type, &types)) {
+  case EO_REXS_ROLE_RIGHT:
+  case EO_REXS_ROLE_OPEN:
+    break;
+  case EO_REXS_ROLE_UNKNOWN:
+    missing = free_role(relation);
+    name_roles(roles, sizeof roles, relation->type);
+    tell(check, "unknown_role", missing != NULL, NULL, NULL, relation,
+         "Relation %d (%.40s) names component %d as %.30s%s%s; its roles are: %s.", relation->id, relation->type,
+         reference->id, reference->role, missing ? ", and none as " : "", missing ? missing : "", roles);
+    break;
+  case EO_REXS_ROLE_WRONG:
+    tell(check, "wrong_component", true, NULL, NULL, relation,
+         "Relation %d (%.40s) names component %d, of type %.40s, as %.30s; what stands there is: %s.", relation->id,
+         relation->type, reference->id, component->type, reference->role, types);
+    break;
+  }
+}
+
 static void check_relation(const struct check *check, const struct eo_rexs_relation *relation)
 {
-  for (int i = 0; i < relation->count; i++)
-    if (!exists(check, relation->reference[i].id))
+  for (int i = 0; i < relation->count; i++) {
+    const struct eo_rexs_reference *reference = &relation->reference[i];
+    if (exists(check, reference->id))
+      check_role(check, relation, reference, eo_rexs_find(check->model, reference->id));
+    else
       tell(check, "missing_reference", true, NULL, NULL, relation,
            "Relation %d (%.40s) names component %d as %.30s, and there is none of this id.", relation->id,
-           relation->type, relation->reference[i].id, relation->reference[i].role);
+           relation->type, reference->id, reference->role);
+  }
 }
 
 bool eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *context)

@@ -15,8 +15,10 @@ struct eo_rexs_renamed {
 };
 extern const struct eo_rexs_renamed eo_rexs_renamed_types[], eo_rexs_renamed_attributes[];
 
+/* Roles by relation, each relation with all of its roles. */
 struct eo_rexs_relation_role {
   const char *relation, *role, *types; /* NULL ends the list; types by one blank each */
+  bool others;                         /* types of components that Easeoff does not write stand in this role as well */
 };
 extern const struct eo_rexs_relation_role eo_rexs_roles[];
 

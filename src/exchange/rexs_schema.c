@@ -121,10 +121,43 @@ enum eo_rexs_unit_verdict eo_rexs_unit_judge(const char *unit, const char *given
   return EO_REXS_UNIT_UNKNOWN;
 }
 
-bool eo_rexs_role_known(const char *relation, const char *role, const char *type)
+/* True for the types that the table of roles knows: of others it cannot say where they stand. */
+static bool stands_in_a_role(const char *type)
 {
   for (const struct eo_rexs_relation_role *row = eo_rexs_roles; row->relation; row++)
-    if (strcmp(row->relation, relation) == 0 && strcmp(row->role, role) == 0)
-      return is_in(row->types, eo_rexs_type_today(type));
+    if (is_in(row->types, type))
+      return true;
   return false;
+}
+
+enum eo_rexs_role_verdict eo_rexs_role_judge(const char *relation, const char *role, const char *type,
+                                             const char **types)
+{
+  bool known = false;
+  const char *name = eo_rexs_type_today(type);
+  for (const struct eo_rexs_relation_role *row = eo_rexs_roles; row->relation; row++) {
+    if (strcmp(row->relation, relation) != 0)
+      continue;
+    known = true;
+    if (strcmp(row->role, role) != 0)
+      continue;
+    *types = row->types;
+    if (is_in(row->types, name))
+      return EO_REXS_ROLE_RIGHT;
+    return row->others || !stands_in_a_role(name) ? EO_REXS_ROLE_OPEN : EO_REXS_ROLE_WRONG;
+  }
+  return known ? EO_REXS_ROLE_UNKNOWN : EO_REXS_ROLE_OPEN;
+}
+
+const char *eo_rexs_role_after(const char *relation, const char *role)
+{
+  bool found = !role;
+  for (const struct eo_rexs_relation_role *row = eo_rexs_roles; row->relation; row++) {
+    if (strcmp(row->relation, relation) != 0)
+      continue;
+    if (found)
+      return row->role;
+    found = strcmp(row->role, role) == 0;
+  }
+  return NULL;
 }

@@ -53,8 +53,14 @@ enum eo_rexs_unit_verdict eo_rexs_unit_judge(const char *unit, const char *given
 /* How the version spells a unit of a rule. */
 const char *eo_rexs_unit_in(const char *unit, int version);
 
-/* True where a relation of the type may hold this role with a component of this type. */
-bool eo_rexs_role_known(const char *relation, const char *role, const char *type);
+/* What the tables say of a component of this type in this role of a relation. OPEN: a relation that Easeoff does not
+   read, or a type that may stand there and that it does not write; UNKNOWN: none of the relation's roles; WRONG:
+   another type of component is needed, `types` by one blank each. */
+enum eo_rexs_role_verdict { EO_REXS_ROLE_RIGHT, EO_REXS_ROLE_OPEN, EO_REXS_ROLE_UNKNOWN, EO_REXS_ROLE_WRONG };
+enum eo_rexs_role_verdict eo_rexs_role_judge(const char *relation, const char *role, const char *type,
+                                             const char **types);
+/* The roles of a relation, in the order of the tables: the one after `role`, NULL: the first. NULL behind the last. */
+const char *eo_rexs_role_after(const char *relation, const char *role);
 
 /* Something that a model has and must not have. */
 struct eo_rexs_fault {

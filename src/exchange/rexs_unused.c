@@ -56,6 +56,12 @@ static void mark(bool *here, const struct eo_rexs_model *model, const struct eo_
     here[component - model->component] = true;
 }
 
+/* Relations of other kinds tie nothing together for the import: with a misspelt one a relief belongs nowhere. */
+static bool is_read_in(const struct eo_rexs_relation *relation)
+{
+  return eo_rexs_role_after(relation->type, NULL) != NULL;
+}
+
 /* What a relation ties to something of the pair; parts of a shaft but not the gears of other stages on it. */
 static void mark_tied(const struct eo_rexs_import *import, bool *here, const struct eo_rexs_relation *relation)
 {
@@ -63,7 +69,7 @@ static void mark_tied(const struct eo_rexs_import *import, bool *here, const str
   const struct eo_rexs_component *first = relation->count ? eo_rexs_find(model, relation->reference[0].id) : NULL;
   bool assembly = strcmp(relation->type, "assembly") == 0, side = strcmp(relation->type, "side") == 0;
   bool tied = first && here[first - model->component];
-  if (strcmp(relation->type, "stage") == 0 || strcmp(relation->type, "stage_gear_data") == 0)
+  if (strcmp(relation->type, "stage") == 0 || strcmp(relation->type, "stage_gear_data") == 0 || !is_read_in(relation))
     return;
   if (side) /* the shaft inside decides */
     first = eo_rexs_find(model, eo_rexs_role(relation, "inner_part"));
@@ -110,25 +116,50 @@ static void name_attributes(const struct eo_rexs_import *import, const struct eo
   }
 }
 
-void eo_rexs_name_unused(struct eo_rexs_import *import)
+/* A flank that refers to its reliefs, or is the workpiece of a step, is not held by that: a gear must have it. */
+static void mark_held(bool *held, const struct eo_rexs_model *model)
+{
+  for (int i = 0; i < model->relations; i++) {
+    const struct eo_rexs_relation *relation = &model->relation[i];
+    for (int k = 0; k < relation->count && is_read_in(relation); k++) {
+      const struct eo_rexs_reference *reference = &relation->reference[k];
+      if (strcmp(reference->role, "origin") != 0 && strcmp(reference->role, "workpiece") != 0)
+        mark(held, model, eo_rexs_find(model, reference->id));
+    }
+  }
+}
+
+static void name_unused(struct eo_rexs_import *import, const bool *here, const bool *held)
 {
   const struct eo_rexs_model *model = import->model;
-  bool *here = calloc((size_t)model->components + 1, sizeof *here);
   char name[80];
   int elsewhere = 0;
+  for (int i = 0; i < model->components; i++) {
+    const struct eo_rexs_component *component = &model->component[i];
+    if (!is_read(component->type))
+      eo_import_say(import->out, import->out->not_used, "%s", eo_rexs_name(component, name));
+    else if (here[i])
+      name_attributes(import, component);
+    else if (held[i])
+      elsewhere++;
+    else
+      eo_import_say(import->out, import->out->not_used, "%s, which no relation that is read holds",
+                    eo_rexs_name(component, name));
+  }
+  if (elsewhere)
+    eo_import_say(import->out, import->out->notes, "%d components belong to other pairs or shafts.", elsewhere);
+}
+
+void eo_rexs_name_unused(struct eo_rexs_import *import)
+{
+  size_t components = (size_t)import->model->components;
+  bool *here = calloc(2 * components + 1, sizeof *here);
   if (!here) {
     import->out->failed = true;
     return;
   }
   mark_pair(import, here);
-  for (int i = 0; i < model->components; i++)
-    if (!is_read(model->component[i].type))
-      eo_import_say(import->out, import->out->not_used, "%s", eo_rexs_name(&model->component[i], name));
-    else if (here[i])
-      name_attributes(import, &model->component[i]);
-    else
-      elsewhere++;
-  if (elsewhere)
-    eo_import_say(import->out, import->out->notes, "%d components belong to other pairs or shafts.", elsewhere);
+  mark_held(here + components, import->model);
+  name_unused(import, here, here + components);
   free(here);
 }

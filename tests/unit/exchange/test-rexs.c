@@ -57,7 +57,9 @@ static int check_model(const struct eo_rexs_model *model, int version)
     for (int k = 0; k < model->relation[i].count; k++) {
       const struct eo_rexs_reference *r = &model->relation[i].reference[k];
       const struct eo_rexs_component *component = eo_rexs_find(model, r->id);
-      bool right = component && eo_rexs_role_known(model->relation[i].type, r->role, component->type);
+      const char *types;
+      bool right = component &&
+                   eo_rexs_role_judge(model->relation[i].type, r->role, component->type, &types) == EO_REXS_ROLE_RIGHT;
       faults += !right;
       if (!right)
         printf("# %s as %s of %s\n", component ? component->type : "nothing", r->role, model->relation[i].type);
