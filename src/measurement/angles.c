@@ -20,6 +20,16 @@ struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *maker, struct 
   return finding;
 }
 
+/* s between rows whose times stand still or go back now and then. Where many stand, the step that is usual is that of
+   the times and none of the rows. */
+static double interval_of(const struct eo_scan *scan)
+{
+  int64_t steps = scan->used - 1 - scan->backward - scan->leaps;
+  if (!scan->backward && scan->used > 1)
+    return (scan->time_last - scan->time_first) / (double)(scan->used - 1);
+  return scan->standing - scan->duplicate > 0 && steps > 0 ? scan->risen / (double)steps : scan->interval;
+}
+
 static void judge_time(struct eo_angles_maker *maker)
 {
   const struct eo_scan *scan = maker->scan;
@@ -36,8 +46,7 @@ static void judge_time(struct eo_angles_maker *maker)
                                      (long long)scan->duplicate, (long long)scan->time_row + 1),
                      scan->time_row);
   } else if ((double)scan->steady >= 0.9 * (double)wrong) {
-    if (!scan->backward && scan->used > 1)
-      maker->sampler.interval = (scan->time_last - scan->time_first) / (double)(scan->used - 1);
+    maker->sampler.interval = interval_of(scan);
     maker->sampler.count_rows = true;
     eo_angles_at_row(
         maker,

@@ -8,6 +8,7 @@
 enum { BLOCK = 4096, CHUNK = 256 };
 static const double LANDING = 0.3;   /* typical steps: a step back by less is noise */
 static const double NEAR_ZERO = 1.5; /* typical steps from 0, in the row after an index pulse */
+static const double LEAP = 100;      /* typical intervals: a step of the time by more is a fault */
 
 static int ascending(const void *a, const void *b)
 {
@@ -149,7 +150,10 @@ static void add_row(struct eo_scan *scan, const struct eo_tracks *tracks, const 
     scan->standing += time == scan->time_last;
     scan->duplicate += time == scan->time_last && same;
     scan->steady += pace > 0.5 * usual && pace < 1.5 * usual;
-  }
+  } else if (scan->used && time - scan->time_last < LEAP * scan->interval)
+    scan->risen += time - scan->time_last;
+  else
+    scan->leaps += scan->used > 0;
   scan->time_last = time;
   if (!scan->used)
     scan->time_first = time;

@@ -35,6 +35,8 @@ struct eo_scan {
       time_row;   /* rows whose time lies before, at that of the row before; with the same values too */
   int64_t steady; /* of the first two, those at which the first angle goes on as usual */
   double time_first, time_last, interval; /* s; typical step of time */
+  double risen;                           /* s: the sum of the steps up, but for leaps, */
+  int64_t leaps;                          /* steps of so many intervals that they are none of the clock */
   struct eo_scan_column column[2][2];     /* [member][track] */
 };
 

@@ -18,6 +18,12 @@
   "gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|roue|rueda|ruota|roda|corona|mene|menee|sortie|salida|saida|" \
   "uscita"
 
+/* Names of columns of times, and of those of a counter's ticks. */
+#define EO_CLOCK_WORDS                                                                                              \
+  "t|time|times|zeit|timestamp|timestamps|elapsed|uhrzeit|zeitstempel|datum|date|datetime|datenum|tid|temps|tempo|" \
+  "tiempo|heure|hora|horodatage|seconds"
+#define EO_TICK_WORDS "tick|ticks|timer|tcnt|clk|takte"
+
 struct eo_column {
   enum eo_quantity quantity; /* of its unit */
   double factor;             /* of its unit */

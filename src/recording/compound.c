@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/compound.h"
 #include "recording/column.h"
+#include "recording/overflow.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -24,8 +25,8 @@ struct group {
   int parts, column[PARTS];
   double scale[PARTS]; /* what one unit of a part is, in the unit of the sum */
   double base;         /* is taken from the first part, so that nothing of the last is lost */
-  double turn;         /* s after which a time whose coarser parts are missing starts again; 0: it does not */
-  bool angle, steps;
+  double turn;         /* after which a time starts again whose coarser parts or higher bits are missing; 0: not */
+  bool angle, steps, overflows;
   bool floors;   /* of a negative angle: minutes and seconds count up from the degrees, as modulo does */
   bool signs;    /* there are negative degrees: of 0 degrees the rows before tell the sign, which "-0" loses */
   double before; /* the value of the row before */
@@ -306,6 +307,26 @@ static void settle_groups(struct compound *compound)
   compound->groups = groups;
 }
 
+/* Times alone whose counter starts again. */
+static enum eo_code find_overflows(struct compound *compound, bool *any, struct eo_error *error)
+{
+  double turn[EO_RECORDING_COLUMNS];
+  EO_TRY(eo_overflow_find(compound->recording, compound->look, turn, error));
+  for (int g = 0; g < compound->groups; g++) {
+    struct group *group = &compound->group[g];
+    if (group->parts > 1 || group->steps || !(turn[group->column[0]] > 0))
+      continue;
+    *group = (struct group){.parts = 1,
+                            .column = {group->column[0]},
+                            .scale = {1},
+                            .turn = turn[group->column[0]],
+                            .overflows = true,
+                            .before = NAN};
+    *any = true;
+  }
+  return EO_OK;
+}
+
 static enum eo_code find_groups(struct compound *compound, bool *any, struct eo_error *error)
 {
   *any = false;
@@ -324,7 +345,7 @@ static enum eo_code find_groups(struct compound *compound, bool *any, struct eo_
   int steps = *any ? -1 : find_steps(compound);
   if (steps >= 0)
     *any = compound->group[steps].steps = true, compound->group[steps].scale[0] = 1;
-  return EO_OK;
+  return find_overflows(compound, any, error);
 }
 
 struct writer {
@@ -342,7 +363,7 @@ static enum eo_code write_block(void *context, const double *rows, int64_t first
     int64_t line = eo_recording_line(compound->recording, first + i);
     for (int g = 0; g < compound->groups; g++) {
       struct group *group = &compound->group[g];
-      bool alone = group->parts == 1 && !group->steps;
+      bool alone = group->parts == 1 && !group->steps && !group->overflows;
       const double *row = rows + i * compound->columns;
       writer->rows[g] = alone ? row[group->column[0]] : value_of(group, row);
     }
@@ -389,6 +410,11 @@ static void note_groups(const struct compound *compound, struct eo_notes *notes)
     if (group->steps)
       eo_notes_add(notes, "Column %d \"%s\" holds steps of time: their sums are the times.", group->column[0] + 1,
                    name);
+    else if (group->overflows)
+      eo_notes_add(notes,
+                   "Column %d \"%s\" starts again every %.10g, as a counter that overflows does, %.0f times: its times "
+                   "go on.",
+                   group->column[0] + 1, name, group->turn, group->added / group->turn);
     else if (group->parts > 1)
       eo_notes_add(notes, "Columns %d to %d, from \"%s\" to \"%s\", are parts of one %s and were joined.",
                    group->column[0] + 1, group->column[group->parts - 1] + 1, name,

@@ -55,6 +55,8 @@ void eo_layout_mark_times(struct eo_guess *guess);
 int eo_layout_pick_time(const struct eo_guess *guess, int channel);
 /* The clock of each member's channel, whose column is known: chosen, stated, by name, by place. */
 enum eo_code eo_layout_find_clocks(struct eo_guess *guess, struct eo_error *error);
+/* Nothing states the unit of a member's times: they are taken for seconds so far. */
+bool eo_layout_is_open(const struct eo_guess *guess, int member);
 /* Settles units of time that nothing states and asks where the speed is far from every load case; the channels' scales
    are known. */
 enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error);

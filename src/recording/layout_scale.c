@@ -7,11 +7,37 @@
 #include <string.h>
 #include <strings.h>
 
+/* How far a speed is from the load cases of the design, as the logarithm of what lies between. */
+static double distance(const struct eo_guess *guess, double speed)
+{
+  return speed < guess->pair->speed[0]   ? log(guess->pair->speed[0] / speed)
+         : speed > guess->pair->speed[1] ? log(speed / guess->pair->speed[1])
+                                         : 0;
+}
+
+/* The unit of the time is open as well: the units of both that bring the pinion nearest to a load case. */
+static double scale_with_time(const struct eo_guess *guess, double rate)
+{
+  static const double times[] = {1, 1e-3, 1e-6, 1e-9, 86400}, angles[] = {EO_TURN / 360, 1};
+  double best = INFINITY, scale = 1;
+  for (int a = 0; a < 2; a++)
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+      double off = distance(guess, rate * angles[a] / times[i]);
+      if (off < best)
+        best = off, scale = angles[a];
+    }
+  return scale;
+}
+
 /* Without a unit and without turns: degrees unless the shaft would then crawl. */
 static double scale_by_speed(const struct eo_guess *guess, int member)
 {
-  double rpm = fabs(eo_layout_rate(guess, guess->tracks->channel[member].column[0], &guess->clock[member])) /
-               6; /* as degrees */
+  double ratio = guess->pair ? (double)guess->pair->teeth[member] / guess->pair->teeth[0] : 1;
+  double rate = fabs(eo_layout_rate(guess, guess->tracks->channel[member].column[0], &guess->clock[member]));
+  if (eo_layout_is_open(guess, member) && guess->pair && guess->pair->speed[1] > 0 && rate > 0)
+    return scale_with_time(guess, rate * ratio);
+
+  double rpm = rate / 6; /* as degrees */
   return rpm < 60 && rpm * 180 / M_PI < 30000 ? 1 : EO_TURN / 360;
 }
 

@@ -10,10 +10,6 @@
 #define FAR 100.0  /* times a load case: no speed of this pair */
 #define NEAR 30.0  /* times a load case: a unit of time is believed; units differ by more than the square of it */
 
-#define STRONG_WORDS                                                                                                \
-  "t|time|times|zeit|timestamp|timestamps|elapsed|uhrzeit|zeitstempel|datum|date|datetime|datenum|tid|temps|tempo|" \
-  "tiempo|"                                                                                                         \
-  "heure|hora|horodatage|seconds"
 #define WEAK_WORDS "x|axis|abscissa" /* may as well name a signal */
 
 static const char *unit_name(double scale)
@@ -87,9 +83,11 @@ static bool leads_evenly(const struct eo_guess *guess, int column)
 static bool is_called_time(const struct eo_guess *guess, int column)
 {
   const struct eo_column *look = &guess->look[column];
-  bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
+  bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT,
+       ticks = eo_recording_tick(guess->recording) > 0;
   return look->quantity == EO_QUANTITY_TIME ||
-         (free_of_unit && eo_column_named(eo_recording_name(guess->recording, column), STRONG_WORDS));
+         (free_of_unit && eo_column_named(eo_recording_name(guess->recording, column),
+                                          ticks ? EO_CLOCK_WORDS "|" EO_TICK_WORDS : EO_CLOCK_WORDS));
 }
 
 /* A column of time goes up by nearly equal steps and never starts again; a unit, a name, its size or another column
@@ -262,7 +260,7 @@ double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_
   return look->pace * (double)(look->count - 1) / seconds;
 }
 
-static bool is_open(const struct eo_guess *guess, int member)
+bool eo_layout_is_open(const struct eo_guess *guess, int member)
 {
   int column = guess->clock[member].column;
   return column >= 0 && !(guess->choice->time_scale > 0) && guess->look[column].quantity != EO_QUANTITY_TIME &&
@@ -304,7 +302,7 @@ static double scale_by_speed(const struct eo_guess *guess, double speed)
 enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error)
 {
   char text[80];
-  bool open[2] = {is_open(guess, 0), is_open(guess, 1)};
+  bool open[2] = {eo_layout_is_open(guess, 0), eo_layout_is_open(guess, 1)};
   if (guess->clock[0].column >= 0 && guess->look[guess->clock[0].column].quantity == EO_QUANTITY_NONE &&
       guess->clock[0].scale != 1 && guess->clock[0].scale == scale_by_size(&guess->look[guess->clock[0].column]))
     eo_notes_add(guess->notes, "%s holds dates as numbers, in %s.",

@@ -124,6 +124,20 @@ static bool is_matlab4(const unsigned char *head, size_t size)
          head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
 }
 
+/* The first block of a tape archive states the sum of its own bytes, in octal, with blanks in the place of the sum. */
+static bool is_tar(const unsigned char *head, size_t size)
+{
+  enum { BLOCK = 512, FIELD = 148, FIELD_END = 156 };
+  unsigned long sum = 0;
+  char stated[FIELD_END - FIELD + 1] = "";
+  if (size < BLOCK || !head[0])
+    return false;
+  for (size_t i = 0; i < BLOCK; i++)
+    sum += i >= FIELD && i < FIELD_END ? ' ' : head[i];
+  memcpy(stated, head + FIELD, FIELD_END - FIELD);
+  return strtoul(stated, NULL, 8) == sum;
+}
+
 /* A universal file begins with a line that holds "-1" alone and one with the number of a data set that such files begin
  * with. */
 static bool is_uff(const unsigned char *head, size_t size)
@@ -163,7 +177,7 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_MDF;
   else if (is_uff(head, size))
     *kind = EO_READER_UFF;
-  else if (begins(head, size, "PK\003\004", 4))
+  else if (begins(head, size, "PK\003\004", 4) || is_tar(head, size))
     *kind = EO_READER_ARCHIVE;
   else {
     enum eo_code code = refuse_others(head, size, error);
@@ -296,7 +310,13 @@ static enum eo_code take_no_rows(void *context, const double *rows, int64_t coun
   return EO_OK;
 }
 
-static enum eo_code read_unpacked(const char *path, const char *unpacked, int number, struct names *names,
+static enum eo_code read_archive(const char *path, const struct sign *sign, bool inner,
+                                 const struct eo_reader_options *options, struct eo_recording **recording,
+                                 struct eo_notes *notes, struct eo_error *error);
+
+/* One file of an archive. What an archive in an archive holds may together be no more times as large than what any
+   file of this size may grow to. */
+static enum eo_code read_unpacked(const char *path, bool inner, const char *unpacked, int number, struct names *names,
                                   const struct eo_reader_options *options, struct eo_recording **recording,
                                   struct eo_notes *notes, struct eo_error *error)
 {
@@ -307,10 +327,15 @@ static enum eo_code read_unpacked(const char *path, const char *unpacked, int nu
   own.unpack_number = number;
   EO_TRY(eo_isolate_read(eo_archive_unpack, path, &own, &sink, notes, error));
   EO_TRY(read_sign(unpacked, &sign, error));
-  if (sign.kind == EO_READER_ARCHIVE)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The zip file holds another zip file or a spreadsheet; unpack it.");
+  if (sign.kind == EO_READER_ARCHIVE && inner)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "\"%.60s\" is an archive in an archive in an archive; unpack the outer ones.",
+                        names->name[number]);
   eo_notes_add(notes, "Read from \"%.60s\" in the archive.", names->name[number]);
-  return read_kind(unpacked, &sign, options, recording, notes, error);
+  own = *options;
+  own.max_bytes = eo_source_growth(path, options->max_bytes);
+  return sign.kind == EO_READER_ARCHIVE ? read_archive(unpacked, &sign, true, &own, recording, notes, error)
+                                        : read_kind(unpacked, &sign, &own, recording, notes, error);
 }
 
 /* The name of a file without its folders and its kind. */
@@ -324,15 +349,16 @@ static void set_label(struct eo_table *table, const char *name)
 
 /* Every file of the archive that holds a recording is a table of it; others are left out with a word. Where none does,
    the first says why. */
-static enum eo_code read_files(const char *path, const char *unpacked, const struct eo_reader_options *options,
-                               struct eo_tables *tables, struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_files(const char *path, bool inner, const char *unpacked,
+                               const struct eo_reader_options *options, struct eo_tables *tables,
+                               struct eo_notes *notes, struct eo_error *error)
 {
   struct names names = {.count = 1};
   struct eo_error first = {0};
   for (int i = 0; i < names.count; i++) {
     struct eo_table *table = &tables->table[tables->count];
     *table = (struct eo_table){0};
-    enum eo_code code = read_unpacked(path, unpacked, i, &names, options, &table->recording, notes, error);
+    enum eo_code code = read_unpacked(path, inner, unpacked, i, &names, options, &table->recording, notes, error);
     if (code && (code != EO_ERROR_INPUT || names.count == 1))
       return code;
     if (code)
@@ -349,21 +375,22 @@ static enum eo_code read_files(const char *path, const char *unpacked, const str
   return tables->count ? EO_OK : first.code;
 }
 
-/* The files of a zip, or one table out of a spreadsheet, are unpacked in a process of its own and then read like any
-   other; archives in archives are not. */
-static enum eo_code read_archive(const char *path, const struct eo_reader_options *options,
-                                 struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+/* The files of an archive, or one table out of a spreadsheet, are unpacked in a process of its own and then read like
+   any other. */
+static enum eo_code read_plain_archive(const char *path, bool inner, const struct eo_reader_options *options,
+                                       struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   char unpacked[PATH_MAX];
   if (!options->spool_directory ||
       snprintf(unpacked, sizeof unpacked, "%s/unpacked-XXXXXX", options->spool_directory) >= (int)sizeof unpacked)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no folder to unpack the zip file to.");
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no folder to unpack the archive to.");
   int file = mkostemp(unpacked, O_CLOEXEC);
   if (file < 0)
     return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s.", options->spool_directory);
   close(file);
   struct eo_tables *tables = calloc(1, sizeof *tables);
-  enum eo_code code = tables ? read_files(path, unpacked, options, tables, notes, error) : eo_error_memory(error);
+  enum eo_code code = tables ? read_files(path, inner, unpacked, options, tables, notes, error)
+                             : eo_error_memory(error);
   unlink(unpacked);
   if (!code) {
     tables->files = true;
@@ -371,6 +398,20 @@ static enum eo_code read_archive(const char *path, const struct eo_reader_option
   } else if (tables)
     eo_tables_free(tables);
   free(tables);
+  return code;
+}
+
+/* inner: the archive was a file of another one. */
+static enum eo_code read_archive(const char *path, const struct sign *sign, bool inner,
+                                 const struct eo_reader_options *options, struct eo_recording **recording,
+                                 struct eo_notes *notes, struct eo_error *error)
+{
+  char inflated[PATH_MAX];
+  if (!sign->gzip)
+    return read_plain_archive(path, inner, options, recording, notes, error);
+  EO_TRY(eo_source_inflate(path, options->max_bytes, options->spool_directory, inflated, sizeof inflated, error));
+  enum eo_code code = read_plain_archive(inflated, inner, options, recording, notes, error);
+  unlink(inflated);
   return code;
 }
 
@@ -387,7 +428,7 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
   if (!own.max_bytes)
     own.max_bytes = EO_READER_BYTES;
   struct eo_recording *read = NULL;
-  code = sign.kind == EO_READER_ARCHIVE ? read_archive(path, &own, &read, notes, error)
+  code = sign.kind == EO_READER_ARCHIVE ? read_archive(path, &sign, false, &own, &read, notes, error)
                                         : read_kind(path, &sign, &own, &read, notes, error);
   if (!code)
     code = eo_compound_join(&read, own.spool_directory, notes, error);

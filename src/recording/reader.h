@@ -19,7 +19,7 @@ enum eo_reader_kind {
   EO_READER_UFF,    /* universal file, data sets 58 and 58b */
   EO_READER_HDF5,
   EO_READER_MDF,     /* ASAM MDF 4 */
-  EO_READER_ARCHIVE, /* zip with files of these kinds in it, .xlsx, .ods */
+  EO_READER_ARCHIVE, /* zip or tar with files of these kinds in it, .xlsx, .ods */
   EO_READER_KINDS
 };
 

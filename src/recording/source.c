@@ -157,6 +157,16 @@ static enum eo_code inflate_some(struct eo_source *source, unsigned char *bytes,
   return EO_OK;
 }
 
+int64_t eo_source_growth(const char *path, int64_t limit)
+{
+  struct stat state;
+  if (stat(path, &state) || state.st_size > INT64_MAX / EO_SOURCE_EXPANSION)
+    return limit;
+  int64_t most = state.st_size * EO_SOURCE_EXPANSION;
+  most = most < EO_SOURCE_FREE ? EO_SOURCE_FREE : most;
+  return most < limit ? most : limit;
+}
+
 static enum eo_code check_growth(const struct eo_source *source, struct eo_error *error)
 {
   if (source->gzip && source->given > EO_SOURCE_FREE && source->given / EO_SOURCE_EXPANSION > source->taken)

@@ -14,6 +14,8 @@ struct eo_source; /* opaque */
    EO_SOURCE_FREE bytes came out of it: rig data never do, hostile files do. Errors: EO_ERROR_FILE, EO_ERROR_MEMORY. */
 #define EO_SOURCE_EXPANSION 200
 #define EO_SOURCE_FREE ((int64_t)64 << 20)
+/* Bytes that may come out of a file of this size in all, at most limit. */
+int64_t eo_source_growth(const char *path, int64_t limit);
 enum eo_code eo_source_open(struct eo_source **source, const char *path, int64_t limit, struct eo_error *error);
 void eo_source_close(struct eo_source *source); /* NULL is fine */
 

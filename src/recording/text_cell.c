@@ -4,6 +4,7 @@
 #include "recording/moment.h"
 #include "recording/recording.h"
 #include "recording/recorded_unit.h"
+#include "recording/text_named.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -46,6 +47,9 @@ bool eo_text_next_cell(const char **at, const char *end, char separator, struct 
 {
   if (!*at)
     return false;
+  if (eo_text_is_named(separator))
+    return eo_text_named_cell(at, end, separator == EO_TEXT_NAMED_COMMA, cell);
+  cell->name = NULL;
   const char *p = is_run(separator) ? *at : skip_blanks(*at, end, separator);
   while (is_run(separator) && p < end && eo_text_blank(*p))
     p++;

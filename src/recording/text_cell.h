@@ -20,6 +20,8 @@ struct eo_cell {
   const char *text; /* without quotes and the blanks around it */
   size_t length;
   bool quoted;
+  const char *name; /* of a value that has its name before it (text_named.h); NULL else */
+  size_t name_length;
 };
 
 static inline bool eo_text_blank(char c)
@@ -29,6 +31,15 @@ static inline bool eo_text_blank(char c)
 
 /* A separator: runs of two blanks or more, or with a tab in them; names between them have blanks of their own. */
 #define EO_TEXT_WIDE '\v'
+
+/* Separators: names before the values, see text_named.h; with decimal commas. */
+#define EO_TEXT_NAMED '\f'
+#define EO_TEXT_NAMED_COMMA '\016'
+
+static inline bool eo_text_is_named(char separator)
+{
+  return separator == EO_TEXT_NAMED || separator == EO_TEXT_NAMED_COMMA;
+}
 
 /* Takes the next cell of the line that ends at end; *at moves behind its separator. False when the line has no more
    cells. A line that ends with a separator has one more, empty cell, unless the separator is a run of blanks. The byte

@@ -235,7 +235,8 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   struct eo_stated stated[EO_TEXT_CELLS] = {0};
   int count = 0;
   const char *at = line->start;
-  if (format->separator == ' ' || !eo_text_next_cell(&at, line->end, format->separator, &cell))
+  if (format->separator == ' ' || eo_text_is_named(format->separator) ||
+      !eo_text_next_cell(&at, line->end, format->separator, &cell))
     return;
   int first = eo_header_cells(line, format->separator) == format->cells + 1 ? 0 : 1;
   eo_text_cell_copy(key, sizeof key, &cell);
@@ -315,7 +316,7 @@ void eo_header_facts(const struct eo_header *header, struct eo_text_format *form
     if (i == names) /* facts stand behind the names, as in "CH1,CH2,t0 = 0 s,tInc = 2.0E-4" */
       skip_cells(format, &line);
     take_facts(format, &line, &begin);
-    if (i + 1 < header->lines && format->separator != ' ')
+    if (i + 1 < header->lines && format->separator != ' ' && !eo_text_is_named(format->separator))
       take_below(format, &header->line[i], &header->line[i + 1]);
   }
   for (int i = 0; i < header->lines; i++)

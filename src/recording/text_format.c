@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_format.h"
 #include "recording/moment.h"
+#include "recording/recorded_unit.h"
 #include "recording/text_cell.h"
+#include "recording/text_named.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +27,9 @@ struct lines {
 /* What one way of reading makes of a line. The sets have a bit for each of the first 64 cells. */
 struct shape {
   int cells, numbers, texts;
-  int points; /* how much speaks for this way of reading */
-  bool open;  /* ends with a separator, which counts as no cell */
+  int points;     /* how much speaks for this way of reading */
+  bool open;      /* ends with a separator, which counts as no cell */
+  uint64_t names; /* of the names before its values; 0: none has one */
   uint64_t text, moment, unit, missing;
 };
 
@@ -80,11 +83,20 @@ static void add_cell(struct shape *shape, enum eo_cell_kind kind)
   shape->missing |= kind == EO_CELL_MISSING ? bit : 0;
 }
 
+static bool has_name(const struct line *line)
+{
+  size_t length = (size_t)(line->end - line->start);
+  return memchr(line->start, '=', length) || memchr(line->start, ':', length);
+}
+
 static struct shape shape_of(const struct line *line, char separator, char point)
 {
   struct shape shape = {0};
   struct eo_cell cell;
   double value;
+  bool named = eo_text_is_named(separator);
+  if (named && !has_name(line))
+    return shape;
   for (const char *at = line->start; shape.cells < EO_TEXT_CELLS && eo_text_next_cell(&at, line->end, separator, &cell);
        shape.cells++) {
     enum eo_cell_kind kind = eo_text_cell_value(&cell, point, &value);
@@ -92,14 +104,18 @@ static struct shape shape_of(const struct line *line, char separator, char point
       kind = EO_CELL_TEXT;
     shape.open = !cell.length && !cell.quoted && shape.cells > 0;
     add_cell(&shape, kind);
+    if (named)
+      shape.names += eo_text_name_key(&cell); /* in whatever order */
   }
   shape.cells -= shape.open;
-  return shape;
+  return !named || shape.names ? shape : (struct shape){0};
 }
 
 static bool as_many(const struct shape *a, const struct shape *b)
 {
-  return a->cells == b->cells || (a->cells == b->cells + 1 && b->open) || (b->cells == a->cells + 1 && a->open);
+  return a->names != b->names
+             ? false
+             : a->cells == b->cells || (a->cells == b->cells + 1 && b->open) || (b->cells == a->cells + 1 && a->open);
 }
 
 /* Lines belong together when they have as many cells, but for a last empty one, and the same content in the same
@@ -259,6 +275,27 @@ static void join_dates(struct eo_text_format *format, const struct line *row)
     }
 }
 
+/* Names before the values are those of the columns. */
+static void take_names(struct eo_text_format *format, const struct line *row)
+{
+  struct eo_cell cell;
+  const char *at = row->start;
+  if (!eo_text_is_named(format->separator))
+    return;
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, row->end, format->separator, &cell); c++) {
+    char label[EO_RECORDING_NAME], name[EO_RECORDING_NAME], unit[EO_RECORDING_UNIT];
+    format->key[c] = eo_text_name_key(&cell);
+    cell.text = cell.name;
+    cell.length = cell.name_length;
+    eo_text_cell_copy(label, sizeof label, &cell);
+    eo_unit_split(label, name, (int)sizeof name, unit, (int)sizeof unit);
+    bool own = *format->unit[c]; /* behind the value */
+    memcpy(format->name[c], own ? label : name, sizeof format->name[c]);
+    if (!own)
+      memcpy(format->unit[c], unit, sizeof format->unit[c]);
+  }
+}
+
 static void settle_content(struct eo_text_format *format, const struct lines *lines, const struct run *run)
 {
   find_content(format, lines, run);
@@ -270,6 +307,7 @@ static void settle_content(struct eo_text_format *format, const struct lines *li
        c++)
     if (format->content[c] == EO_TEXT_UNIT)
       eo_text_cell_unit(&cell, format->point, format->unit[c], (int)sizeof format->unit[c]);
+  take_names(format, &lines->line[run->first]);
   for (int c = 0; c < format->cells; c++) {
     format->columns += format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE;
     format->plain = format->plain && format->content[c] == EO_TEXT_NUMBER;
@@ -280,8 +318,9 @@ static void settle_content(struct eo_text_format *format, const struct lines *li
 static struct run best_run(struct eo_text_format *format, const struct lines *lines,
                            const struct eo_text_choice *choice)
 {
-  static const char ways[][2] = {{'\t', '.'}, {';', '.'}, {'|', '.'}, {',', '.'}, {' ', '.'},
-                                 {'\t', ','}, {';', ','}, {'|', ','}, {' ', ','}, {',', ','}};
+  static const char ways[][2] = {{'\t', '.'}, {';', '.'},  {'|', '.'},           {',', '.'},
+                                 {' ', '.'},  {'\t', ','}, {';', ','},           {'|', ','},
+                                 {' ', ','},  {',', ','},  {EO_TEXT_NAMED, '.'}, {EO_TEXT_NAMED_COMMA, ','}};
   struct run best = {0};
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     if ((choice->separator && choice->separator != ways[i][0]) || (choice->point && choice->point != ways[i][1]))
@@ -310,7 +349,7 @@ static enum eo_code guess_from(struct eo_text_format *format, struct lines *line
     memmove(lines->line, lines->line + skipped, (size_t)lines->count * sizeof *lines->line);
   }
   struct run run = best_run(format, lines, choice);
-  if (!run.lines)
+  if (!run.lines || (eo_text_is_named(format->separator) && run.lines < STEADY_ROWS)) /* facts */
     return no_table(lines, head, error);
   format->cells = run.shape.cells;
   settle_content(format, lines, &run);

@@ -24,7 +24,7 @@ enum eo_text_content {
 };
 
 struct eo_text_format {
-  char separator, point, line_end;
+  char separator, point, line_end;             /* separator: one character, or a name of text_cell.h */
   int cells;                                   /* of a row */
   int columns;                                 /* cells that become columns: all but words and dates */
   bool plain;                                  /* every cell is a decimal number */
@@ -36,6 +36,7 @@ struct eo_text_format {
   size_t header_byte;                          /* where the header starts: behind a byte order mark */
   struct eo_clock clock[EO_TEXT_CELLS];        /* [cells] as the heading states it */
   double tick, turn[EO_TEXT_CELLS];            /* s; counts per turn; 0: not stated */
+  uint64_t key[EO_TEXT_CELLS];                 /* [cells] of their names in the rows (text_named.h); 0: none */
   char name[EO_TEXT_CELLS][EO_RECORDING_NAME]; /* [cells] */
   char unit[EO_TEXT_CELLS][EO_RECORDING_UNIT]; /* [cells] */
 };

@@ -195,6 +195,8 @@ void eo_text_read_header(struct eo_text_format *format, const char *head)
   for (int i = 0; i < header->lines; i++)
     drop_key(format, &header->line[i]);
   int names = find_names(format, header, &units);
+  if (eo_text_is_named(format->separator)) /* they stand in the rows */
+    names = units = -1;
   if (units >= 0) {
     char separator = header_separator(format, &header->line[units]);
     take_units(format, &header->line[units], separator ? separator : format->separator);

@@ -6,6 +6,7 @@
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_format.h"
+#include "recording/text_named.h"
 #include "recording/text_sections.h"
 #include "recording/text_tables.h"
 #include "recording/text_values.h"
@@ -177,6 +178,41 @@ static int convert_cells(struct text *text)
   return odd;
 }
 
+/* The place of a cell in rows whose values have names; -1: the first rows had none of this name. */
+static int place_of(const struct eo_text_format *format, const struct eo_cell *cell, int from)
+{
+  uint64_t key = eo_text_name_key(cell);
+  for (int i = 0; i < format->cells; i++) {
+    int c = (from + i) % format->cells;
+    if (format->key[c] == key && (key || i == 0))
+      return c;
+  }
+  return -1;
+}
+
+/* Cuts a row into cells, to the places of their names where they have some; returns how many there are. What a named
+   row lacks is empty; one that has none of the names is none. */
+static int split_row(struct text *text, const char **at, const char *end)
+{
+  const struct eo_text_format *format = &text->format;
+  struct eo_cell cell;
+  int c = 0, found = 0, place;
+  if (!eo_text_is_named(format->separator)) {
+    while (c < format->cells && eo_text_next_cell(at, end, format->separator, &text->cell[c]))
+      c++;
+    return c;
+  }
+  for (int i = 0; i < format->cells; i++)
+    text->cell[i] = (struct eo_cell){.text = end};
+  for (; c < EO_TEXT_CELLS && eo_text_next_cell(at, end, format->separator, &cell); c++)
+    if ((place = place_of(format, &cell, c % format->cells)) >= 0) {
+      text->cell[place] = cell;
+      found += cell.name != NULL;
+    }
+  *at = NULL;
+  return found ? format->cells : 0;
+}
+
 /* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
    without a line end. */
 static enum eo_code read_slowly(struct text *text, const char *line, const char *end, bool last, struct eo_error *error)
@@ -187,9 +223,7 @@ static enum eo_code read_slowly(struct text *text, const char *line, const char 
   if (text->sections.used && eo_text_sections_take(&text->sections, line, end, text->kept))
     return EO_OK;
   const char *at = line;
-  int c = 0;
-  while (c < format->cells && eo_text_next_cell(&at, end, format->separator, &text->cell[c]))
-    c++;
+  int c = split_row(text, &at, end);
   if (c < format->cells && last) {
     eo_notes_add(text->notes, "The last row, in line %lld, is cut off and was left out.", (long long)text->line);
     return EO_OK;
@@ -396,10 +430,15 @@ static void note_format(const struct text *text)
 {
   const struct eo_text_format *format = &text->format;
   int64_t rows = text->kept;
-  eo_notes_add(text->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.",
-               format->cells, format->cells == 1 ? "" : "s", format->cells == 1 ? "" : " separated by ",
-               format->cells == 1 ? "" : separator_name(format->separator), format->point == ',' ? "comma" : "point",
-               (long long)rows, (long long)text->first_line);
+  if (eo_text_is_named(format->separator))
+    eo_notes_add(text->notes,
+                 "Text with the names of %d columns in each row and a decimal %s; the first of %lld rows is line %lld.",
+                 format->cells, format->point == ',' ? "comma" : "point", (long long)rows, (long long)text->first_line);
+  else
+    eo_notes_add(text->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.",
+                 format->cells, format->cells == 1 ? "" : "s", format->cells == 1 ? "" : " separated by ",
+                 format->cells == 1 ? "" : separator_name(format->separator), format->point == ',' ? "comma" : "point",
+                 (long long)rows, (long long)text->first_line);
   if (text->missing)
     eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
                  (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,

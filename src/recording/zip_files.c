@@ -21,7 +21,7 @@ struct contents {
 static enum eo_code damaged(struct eo_archive *archive)
 {
   const char *why = archive_error_string(archive->handle);
-  return eo_error_set(archive->error, EO_ERROR_INPUT, "", "The zip file cannot be read: %.120s.",
+  return eo_error_set(archive->error, EO_ERROR_INPUT, "", "The archive cannot be read: %.120s.",
                       why ? why : "it is damaged");
 }
 
@@ -34,6 +34,7 @@ enum eo_code eo_archive_visit(struct eo_archive *this_archive,
   if (!this_archive->handle)
     return eo_error_memory(this_archive->error);
   archive_read_support_format_zip_seekable(this_archive->handle);
+  archive_read_support_format_tar(this_archive->handle);
   if (archive_read_open_filename(this_archive->handle, this_archive->path, EO_ARCHIVE_PIECE) != ARCHIVE_OK)
     code = damaged(this_archive);
   for (bool more = true; !code && more;) {
@@ -64,7 +65,7 @@ int64_t eo_archive_read(struct eo_archive *archive, void *bytes, size_t size)
   if (archive->taken > archive->limit ||
       (archive->taken > EO_SOURCE_FREE && archive->taken / EO_SOURCE_EXPANSION > archive->bytes)) {
     eo_error_set(archive->error, EO_ERROR_INPUT, "",
-                 "The zip file grows to more than %lld MB; that is no table and no recording.",
+                 "The archive grows to more than %lld MB; that is no table and no recording.",
                  (long long)(archive->taken >> 20));
     return -1;
   }
@@ -136,7 +137,7 @@ static enum eo_code unpack(struct eo_archive *archive, int number, FILE *file, s
                         "scipy.io.savemat).");
   if (!sheets && (contents->files < 1 || contents->files > EO_TABLES))
     return eo_error_set(archive->error, EO_ERROR_INPUT, "",
-                        "The zip file holds %d files; zip those of one recording, %d at most.", contents->files,
+                        "The archive holds %d files; pack those of one recording, %d at most.", contents->files,
                         EO_TABLES);
   if (!sheets)
     return eo_archive_visit(archive, copy_file, &copy);

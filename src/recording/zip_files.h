@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Zip files by libarchive, among them the workbooks of spreadsheets: one rig file inside is unpacked, one table of
-   numbers is written as text; what comes out is read like any other file. Internal to the readers. */
+/* Zip and tar files by libarchive, among them the workbooks of spreadsheets: one rig file inside is unpacked, one table
+   of numbers is written as text; what comes out is read like any other file. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_ZIP_FILES_H
 #define EASEOFF_RECORDING_ZIP_FILES_H
 

@@ -733,6 +733,23 @@ static void write_days(double row[3])
   row[0] = (round((DATE + row[0] / DAY) * 1e10) / 1e10 - DATE) * DAY;
 }
 
+/* A clock that ticks once in five rows and starts again half way. */
+static void restart_clock(double row[3])
+{
+  row[0] = floor(row[0] * 4000 + 1e-6) / 4000 - (row[0] > 0.7 ? 0.5 : 0);
+}
+
+static void check_restarted_clock(void)
+{
+  struct eo_synthetic s = usual();
+  double truth = measure(&s)->transmission.rms;
+  const struct eo_measurement *m = measure_rewritten(&s, restart_clock);
+  ok(!m->refused && said(m, EO_FINDING_TIME, EO_SEVERITY_REPAIRED) && fabs(m->transmission.rms / truth - 1) < 0.01,
+     "times that stand for five rows and start again: the rows count, at their own rate (%.4g of %.4g m/s2)",
+     m->transmission.rms, truth);
+  show(m);
+}
+
 static void check_rounded_times(void)
 {
   static const double rates[] = {4000, 6000, 8192, 9999};
@@ -846,6 +863,7 @@ int main(int argc, char **argv)
   check_alike_neighbours();
   check_half_precision();
   check_rounded_times();
+  check_restarted_clock();
   check_computed_angles();
   check_load();
   check_open_speed();

@@ -17,10 +17,10 @@ static void put(unsigned char *to, size_t *at, uint64_t value, int count)
 }
 
 /* A stored file: local header, name, content; and its line in the directory. */
-static void add(const char *name, const char *content)
+static void add_bytes(const char *name, const void *content, size_t length)
 {
-  size_t length = strlen(content), at = size;
-  uint32_t sum = (uint32_t)crc32(0, (const unsigned char *)content, (unsigned)length);
+  size_t at = size;
+  uint32_t sum = (uint32_t)crc32(0, content, (unsigned)length);
   put(bytes, &size, 0x04034b50, 4);
   put(directory, &directory_size, 0x02014b50, 4);
   put(directory, &directory_size, 20, 2);
@@ -46,7 +46,13 @@ static void add(const char *name, const char *content)
   entries++;
 }
 
-static void finish(void)
+static void add(const char *name, const char *content)
+{
+  add_bytes(name, content, strlen(content));
+}
+
+/* Ends the archive, whose bytes stay where they are until the next one begins. */
+static size_t end_archive(void)
 {
   size_t at = size;
   memcpy(bytes + size, directory, directory_size);
@@ -58,9 +64,42 @@ static void finish(void)
   put(bytes, &size, directory_size, 4);
   put(bytes, &size, at, 4);
   put(bytes, &size, 0, 2);
-  write_bytes(bytes, size);
+  size_t length = size;
   size = directory_size = 0;
   entries = 0;
+  return length;
+}
+
+static void finish(void)
+{
+  write_bytes(bytes, end_archive());
+}
+
+/* Puts the archive that is being made into a new one. */
+static void nest(const char *name)
+{
+  static unsigned char inner[sizeof bytes];
+  size_t length = end_archive();
+  memcpy(inner, bytes, length);
+  add_bytes(name, inner, length);
+}
+
+/* A file of a tape archive, behind what is there. */
+static void add_tar(const char *name, const char *content)
+{
+  unsigned char *block = bytes + size;
+  unsigned sum = 8 * ' ';
+  memset(block, 0, 512 + (strlen(content) + 511) / 512 * 512 + 1024);
+  snprintf((char *)block, 100, "%s", name);
+  memcpy(block + 100, "0000644", 7);
+  snprintf((char *)block + 124, 12, "%011o", (unsigned)strlen(content));
+  block[156] = '0';
+  memcpy(block + 257, "ustar\00000", 8);
+  for (int i = 0; i < 512; i++)
+    sum += block[i];
+  snprintf((char *)block + 148, 8, "%06o", sum);
+  memcpy(block + 512, content, strlen(content));
+  size += 512 + (strlen(content) + 511) / 512 * 512;
 }
 
 static struct eo_recording *take(struct eo_notes *notes, struct eo_error *error)
@@ -110,9 +149,6 @@ static void test_zip(void)
   }
   finish();
   refuse("run1 (40 rows), run2 (40 rows)", "two recordings in a zip");
-  add("a.zip", "PK\003\004 and so on");
-  finish();
-  refuse("another zip file", "a zip in a zip");
   add("t.npy", "x");
   finish();
   refuse("NumPy", "an archive of arrays");
@@ -122,6 +158,50 @@ static void test_zip(void)
   if (!file || fseek(file, 40, SEEK_SET) || fputc('9', file) == EOF || fclose(file))
     exit(99);
   refuse("cannot be read", "a wrong check sum");
+}
+
+static void is_run(const char *what)
+{
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  struct eo_recording *r = take(&notes, &error);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "data.csv"), "%s%s", what,
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_inner(void)
+{
+  static const char run[] = "t;a\n0;1.5\n1;2.5\n2;3.5\n";
+  add("data.csv", run);
+  nest("run.zip");
+  finish();
+  is_run("a zip in a zip");
+  add("data.csv", run);
+  nest("a.zip");
+  nest("b.zip");
+  finish();
+  refuse("in an archive in an archive", "and in another one");
+  add_tar("folder/data.csv", run);
+  write_bytes(bytes, size + 1024);
+  is_run("a tar file");
+  gzFile file = gzopen(fixture_path, "wb");
+  if (!file || gzwrite(file, bytes, (unsigned)size + 1024) <= 0 || gzclose(file))
+    exit(99);
+  is_run("in gzip");
+  bytes[148] ^= 1;
+  write_bytes(bytes, size + 1024);
+  size = 0;
+  refuse("no known kind", "a tar file whose heading is damaged");
+  add_tar("pinion.csv", "t;deg\n0;1.5\n1;2.5\n2;3.5\n");
+  add_tar("gear.csv", "t;deg\n0;1\n1;2\n2;3\n");
+  write_bytes(bytes, size + 1024);
+  size = 0;
+  struct eo_error error;
+  struct eo_recording *r = take(NULL, &error);
+  ok(r && eo_recording_columns(r) == 4 && cell_of(r, 2, 1) == 3.5 && cell_of(r, 2, 3) == 3,
+     "a file for each channel in a tar file%s", r ? "" : error.text);
+  eo_recording_free(r);
 }
 
 /* What a small sheet states holds for the table on another one, before it or behind. */
@@ -264,6 +344,7 @@ int main(void)
 {
   fixture_open();
   test_zip();
+  test_inner();
   test_workbook();
   test_facts_beside(1);
   test_facts_beside(2);

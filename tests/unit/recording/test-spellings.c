@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Recordings as microcontrollers and their monitors spell them: names in every row, counters that start again. */
+#include "support/known-run.h"
+
+#define RATE 4000.0
+
+/* Every row in the format: s, degrees, degrees. */
+static FILE *named(const char *header, const char *format)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, format, i / RATE, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  return f;
+}
+
+static void test_names(void)
+{
+  static const struct {
+    const char *format, *what;
+  } rows[] = {
+      {"t=%.9g,pinion=%.12g,gear=%.12g\n", "commas"},
+      {"t:%.9g pinion:%.12g gear:%.12g\n", "blanks"},
+      {"t: %.9g\tpinion: %.12g\tgear: %.12g\r\n", "tabs"},
+      {"t = %.9g; pinion = %.12g; gear = %.12g;\n", "blanks around the mark"},
+      {"[%.9g] pinion angle: %.12g deg gear angle: %.12g deg\n", "names of two words, units, a time without a name"},
+      {"%.9g -> pinion_deg=%.12g gear_deg=%.12g\n", "an arrow"},
+      {"I t=%.9g s pinion=%.12g deg gear=%.12g deg level=info\n", "words beside them"},
+      {"\"t\": %.9g, \"pinion\": %.12g, \"gear\": %.12g\n", "names in quotes"},
+  };
+  const char *note = "names of";
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    right(named("", rows[i].format), NULL, 1e-7, note, rows[i].what);
+  right(named("Encoder logger 1.2\nReady: yes\nPins: 2\n", "t=%.9g,pinion=%.12g,gear=%.12g\n"), NULL, 1e-7, note,
+        "behind a banner");
+  FILE *f = begin("");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / RATE;
+    fprintf(f, "Zeit=%d,%05d;Ritzel=%d,%07d\n", i / 4000, i % 4000 * 25, (int)degrees(pinion(t)),
+            (int)(fmod(degrees(pinion(t)), 1) * 1e7));
+  }
+  fclose(f);
+  struct eo_error error;
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && !strcmp(eo_recording_name(r, 1), "Ritzel") &&
+         fabs(cell_of(r, 1000, 1) - degrees(pinion(0.25))) < 1e-6,
+     "decimal commas: %.9g%s", r ? cell_of(r, 1000, 1) : NAN, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+/* Names say which value is which, not their places; what lacks is empty, other lines are odd. */
+static void test_places(void)
+{
+  FILE *f = begin("");
+  for (int i = 0; i < 200; i++)
+    if (i == 50)
+      fputs("t=0.5\n", f);
+    else if (i == 60)
+      fputs("restart=1\n", f);
+    else if (i % 2)
+      fprintf(f, "gear=%d,t=%d,pinion=%d\n", 3 * i, i, 10 * i);
+    else
+      fprintf(f, "gear=%d,pinion=%d,t=%d\n", 3 * i, 10 * i, i);
+  fclose(f);
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  int wrong = 0;
+  for (int64_t i = 0; r && i < eo_recording_rows(r); i++) {
+    double gear = cell_of(r, i, 0) / 3;
+    wrong += !isnan(gear) && (cell_of(r, i, 1) != 10 * gear || cell_of(r, i, 2) != gear);
+  }
+  ok(r && !wrong && eo_recording_rows(r) == 200 && noted(&notes, "instead of 3") && isnan(cell_of(r, 50, 0)) &&
+         isnan(cell_of(r, 60, 2)),
+     "names tell the places, %d rows are wrong%s", wrong, r ? "" : error.text);
+  eo_recording_free(r);
+  write_text("Rate=4000\nRows=3\nRig=2\nTorque=400\nSpeed=600\nDate=5\n");
+  refused("No table", "facts below each other are no rows");
+}
+
+/* Times in ticks that a counter of this many holds, from so many before it starts again. */
+static FILE *wrapped(const char *header, double rate, double tick, double ticks, double before, double low)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i < ROWS; i++) {
+    double first = low + ticks - before, t = first * tick + i / rate; /* as if it went on */
+    double count = fmod(floor(i / rate / tick + 1e-6) + ticks - before, ticks) + low;
+    fprintf(f, "%.0f,%.17g,%.17g\n", count, degrees(pinion(t)), degrees(gear(t)));
+  }
+  return f;
+}
+
+static void test_overflows(void)
+{
+  const char *note = "as a counter that overflows does";
+  right(wrapped("micros,pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p32, 500000, 0), NULL, 1e-6, note,
+        "micros() after 2^32");
+  right(wrapped("micros,pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p32, 500000, -0x1p31), NULL, 1e-6, note,
+        "the same with a sign");
+  right(wrapped("millis,pinion [deg],gear [deg]\n", 1000, 1e-3, 0x1p32, 500, 0), NULL, 1e-3, note,
+        "millis() after 2^32");
+  right(wrapped("time [us],pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p16, 5000, 0), NULL, 1e-7, note,
+        "16 bits, 15 times");
+  right(wrapped("Timer clock: 10 MHz\nticks,pinion [deg],gear [deg]\n", RATE, 1e-7, 0x1p16, 5000, 0), NULL, 1e-7, note,
+        "ticks of a stated clock");
+  right(wrapped("ms,pinion [deg],gear [deg]\n", RATE, 1e-3, 0x1p16, 500, 0), NULL, 1e-3, note,
+        "ms that stand for four rows");
+  FILE *f = begin("t [s],pinion [deg],gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.6f,%.17g,%.17g\n", fmod(i / RATE + 0x1p32 * 1e-6 - 0.3, 0x1p32 * 1e-6),
+            degrees(pinion(i / RATE + 0x1p32 * 1e-6 - 0.3)), degrees(gear(i / RATE + 0x1p32 * 1e-6 - 0.3)));
+  right(f, NULL, 1e-3, note, "in seconds");
+  asked(wrapped("time [us],pinion [deg],gear [deg]\n", RATE, 1e-6, 70000, 5000, 0), NULL, "/time", "go back in",
+        "what no counter has");
+}
+
+int main(void)
+{
+  fixture_open();
+  test_names();
+  test_places();
+  test_overflows();
+  return fixture_close();
+}
