@@ -100,6 +100,27 @@ static bool is_sampling(const char *key, bool time)
          (!time && is_one(key, "sampled sample abgetastet scan scanning acquisition logging"));
 }
 
+static bool ends_with(const char *key, const char *words)
+{
+  size_t length = strlen(key);
+  for (const char *p = words; *p;) {
+    size_t n = strcspn(p, " ");
+    if (n <= length && !memcmp(key + length - n, p, n))
+      return true;
+    p += n + (p[n] == ' ');
+  }
+  return false;
+}
+
+/* Sentences: "the channels were sampled with 4 kHz", "recording of 2 s at 4 kHz"; "one sample every 250 us". */
+static bool is_told(const char *key, bool time)
+{
+  return !holds(key, NOT_SAMPLING) &&
+         (time ? holds(key, SAMPLING) && ends_with(key, "every each alle jede toutesles cada ogni")
+               : holds(key, SAMPLING " " TAKING " abgetastet") &&
+                     ends_with(key, "with at mit von bei of de avec con was war betrug by"));
+}
+
 static bool is_start(const char *key)
 {
   return is_one(key, "x0 t0 tstart starttime startoffset wfstartoffset xzero xstart xoffset startvalue starts "
@@ -143,6 +164,20 @@ int eo_stated_member(const char *name)
 {
   bool pinion = eo_column_named(name, EO_PINION_WORDS "|1"), gear = eo_column_named(name, EO_GEAR_WORDS "|2");
   return pinion == gear ? -1 : gear;
+}
+
+bool eo_stated_excludes(const char *words)
+{
+  char folded[KEY];
+  fold(words, folded);
+  return holds(folded, NOT_SAMPLING);
+}
+
+bool eo_stated_thins(const char *words)
+{
+  char folded[KEY];
+  fold(words, folded);
+  return holds(folded, "decimat dezimi downsampl unterabtast subsampl");
 }
 
 bool eo_stated_begin(const char *key)
@@ -238,8 +273,9 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
 {
   bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
   bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
-  bool rate = is_rate(folded) || (frequency && is_sampling(folded, false)),
-       interval = is_interval(folded) || (time && is_sampling(folded, true)), tick = is_tick(folded);
+  bool rate = is_rate(folded) || (frequency && (is_sampling(folded, false) || is_told(folded, false))),
+       interval = is_interval(folded) || (time && (is_sampling(folded, true) || is_told(folded, true))),
+       tick = is_tick(folded);
   if (is_slow_clock(folded, number, quantity, factor))
     rate = true, tick = false;
   if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)

@@ -30,6 +30,12 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
 /* 0 and 1 when a name says pinion and gear, -1 else. */
 int eo_stated_member(const char *name);
 
+/* True for words that tell what is no sampling: filters, numbers of points, what a device could do. */
+bool eo_stated_excludes(const char *words);
+
+/* True for words that say that of the rows only one in so many was kept. */
+bool eo_stated_thins(const char *words);
+
 /* True for keys that state when a recording began: "Start time", "Startzeit", "T0", ... */
 bool eo_stated_begin(const char *key);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_facts.h"
 #include "recording/decimal.h"
+#include "recording/letters.h"
 #include "recording/moment.h"
 #include "recording/recorded_unit.h"
 #include "recording/stated.h"
@@ -82,6 +83,24 @@ static void copy_trimmed(char *to, size_t size, const char *from, const char *en
   snprintf(to, size, "%.*s", (int)((size_t)(end - from) < size ? (size_t)(end - from) : size - 1), from);
 }
 
+/* Bytes of the words at the beginning that are a unit of a rate or a time: of "kHz by rig 3" the first; 0: none is. */
+static size_t sampling_unit(const char *words, size_t length)
+{
+  char unit[32];
+  double factor;
+  while (length) {
+    snprintf(unit, sizeof unit, "%.*s", (int)(length < sizeof unit ? length : 0), words);
+    enum eo_quantity quantity = eo_unit_find(unit, &factor);
+    if (quantity == EO_QUANTITY_FREQUENCY || quantity == EO_QUANTITY_TIME)
+      return length;
+    while (length && words[length - 1] != ' ')
+      length--;
+    while (length && words[length - 1] == ' ')
+      length--;
+  }
+  return 0;
+}
+
 /* The word behind a number: "kHz", "counts/rev", "counts per rev". Another number is none, but that of another cell. */
 static const char *unit_behind(const char *number, const char *end, char *unit, size_t size)
 {
@@ -97,8 +116,10 @@ static const char *unit_behind(const char *number, const char *end, char *unit, 
   size_t length = (size_t)(last - p);
   while (length && p[length - 1] == ' ')
     length--;
+  size_t known = sampling_unit(p, length);
+  length = known ? known : length;
   snprintf(unit, size, "%.*s", (int)(length < size ? length : 0), p);
-  return last;
+  return known ? p + known : last;
 }
 
 static void use_fact(struct eo_text_format *format, const struct eo_stated *stated)
@@ -135,9 +156,71 @@ static struct eo_stated read_fact(const char *from, const char *number, double v
   return stated.kind || cut == key ? stated : eo_stated_read(key, value, unit);
 }
 
+/* What no column states alone: when the recording began; that one row in so many was kept, 0: not stated. */
 struct begin {
   struct eo_moment moment;
+  double thinned;
 };
+
+/* "filter at", before a number: what stands before the last word belongs to the number before. */
+static bool leads_on(const char *words)
+{
+  const char *last = strrchr(words, ' ');
+  return last && eo_letters_listed(last + 1, strlen(last + 1), "at|with|and|to|mit|bei|und|auf|a|avec|et|con|e|y");
+}
+
+/* Words behind a number and its unit, in the same cell; *ended: they belong to it and not to the next number. */
+static const char *words_behind(const char *at, const char *end, char words[KEY], bool *ended)
+{
+  const char *last = at;
+  while (last < end && !strchr("\t;,|.:=()[]\"0123456789", *last))
+    last++;
+  copy_trimmed(words, KEY, at, last);
+  *ended = last == end || !strchr(":=0123456789", *last) || (isdigit((unsigned char)*last) && leads_on(words));
+  return last;
+}
+
+/* A number whose key stands behind it: "4 kHz sampling rate, 1 kHz filter". What it is the rate or the time of may also
+   be said there: of a filter, which is none of the rows. True: it is read; *behind moves on. */
+static bool take_from_behind(struct eo_text_format *format, double value, const char *unit, const char *end,
+                             const char **behind)
+{
+  char words[KEY];
+  bool ended;
+  double factor;
+  enum eo_quantity quantity = eo_unit_find(unit, &factor);
+  if (quantity != EO_QUANTITY_FREQUENCY && quantity != EO_QUANTITY_TIME)
+    return false;
+  const char *last = words_behind(*behind, end, words, &ended);
+  if (!*words || !ended)
+    return false;
+  struct eo_stated stated = eo_stated_read(words, value, unit);
+  if (!eo_stated_excludes(words) && stated.kind != EO_STATED_INTERVAL)
+    return false;
+  if (stated.kind == EO_STATED_INTERVAL)
+    use_fact(format, &stated);
+  *behind = last;
+  return true;
+}
+
+/* "decimated by 10", "decimation factor: 10", and "decimated to 400 Hz", which is another rate. */
+static bool take_thinning(struct eo_text_format *format, const char *from, const char *number, double value,
+                          const char *unit, struct begin *begin)
+{
+  char key[KEY];
+  double factor;
+  copy_trimmed(key, sizeof key, from, number);
+  if (!eo_stated_thins(key) || !(value > 1))
+    return false;
+  struct eo_stated rate = {EO_STATED_INTERVAL, 0, -1};
+  bool frequency = eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
+  rate.value = 1 / (value * factor);
+  if (frequency)
+    use_fact(format, &rate);
+  else
+    begin->thinned = value;
+  return true;
+}
 
 /* A date or time in the line up to its end or the next cell; *after: behind it. */
 static bool moment_at(const char *p, const char *end, struct eo_moment *moment, const char **after)
@@ -196,6 +279,12 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
     if (!after || after > line->end)
       continue;
     behind = unit_behind(after, line->end, unit, sizeof unit);
+    if (take_thinning(format, from, p, value, unit, begin) ||
+        take_from_behind(format, value, unit, line->end, &behind)) {
+      from = behind;
+      p = behind - 1;
+      continue;
+    }
     struct eo_stated stated = read_fact(from, p, value, unit);
     if (!stated.kind)
       stated = read_fact(from, p, value, "");
@@ -324,6 +413,9 @@ void eo_header_facts(const struct eo_header *header, struct eo_text_format *form
   for (int i = 0; i < header->lines; i++)
     take_bare_rates(format, &header->line[i]);
   fill_clocks(format);
+  for (int c = 0; c < format->cells && begin.thinned > 0; c++)
+    if (format->clock[c].interval > 0 && !(format->clock[c].other > 0)) /* before or behind it cannot be known */
+      format->clock[c].other = format->clock[c].interval * begin.thinned;
   if (begin.moment.has_day)
     for (int c = 0; c < format->cells; c++)
       format->clock[c].epoch = eo_moment_epoch(&begin.moment);

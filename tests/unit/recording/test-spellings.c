@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recordings as microcontrollers and their monitors spell them: names in every row, counters that start again. */
+/* Recordings as microcontrollers and their monitors spell them: names in every row, counters that start again; and
+   rates in sentences. */
 #include "support/known-run.h"
 
 #define RATE 4000.0
@@ -113,11 +114,42 @@ static void test_overflows(void)
         "what no counter has");
 }
 
+static FILE *told(const char *sentence)
+{
+  FILE *f = begin(sentence);
+  fputs("\npinion [deg],gear [deg]\n", f);
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.12g,%.12g\n", degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  return f;
+}
+
+/* The rate in a sentence, and sentences with numbers of something else that were taken for it. */
+static void test_sentences(void)
+{
+  static const char *const sentences[] = {"The channels were sampled with 4 kHz on 5 March 2024.",
+                                          "4 kHz sample rate, 1000 Hz filter",
+                                          "4 kHz sampling rate, 17 teeth, 2 encoders, 600 rpm",
+                                          "1 kHz anti-aliasing, 4 kHz sampling",
+                                          "Sampled every 250 us",
+                                          "Es wurde mit 4 kHz abgetastet, Filter 1 kHz.",
+                                          "recording: 2.2 s at 4 kHz",
+                                          "Data acquired at a rate of 4 kHz by rig 3, 2 channels.",
+                                          "Sample interval 250 us (4 kHz)"},
+                           *const open[][2] = {{"Sampled at 40 kHz, then decimated to 4 kHz", "40000 and 4000 Hz"},
+                                               {"Sampled at 40 kHz, decimated by 10", "40000 and 4000 Hz"},
+                                               {"Sampled with 1 kHz filter at 4 kHz", "states no sampling rate"}};
+  for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++)
+    right(told(sentences[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", sentences[i]);
+  for (size_t i = 0; i < sizeof open / sizeof *open; i++)
+    asked(told(open[i][0]), NULL, "/sample_rate_Hz", open[i][1], open[i][0]);
+}
+
 int main(void)
 {
   fixture_open();
   test_names();
   test_places();
   test_overflows();
+  test_sentences();
   return fixture_close();
 }
