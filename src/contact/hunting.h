@@ -35,6 +35,8 @@ struct eo_hunting_input {
   int ends;
   const struct eo_contact_grid *grid[2];        /* borrowed; both with as many positions */
   const double *gap[2];                         /* [grid->points] of one cycle, m; borrowed */
+  const struct eo_loaded_end *alike[2];         /* contact with teeth alike, from which eo_hunting_follow() begins;
+                                                   borrowed; NULL: it is solved from cold */
   const struct eo_tooth_deviation *tooth[2][2]; /* [end][member]: [teeth], in the order in which they come into mesh as
                                                    C grows; NULL: without deviations */
   bool inwards;                                 /* eta runs against y */

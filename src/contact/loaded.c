@@ -178,7 +178,8 @@ static void balance(struct eo_loaded_workspace *ws, const struct eo_loaded_probl
 static bool polish(struct eo_loaded_workspace *ws, const struct eo_loaded_problem *problem, double before)
 {
   enum { STEPS = 32, RENEW = 8 };
-  static const double DONE = 1e-12, BALANCED = 2e-8, LAG = 0.1;
+  static const double BALANCED = 2e4 /* 1/m */, LAG = 0.1;
+  const double done = problem->within;
   const struct eo_contact_position *position = problem->position;
   bool settled = false;
   for (int i = 0; i < STEPS; i++) {
@@ -188,9 +189,9 @@ static bool polish(struct eo_loaded_workspace *ws, const struct eo_loaded_proble
       return false;
     eo_loaded_newton_step(ws, position);
     double moved = eo_loaded_larger(change, eo_loaded_step_length(ws, position));
-    settled = LAG * before < DONE && moved < before && moved * before < DONE * (before - moved);
+    settled = LAG * before < done && moved < before && moved * before < done * (before - moved);
     before = moved;
-    if (settled && fabs(ws->residual[position->rank]) < BALANCED * problem->force) {
+    if (settled && fabs(ws->residual[position->rank]) < BALANCED * done * problem->force) {
       balance(ws, problem);
       return true;
     }
@@ -353,7 +354,8 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     result[l].failures = 0;
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *position = &grid->position[j];
-    struct eo_loaded_problem problem = {position, scaled_gaps(ws, position, gaps->gap, compliance_factor), load[0]};
+    struct eo_loaded_problem problem = {position, scaled_gaps(ws, position, gaps->gap, compliance_factor), load[0],
+                                        EO_LOADED_WITHIN};
     for (int l = 0; l < loads; l++) {
       problem.force = load[l];
       if (j == 0)
@@ -369,11 +371,11 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
 
 /* Solves position j again, from the result it has there. */
 static struct eo_loaded_problem resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid,
-                                        const double *gap, double factor, int j, double load,
+                                        const double *gap, double factor, int j, double load, double within,
                                         struct eo_loaded_end *result)
 {
   const struct eo_contact_position *position = &grid->position[j];
-  struct eo_loaded_problem problem = {position, scaled_gaps(ws, position, gap, factor), load};
+  struct eo_loaded_problem problem = {position, scaled_gaps(ws, position, gap, factor), load, within};
   for (int i = 0; i < position->points; i++)
     ws->load[i] = result->line_load[position->first + i] * position->length[i];
   start_from(ws, result->approach[j] / factor, &problem);
@@ -384,14 +386,20 @@ static struct eo_loaded_problem resolve(struct eo_loaded_workspace *ws, const st
 void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap,
                        double factor, int j, double load, struct eo_loaded_end *result)
 {
-  resolve(ws, grid, gap, factor, j, load, result);
+  resolve(ws, grid, gap, factor, j, load, EO_LOADED_WITHIN, result);
+}
+
+void eo_loaded_resolve_within(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap,
+                              double factor, int j, double load, double within, struct eo_loaded_end *result)
+{
+  resolve(ws, grid, gap, factor, j, load, within, result);
 }
 
 void eo_loaded_find_nearby(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap,
                            double factor, struct eo_loaded_end *result)
 {
   for (int j = 0; j < grid->positions; j++) {
-    struct eo_loaded_problem problem = resolve(ws, grid, gap, factor, j, result->load[j], result);
+    struct eo_loaded_problem problem = resolve(ws, grid, gap, factor, j, result->load[j], EO_LOADED_WITHIN, result);
     eo_loaded_go_around(ws, &problem, factor, result->nearby + j * EO_LOADED_NEARBY);
   }
 }

@@ -110,6 +110,12 @@ bool eo_loaded_balance_position(const struct eo_loaded_half half[2], double comp
 void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
                        double compliance_factor, int j, double load, struct eo_loaded_end *result);
 
+/* The same within so much, m, of the approach; eo_loaded_resolve() is within EO_LOADED_WITHIN. */
+static const double EO_LOADED_WITHIN = 1e-12;
+void eo_loaded_resolve_within(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
+                              const double *gap, double compliance_factor, int j, double load, double within,
+                              struct eo_loaded_end *result);
+
 /* Every position again at its own load, and Z at the loads about it, of a result at these gaps. */
 void eo_loaded_find_nearby(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
                            double compliance_factor, struct eo_loaded_end *result);

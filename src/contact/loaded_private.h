@@ -29,6 +29,7 @@ struct eo_loaded_problem {
   const struct eo_contact_position *position;
   const double *gap; /* [points] */
   double force;      /* P */
+  double within;     /* what the approach may be off, m */
 };
 
 static inline double eo_loaded_larger(double a, double b)

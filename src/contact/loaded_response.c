@@ -156,7 +156,7 @@ void eo_loaded_go_around(struct eo_loaded_workspace *ws, const struct eo_loaded_
   for (int i = 0; i < EO_LOADED_NEARBY; i++) {
     int node = ORDER[i];
     double change = (EO_LOADED_NEARBY_SHARE[node] - 1) * problem->force;
-    struct eo_loaded_problem there = {position, problem->gap, problem->force + change};
+    struct eo_loaded_problem there = {position, problem->gap, problem->force + change, problem->within};
     go_along(n, ws->modal_course, change, ws->mode);
     go_along(position->points, ws->course, change, ws->local);
     if (!reach(ws, position, there.force))

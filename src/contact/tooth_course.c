@@ -17,6 +17,18 @@ struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, doub
   return &course->state[i];
 }
 
+void eo_course_state_copy(struct eo_course_state *state, const struct eo_course_state *from, int pairs, bool loads)
+{
+  state->approach = from->approach;
+  state->tangent = from->tangent;
+  for (int k = 0; k < pairs; k++)
+    state->share[k] = from->share[k];
+  for (int k = 0; k < pairs && loads; k++) {
+    state->load[k] = from->load[k];
+    state->square[k] = from->square[k];
+  }
+}
+
 /* Of the parabola through a node and its neighbours, at an end of the last three. */
 static double parabola_slope(const struct eo_tooth_course *course, int i)
 {
@@ -76,12 +88,25 @@ void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, doubl
 {
   int i = stretch_of(course, at);
   if (course->nodes == 1) {
-    *state = course->state[0];
+    eo_course_state_copy(state, &course->state[0], pairs, loads);
     return;
   }
   double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width;
   find_between(&course->state[i], &course->state[i + 1], course->mover, pairs, width, t, loads, state);
   state->tangent = tangent_in(course, i, width, t);
+}
+
+void eo_tooth_course_level(const struct eo_tooth_course *course, double at, double *approach, double *tangent)
+{
+  const struct eo_course_state *from = &course->state[stretch_of(course, at)], *to = from + 1;
+  int i = (int)(from - course->state);
+  *approach = from->approach;
+  *tangent = from->tangent;
+  if (course->nodes == 1)
+    return;
+  double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width;
+  *approach = cubic(from->approach, to->approach, from->share[course->mover], to->share[course->mover], width, t);
+  *tangent = tangent_in(course, i, width, t);
 }
 
 void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,

@@ -24,6 +24,9 @@ struct eo_tooth_course {
   double bend[EO_COURSE_NODES]; /* slope of k_tan at the nodes */
 };
 
+/* What is asked of so many pairs: loads: with load and square. */
+void eo_course_state_copy(struct eo_course_state *state, const struct eo_course_state *from, int pairs, bool loads);
+
 /* Makes room for a node and returns its state; NULL: there is none left. */
 struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, double at);
 
@@ -35,7 +38,10 @@ void eo_tooth_course_settle(struct eo_tooth_course *course);
 void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, double at, bool loads,
                           struct eo_course_state *state);
 
-/* The same where another pair moves as well: across[course->nodes] are the courses of that one from the nodes of this.
+/* Of this approach and tangent alone. */
+void eo_tooth_course_level(const struct eo_tooth_course *course, double at, double *approach, double *tangent);
+
+/* All of it where another pair moves as well: across[course->nodes] are the courses of that one from the nodes of this.
  */
 void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,
                            double at, double other, bool loads, struct eo_course_state *state);

@@ -8,6 +8,9 @@
 #include "contact/hunting_private.h"
 #include "contact/tooth_courses_private.h"
 
+/* What a solution may be off where few are made, m: a hundredth of what is between them. */
+static const double ROUGHLY = 1e-10;
+
 static int wrap(int number, int by)
 {
   int rest = number % by;
@@ -96,6 +99,7 @@ static enum eo_code make_room(struct eo_follow *follow, struct eo_hunting *perio
   follow->step = input->grid[EO_LEFT]->positions / follow->places;
   follow->cycles = period->cycles;
   follow->lines = period->lines;
+  follow->first_line = period->first_line;
   memcpy(follow->teeth, period->teeth, sizeof follow->teeth);
   bool complete = make_result(period);
   complete = make_result(stretch) && complete;
@@ -109,6 +113,7 @@ static void grid_done(struct eo_follow *follow)
 {
   eo_loaded_workspace_free(follow->own);
   eo_loaded_end_done(&follow->solved);
+  eo_trails_done(follow);
   free(follow->gap);
   free(follow->start);
   free(follow->weight);
@@ -124,6 +129,7 @@ static enum eo_code grid_begin(struct eo_follow *follow, struct eo_error *error)
   follow->start = make_numbers(grid->most_points, &complete);
   follow->weight = make_numbers(grid->most_points, &complete);
   follow->share = make_numbers(grid->most_points, &complete);
+  complete = eo_trails_init(follow, grid->most_points) && complete;
   follow->workspace = follow->input->workspace[follow->end];
   if (!follow->workspace)
     EO_TRY(eo_loaded_workspace_new(&follow->own, grid, error));
@@ -142,6 +148,8 @@ static enum eo_code follow_end(struct eo_follow *follow, int end, struct eo_hunt
     grid_done(follow);
     EO_TRY(grid_begin(follow, error));
   }
+  eo_trails_forget(follow);
+  memset(follow->apart_known, 0, sizeof follow->apart_known);
   follow->formed = false;
   for (int member = 0; member < 2; member++)
     if (follow->input->tooth[end][member])
@@ -165,6 +173,7 @@ enum eo_code eo_hunting_follow(struct eo_hunting *period, struct eo_hunting *str
     return eo_error_memory(error);
   follow->input = input;
   follow->within = within;
+  follow->settled = isfinite(within) ? EO_LOADED_WITHIN : ROUGHLY;
   enum eo_code code = make_room(follow, period, stretch, stretch_cycles, error);
   for (int end = 0; end < input->ends && !code; end++)
     code = follow_end(follow, end, period, stretch, error);

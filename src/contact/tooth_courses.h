@@ -11,7 +11,8 @@
 /* The same as eo_hunting_run() on one thread, for pinions that float (input->hold is not looked at), without root
    stress, and without what stands in the result of every pair and every tooth: load, approach, tangent, most_load,
    most_pressure, failures. within: how far the approach half way between two solutions may be off the cubic through
-   them, m, before more are made; INFINITY: no more than three of each pair. Teeth with slopes and crownings of their
+   them, m, before more are made; INFINITY: no more than three of each pair, each within 0.1 nm, from
+   input->alike and from the places before. Teeth with slopes and crownings of their
    own are taken at the mean by load of what these add to the gap, to first order. stretch: the first so many cycles at
    all positions of the grid. Errors: as there. eo_hunting_done() of both also after an error. */
 enum eo_code eo_hunting_follow(struct eo_hunting *period, struct eo_hunting *stretch, int stretch_cycles, double within,

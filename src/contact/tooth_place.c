@@ -58,8 +58,8 @@ static void solve(struct eo_follow *follow, struct eo_course_state *state)
   const struct eo_contact_grid *grid = grid_of(follow);
   const struct eo_contact_position *position = position_of(follow);
   int j = follow->place.j;
-  eo_loaded_resolve(follow->workspace, grid, follow->gap, follow->input->compliance_factor, j,
-                    follow->input->load[follow->end], &follow->solved);
+  eo_loaded_resolve_within(follow->workspace, grid, follow->gap, follow->input->compliance_factor, j,
+                           follow->input->load[follow->end], follow->settled, &follow->solved);
   eo_loaded_last_shares(follow->workspace, position, follow->share);
   memset(state, 0, sizeof *state);
   state->approach = follow->solved.approach[j];
@@ -98,14 +98,18 @@ static void go_on_from(struct eo_follow *follow, int from)
   follow->solved.approach[follow->place.j] = follow->solved.approach[from];
 }
 
-/* Teeth alike: with their solution where it can be gone on from. */
+/* Teeth alike: where few are solved from the solution that there is, else from that of the place before. */
 static void solve_alike(struct eo_follow *follow, int at)
 {
   struct eo_follow_place *place = &follow->place;
+  const struct eo_loaded_end *alike = isinf(follow->within) ? follow->input->alike[follow->end] : NULL;
   const struct eo_contact_position *position = position_of(follow);
   size_t bytes = sizeof(double) * (size_t)position->points;
   memcpy(follow->gap + position->first, follow->input->gap[follow->end] + position->first, bytes);
-  if (at > 0)
+  if (alike) {
+    memcpy(follow->solved.line_load + position->first, alike->line_load + position->first, bytes);
+    follow->solved.approach[place->j] = alike->approach[place->j];
+  } else if (at > 0)
     go_on_from(follow, place->j - follow->step);
   else
     memset(follow->solved.line_load + position->first, 0, bytes);
@@ -168,11 +172,19 @@ static int wrap(int number, int by)
   return rest < 0 ? rest + by : rest;
 }
 
+static int line_of(const struct eo_follow *follow, int k)
+{
+  return follow->place.first + k - follow->first_line;
+}
+
 /* Gap of a pair in every cycle. */
 static void set_apart(struct eo_follow *follow, int k)
 {
   const struct eo_hunting_input *input = follow->input;
-  double *apart = follow->apart + (size_t)k * (size_t)follow->cycles;
+  double *apart = follow->apart + (size_t)line_of(follow, k) * (size_t)follow->cycles;
+  if (follow->apart_known[line_of(follow, k)])
+    return;
+  follow->apart_known[line_of(follow, k)] = !follow->formed && !isinf(follow->place.touch[k]);
   memset(apart, 0, sizeof *apart * (size_t)follow->cycles);
   for (int member = 0; member < 2 && !isinf(follow->place.touch[k]); member++) {
     const struct eo_tooth_deviation *tooth = input->tooth[follow->end][member];
@@ -220,8 +232,8 @@ static void refine(struct eo_follow *follow, struct eo_tooth_course *course, dou
 /* How far a pair is from the leader over the period, and nothing between. */
 static void find_range(const struct eo_follow *follow, int k, double range[2])
 {
-  const double *apart = follow->apart + (size_t)k * (size_t)follow->cycles,
-               *leader = follow->apart + (size_t)follow->place.leader * (size_t)follow->cycles;
+  const double *apart = follow->apart + (size_t)line_of(follow, k) * (size_t)follow->cycles,
+               *leader = follow->apart + (size_t)line_of(follow, follow->place.leader) * (size_t)follow->cycles;
   double low = 0, high = 0;
   for (int n = 0; n < follow->cycles; n++) {
     double from = apart[n] - leader[n];
@@ -239,6 +251,17 @@ static bool is_reached(const struct eo_follow *follow, int k, const struct eo_co
   return range[1] > range[0] && (state->load[k] > 0 || follow->place.touch[k] + range[0] < state->approach);
 }
 
+/* Solves one end of a course, where few are solved as the places before lead to. */
+static void solve_end(struct eo_follow *follow, struct eo_tooth_course *course, int side, double at)
+{
+  struct eo_trail *trail = &follow->trail[2 * line_of(follow, course->mover) + side];
+  if (isfinite(follow->within) || !eo_trail_lead(follow, trail))
+    go_back(follow);
+  move_pair(follow, course->mover, at);
+  solve(follow, eo_tooth_course_add(course, at));
+  eo_trail_add(follow, trail);
+}
+
 /* Solves where a pair is nearest, farthest, and on the way as often as it takes; from a state in which it stands as it
    does without deviations. */
 static void make_course(struct eo_follow *follow, struct eo_tooth_course *course, int k, const double range[2],
@@ -251,9 +274,7 @@ static void make_course(struct eo_follow *follow, struct eo_tooth_course *course
   for (int i = 0; i < 2 && is_reached(follow, k, from, range); i++) {
     if (range[i] == 0)
       continue;
-    go_back(follow);
-    move_pair(follow, k, range[i]);
-    solve(follow, eo_tooth_course_add(course, range[i]));
+    solve_end(follow, course, i, range[i]);
     if (isfinite(follow->within))
       refine(follow, course, fmin(range[i], 0), fmax(range[i], 0), DEPTH);
   }
@@ -333,14 +354,27 @@ static void add_course(const struct eo_follow *follow, int c, const struct eo_co
   }
 }
 
+/* Where one pair alone goes a course of its own, which is so mostly. */
+static void find_one(const struct eo_follow_place *place, double at, double lead, struct eo_course_state *state)
+{
+  double approach, tangent;
+  eo_tooth_course_level(&place->course[0], at, &approach, &tangent);
+  state->approach = place->alike.approach + lead + (approach - place->alike.approach); /* theory (P6) */
+  state->tangent = place->alike.tangent + (tangent - place->alike.tangent);
+}
+
 void eo_follow_find(const struct eo_follow *follow, int cycle, bool loads, struct eo_course_state *state)
 {
   const struct eo_follow_place *place = &follow->place;
-  const double *apart = follow->apart + cycle;
+  const double *apart = follow->apart + (size_t)line_of(follow, 0) * (size_t)follow->cycles + cycle;
   size_t cycles = (size_t)follow->cycles;
   double lead = apart[(size_t)place->leader * cycles];
   int pairs = place->courses > 1 ? place->pairs : 0;
-  *state = place->alike;
+  if (place->courses == 1 && !loads) {
+    find_one(place, apart[(size_t)place->course[0].mover * cycles] - lead, lead, state);
+    return;
+  }
+  eo_course_state_copy(state, &place->alike, loads ? place->pairs : pairs, loads);
   state->approach += lead; /* theory (P6) */
   for (int c = 0; c < place->courses; c++) {
     const struct eo_tooth_course *course = &place->course[c];

@@ -119,6 +119,7 @@ static enum eo_code hunt(struct work *work, const struct eo_case_result *load_ca
       .ends = work->design->gear_pair.ends,
       .grid = {pair->grid, eo_pair_half(pair, EO_RIGHT)->grid},
       .gap = {work->gap[EO_LEFT], work->gap[EO_RIGHT]},
+      .alike = {&load_case->end[EO_LEFT].loaded, &load_case->end[EO_RIGHT].loaded},
       .inwards = load_case->running.inwards,
       .positions = work->design->pitch.positions,
       .stagger = eo_evaluator_stagger_of(pair, work->design, &load_case->running, work->design->pitch.positions),

@@ -476,6 +476,28 @@ static void test_followed_drawn(void)
   eo_hunting_done(&full);
 }
 
+/* The contact with teeth alike is known: where that begins changes no more than what a solution may be off, and the
+   places are as they are one after the other. */
+static void test_followed_known(void)
+{
+  static const double ROUGHLY = 1e-10; /* m, of a solution; a hundredth of it elsewhere */
+  draw_tables(6e-6, 3e-6);
+  struct eo_hunting_input input = plain_input(1);
+  put_tables(&input);
+  eo_loaded_solve(workspace, grid, &gaps, 1, 1, &force, &once);
+  struct followed cold = follow(&input, INFINITY, 0), fine = follow(&input, 2e-9, 0);
+  input.alike[0] = &once;
+  struct followed known = follow(&input, INFINITY, 0), same = follow(&input, 2e-9, 0);
+  double most = apart(cold.period.instants, known.period.approach[0], cold.period.approach[0], 0);
+  ok(known.period.failures == 0 && most < 20 * ROUGHLY && most > 0, "from what is known: Z within %.2g nm", 1e9 * most);
+  ok(apart(fine.period.instants, same.period.approach[0], fine.period.approach[0], 0) == 0,
+     "pairs in full begin as before");
+  followed_done(&cold);
+  followed_done(&fine);
+  followed_done(&known);
+  followed_done(&same);
+}
+
 /* Forms of their own on one member are taken at their mean. */
 static void test_followed_forms(void)
 {
@@ -524,6 +546,7 @@ int main(void)
   test_fewer_positions();
   test_followed_alike();
   test_followed_drawn();
+  test_followed_known();
   test_followed_forms();
   close_bench();
   return tap_done();
