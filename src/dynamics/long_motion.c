@@ -104,10 +104,10 @@ static void set_mode(struct eo_long_motion *motion, const struct form *form, con
                      int m, const double (*weight)[N])
 {
   int n = form->n, size = 2 * n, mode = motion->modes++;
-  double complex value = form->value[m], phi[3];
+  double complex value = form->value[m], turn = cexp(value * motion->step), phi[3];
   double twice = cimag(value) != 0 ? 2 : 1;
   find_phis(value * motion->step, phi);
-  set_part(&motion->turn, mode, cexp(value * motion->step));
+  set_part(&motion->turn, mode, turn);
   for (int end = 0; end < form->ends; end++) {
     double complex excited = form->excited[end][m] * motion->step, deflection = 0, rate = 0;
     for (int i = 0; i < n; i++) {
@@ -115,10 +115,12 @@ static void set_mode(struct eo_long_motion *motion, const struct form *form, con
       rate += twice * oscillator->mesh[end][i] * form->scale * form->vector[(n + i) * size + m];
     }
     /* theory (P7) */
-    set_part(&motion->before[end], mode, (phi[2] - phi[1] / 2) * excited);
-    set_part(&motion->from[end], mode, (phi[0] - 2 * phi[2]) * excited);
-    set_part(&motion->to[end], mode, (phi[2] + phi[1] / 2) * excited);
-    set_part(&motion->rest[end], mode, -form->excited[end][m] / value);
+    double complex before = (phi[2] - phi[1] / 2) * excited / turn, from = (phi[0] - 2 * phi[2]) * excited,
+                   to = (phi[2] + phi[1] / 2) * excited;
+    set_part(&motion->early[end], mode, before);
+    set_part(&motion->to[end], mode, to);
+    set_part(&motion->kick[end], mode, turn * to + from + before);
+    set_part(&motion->rest[end], mode, before - to - form->excited[end][m] / value);
     set_part(&motion->deflection[end], mode, deflection);
     set_part(&motion->rate[end], mode, rate);
   }
@@ -145,11 +147,16 @@ static void set_gains(struct eo_long_motion *motion, const struct eo_oscillator 
     for (int j = 0; j < motion->ends; j++) {
       motion->gain[i][j] = product(motion, &motion->deflection[i], &motion->to[j]);
       motion->rate_gain[i][j] = product(motion, &motion->rate[i], &motion->to[j]);
+      motion->early_gain[i][j] = -product(motion, &motion->deflection[i], &motion->early[j]);
+      motion->early_rate_gain[i][j] = -product(motion, &motion->rate[i], &motion->early[j]);
     }
   for (int k = 0; k < motion->readings; k++)
-    for (int end = 0; end < motion->ends; end++)
+    for (int end = 0; end < motion->ends; end++) {
+      motion->early_direct[k][end] = -product(motion, &motion->reading[k], &motion->early[end]);
+      motion->direct[k][end] = product(motion, &motion->reading[k], &motion->to[end]);
       for (int i = 0; i < oscillator->n; i++)
         motion->direct[k][end] += weight[k][i] * oscillator->mesh[end][i];
+    }
 }
 
 /* A mode that is damped critically has no second one: a millionth more damping parts them. */
@@ -177,6 +184,26 @@ enum eo_code eo_long_motion_init(struct eo_long_motion *motion, const struct eo_
   return EO_OK;
 }
 
+bool eo_long_motion_still(const struct eo_oscillator *oscillator, double mean, double deflection[2])
+{
+  double k[N * N], place[N];
+  int n = oscillator->n, pivot[N];
+  memcpy(place, oscillator->load, sizeof place);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      k[i * n + j] = oscillator->stiffness[i * n + j];
+      for (int end = 0; end < oscillator->ends; end++)
+        k[i * n + j] += mean * oscillator->mesh[end][i] * oscillator->mesh[end][j];
+    }
+  bool found = eo_dense_solve(n, k, pivot, 1, place) == 0;
+  for (int end = 0; end < oscillator->ends; end++) {
+    deflection[end] = 0;
+    for (int i = 0; i < n; i++)
+      deflection[end] += oscillator->mesh[end][i] * place[i];
+  }
+  return found;
+}
+
 void eo_long_motion_rest(struct eo_long_motion *motion, const double force[2])
 {
   memset(&motion->state, 0, sizeof motion->state);
@@ -191,45 +218,51 @@ static inline pair at(const struct eo_motion_row *row, int part, int m)
   return *(const pair *)&row->part[part][m];
 }
 
-void eo_long_motion_go(struct eo_long_motion *motion, const double before[2], const double force[2],
-                       double deflection[2], double rate[2])
+/* ends: known where it is compiled. */
+static inline void go(struct eo_long_motion *motion, int ends, const double *force, pair *x, pair *v)
 {
-  pair x[2] = {{0}}, v[2] = {{0}};
   for (int m = 0; m < motion->modes; m += 2) {
     pair a = at(&motion->state, 0, m), b = at(&motion->state, 1, m), c = at(&motion->turn, 0, m),
          s = at(&motion->turn, 1, m), real = c * a - s * b, imaginary = c * b + s * a;
-    for (int end = 0; end < motion->ends; end++) {
-      real += force[end] * at(&motion->from[end], 0, m) + before[end] * at(&motion->before[end], 0, m);
-      imaginary += force[end] * at(&motion->from[end], 1, m) + before[end] * at(&motion->before[end], 1, m);
+    for (int end = 0; end < ends; end++) {
+      real += force[end] * at(&motion->kick[end], 0, m);
+      imaginary += force[end] * at(&motion->kick[end], 1, m);
     }
-    for (int end = 0; end < motion->ends; end++) {
+    for (int end = 0; end < ends; end++) {
       x[end] += at(&motion->deflection[end], 0, m) * real - at(&motion->deflection[end], 1, m) * imaginary;
       v[end] += at(&motion->rate[end], 0, m) * real - at(&motion->rate[end], 1, m) * imaginary;
     }
     *(pair *)&motion->state.part[0][m] = real;
     *(pair *)&motion->state.part[1][m] = imaginary;
   }
-  for (int end = 0; end < motion->ends; end++) {
-    deflection[end] = x[end][0] + x[end][1];
-    rate[end] = v[end][0] + v[end][1];
+}
+
+void eo_long_motion_go(struct eo_long_motion *motion, const double force[2], double deflection[2], double rate[2])
+{
+  pair x[2] = {{0}}, v[2] = {{0}};
+  if (motion->ends == 2)
+    go(motion, 2, force, x, v);
+  else
+    go(motion, 1, force, x, v);
+  for (int i = 0; i < motion->ends; i++) {
+    deflection[i] = x[i][0] + x[i][1];
+    rate[i] = v[i][0] + v[i][1];
+    for (int j = 0; j < motion->ends; j++) {
+      deflection[i] += motion->early_gain[i][j] * force[j];
+      rate[i] += motion->early_rate_gain[i][j] * force[j];
+    }
   }
 }
 
-void eo_long_motion_arrive(struct eo_long_motion *motion, const double force[2])
+double eo_long_motion_read(const struct eo_long_motion *motion, int reading, const double before[2],
+                           const double force[2])
 {
-  for (int i = 0; i < 2; i++)
-    for (int m = 0; m < motion->modes; m += 2) {
-      pair sum = at(&motion->state, i, m);
-      for (int end = 0; end < motion->ends; end++)
-        sum += force[end] * at(&motion->to[end], i, m);
-      *(pair *)&motion->state.part[i][m] = sum;
-    }
-}
-
-double eo_long_motion_read(const struct eo_long_motion *motion, int reading, const double force[2])
-{
-  double sum = product(motion, &motion->reading[reading], &motion->state);
+  pair both = {0};
+  for (int m = 0; m < motion->modes; m += 2)
+    both += at(&motion->reading[reading], 0, m) * at(&motion->state, 0, m) -
+            at(&motion->reading[reading], 1, m) * at(&motion->state, 1, m);
+  double sum = both[0] + both[1];
   for (int end = 0; end < motion->ends; end++)
-    sum += motion->direct[reading][end] * force[end];
+    sum += motion->direct[reading][end] * force[end] + motion->early_direct[reading][end] * before[end];
   return sum;
 }

@@ -5,6 +5,8 @@
 #ifndef EASEOFF_DYNAMICS_LONG_MOTION_H
 #define EASEOFF_DYNAMICS_LONG_MOTION_H
 
+#include <stdbool.h>
+
 #include "base/error.h"
 #include "dynamics/oscillator.h"
 
@@ -18,17 +20,20 @@ struct eo_motion_row {
 
 struct eo_long_motion {
   int modes, ends;
-  double step;                                    /* s */
-  struct eo_motion_row turn;                      /* by which a free step turns a mode */
-  struct eo_motion_row before[2], from[2], to[2]; /* [mesh] what 1 N leaves that pushed at the beginning of the step
-                                                     before, at that of this one, at its end */
-  struct eo_motion_row deflection[2], rate[2];    /* [mesh] X and X' of a mode, as twice the real part of a pair */
-  struct eo_motion_row rest[2];                   /* [mesh] state that 1 N for good leads to */
-  struct eo_motion_row state;
+  double step;                                   /* s */
+  struct eo_motion_row turn;                     /* by which a free step turns a mode */
+  struct eo_motion_row early[2], kick[2], to[2]; /* [mesh] of 1 N in the step before, at the beginning of a step, and
+                                                    what it leaves at its end */
+  struct eo_motion_row deflection[2], rate[2];   /* [mesh] X and X' of a mode, as twice the real part of a pair */
+  struct eo_motion_row rest[2];                  /* [mesh] state that 1 N for good leads to */
+  struct eo_motion_row state;         /* modes less what the push at this instant, plus what the one before has in them:
+                                         with both in one number a step takes a third of the products */
   double gain[2][2], rate_gain[2][2]; /* X and X' of a mesh at the end of a step from 1 N there on a mesh */
+  double early_gain[2][2], early_rate_gain[2][2]; /* and from 1 N at its beginning, beside the state */
   int readings;
   struct eo_motion_row reading[EO_MOTION_READINGS]; /* of accelerations */
-  double direct[EO_MOTION_READINGS][2];             /* and of 1 N along a mesh */
+  double direct[EO_MOTION_READINGS][2];             /* and of 1 N along a mesh, */
+  double early_direct[EO_MOTION_READINGS][2];       /* of 1 N there the step before */
 };
 
 /* mean: stiffness of each mesh, N/m; damping: of each, N s/m. weight[readings][n]: of the accelerations r". At rest
@@ -37,18 +42,17 @@ enum eo_code eo_long_motion_init(struct eo_long_motion *motion, const struct eo_
                                  double mean, double step, int readings, const double (*weight)[EO_MAX_COORDINATES],
                                  struct eo_error *error);
 
+/* X of the meshes at this stiffness under the constant loads; false: there is no such place. */
+bool eo_long_motion_still(const struct eo_oscillator *oscillator, double mean, double deflection[2]);
+
 /* At rest under constant pushes force[2], N. */
 void eo_long_motion_rest(struct eo_long_motion *motion, const double force[2]);
 
-/* The first half of a step, without the pushes at its end: X and X' that it leads to beside their gains. before: pushes
-   at the beginning of the step before. */
-void eo_long_motion_go(struct eo_long_motion *motion, const double before[2], const double force[2],
-                       double deflection[2], double rate[2]);
+/* One step with these pushes at its beginning: X and X' at its end beside the gains of the pushes there. */
+void eo_long_motion_go(struct eo_long_motion *motion, const double force[2], double deflection[2], double rate[2]);
 
-/* The other half: pushes at the end. */
-void eo_long_motion_arrive(struct eo_long_motion *motion, const double force[2]);
-
-/* A reading of the accelerations under the pushes of the moment. */
-double eo_long_motion_read(const struct eo_long_motion *motion, int reading, const double force[2]);
+/* A reading of the accelerations under the pushes of the moment and those of the step before. */
+double eo_long_motion_read(const struct eo_long_motion *motion, int reading, const double before[2],
+                           const double force[2]);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "dynamics/long_motion.h"
 #include "dynamics/propagator.h"
-#include "numerics/dense.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
 
@@ -70,11 +69,11 @@ static enum eo_code resample(const struct response *response, int end, double *r
   for (int i = 0; i < n && !code; i++)
     x[i] = (z[i] + I * size * k[i]) / n;
   if (!code)
-    code = eo_fft_forward(n, x, error);
+    code = eo_fft_forward(load->fft, n, x, error);
   for (int line = -load->harmonics * load->cycles; line <= load->harmonics * load->cycles && !code; line++)
     y[line > 0 ? steps - line : -line] = x[line < 0 ? n + line : line];
   if (!code)
-    code = eo_fft_forward(steps, y, error);
+    code = eo_fft_forward(load->fft, steps, y, error);
   for (int i = 0; i < steps && !code; i++) {
     row[(size_t)i * ROWS] = creal(y[i]);
     row[(size_t)i * ROWS + 1] = cimag(y[i]) / size;
@@ -136,25 +135,6 @@ static enum eo_code make_storage(struct response *response, struct eo_error *err
   return complete ? EO_OK : eo_error_memory(error);
 }
 
-/* X of the meshes at their mean stiffness under the constant loads; false: there is no such place. */
-static bool settle(struct response *response)
-{
-  const struct eo_oscillator *oscillator = &response->model.oscillator;
-  double k[N * N], place[N];
-  int n = oscillator->n, pivot[N];
-  memcpy(place, oscillator->load, sizeof place);
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      k[i * n + j] = oscillator->stiffness[i * n + j];
-      for (int end = 0; end < oscillator->ends; end++)
-        k[i * n + j] += oscillator->shift * oscillator->mesh[end][i] * oscillator->mesh[end][j];
-    }
-  bool found = eo_dense_solve(n, k, pivot, 1, place) == 0;
-  for (int end = 0; end < oscillator->ends; end++)
-    response->still[end] = dot(n, oscillator->mesh[end], place);
-  return found;
-}
-
 /* Readings that are looked at. */
 static int readings_of(const struct response *response)
 {
@@ -180,7 +160,7 @@ static enum eo_code set_motion(struct response *response, struct eo_error *error
         for (int i = 0; i < model->freedoms; i++)
           weight[reading_of(response, reading, end)][k] += model->reading[reading][end][i] *
                                                            model->basis[i * oscillator->n + k];
-  if (!settle(response))
+  if (!eo_long_motion_still(oscillator, oscillator->shift, response->still))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The lumped model has no place at rest.");
   return eo_long_motion_init(&response->motion, oscillator, response->load->parameters->mesh_damping, oscillator->shift,
                              step, readings_of(response) * oscillator->ends, (const double(*)[N])weight, error);
@@ -231,19 +211,18 @@ static void place_meshes(struct response *response, const double x[2], const dou
   }
 }
 
-/* theory (P5): one step to instant i, exact but for the pushes, which are straight in it; those at its end follow from
+/* theory (P5): one step to instant i, exact but for the pushes, a parabola in it; those at its end follow from
    where the meshes are there, which they hardly change. */
 static void take_step(struct response *response, int i)
 {
   enum { CORRECTIONS = 2 };
   double next[2] = {2 * response->force[0] - response->before[0], 2 * response->force[1] - response->before[1]},
          x[2] = {0}, v[2] = {0};
-  eo_long_motion_go(&response->motion, response->before, response->force, x, v);
+  eo_long_motion_go(&response->motion, response->force, x, v);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
     place_meshes(response, x, v, next);
     find_pushes(response, i, next);
   }
-  eo_long_motion_arrive(&response->motion, next);
   place_meshes(response, x, v, next);
   memcpy(response->before, response->force, sizeof response->before);
   find_pushes(response, i, response->force);
@@ -255,7 +234,7 @@ static void keep_accelerations(struct response *response, int sample)
   for (int reading = 0; reading < readings_of(response); reading++)
     for (int end = 0; end < response->motion.ends; end++)
       response->acceleration[reading][end][sample] =
-          eo_long_motion_read(&response->motion, reading_of(response, reading, end), response->force);
+          eo_long_motion_read(&response->motion, reading_of(response, reading, end), response->before, response->force);
 }
 
 static void look(struct response *response, int i)
@@ -346,7 +325,8 @@ static enum eo_code read_spectra(struct response *response, struct eo_error *err
     for (int i = 0; i < n && ends == 2; i++)
       mean[i] = (mean[i] + response->acceleration[reading][1][i]) / 2;
     result->acceleration[reading] = malloc(sizeof *line * (size_t)result->lines);
-    code = result->acceleration[reading] ? eo_fft_spectrum(n, mean, line, error) : eo_error_memory(error);
+    code = result->acceleration[reading] ? eo_fft_spectrum(response->load->fft, n, mean, line, error)
+                                         : eo_error_memory(error);
     if (!code)
       memcpy(result->acceleration[reading], line, sizeof *line * (size_t)result->lines);
   }

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "dynamics/model.h"
+#include "numerics/fft.h"
 
 /* Of a period of so many cycles the steps would be too many. */
 enum { EO_LONG_MOST_CYCLES = 4096 };
@@ -24,6 +25,7 @@ struct eo_long_case {
   const double *deflection[2]; /* [end]: [cycles positions] in the order of time: Z at which the end carries P, m */
   const double *tangent[2];    /* k_tan, N/m */
   double back;                 /* X at which the back flanks touch, m */
+  struct eo_fft_tables *fft;   /* borrowed; NULL: none are kept */
   bool levels_alone;           /* of the accelerations the RMS normal to the teeth, no more */
 };
 

@@ -1,151 +1,70 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dynamics/long_sketch.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
-#include "numerics/dense.h"
+#include "dynamics/long_motion.h"
 #include "numerics/periodic.h"
 
-enum { N = EO_MAX_COORDINATES, STEPS = 3 /* of a position */ };
-
-/* One mode with the meshes at their mean stiffness, and its exact step under a force that is straight in it. */
-struct mode {
-  double mesh[2];                   /* dX_j of it */
-  double still;                     /* under the constant loads */
-  double square, damping;           /* omega^2, 1/s2; 1/s */
-  double own[2][2], from[2], to[2]; /* state, force at the beginning and at the end of the step */
-  double state[2];                  /* beside `still`, and its rate */
-};
+enum { N = EO_MAX_COORDINATES, STEPS = 2 /* of a position */ };
 
 struct sketch {
   const struct eo_long_case *load;
-  int modes, ends;
-  struct mode mode[N];
-  double stiffness, step; /* mean of a mesh, N/m; s */
-  double nominal[2];      /* [end] P, N */
-  double push[2], before[2];
-  double sum[2], squares[2]; /* [end] of the accelerations */
+  int ends;
+  struct eo_long_motion motion; /* beside where the constant loads leave the meshes at their mean stiffness */
+  double stiffness;             /* mean of a mesh, N/m */
+  double nominal[2], still[2];  /* [end] P, N; X at rest, m */
+  double push[2], before[2];    /* [end] at this instant and the last, N */
+  double sum[2], squares[2];    /* [end] of the accelerations */
 };
 
-static void set_step(struct mode *mode, double h)
-{
-  double half = mode->damping / 2, fade = exp(-half * h);
-  double complex s = csqrt(half * half - mode->square);
-  double c = fade * creal(ccosh(s * h)), d = fade * creal(cabs(s) * h > 1e-9 ? csinh(s * h) / s : h);
-  double w = mode->square;
-  mode->own[0][0] = c + half * d;
-  mode->own[0][1] = d;
-  mode->own[1][0] = -w * d;
-  mode->own[1][1] = c - half * d;
-  /* force 1 at the beginning, 0 at the end; and the other way round: particular solution f/w - damping f'/w^2 */
-  for (int k = 0; k < 2; k++) {
-    double rate = (k == 0 ? -1 : 1) / h, lag = -mode->damping * rate / (w * w), first = (k == 0) / w + lag,
-           last = (k == 1) / w + lag, *into = k == 0 ? mode->from : mode->to;
-    into[0] = last - mode->own[0][0] * first - mode->own[0][1] * rate / w;
-    into[1] = rate / w - mode->own[1][0] * first - mode->own[1][1] * rate / w;
-  }
-}
-
-static enum eo_code set_modes(struct sketch *sketch, const struct eo_dynamics_model *model, struct eo_error *error)
-{
-  const struct eo_oscillator *oscillator = &model->oscillator;
-  int n = oscillator->n;
-  double k[N * N], square[N];
-  sketch->modes = n;
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      k[i * n + j] = oscillator->stiffness[i * n + j];
-      for (int end = 0; end < sketch->ends; end++)
-        k[i * n + j] += sketch->stiffness * oscillator->mesh[end][i] * oscillator->mesh[end][j];
-    }
-  if (eo_dense_symmetric_eigen(n, k, square))
-    return eo_error_memory(error);
-  for (int m = 0; m < n; m++) {
-    const double *shape = k + (size_t)m * (size_t)n;
-    struct mode *mode = &sketch->mode[m];
-    *mode = (struct mode){.square = square[m]};
-    for (int i = 0; i < n; i++) {
-      mode->still += shape[i] * oscillator->load[i] / square[m];
-      for (int j = 0; j < n; j++)
-        mode->damping += shape[i] * oscillator->damping[i * n + j] * shape[j];
-      for (int end = 0; end < sketch->ends; end++)
-        mode->mesh[end] += shape[i] * oscillator->mesh[end][i];
-    }
-    for (int end = 0; end < sketch->ends; end++)
-      mode->damping += sketch->load->parameters->mesh_damping * mode->mesh[end] * mode->mesh[end];
-    set_step(mode, sketch->step);
-  }
-  return EO_OK;
-}
-
 /* Between samples of a position, cubic (Catmull and Rom 1974); the last positions stay as they are. */
-static double between(int n, const double *value, int i, int third)
+static double between(int n, const double *value, int i, int part)
 {
-  double t = (double)third / STEPS, a = value[i > 0 ? i - 1 : 0], b = value[i], c = value[i + 1 < n ? i + 1 : n - 1],
+  double t = (double)part / STEPS, a = value[i > 0 ? i - 1 : 0], b = value[i], c = value[i + 1 < n ? i + 1 : n - 1],
          d = value[i + 2 < n ? i + 2 : n - 1];
   return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
-/* What a mesh differs from constant stiffness, as in theory (P5), at its state. */
-static void find_pushes(const struct sketch *sketch, const double deflection[2], const double tangent[2],
-                        double push[2])
+/* What meshes differ from constant stiffness, as in theory (P5), where pushes at the end of a step put them: x with
+   none there. */
+static void find_pushes(const struct sketch *sketch, const double x[2], const double deflection[2],
+                        const double tangent[2], double push[2])
 {
+  const struct eo_long_motion *motion = &sketch->motion;
+  double found[2] = {0};
   for (int end = 0; end < sketch->ends; end++) {
-    double x = 0;
-    for (int m = 0; m < sketch->modes; m++)
-      x += sketch->mode[m].mesh[end] * (sketch->mode[m].state[0] + sketch->mode[m].still);
-    double force = sketch->nominal[end] + tangent[end] * (x - deflection[end]);
-    push[end] = sketch->stiffness * x - (force > 0 ? force : 0);
+    double there = x[end] + sketch->still[end];
+    for (int j = 0; j < sketch->ends; j++)
+      there += motion->gain[end][j] * push[j];
+    double force = sketch->nominal[end] + tangent[end] * (there - deflection[end]);
+    found[end] = sketch->stiffness * there - (force > 0 ? force : 0);
   }
+  memcpy(push, found, sizeof found);
 }
 
-/* One step; the pushes at its end follow from those of before and are corrected once. */
+/* One step; the pushes at its end follow from those of before and are corrected twice. */
 static void take_step(struct sketch *sketch, const double deflection[2], const double tangent[2])
 {
-  double next[2], found[2];
+  enum { CORRECTIONS = 2 };
+  double next[2], x[2], rate[2];
   for (int end = 0; end < 2; end++)
     next[end] = 2 * sketch->push[end] - sketch->before[end];
-  for (int m = 0; m < sketch->modes; m++) {
-    struct mode *mode = &sketch->mode[m];
-    double q = mode->state[0], v = mode->state[1], from = 0, to = 0;
-    for (int end = 0; end < sketch->ends; end++) {
-      from += mode->mesh[end] * sketch->push[end];
-      to += mode->mesh[end] * next[end];
-    }
-    for (int i = 0; i < 2; i++)
-      mode->state[i] = mode->own[i][0] * q + mode->own[i][1] * v + mode->from[i] * from + mode->to[i] * to;
-  }
-  find_pushes(sketch, deflection, tangent, found);
-  for (int m = 0; m < sketch->modes; m++) {
-    struct mode *mode = &sketch->mode[m];
-    double more = 0;
-    for (int end = 0; end < sketch->ends; end++)
-      more += mode->mesh[end] * (found[end] - next[end]);
-    mode->state[0] += mode->to[0] * more;
-    mode->state[1] += mode->to[1] * more;
-  }
-  for (int end = 0; end < sketch->ends; end++) {
-    sketch->before[end] = sketch->push[end];
-    sketch->push[end] = found[end];
-  }
+  eo_long_motion_go(&sketch->motion, sketch->push, x, rate);
+  for (int correction = 0; correction < CORRECTIONS; correction++)
+    find_pushes(sketch, x, deflection, tangent, next);
+  memcpy(sketch->before, sketch->push, sizeof sketch->before);
+  memcpy(sketch->push, next, sizeof sketch->push);
 }
 
 static void look(struct sketch *sketch)
 {
-  double acceleration[2] = {0};
-  for (int m = 0; m < sketch->modes; m++) {
-    const struct mode *mode = &sketch->mode[m];
-    double own = -mode->square * mode->state[0] - mode->damping * mode->state[1];
-    for (int end = 0; end < sketch->ends; end++)
-      own += mode->mesh[end] * sketch->push[end];
-    for (int end = 0; end < sketch->ends; end++)
-      acceleration[end] += mode->mesh[end] * own;
-  }
   for (int end = 0; end < sketch->ends; end++) {
-    sketch->sum[end] += acceleration[end];
-    sketch->squares[end] += acceleration[end] * acceleration[end];
+    double acceleration = eo_long_motion_read(&sketch->motion, end, sketch->before, sketch->push);
+    sketch->sum[end] += acceleration;
+    sketch->squares[end] += acceleration * acceleration;
   }
 }
 
@@ -156,20 +75,31 @@ static void march(struct sketch *sketch)
   int samples = load->cycles * load->positions, lead = EO_LONG_SKETCH_LEAD * load->positions;
   for (int end = 0; end < sketch->ends; end++)
     sketch->before[end] = sketch->push[end] = sketch->stiffness * load->deflection[end][0] - sketch->nominal[end];
-  for (int m = 0; m < sketch->modes; m++)
-    for (int end = 0; end < sketch->ends; end++)
-      sketch->mode[m].state[0] += sketch->mode[m].mesh[end] * sketch->push[end] / sketch->mode[m].square;
+  eo_long_motion_rest(&sketch->motion, sketch->push);
   for (int i = 0; i < samples; i++)
-    for (int third = 0; third < STEPS; third++) {
+    for (int part = 0; part < STEPS; part++) {
       double deflection[2] = {0}, tangent[2] = {0};
       for (int end = 0; end < sketch->ends; end++) {
-        deflection[end] = between(samples, load->deflection[end], i, third);
-        tangent[end] = between(samples, load->tangent[end], i, third);
+        deflection[end] = between(samples, load->deflection[end], i, part);
+        tangent[end] = between(samples, load->tangent[end], i, part);
       }
       take_step(sketch, deflection, tangent);
       if (i >= lead)
         look(sketch);
     }
+}
+
+static enum eo_code set_motion(struct sketch *sketch, const struct eo_dynamics_model *model, struct eo_error *error)
+{
+  const struct eo_oscillator *oscillator = &model->oscillator;
+  const struct eo_long_case *load = sketch->load;
+  double weight[2][N] = {{0}}, step = 2 * M_PI / (load->speed * load->pinion_teeth * load->positions * STEPS);
+  for (int end = 0; end < sketch->ends; end++)
+    memcpy(weight[end], oscillator->mesh[end], sizeof weight[end]);
+  if (!eo_long_motion_still(oscillator, sketch->stiffness, sketch->still))
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The lumped model has no place at rest.");
+  return eo_long_motion_init(&sketch->motion, oscillator, load->parameters->mesh_damping, sketch->stiffness, step,
+                             sketch->ends, (const double(*)[N])weight, error);
 }
 
 enum eo_code eo_long_sketch_rms(const struct eo_long_case *load, double *rms, struct eo_error *error)
@@ -183,8 +113,7 @@ enum eo_code eo_long_sketch_rms(const struct eo_long_case *load, double *rms, st
     sketch.nominal[end] = eo_dynamics_mesh_load(load->parameters, load->torque, end);
     sketch.stiffness += eo_periodic_mean(samples, load->tangent[end]) / sketch.ends;
   }
-  sketch.step = 2 * M_PI / (load->speed * load->pinion_teeth * load->positions * STEPS);
-  EO_TRY(set_modes(&sketch, &model, error));
+  EO_TRY(set_motion(&sketch, &model, error));
   march(&sketch);
   *rms = 0;
   for (int end = 0; end < sketch.ends; end++) {

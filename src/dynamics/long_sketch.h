@@ -8,10 +8,10 @@
 
 enum { EO_LONG_SKETCH_LEAD = 16 }; /* cycles before those that are looked at */
 
-/* RMS of the acceleration normal to the teeth, mean of the ends, m/s2, over the cycles behind the lead: steps of a
-   third of a position, modes damped each by itself, teeth that part without a force. Of the load, harmonics and back
-   are not looked at; its cycles need not be a period, but be more than the lead. Errors: memory; EO_ERROR_INPUT of the
-   parameters. */
+/* RMS of the acceleration normal to the teeth, mean of the ends, m/s2, over the cycles behind the lead: steps of
+   half a position, teeth that part without a force, but damped as before. Of the load, harmonics and back
+   are not looked at; its cycles need not be a period, but be more than the lead. Errors: EO_ERROR_NUMERIC: there
+   are no modes; EO_ERROR_INPUT of the parameters. */
 enum eo_code eo_long_sketch_rms(const struct eo_long_case *load, double *rms, struct eo_error *error);
 
 #endif

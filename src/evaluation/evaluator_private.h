@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/meeting_field.h"
+#include "numerics/fft.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -107,6 +108,7 @@ struct eo_evaluator {
   struct eo_law (*law)[2];                  /* [most_cases][end] */
   struct eo_vibration_solver *vibration[2]; /* [thread]; NULL until needed */
   int vibration_harmonics[2];
+  struct eo_fft_tables *fft; /* of hunting periods */
   struct eo_vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;

@@ -79,6 +79,7 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   for (int end = 0; end < 2; end++) {
     EO_TRY(eo_loaded_end_init(&evaluator->spare[end], both[end], error));
   }
+  EO_TRY(eo_fft_tables_new(&evaluator->fft, error));
   EO_TRY(eo_team_new(&evaluator->team, error));
   return add_workspaces(evaluator, 0, error);
 }
@@ -154,6 +155,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
   for (int i = 0; evaluator->table && i < EO_EVALUATOR_TABLE_LOADS; i++)
     eo_loaded_end_done(&evaluator->table[i]);
   free(evaluator->table);
+  eo_fft_tables_free(evaluator->fft);
   free(evaluator->table_rows);
   free(evaluator->shifted);
   for (int i = 0; i < 4; i++) {

@@ -186,7 +186,9 @@ static enum eo_code read_curves(const struct work *work, struct eo_pitch_case *o
   own->peak_to_peak = swing(hunting->instants, own->transmission);
   own->lines = hunting->instants / 2 + 1;
   own->line = malloc(sizeof *own->line * (size_t)own->lines);
-  return own->line ? eo_fft_spectrum(hunting->instants, own->transmission, own->line, error) : eo_error_memory(error);
+  if (!own->line)
+    return eo_error_memory(error);
+  return eo_fft_spectrum(work->evaluator->fft, hunting->instants, own->transmission, own->line, error);
 }
 
 /* Time-synchronous averages: of each position of a member's turn the mean over all its turns. */
@@ -273,6 +275,7 @@ static enum eo_code respond_with(const struct work *work, const struct eo_case_r
                                     .pinion_teeth = hunting->teeth[EO_PINION],
                                     .cycles = hunting->cycles,
                                     .positions = hunting->positions,
+                                    .fft = work->evaluator->fft,
                                     .harmonics = harmonics < most ? harmonics : most,
                                     .deflection = {scratch[0], scratch[1]},
                                     .tangent = {scratch[2], scratch[3]},

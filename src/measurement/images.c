@@ -103,7 +103,7 @@ static enum eo_code look_for_images(struct eo_images *images, const struct eo_or
       curvature += pow(mesh[h].order * turns, 2) * creal(mesh[h].amplitude * (power *= wave));
     images->spectrum[i] = images->residual[i] * curvature;
   }
-  return eo_fft_forward(images->size, images->spectrum, error);
+  return eo_fft_forward(NULL, images->size, images->spectrum, error);
 }
 
 /* Makes the residual's spectrum level and takes its lines out: noise is left. */
@@ -200,10 +200,10 @@ static enum eo_code look_at_noise(struct eo_images *images, double *alike, doubl
   memset(images->spectrum, 0, sizeof *images->spectrum * (size_t)images->size);
   for (int i = 0; i < images->count; i++)
     images->spectrum[i] = images->residual[i];
-  EO_TRY(eo_fft_forward(images->size, images->spectrum, error));
+  EO_TRY(eo_fft_forward(NULL, images->size, images->spectrum, error));
   *alike = alike_neighbours(images);
   whiten(images);
-  EO_TRY(eo_fft_forward(images->size, images->spectrum, error)); /* the rows from behind */
+  EO_TRY(eo_fft_forward(NULL, images->size, images->spectrum, error)); /* the rows from behind */
   *shared = shared_neighbours(images);
   for (int i = 0; i < images->count; i++) {
     images->power[i] = eo_images_square(images->spectrum[i ? images->size - i : 0]);
@@ -212,7 +212,7 @@ static enum eo_code look_at_noise(struct eo_images *images, double *alike, doubl
   memset(images->spectrum, 0, sizeof *images->spectrum * (size_t)images->size);
   for (int i = 0; i < images->count; i++)
     images->spectrum[i] = images->power[i] - mean;
-  return eo_fft_forward(images->size, images->spectrum, error);
+  return eo_fft_forward(NULL, images->size, images->spectrum, error);
 }
 
 /* What straight lines with a beat take away. It is there where images and noise have it both (noise of an encoder's

@@ -139,7 +139,7 @@ static enum eo_code make_spectrum(struct eo_synchronous *synchronous, struct eo_
   for (int i = 0; i < synchronous->samples; i++)
     synchronous->grid[i] +=
         eo_transmission_mesh(transmission, grid_angle(synchronous, i) * synchronous->teeth[EO_PINION] / (2 * M_PI));
-  EO_TRY(eo_fft_forward(synchronous->samples, synchronous->grid, error));
+  EO_TRY(eo_fft_forward(NULL, synchronous->samples, synchronous->grid, error));
   transmission->spectrum_turns = synchronous->turns;
   transmission->spectrum_lines = lines;
   for (int k = 0; k < lines; k++)

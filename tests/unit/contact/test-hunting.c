@@ -350,7 +350,7 @@ static void test_one_full_tooth(void)
   complex double *line = malloc(sizeof *line * (size_t)(h.instants / 2 + 1));
   struct eo_error error;
   double square = 0, lines = 0;
-  if (!line || eo_fft_spectrum(h.instants, h.approach[0], line, &error))
+  if (!line || eo_fft_spectrum(NULL, h.instants, h.approach[0], line, &error))
     stop(&error);
   for (int i = 0; i < h.instants; i++)
     square += h.approach[0][i] * h.approach[0][i] / h.instants;

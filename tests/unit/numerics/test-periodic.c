@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Periodic spline and harmonics against functions in closed form; the fast transform against the slow one. */
+#include <stdbool.h>
+#include <string.h>
+
 #include "base/random.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
@@ -84,6 +87,25 @@ static void test_harmonics(void)
   close_to(worst, 0, 1e-13, "harmonics of a trigonometric polynomial are exact");
 }
 
+/* Sizes that come again, and more of them than are kept. */
+static void test_fft_tables(void)
+{
+  enum { SIZES = 20, FIRST = 5, MOST = FIRST + SIZES };
+  struct eo_fft_tables *tables;
+  struct eo_error error = {0};
+  bool same = eo_fft_tables_new(&tables, &error) == EO_OK;
+  for (int i = 0; i < 2 * SIZES && same; i++) {
+    double complex kept[MOST], own[MOST];
+    int n = FIRST + i % SIZES;
+    for (int k = 0; k < n; k++)
+      kept[k] = own[k] = eo_random_normal(eo_random_at(2, 0, 0, 0), (uint64_t)(100 * i + k));
+    same = !eo_fft_forward(tables, n, kept, &error) && !eo_fft_forward(NULL, n, own, &error) &&
+           memcmp(kept, own, sizeof *own * (size_t)n) == 0;
+  }
+  ok(same, "tables that are kept change no byte");
+  eo_fft_tables_free(tables);
+}
+
 /* Powers of two, teeth with a common factor, a prime number of them, a single sample. */
 static void test_fft(void)
 {
@@ -97,7 +119,7 @@ static void test_fft(void)
     for (int i = 0; i < n; i++)
       fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) +
                        I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
-    enum eo_code code = eo_fft_forward(n, fast, &error);
+    enum eo_code code = eo_fft_forward(NULL, n, fast, &error);
     for (int k = 0; k < n; k++) {
       double complex sum = 0;
       for (int i = 0; i < n; i++)
@@ -115,5 +137,6 @@ int main(void)
   test_flat();
   test_harmonics();
   test_fft();
+  test_fft_tables();
   return tap_done();
 }
