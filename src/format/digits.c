@@ -12,6 +12,11 @@ enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
 static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
+/* 00, 01, .. 99 */
+static const char pair_of_digits[] =
+    "0001020304050607080910111213141516171819202122232425262728293031323334353637383940414243444546474849"
+    "5051525354555657585960616263646566676869707172737475767778798081828384858687888990919293949596979899";
+
 static uint64_t bits_of(double value)
 {
   uint64_t bits;
@@ -36,30 +41,44 @@ static int find_decimals(double value, int digits)
   return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
 }
 
-/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns its
-   length. */
+enum { MOST_DIGITS = 24 }; /* of a number of 64 bits, in whole words for copies of a fixed size */
+
+/* The digits of a number above 0, at the end of `digits`; returns how many. Two at a time, and in 32 bits as soon as
+   that is enough: divisions take longer than all else here. */
+static int write_digits(char digits[MOST_DIGITS], uint64_t number)
+{
+  char *to = digits + MOST_DIGITS;
+  for (; number >> 32; number /= 100)
+    memcpy(to -= 2, pair_of_digits + 2 * (number % 100), 2);
+  uint32_t rest = (uint32_t)number;
+  for (; rest >= 100; rest /= 100)
+    memcpy(to -= 2, pair_of_digits + 2 * (rest % 100), 2);
+  memcpy(to -= 2, pair_of_digits + 2 * rest, 2);
+  return (int)(digits + MOST_DIGITS - to) - (rest < 10);
+}
+
+/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Writes within 32
+   characters; returns the length. */
 static int write_decimal(char *text, bool negative, uint64_t number, int decimals)
 {
-  char reversed[24], *to = text;
-  int length = 0;
+  char room[2 * MOST_DIGITS], *to = text;
   for (; decimals > 0 && number % 10 == 0; decimals--)
     number /= 10;
-  for (; number >= 100; number /= 100) { /* two at a time: a division takes longer than all else here */
-    unsigned two = (unsigned)(number % 100);
-    reversed[length++] = (char)('0' + two % 10);
-    reversed[length++] = (char)('0' + two / 10);
-  }
-  for (; number > 0; number /= 10)
-    reversed[length++] = (char)('0' + number % 10);
-  int exponent = length - 1 - decimals, point = exponent < -4 ? length - 1 : decimals;
-  while (length <= point)
-    reversed[length++] = '0';
-  if (negative)
-    *to++ = '-';
-  while (length > 0) {
-    if (length == point)
-      *to++ = '.';
-    *to++ = reversed[--length];
+  int length = write_digits(room, number), exponent = length - 1 - decimals;
+  const char *digits = room + MOST_DIGITS - length;
+  *to = '-';
+  to += negative;
+  if (exponent < 0 && exponent >= -4) { /* 0.000 and the digits */
+    memcpy(to, "0.000", 5);
+    memcpy(to += 1 - exponent, digits, MOST_DIGITS);
+    to += length;
+  } else { /* the digits, those before the point moved to make room for it */
+    int whole = exponent < 0 ? 1 : exponent + 1;
+    memcpy(to + 1, digits, MOST_DIGITS);
+    for (int i = 0; i < whole; i++)
+      to[i] = to[i + 1];
+    to[whole] = '.';
+    to += length + (length > whole);
   }
   if (exponent < -4) {
     *to++ = 'e';
@@ -124,10 +143,11 @@ static bool round_exactly(double value, int digits, uint64_t *number, int *decim
   if (*decimals < 0)
     return false;
   double scaled = size * power[*decimals];
-  uint64_t whole = (uint64_t)scaled; /* below 1e18 */
+  int64_t whole = (int64_t)scaled; /* below 1e18; a processor has an instruction for signed ones */
   double past = scaled - (double)whole - 0.5;
-  *number = whole + (past > 0);
-  return scaled >= power[digits - 1] * (1 + 1e-12) && (double)*number < power[digits] && fabs(past) > 1e-15 * scaled;
+  whole += past > 0;
+  *number = (uint64_t)whole;
+  return scaled >= power[digits - 1] * (1 + 1e-12) && (double)whole < power[digits] && fabs(past) > 1e-15 * scaled;
 }
 
 double eo_digits_round(double value, int digits)

@@ -230,24 +230,32 @@ json_t *eo_json_whole(double value)
   return fabs(value) < EXACT && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static void write_ready(struct eo_text *text, double value, int digits)
+enum { ROOM_AT_ONCE = 64 }; /* numbers for which a list asks for room together */
+
+/* A number and its comma. Returns their length. */
+static int write_ready(char *to, double value, int digits)
 {
-  char *to = eo_text_room(text, EO_DIGITS_ROOM);
-  if (!isfinite(value))
-    eo_text_add_bytes(text, "null", 4);
-  else if (to)
-    text->size += (size_t)eo_digits_write_rounded(to, EO_DIGITS_ROOM, value, digits);
+  int length = 4;
+  if (isfinite(value))
+    length = eo_digits_write_rounded(to, EO_DIGITS_ROOM, value, digits);
+  else
+    memcpy(to, "null", 4);
+  to[length] = ',';
+  return length + 1;
 }
 
 static json_t *ready_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits)
 {
   struct eo_text text = {0};
   eo_text_add_bytes(&text, "\0[", 2);
-  for (int i = 0; i < count; i++) {
-    if (i)
-      eo_text_add_bytes(&text, ",", 1);
-    write_ready(&text, eo_unit_near(unit, value[(long)i * stride]), digits);
+  for (int first = 0; first < count; first += ROOM_AT_ONCE) {
+    int last = count - first < ROOM_AT_ONCE ? count : first + ROOM_AT_ONCE;
+    char *start = eo_text_room(&text, (size_t)(ROOM_AT_ONCE * (EO_DIGITS_ROOM + 1))), *to = start;
+    for (int i = first; i < last && start; i++)
+      to += write_ready(to, eo_unit_near(unit, value[(long)i * stride]), digits);
+    text.size += (size_t)(to - start);
   }
+  text.size -= count > 0 && !text.failed; /* the last comma */
   eo_text_add_bytes(&text, "]", 1);
   json_t *ready = text.failed ? NULL : json_stringn_nocheck(text.data, text.size);
   eo_text_done(&text);
