@@ -309,7 +309,7 @@ static void settle_content(struct eo_text_format *format, const struct lines *li
       eo_text_cell_unit(&cell, format->point, format->unit[c], (int)sizeof format->unit[c]);
   take_names(format, &lines->line[run->first]);
   for (int c = 0; c < format->cells; c++) {
-    format->columns += format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE;
+    format->columns += eo_text_is_column(format, c);
     format->plain = format->plain && format->content[c] == EO_TEXT_NUMBER;
   }
 }
@@ -361,6 +361,12 @@ static enum eo_code guess_from(struct eo_text_format *format, struct lines *line
   format->first_byte = (size_t)(lines->line[run.first].start - head);
   format->rows = run.lines;
   return EO_OK;
+}
+
+bool eo_text_is_column(const struct eo_text_format *format, int cell)
+{
+  enum eo_text_content content = format->content[cell];
+  return content != EO_TEXT_WORDS && content != EO_TEXT_DATE && content != EO_TEXT_BESIDE;
 }
 
 enum eo_code eo_text_guess(struct eo_text_format *format, const char *head, size_t size, bool whole,

@@ -21,6 +21,7 @@ enum eo_text_content {
   EO_TEXT_ARC,    /* degrees, minutes and seconds between colons */
   EO_TEXT_MOMENT, /* dates and times */
   EO_TEXT_DATE,   /* dates that go with the times of day in the cell beside them */
+  EO_TEXT_BESIDE, /* numbers about the value of the row, its quality for instance; left out */
 };
 
 struct eo_text_format {
@@ -40,6 +41,9 @@ struct eo_text_format {
   char name[EO_TEXT_CELLS][EO_RECORDING_NAME]; /* [cells] */
   char unit[EO_TEXT_CELLS][EO_RECORDING_UNIT]; /* [cells] */
 };
+
+/* Whether the cells of a place become a column. */
+bool eo_text_is_column(const struct eo_text_format *format, int cell);
 
 /* Finds separator, decimal point, first row and cells; members of choice that are not 0 are taken as they are.
    head[size + 1]: the beginning of the file, ended by a byte 0; whole: the file ends there. Errors: EO_ERROR_INPUT: no

@@ -167,7 +167,7 @@ static int convert_cells(struct text *text)
   double *row = next_row(text);
   int odd = -1;
   for (int c = 0; c < format->cells; c++) {
-    if (format->content[c] == EO_TEXT_WORDS || format->content[c] == EO_TEXT_DATE)
+    if (!eo_text_is_column(format, c))
       continue;
     enum eo_cell_kind kind = eo_text_value(&text->format, &text->moments, text->cell, c, row++);
     if (kind == EO_CELL_MISSING)
@@ -330,6 +330,9 @@ static enum eo_code make_recording(struct text *text, struct eo_error *error)
   for (int c = 0; c < format->cells; c++)
     if (format->content[c] == EO_TEXT_WORDS && c != text->channels.cell && c != text->channels.unit)
       eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, format->name[c]);
+    else if (format->content[c] == EO_TEXT_BESIDE)
+      eo_notes_add(text->notes, "Column %d \"%s\" stands beside the values of the channels and was left out.", c + 1,
+                   format->name[c]);
   text->batch_rows = BATCH / format->columns;
   if (text->channels.cell >= 0)
     return EO_OK;

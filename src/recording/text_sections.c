@@ -89,7 +89,7 @@ void eo_text_sections_find(struct eo_text_sections *sections, const struct eo_te
     at = end + 1;
   }
   for (int c = 0; c < format->cells; c++)
-    if (format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE)
+    if (eo_text_is_column(format, c))
       sections->x[sections->columns++] = !strcmp(format->name[c], "X_Value");
 }
 

@@ -20,6 +20,10 @@
   "sensor name|sensor id|sensorid|variable|tag|tag name|tagname|parameter|messstelle|messgroesse|topic|metric|field|"  \
   "_field|source|id|can id|canid|voie|canal|canale|quantity|item|series|node|device|ch"
 #define TABLE_KEYS CHANNEL_NAMES "|trace|curve|table|tabelle|sheet|blatt|group|gruppe|data set|dataset|kurve|encoder"
+/* Of the one column that all channels share. */
+#define VALUE_NAMES                                                                                                   \
+  "value|val|values|wert|messwert|istwert|reading|measurement|measured value|data|result|amplitude|scaled|eng value|" \
+  "angle|winkel|position|pos|valeur|mesure|valore|misura|valor|medida|_value|y"
 #define UNIT_NAMES "unit|units|einheit|einheiten|unite|unita|unidad"
 
 /* The different texts of one place in the rows of the head. */
@@ -66,12 +70,22 @@ static struct words words_of(const struct eo_text_format *format, const char *he
   return words;
 }
 
+/* Marks between the words of a name are blanks: channel_id, channel-id. */
+static bool is_listed(const char *name, const char *names)
+{
+  char plain[EO_RECORDING_NAME];
+  size_t length = strlen(name);
+  for (size_t i = 0; i <= length; i++)
+    plain[i] = i && name[i] && strchr("_-./", name[i]) ? ' ' : name[i];
+  return eo_letters_listed(plain, length, names);
+}
+
 /* A cell that names the channel of its row: called so, with few different words or numbers; or words for both
    encoders. */
 static bool names_channels(const struct eo_text_format *format, const char *head, size_t size, int place)
 {
   enum eo_text_content content = format->content[place];
-  bool called = eo_letters_listed(format->name[place], strlen(format->name[place]), CHANNEL_NAMES),
+  bool called = is_listed(format->name[place], CHANNEL_NAMES),
        number = content == EO_TEXT_NUMBER || content == EO_TEXT_HEX;
   if ((content != EO_TEXT_WORDS && !number) || (number && !called) || *format->unit[place])
     return false;
@@ -81,25 +95,59 @@ static bool names_channels(const struct eo_text_format *format, const char *head
   return (called && words.count <= FEW) || (words.pinion && words.gear);
 }
 
+static bool is_time(const struct eo_text_format *format, int cell)
+{
+  double factor;
+  return format->content[cell] == EO_TEXT_MOMENT || eo_unit_find(format->unit[cell], &factor) == EO_QUANTITY_TIME ||
+         eo_column_named(format->name[cell], EO_CLOCK_WORDS "|" EO_TICK_WORDS);
+}
+
+/* A row with the number of its channel among more numbers than a time and a value: the place of the value that all
+   channels share, -1 where it is a wide table with a number that seldom changes. */
+static int find_value(const struct eo_text_format *format)
+{
+  int value = -1;
+  for (int c = 0; c < format->cells; c++) {
+    if (eo_column_named(format->name[c], EO_PINION_WORDS) || eo_column_named(format->name[c], EO_GEAR_WORDS))
+      return -1;
+    if (!is_listed(format->name[c], VALUE_NAMES))
+      continue;
+    if (value >= 0)
+      return -1;
+    value = c;
+  }
+  return value;
+}
+
+/* What is neither time nor value is about the value: its quality, a status, the number before it was scaled. */
+static void leave_out_beside(struct eo_text_format *format, int value)
+{
+  for (int c = 0; c < format->cells; c++)
+    if (eo_text_is_column(format, c) && c != value && !is_time(format, c)) {
+      format->content[c] = EO_TEXT_BESIDE;
+      format->columns--;
+    }
+}
+
 struct eo_text_channels eo_text_find_channels(struct eo_text_format *format, const char *head, size_t size)
 {
   struct eo_text_channels channels = {-1, -1};
-  int numbers = format->columns;
   for (int c = 0; c < format->cells && channels.cell < 0; c++)
     if (names_channels(format, head, size, c))
       channels.cell = c;
   if (channels.cell < 0)
     return channels;
-  bool number = format->content[channels.cell] != EO_TEXT_WORDS;
-  numbers -= number;
-  if (numbers < 1 || (number && numbers > 2)) /* a wide table with a number that seldom changes */
+  bool number = format->content[channels.cell] != EO_TEXT_WORDS, more = number && format->columns > 3;
+  int value = more ? find_value(format) : -1;
+  if (format->columns - number < 1 || (more && value < 0))
     return (struct eo_text_channels){-1, -1};
   format->content[channels.cell] = EO_TEXT_WORDS;
-  format->columns = numbers;
+  format->columns -= number;
   format->plain = false;
+  if (more)
+    leave_out_beside(format, value);
   for (int c = 0; c < format->cells; c++)
-    if (format->content[c] == EO_TEXT_WORDS && c != channels.cell &&
-        eo_letters_listed(format->name[c], strlen(format->name[c]), UNIT_NAMES))
+    if (format->content[c] == EO_TEXT_WORDS && c != channels.cell && is_listed(format->name[c], UNIT_NAMES))
       channels.unit = c;
   return channels;
 }
@@ -232,15 +280,10 @@ void eo_text_inherit_rate(const struct eo_text_format *now, struct eo_text_forma
       next->clock[c].interval = now->clock[0].interval;
 }
 
-static bool is_column(const struct eo_text_format *format, int cell)
-{
-  return format->content[cell] != EO_TEXT_WORDS && format->content[cell] != EO_TEXT_DATE;
-}
-
 void eo_text_name_columns(const struct eo_text_format *format, struct eo_recording *recording)
 {
   for (int c = 0, column = 0; c < format->cells; c++)
-    if (is_column(format, c))
+    if (eo_text_is_column(format, c))
       eo_recording_set_column(recording, column++, format->name[c],
                               format->content[c] == EO_TEXT_MOMENT ? "s"
                               : format->content[c] == EO_TEXT_ARC  ? "deg"
@@ -250,7 +293,7 @@ void eo_text_name_columns(const struct eo_text_format *format, struct eo_recordi
 void eo_text_state_columns(const struct eo_text_format *format, struct eo_recording *recording)
 {
   for (int c = 0, column = 0; c < format->cells; c++)
-    if (is_column(format, c)) {
+    if (eo_text_is_column(format, c)) {
       eo_recording_set_clock(recording, column, &format->clock[c]);
       eo_recording_set_turn(recording, column++, format->turn[c]);
     }

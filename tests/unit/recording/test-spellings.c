@@ -144,6 +144,30 @@ static void test_sentences(void)
     asked(told(open[i][0]), NULL, "/sample_rate_Hz", open[i][1], open[i][0]);
 }
 
+/* One row for each value, with the number of its channel; what else stands there is about the value. */
+static void test_channels(void)
+{
+  static const struct {
+    const char *header, *pinion, *gear, *what;
+  } files[] = {
+      {"time,channel,value,quality\n", "%.9g,1,%.12g,192\n", "%.9g,2,%.12g,192\n", "quality"},
+      {"timestamp;channel_id;Value;Quality;unit\n", "%.9g;7;%.12g;0;deg\n", "%.9g;9;%.12g;0;deg\n",
+       "an underscore, units"},
+      {"t,ch,raw,angle_deg,flags\n", "%1$.9g,0,%1$.3f,%2$.12g,3\n", "%1$.9g,1,%1$.3f,%2$.12g,3\n", "raw numbers"},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    FILE *f = begin(files[i].header);
+    for (int k = 0; k < ROWS; k++) {
+      double t = k / RATE;
+      fprintf(f, files[i].pinion, t, degrees(pinion(t)));
+      fprintf(f, files[i].gear, t, degrees(gear(t)));
+    }
+    right(f, NULL, 1e-7, "stands beside the values of the channels", files[i].what);
+  }
+  FILE *f = named("time,channel,pinion_deg,gear_deg,quality\n", "%.9g,1,%.12g,%.12g,192\n");
+  right(f, NULL, 1e-7, "\"pinion\" and \"gear\"", "a wide table with the number of a channel");
+}
+
 int main(void)
 {
   fixture_open();
@@ -151,5 +175,6 @@ int main(void)
   test_places();
   test_overflows();
   test_sentences();
+  test_channels();
   return fixture_close();
 }
