@@ -115,12 +115,13 @@ static void set_mode(struct eo_long_motion *motion, const struct form *form, con
       rate += twice * oscillator->mesh[end][i] * form->scale * form->vector[(n + i) * size + m];
     }
     /* theory (P7) */
-    double complex before = (phi[2] - phi[1] / 2) * excited / turn, from = (phi[0] - 2 * phi[2]) * excited,
-                   to = (phi[2] + phi[1] / 2) * excited;
-    set_part(&motion->early[end], mode, before);
+    double complex before = (phi[2] - phi[1] / 2) * excited, from = (phi[0] - 2 * phi[2]) * excited,
+                   to = (phi[2] + phi[1] / 2) * excited, early = motion->forgets ? 0 : before / turn;
+    set_part(&motion->before[end], mode, motion->forgets ? before : 0);
+    set_part(&motion->early[end], mode, early);
     set_part(&motion->to[end], mode, to);
-    set_part(&motion->kick[end], mode, turn * to + from + before);
-    set_part(&motion->rest[end], mode, before - to - form->excited[end][m] / value);
+    set_part(&motion->kick[end], mode, turn * to + from + early);
+    set_part(&motion->rest[end], mode, early - to - form->excited[end][m] / value);
     set_part(&motion->deflection[end], mode, deflection);
     set_part(&motion->rate[end], mode, rate);
   }
@@ -159,6 +160,17 @@ static void set_gains(struct eo_long_motion *motion, const struct eo_oscillator 
     }
 }
 
+/* What the push before has in a mode is kept as what it had a step earlier, 1/turn of it: at low speeds that loses the
+   digits, and at last there is no such number. */
+static bool forgets(const struct form *form, double step)
+{
+  static const double LEFT = 1e-4; /* so that twelve digits stay */
+  bool found = false;
+  for (int m = 0; m < 2 * form->n; m++)
+    found |= cabs(cexp(form->value[m] * step)) < LEFT;
+  return found;
+}
+
 /* A mode that is damped critically has no second one: a millionth more damping parts them. */
 enum eo_code eo_long_motion_init(struct eo_long_motion *motion, const struct eo_oscillator *oscillator, double damping,
                                  double mean, double step, int readings, const double (*weight)[N],
@@ -176,6 +188,7 @@ enum eo_code eo_long_motion_init(struct eo_long_motion *motion, const struct eo_
   }
   if (!found)
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The modes of the lumped model could not be found.");
+  motion->forgets = forgets(&form, step);
   for (int m = 0; m < 2 * form.n; m++)
     if (cimag(form.value[m]) >= 0)
       set_mode(motion, &form, oscillator, m, weight);
@@ -218,8 +231,9 @@ static inline pair at(const struct eo_motion_row *row, int part, int m)
   return *(const pair *)&row->part[part][m];
 }
 
-/* ends: known where it is compiled. */
-static inline void go(struct eo_long_motion *motion, int ends, const double *force, pair *x, pair *v)
+/* ends, forgets: known where it is compiled. */
+static inline void go(struct eo_long_motion *motion, int ends, bool forgets, const double *before, const double *force,
+                      pair *x, pair *v)
 {
   for (int m = 0; m < motion->modes; m += 2) {
     pair a = at(&motion->state, 0, m), b = at(&motion->state, 1, m), c = at(&motion->turn, 0, m),
@@ -227,6 +241,10 @@ static inline void go(struct eo_long_motion *motion, int ends, const double *for
     for (int end = 0; end < ends; end++) {
       real += force[end] * at(&motion->kick[end], 0, m);
       imaginary += force[end] * at(&motion->kick[end], 1, m);
+      if (forgets) {
+        real += before[end] * at(&motion->before[end], 0, m);
+        imaginary += before[end] * at(&motion->before[end], 1, m);
+      }
     }
     for (int end = 0; end < ends; end++) {
       x[end] += at(&motion->deflection[end], 0, m) * real - at(&motion->deflection[end], 1, m) * imaginary;
@@ -237,13 +255,16 @@ static inline void go(struct eo_long_motion *motion, int ends, const double *for
   }
 }
 
-void eo_long_motion_go(struct eo_long_motion *motion, const double force[2], double deflection[2], double rate[2])
+void eo_long_motion_go(struct eo_long_motion *motion, const double before[2], const double force[2],
+                       double deflection[2], double rate[2])
 {
   pair x[2] = {{0}}, v[2] = {{0}};
-  if (motion->ends == 2)
-    go(motion, 2, force, x, v);
+  if (motion->forgets)
+    go(motion, motion->ends, true, before, force, x, v);
+  else if (motion->ends == 2)
+    go(motion, 2, false, before, force, x, v);
   else
-    go(motion, 1, force, x, v);
+    go(motion, 1, false, before, force, x, v);
   for (int i = 0; i < motion->ends; i++) {
     deflection[i] = x[i][0] + x[i][1];
     rate[i] = v[i][0] + v[i][1];

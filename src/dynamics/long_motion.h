@@ -24,8 +24,10 @@ struct eo_long_motion {
   struct eo_motion_row turn;                     /* by which a free step turns a mode */
   struct eo_motion_row early[2], kick[2], to[2]; /* [mesh] of 1 N in the step before, at the beginning of a step, and
                                                     what it leaves at its end */
-  struct eo_motion_row deflection[2], rate[2];   /* [mesh] X and X' of a mode, as twice the real part of a pair */
-  struct eo_motion_row rest[2];                  /* [mesh] state that 1 N for good leads to */
+  bool forgets;                                /* a mode is gone within a step: nothing of what follows holds `early` */
+  struct eo_motion_row before[2];              /* [mesh] of 1 N in the step before, then */
+  struct eo_motion_row deflection[2], rate[2]; /* [mesh] X and X' of a mode, as twice the real part of a pair */
+  struct eo_motion_row rest[2];                /* [mesh] state that 1 N for good leads to */
   struct eo_motion_row state;         /* modes less what the push at this instant, plus what the one before has in them:
                                          with both in one number a step takes a third of the products */
   double gain[2][2], rate_gain[2][2]; /* X and X' of a mesh at the end of a step from 1 N there on a mesh */
@@ -48,8 +50,10 @@ bool eo_long_motion_still(const struct eo_oscillator *oscillator, double mean, d
 /* At rest under constant pushes force[2], N. */
 void eo_long_motion_rest(struct eo_long_motion *motion, const double force[2]);
 
-/* One step with these pushes at its beginning: X and X' at its end beside the gains of the pushes there. */
-void eo_long_motion_go(struct eo_long_motion *motion, const double force[2], double deflection[2], double rate[2]);
+/* One step with these pushes at the beginning of the step before and of its own: X and X' at its end beside the gains
+   of the pushes there. */
+void eo_long_motion_go(struct eo_long_motion *motion, const double before[2], const double force[2],
+                       double deflection[2], double rate[2]);
 
 /* A reading of the accelerations under the pushes of the moment and those of the step before. */
 double eo_long_motion_read(const struct eo_long_motion *motion, int reading, const double before[2],

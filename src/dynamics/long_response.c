@@ -218,7 +218,7 @@ static void take_step(struct response *response, int i)
   enum { CORRECTIONS = 2 };
   double next[2] = {2 * response->force[0] - response->before[0], 2 * response->force[1] - response->before[1]},
          x[2] = {0}, v[2] = {0};
-  eo_long_motion_go(&response->motion, response->force, x, v);
+  eo_long_motion_go(&response->motion, response->before, response->force, x, v);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
     place_meshes(response, x, v, next);
     find_pushes(response, i, next);

@@ -52,7 +52,7 @@ static void take_step(struct sketch *sketch, const double deflection[2], const d
   double next[2], x[2], rate[2];
   for (int end = 0; end < 2; end++)
     next[end] = 2 * sketch->push[end] - sketch->before[end];
-  eo_long_motion_go(&sketch->motion, sketch->push, x, rate);
+  eo_long_motion_go(&sketch->motion, sketch->before, sketch->push, x, rate);
   for (int correction = 0; correction < CORRECTIONS; correction++)
     find_pushes(sketch, x, deflection, tangent, next);
   memcpy(sketch->before, sketch->push, sizeof sketch->before);
