@@ -262,6 +262,15 @@ void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int s
     *unit = '\0';
 }
 
+/* Three parts between colons that are no time of day: with a sign, or of more hours than those have. */
+static bool is_arc(const struct eo_cell *cell, char point, double *value)
+{
+  int colons = 0;
+  for (size_t i = 0; i < cell->length; i++)
+    colons += cell->text[i] == ':';
+  return colons == 2 && eo_text_cell_sexagesimal(cell, point, true, value);
+}
+
 enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, double *value)
 {
   double number;
@@ -282,6 +291,9 @@ enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, dou
   struct eo_moment moment;
   if (cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment))
     return EO_CELL_MOMENT;
+  if (is_arc(cell, point, value))
+    return EO_CELL_ARC;
+  *value = NAN;
   enum eo_cell_kind kind = grouped_value(cell, point, value);
   if (kind != EO_CELL_TEXT)
     return kind;

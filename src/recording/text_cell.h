@@ -11,6 +11,7 @@ enum eo_cell_kind {
   EO_CELL_GROUPED, /* a number whose only mark is that of thousands: it may be a decimal point after all */
   EO_CELL_UNIT,    /* a number with its unit behind it: "0.25 ms", or an angle: 12°34'56.7" */
   EO_CELL_MOMENT,  /* a date or a time of day */
+  EO_CELL_ARC,     /* degrees, minutes and seconds between colons that no time of day has */
   EO_CELL_HEX,     /* digits that are no decimal number but a hexadecimal one, without a mark */
   EO_CELL_MISSING,
   EO_CELL_TEXT

@@ -78,7 +78,7 @@ static void add_cell(struct shape *shape, enum eo_cell_kind kind)
   shape->texts += kind == EO_CELL_TEXT;
   shape->points += points_of(kind);
   shape->text |= kind == EO_CELL_TEXT ? bit : 0;
-  shape->moment |= kind == EO_CELL_MOMENT ? bit : 0;
+  shape->moment |= kind == EO_CELL_MOMENT || kind == EO_CELL_ARC ? bit : 0;
   shape->unit |= kind == EO_CELL_UNIT ? bit : 0;
   shape->missing |= kind == EO_CELL_MISSING ? bit : 0;
 }
@@ -221,8 +221,8 @@ static bool is_compact_moment(const struct eo_cell *cell)
   return digits == 14 && cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment);
 }
 
-/* What each place holds, by the rows of the run: the first cell that is not empty decides, and one hexadecimal number
-   makes a place hexadecimal. */
+/* What each place holds, by the rows of the run: the first cell that is not empty decides, one hexadecimal number makes
+   a place hexadecimal, one angle between colons makes times of day angles. */
 static void find_content(struct eo_text_format *format, const struct lines *lines, const struct run *run)
 {
   bool known[EO_TEXT_CELLS] = {false}, other[EO_TEXT_CELLS] = {false};
@@ -239,6 +239,8 @@ static void find_content(struct eo_text_format *format, const struct lines *line
       enum eo_cell_kind kind = eo_text_cell_value(&cell, format->point, &value);
       if (kind == EO_CELL_HEX)
         format->content[c] = EO_TEXT_HEX;
+      else if (kind == EO_CELL_ARC)
+        format->content[c] = EO_TEXT_ARC;
       else if (!known[c] && kind != EO_CELL_MISSING)
         format->content[c] = kind == EO_CELL_TEXT     ? EO_TEXT_WORDS
                              : kind == EO_CELL_MOMENT ? EO_TEXT_MOMENT

@@ -168,6 +168,62 @@ static void test_channels(void)
   right(f, NULL, 1e-7, "\"pinion\" and \"gear\"", "a wide table with the number of a channel");
 }
 
+static void put_arc(FILE *f, double angle, const char *end)
+{
+  double size = fabs(angle);
+  int whole = (int)size, minutes = (int)((size - whole) * 60);
+  fprintf(f, "%s%d:%02d:%08.5f%s", angle < 0 ? "-" : "", whole, minutes, ((size - whole) * 60 - minutes) * 60, end);
+}
+
+/* Degrees, minutes and seconds between colons, which look like times of day. */
+static void test_arcs(void)
+{
+  static const struct {
+    const char *header, *what;
+    double sign, turn;
+    bool timed;
+  } files[] = {
+      {"t_s,pinion angle,gear angle\n", "names of encoders beside a time", 1, INFINITY, true},
+      {"t_s,pinion,gear\n", "behind zero", -1, INFINITY, true},
+      {"time,Winkel Ritzel,Winkel Rad\n", "less than a turn", 1, 360, true},
+      {"a [dms],b [dms],t\n", "units", 1, 360, true},
+      {"# sample rate: 4 kHz\npinion,gear\n", "a rate", 1, 360, false},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    FILE *f = begin(files[i].header);
+    bool last = files[i].header[0] == 'a';
+    for (int k = 0; k < ROWS; k++) {
+      double t = k / RATE, p = files[i].sign * fmod(degrees(pinion(t)), files[i].turn),
+             g = files[i].sign * fmod(degrees(gear(t)), files[i].turn);
+      if (files[i].timed && !last)
+        fprintf(f, "%.9g,", t);
+      put_arc(f, p, ",");
+      put_arc(f, g, last ? "," : "\n");
+      if (last)
+        fprintf(f, "%.9g\n", t);
+    }
+    fclose(f);
+    struct eo_error error;
+    struct eo_recording *r = read_fixture(NULL, NULL, &error);
+    int first = files[i].timed && !last;
+    double expected = files[i].sign * fmod(degrees(gear(1000 / RATE)), files[i].turn);
+    ok(r && strcmp(eo_recording_unit(r, first + 1), "deg") == 0 && fabs(cell_of(r, 1000, first + 1) - expected) < 1e-7,
+       "%s: %.9g, expected %.9g%s", files[i].what, r ? cell_of(r, 1000, first + 1) : NAN, expected,
+       r ? "" : error.text);
+    eo_recording_free(r);
+  }
+  FILE *f = begin("pinion,gear\n");
+  for (int k = 0; k < ROWS; k++) {
+    put_arc(f, fmod(degrees(pinion(k / RATE)), 360), ",");
+    put_arc(f, fmod(degrees(gear(k / RATE)), 360), "\n");
+  }
+  fclose(f);
+  struct eo_error error;
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(!r || strcmp(eo_recording_unit(r, 0), "s") == 0, "with nothing that tells the time they may be times of pulses");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -176,5 +232,6 @@ int main(void)
   test_overflows();
   test_sentences();
   test_channels();
+  test_arcs();
   return fixture_close();
 }
