@@ -235,11 +235,12 @@ enum { ROOM_AT_ONCE = 64 }; /* numbers for which a list asks for room together *
 /* A number and its comma. Returns their length. */
 static int write_ready(char *to, double value, int digits)
 {
-  int length = 4;
-  if (isfinite(value))
-    length = eo_digits_write_rounded(to, EO_DIGITS_ROOM, value, digits);
-  else
-    memcpy(to, "null", 4);
+  static const char nothing[] = "null,";
+  if (!isfinite(value)) {
+    memcpy(to, nothing, sizeof nothing);
+    return (int)sizeof nothing - 1;
+  }
+  int length = eo_digits_write_rounded(to, EO_DIGITS_ROOM, value, digits);
   to[length] = ',';
   return length + 1;
 }
@@ -250,7 +251,7 @@ static json_t *ready_reals(int count, const double *value, int stride, const str
   eo_text_add_bytes(&text, "\0[", 2);
   for (int first = 0; first < count; first += ROOM_AT_ONCE) {
     int last = count - first < ROOM_AT_ONCE ? count : first + ROOM_AT_ONCE;
-    char *start = eo_text_room(&text, (size_t)(ROOM_AT_ONCE * (EO_DIGITS_ROOM + 1))), *to = start;
+    char *start = eo_text_room(&text, ROOM_AT_ONCE * (size_t)(EO_DIGITS_ROOM + 1)), *to = start;
     for (int i = first; i < last && start; i++)
       to += write_ready(to, eo_unit_near(unit, value[(long)i * stride]), digits);
     text.size += (size_t)(to - start);

@@ -230,7 +230,11 @@ export class Recordings {
         },
         'Choose files',
       ),
-      h('p', null, 'or drop what the rig recorded: text, spreadsheets, MATLAB, TDMS, UFF 58, HDF5, MDF 4, gzip, zip, tar'),
+      h(
+        'p',
+        null,
+        'or drop what the rig recorded: text, spreadsheets, MATLAB, TDMS, UFF 58, HDF5, MDF 4, gzip, zip, tar',
+      ),
     );
     this.list = h('.recordings');
     this.element = h(
