@@ -228,6 +228,16 @@ void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2])
     }
 }
 
+const struct eo_contact_line *eo_contact_same_line(const struct eo_contact_position *position,
+                                                   const struct eo_contact_line *line)
+{
+  for (int i = 0; i < position->lines; i++)
+    if (position->line[i].pair == line->pair && position->line[i].kind == line->kind &&
+        position->line[i].cells == line->cells)
+      return &position->line[i];
+  return NULL;
+}
+
 /* Where the teeth touch at every position. */
 static enum eo_code fill_positions(struct eo_contact_grid *grid, const struct eo_material *material,
                                    const struct eo_contact_grid_settings *settings, const double *phase,

@@ -73,6 +73,10 @@ void eo_contact_grid_free(struct eo_contact_grid *grid);
 /* The first and the last tooth pair that can touch at any position; pair 0 is always among them. */
 void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2]);
 
+/* The line of the same teeth, with as many cells, at another position; NULL: there is none. */
+const struct eo_contact_line *eo_contact_same_line(const struct eo_contact_position *position,
+                                                   const struct eo_contact_line *line);
+
 /* L of the local law at s: ln(4 h_p h_g pi E / (8 rho_n (1-nu^2))) - nu/(1-nu)  (Weber and Banaschek 1953). */
 double eo_contact_local_constant(const struct eo_geometry *geometry, const struct eo_material *material, double s);
 

@@ -231,16 +231,6 @@ bool eo_loaded_newton(struct eo_loaded_workspace *ws, const struct eo_loaded_pro
   return false;
 }
 
-static const struct eo_contact_line *same_line(const struct eo_contact_position *position,
-                                               const struct eo_contact_line *line)
-{
-  for (int i = 0; i < position->lines; i++)
-    if (position->line[i].pair == line->pair && position->line[i].kind == line->kind &&
-        position->line[i].cells == line->cells)
-      return &position->line[i];
-  return NULL;
-}
-
 /* Start from the line loads that ws->load holds, scaled to carry P, and an approach. */
 static void start_from(struct eo_loaded_workspace *ws, double approach, const struct eo_loaded_problem *problem)
 {
@@ -272,7 +262,7 @@ static void start_from(struct eo_loaded_workspace *ws, double approach, const st
 static const double *carried_by(const struct eo_contact_position *position, const struct eo_contact_line *line,
                                 const struct eo_loaded_end *known)
 {
-  const struct eo_contact_line *same = same_line(position, line);
+  const struct eo_contact_line *same = eo_contact_same_line(position, line);
   return same ? known->line_load + position->first + same->first : NULL;
 }
 

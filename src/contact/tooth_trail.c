@@ -16,16 +16,6 @@ static int leader_of(const struct eo_follow *follow)
   return follow->place.first + follow->place.leader;
 }
 
-static const struct eo_contact_line *same_line(const struct eo_contact_position *position,
-                                               const struct eo_contact_line *line)
-{
-  for (int i = 0; i < position->lines; i++)
-    if (position->line[i].pair == line->pair && position->line[i].kind == line->kind &&
-        position->line[i].cells == line->cells)
-      return &position->line[i];
-  return NULL;
-}
-
 /* Of the solution so many places before the one at hand. */
 static int entry_of(const struct eo_trail *trail, int back)
 {
@@ -45,7 +35,7 @@ bool eo_trail_lead(struct eo_follow *follow, const struct eo_trail *trail)
     const struct eo_contact_line *line = &position->line[l];
     const double *q[EO_HUNTING_BEFORE] = {NULL};
     for (int i = 0; i < known; i++) {
-      const struct eo_contact_line *same = same_line(position - (i + 1) * follow->step, line);
+      const struct eo_contact_line *same = eo_contact_same_line(position - (i + 1) * follow->step, line);
       q[i] = same ? trail->load[entry_of(trail, i + 1)] + same->first : NULL;
     }
     for (int i = 0; q[0] && i < line->cells; i++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_format.h"
+#include "recording/column.h"
 #include "recording/moment.h"
 #include "recording/recorded_unit.h"
 #include "recording/text_cell.h"
@@ -369,6 +370,13 @@ bool eo_text_is_column(const struct eo_text_format *format, int cell)
 {
   enum eo_text_content content = format->content[cell];
   return content != EO_TEXT_WORDS && content != EO_TEXT_DATE && content != EO_TEXT_BESIDE;
+}
+
+bool eo_text_is_called_time(const struct eo_text_format *format, int cell)
+{
+  double factor;
+  return eo_column_named(format->name[cell], EO_CLOCK_WORDS "|" EO_TICK_WORDS) ||
+         eo_unit_find(format->unit[cell], &factor) == EO_QUANTITY_TIME;
 }
 
 enum eo_code eo_text_guess(struct eo_text_format *format, const char *head, size_t size, bool whole,

@@ -44,6 +44,8 @@ struct eo_text_format {
 
 /* Whether the cells of a place become a column. */
 bool eo_text_is_column(const struct eo_text_format *format, int cell);
+/* Whether the name or the unit of a place is that of times, or of a counter's ticks. */
+bool eo_text_is_called_time(const struct eo_text_format *format, int cell);
 
 /* Finds separator, decimal point, first row and cells; members of choice that are not 0 are taken as they are.
    head[size + 1]: the beginning of the file, ended by a byte 0; whole: the file ends there. Errors: EO_ERROR_INPUT: no

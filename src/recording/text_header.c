@@ -178,13 +178,6 @@ static void drop_key(const struct eo_text_format *format, struct eo_header_line 
 #define ARC_UNITS "dms|d:m:s|dd:mm:ss|ddd:mm:ss|deg:min:sec|degrees:minutes:seconds|gms|g:m:s"
 #define ARC_WORDS EO_PINION_WORDS "|" EO_GEAR_WORDS "|angle|angles|winkel|angulo|angolo|position|deg|grad|dms"
 
-static bool is_called_time(const struct eo_text_format *format, int cell)
-{
-  double factor;
-  return eo_column_named(format->name[cell], EO_CLOCK_WORDS "|" EO_TICK_WORDS) ||
-         eo_unit_find(format->unit[cell], &factor) == EO_QUANTITY_TIME;
-}
-
 /* What looks like a time of day is an angle where the heading gives it the unit of one; or calls it after an encoder
    while something else tells the time, since encoders have times of their pulses, too. */
 static void settle_arcs(struct eo_text_format *format)
@@ -192,14 +185,14 @@ static void settle_arcs(struct eo_text_format *format)
   double factor;
   bool timed = false;
   for (int c = 0; c < format->cells; c++)
-    timed = timed || is_called_time(format, c) || format->clock[c].interval > 0;
+    timed = timed || eo_text_is_called_time(format, c) || format->clock[c].interval > 0;
   for (int c = 0; c < format->cells; c++) {
     const char *unit = format->unit[c];
     bool stated = eo_unit_find(unit, &factor) == EO_QUANTITY_ANGLE || eo_letters_listed(unit, strlen(unit), ARC_UNITS),
-         called = timed && !is_called_time(format, c) && eo_column_named(format->name[c], ARC_WORDS);
+         called = timed && !eo_text_is_called_time(format, c) && eo_column_named(format->name[c], ARC_WORDS);
     if (format->content[c] == EO_TEXT_MOMENT && (stated || called))
       format->content[c] = EO_TEXT_ARC;
-    else if (format->content[c] == EO_TEXT_ARC && is_called_time(format, c))
+    else if (format->content[c] == EO_TEXT_ARC && eo_text_is_called_time(format, c))
       format->content[c] = EO_TEXT_MOMENT; /* down to zero, or of more than 999 hours: not read */
   }
 }

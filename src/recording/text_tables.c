@@ -95,13 +95,6 @@ static bool names_channels(const struct eo_text_format *format, const char *head
   return (called && words.count <= FEW) || (words.pinion && words.gear);
 }
 
-static bool is_time(const struct eo_text_format *format, int cell)
-{
-  double factor;
-  return format->content[cell] == EO_TEXT_MOMENT || eo_unit_find(format->unit[cell], &factor) == EO_QUANTITY_TIME ||
-         eo_column_named(format->name[cell], EO_CLOCK_WORDS "|" EO_TICK_WORDS);
-}
-
 /* A row with the number of its channel among more numbers than a time and a value: the place of the value that all
    channels share, -1 where it is a wide table with a number that seldom changes. */
 static int find_value(const struct eo_text_format *format)
@@ -123,7 +116,8 @@ static int find_value(const struct eo_text_format *format)
 static void leave_out_beside(struct eo_text_format *format, int value)
 {
   for (int c = 0; c < format->cells; c++)
-    if (eo_text_is_column(format, c) && c != value && !is_time(format, c)) {
+    if (eo_text_is_column(format, c) && c != value && format->content[c] != EO_TEXT_MOMENT &&
+        !eo_text_is_called_time(format, c)) {
       format->content[c] = EO_TEXT_BESIDE;
       format->columns--;
     }
