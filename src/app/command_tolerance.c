@@ -304,15 +304,13 @@ const struct eo_command eo_command_tolerance = {
     "in full those that decide: a note says how many and how far the others are off, every interval has it in it; "
     "\"method\": \"full\" in\n"
     "the block computes all in full. --single-teeth gives every pair teeth of its own, index deviations within the "
-    "class, and "
-    "computes\n"
-    "its hunting period, in full some hundred times as long; from 64 pairs on, all with teeth as springs and some "
-    "fifty "
-    "in full. --worst writes the worst pair as a design, --csv a "
-    "line per pair in full. --keep "
-    "FILE keeps every\n"
-    "pair as it is computed: the same command goes on from there. All cores work unless --threads says otherwise; the "
-    "numbers do not\n"
-    "depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
+    "class, and\n"
+    "computes its hunting period, at every instant some hundred times as long; from 64 pairs on it follows from few "
+    "solutions,\n"
+    "all on a coarse grid and some forty in full. --worst writes the worst pair as a design, --csv a line per pair in "
+    "full.\n"
+    "--keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work unless "
+    "--threads says\n"
+    "otherwise; the numbers do not depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
     "--no-cache neither reads nor keeps it.\n",
     run};

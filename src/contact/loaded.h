@@ -124,6 +124,11 @@ void eo_loaded_find_nearby(struct eo_loaded_workspace *workspace, const struct e
 void eo_loaded_last_shares(const struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
                            double *share);
 
+/* How far each point of the position solved last reaches into contact, [points], m: below 0 what it would have to move
+   towards the mate before it touches. */
+void eo_loaded_last_reach(const struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
+                          double compliance_factor, double *reach);
+
 /* Makes Newton's matrix of the position solved last at its solution, for the answers below. */
 void eo_loaded_prepare_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position);
 

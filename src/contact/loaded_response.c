@@ -71,6 +71,13 @@ void eo_loaded_last_shares(const struct eo_loaded_workspace *ws, const struct eo
     share[i] = ws->load[i] / sum;
 }
 
+void eo_loaded_last_reach(const struct eo_loaded_workspace *ws, const struct eo_contact_position *position,
+                          double compliance_factor, double *reach)
+{
+  for (int i = 0; i < position->points; i++)
+    reach[i] = compliance_factor * (ws->local[i] + ws->spread[i]);
+}
+
 /* Keeps the solution as the point from which neighbouring loads are reached, with its rates over the load. */
 static void keep_course(struct eo_loaded_workspace *ws, const struct eo_contact_position *position)
 {

@@ -1,7 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/tooth_course.h"
 
+#include <math.h>
 #include <stddef.h>
+
+/* Nothing else carries; the pair carries nothing. */
+static bool is_alone(const struct eo_course_state *state, int mover)
+{
+  return state->share[mover] > 1 - 1e-9;
+}
+
+static bool is_away(const struct eo_course_state *state, int mover)
+{
+  return state->share[mover] == 0;
+}
 
 struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, double at)
 {
@@ -29,25 +41,6 @@ void eo_course_state_copy(struct eo_course_state *state, const struct eo_course_
   }
 }
 
-/* Of the parabola through a node and its neighbours, at an end of the last three. */
-static double parabola_slope(const struct eo_tooth_course *course, int i)
-{
-  int n = course->nodes, a = i == 0 ? 0 : i == n - 1 ? n - 3 : i - 1;
-  if (n < 3)
-    return (course->state[n - 1].tangent - course->state[0].tangent) / (course->at[n - 1] - course->at[0]);
-  double first = course->at[a + 1] - course->at[a], second = course->at[a + 2] - course->at[a + 1],
-         before = (course->state[a + 1].tangent - course->state[a].tangent) / first,
-         behind = (course->state[a + 2].tangent - course->state[a + 1].tangent) / second,
-         curve = (behind - before) / (first + second);
-  return before + curve * (2 * course->at[i] - course->at[a] - course->at[a + 1]);
-}
-
-void eo_tooth_course_settle(struct eo_tooth_course *course)
-{
-  for (int i = 0; i < course->nodes; i++)
-    course->bend[i] = course->nodes > 1 ? parabola_slope(course, i) : 0;
-}
-
 /* Node that the stretch about a place begins with. */
 static int stretch_of(const struct eo_tooth_course *course, double at)
 {
@@ -57,67 +50,153 @@ static int stretch_of(const struct eo_tooth_course *course, double at)
   return i;
 }
 
-/* t: share of the width. */
-static double cubic(double from, double to, double from_slope, double to_slope, double width, double t)
+static double bounded(double value, double low, double high)
 {
-  double rise = to - from, a = from_slope * width, b = to_slope * width;
-  return from + t * (a + t * (3 * rise - 2 * a - b + t * (a + b - 2 * rise)));
+  return value < low ? low : value > high ? high : value;
 }
 
-/* Between two states, at a share of the width between them: the approach by their slopes, all else straight. */
+/* What a pair takes of 1 N more goes to nothing where it leaves the others, and what they take where it carries alone,
+   by the power of the distance that the change of Z asks for. */
+static double power_of(double share, double width, double rise)
+{
+  static const double MOST = 20;
+  return rise > 0 ? bounded(share * width / rise - 1, 0, MOST) : MOST;
+}
+
+/* Z at a share t of the width between two states, and its slope, the share of the pair. */
+static double approach_between(const struct eo_course_state *from, const struct eo_course_state *to, int mover,
+                               double width, double t, double *share)
+{
+  double a = from->share[mover], b = to->share[mover], rise = to->approach - from->approach;
+  bool alone = is_alone(from, mover), away = is_away(to, mover);
+  if (away && !alone) {
+    double power = power_of(a, width, rise), part = pow(1 - t, power);
+    *share = a * part;
+    return to->approach - rise * part * (1 - t); /* theory (P9) */
+  }
+  if (alone && !away) {
+    double power = power_of(1 - b, width, width - rise), part = pow(t, power);
+    *share = 1 - (1 - b) * part;
+    return from->approach + width * t - (width - rise) * part * t;
+  }
+  double c = a * width, d = b * width;
+  *share = (c + t * (2 * (3 * rise - 2 * c - d) + 3 * t * (c + d - 2 * rise))) / width;
+  return from->approach + t * (c + t * (3 * rise - 2 * c - d + t * (c + d - 2 * rise)));
+}
+
+/* k_tan there: that of all but the pair is straight, or where it takes most that of the pair. */
+static double tangent_between(const struct eo_course_state *from, const struct eo_course_state *to, int mover, double t,
+                              double share)
+{
+  double a = from->share[mover], b = to->share[mover];
+  bool alone = is_alone(from, mover), away = is_away(to, mover);
+  share = bounded(share, a < b ? a : b, a < b ? b : a);
+  if (alone && away)
+    return from->tangent + t * (to->tangent - from->tangent);
+  if (alone || (!away && a + b > 1))
+    return (from->tangent * a + t * (to->tangent * b - from->tangent * a)) / share;
+  double first = from->tangent * (1 - a), last = to->tangent * (1 - b);
+  return (first + t * (last - first)) / (1 - share);
+}
+
+/* How far loads and squares of pressures are from one state to the other: those of all but the pair go with Z, and all
+   of them where it takes most with how far Z stays behind it. */
+static double way_between(const struct eo_course_state *from, const struct eo_course_state *to, int mover, double width,
+                          double t, double approach)
+{
+  double rise = to->approach - from->approach, risen = approach - from->approach,
+         part = from->share[mover] + to->share[mover] > 1 ? (width * t - risen) / (width - rise) : risen / rise;
+  return isfinite(part) ? bounded(part, 0, 1) : t;
+}
+
+/* What each pair takes of 1 N more: the others share what the mover leaves. */
+static void share_between(const struct eo_course_state *from, const struct eo_course_state *to, int mover, int pairs,
+                          double t, double share, struct eo_course_state *state)
+{
+  double first = 1 - from->share[mover], last = 1 - to->share[mover];
+  for (int k = 0; k < pairs; k++) {
+    double a = from->share[k] / first, b = to->share[k] / last;
+    state->share[k] = first > 0 && last > 0 ? (1 - share) * (a + t * (b - a))
+                                            : from->share[k] + t * (to->share[k] - from->share[k]);
+  }
+  if (mover < pairs)
+    state->share[mover] = share;
+}
+
+/* Between two states, at a share of the width between them. */
 static void find_between(const struct eo_course_state *from, const struct eo_course_state *to, int mover, int pairs,
                          double width, double t, bool loads, struct eo_course_state *state)
 {
-  state->approach = cubic(from->approach, to->approach, from->share[mover], to->share[mover], width, t);
-  state->tangent = from->tangent + t * (to->tangent - from->tangent);
-  for (int k = 0; k < pairs; k++)
-    state->share[k] = from->share[k] + t * (to->share[k] - from->share[k]);
+  double share;
+  state->approach = approach_between(from, to, mover, width, t, &share);
+  state->tangent = tangent_between(from, to, mover, t, share);
+  share_between(from, to, mover, pairs, t, share, state);
+  double way = loads ? way_between(from, to, mover, width, t, state->approach) : 0;
   for (int k = 0; k < pairs && loads; k++) {
-    state->load[k] = from->load[k] + t * (to->load[k] - from->load[k]);
-    state->square[k] = from->square[k] + t * (to->square[k] - from->square[k]);
+    state->load[k] = from->load[k] + way * (to->load[k] - from->load[k]);
+    state->square[k] = from->square[k] + way * (to->square[k] - from->square[k]);
   }
 }
 
-static double tangent_in(const struct eo_tooth_course *course, int i, double width, double t)
+/* Keeps a place between the outer nodes; returns by how much it is beyond them. */
+static double bring_inside(const struct eo_tooth_course *course, double *at)
 {
-  return cubic(course->state[i].tangent, course->state[i + 1].tangent, course->bend[i], course->bend[i + 1], width, t);
+  double first = course->at[0], last = course->at[course->nodes - 1], asked = *at;
+  *at = asked < first ? first : asked > last ? last : asked;
+  return asked - *at;
 }
 
 void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, double at, bool loads,
                           struct eo_course_state *state)
 {
+  double beyond = bring_inside(course, &at);
   int i = stretch_of(course, at);
   if (course->nodes == 1) {
     eo_course_state_copy(state, &course->state[0], pairs, loads);
+    state->approach += beyond * state->share[course->mover];
     return;
   }
   double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width;
   find_between(&course->state[i], &course->state[i + 1], course->mover, pairs, width, t, loads, state);
-  state->tangent = tangent_in(course, i, width, t);
+  state->approach += beyond * course->state[t > 0.5 ? i + 1 : i].share[course->mover];
 }
 
 void eo_tooth_course_level(const struct eo_tooth_course *course, double at, double *approach, double *tangent)
 {
+  double beyond = bring_inside(course, &at);
   const struct eo_course_state *from = &course->state[stretch_of(course, at)], *to = from + 1;
-  int i = (int)(from - course->state);
-  *approach = from->approach;
+  int i = (int)(from - course->state), mover = course->mover;
+  *approach = from->approach + beyond * from->share[course->mover];
   *tangent = from->tangent;
   if (course->nodes == 1)
     return;
-  double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width;
-  *approach = cubic(from->approach, to->approach, from->share[course->mover], to->share[course->mover], width, t);
-  *tangent = tangent_in(course, i, width, t);
+  double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width, share;
+  *approach = approach_between(from, to, mover, width, t, &share) + beyond * (t > 0.5 ? to : from)->share[mover];
+  *tangent = tangent_between(from, to, mover, t, share);
 }
 
 void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,
                            double at, double other, bool loads, struct eo_course_state *state)
 {
-  int i = stretch_of(course, at);
+  int last = course->nodes - 1;
+  double end = course->at[last], beyond = 0;
   struct eo_course_state from, to;
-  double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width,
-         straight = course->state[i].tangent + t * (course->state[i + 1].tangent - course->state[i].tangent);
+  eo_tooth_course_find(&across[last], pairs, other, loads, &to);
+  if (course->state[last].load[course->mover] == 0)
+    end += to.approach - course->state[last].approach; /* what lifts the others brings it back into contact */
+  if (at >= end || last == 0) {
+    *state = to;
+    return;
+  }
+  if (at < course->at[0]) {
+    beyond = at - course->at[0];
+    at = course->at[0];
+  }
+  int i = stretch_of(course, at);
+  double width = (i + 1 == last ? end : course->at[i + 1]) - course->at[i], t = (at - course->at[i]) / width;
   eo_tooth_course_find(&across[i], pairs, other, loads, &from);
-  eo_tooth_course_find(&across[i + 1], pairs, other, loads, &to);
+  if (i + 1 < last)
+    eo_tooth_course_find(&across[i + 1], pairs, other, loads, &to);
   find_between(&from, &to, course->mover, pairs, width, t, loads, state);
-  state->tangent += tangent_in(course, i, width, t) - straight;
+  state->approach += beyond * from.share[course->mover];
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the contact of one mesh position goes on as one pair of teeth is moved away from the others: solutions at a few
-   nodes of its distance, and all between them. */
+   nodes of its distance, and all between them. Beyond the outer ones nothing changes but that Z moves with a pair which
+   carries alone. */
 #ifndef EASEOFF_CONTACT_TOOTH_COURSE_H
 #define EASEOFF_CONTACT_TOOTH_COURSE_H
 
@@ -9,11 +10,12 @@
 /* PAIRS: at once, that teeth of a ring are coupled over, and more. */
 enum { EO_COURSE_PAIRS = 32, EO_COURSE_NODES = 33 };
 
-/* What a solution leaves, or what stands between two. Of pairs in their order. */
+/* What a solution leaves, or what stands between two (but for reach). Of pairs in their order. */
 struct eo_course_state {
   double approach, tangent;                                                      /* Z, m; k_tan, N/m */
   double load[EO_COURSE_PAIRS], share[EO_COURSE_PAIRS], square[EO_COURSE_PAIRS]; /* N; of 1 N more, and so dZ/dw; of the
                                                                                     largest pressure, Pa2 */
+  double reach[EO_COURSE_PAIRS]; /* m, how far a pair reaches into contact; -INFINITY: it is not there */
 };
 
 struct eo_tooth_course {
@@ -21,7 +23,6 @@ struct eo_tooth_course {
   int nodes;
   double at[EO_COURSE_NODES]; /* m, ascending */
   struct eo_course_state state[EO_COURSE_NODES];
-  double bend[EO_COURSE_NODES]; /* slope of k_tan at the nodes */
 };
 
 /* What is asked of so many pairs: loads: with load and square. */
@@ -29,9 +30,6 @@ void eo_course_state_copy(struct eo_course_state *state, const struct eo_course_
 
 /* Makes room for a node and returns its state; NULL: there is none left. */
 struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, double at);
-
-/* Slopes of what has none of its own, once all nodes are there. */
-void eo_tooth_course_settle(struct eo_tooth_course *course);
 
 /* All of it there, of so many pairs: approach and tangent by cubics, the others straight between the nodes. loads: with
    load and square. */

@@ -118,6 +118,7 @@ static void grid_done(struct eo_follow *follow)
   free(follow->start);
   free(follow->weight);
   free(follow->share);
+  free(follow->reach);
   follow->workspace = follow->own = NULL;
 }
 
@@ -129,6 +130,7 @@ static enum eo_code grid_begin(struct eo_follow *follow, struct eo_error *error)
   follow->start = make_numbers(grid->most_points, &complete);
   follow->weight = make_numbers(grid->most_points, &complete);
   follow->share = make_numbers(grid->most_points, &complete);
+  follow->reach = make_numbers(grid->most_points, &complete);
   complete = eo_trails_init(follow, grid->most_points) && complete;
   follow->workspace = follow->input->workspace[follow->end];
   if (!follow->workspace)

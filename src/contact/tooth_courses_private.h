@@ -11,7 +11,6 @@ struct eo_follow_place {
   int j;                                          /* of the grid */
   int pairs, first;                               /* first: number of the first pair */
   int leader;                                     /* carries most where all teeth are alike */
-  double touch[EO_COURSE_PAIRS];                  /* least gap of a pair, m; INFINITY: it is not there */
   struct eo_course_state alike;                   /* where all pairs stand as they do without deviations */
   int courses;                                    /* of pairs that can carry beside the leader */
   struct eo_tooth_course course[EO_COURSE_PAIRS]; /* [courses], that of the pair that carries most first */
@@ -38,7 +37,7 @@ struct eo_follow {
   struct eo_loaded_end solved;
   double *gap;                       /* [points of the grid] with a pair moved away */
   double *start, *weight;            /* [most points] line loads of teeth alike; share of the load of its pair */
-  double *share;                     /* [most points] of 1 N more */
+  double *share, *reach;             /* [most points] of 1 N more; into contact, m */
   double *off[2];                    /* [member]: [teeth] what each adds to the gap of the pair at hand */
   double *apart;                     /* [lines][cycles] gap of each pair, m */
   bool apart_known[EO_COURSE_PAIRS]; /* [lines] at every place: without forms a gap is one number */

@@ -27,19 +27,6 @@ static void number_pairs(struct eo_follow_place *place, const struct eo_contact_
   place->pairs = last - place->first + 1;
 }
 
-static void find_touches(struct eo_follow *follow)
-{
-  struct eo_follow_place *place = &follow->place;
-  const struct eo_contact_position *position = position_of(follow);
-  for (int k = 0; k < place->pairs; k++)
-    place->touch[k] = INFINITY;
-  for (int l = 0; l < position->lines; l++) {
-    int k = position->line[l].pair - place->first;
-    for (int i = position->line[l].first; i < position->line[l].first + position->line[l].cells; i++)
-      place->touch[k] = fmin(place->touch[k], follow->gap[position->first + i]);
-  }
-}
-
 /* Moves a pair away from where the flanks are without deviations. */
 static void move_pair(struct eo_follow *follow, int k, double by)
 {
@@ -61,7 +48,10 @@ static void solve(struct eo_follow *follow, struct eo_course_state *state)
   eo_loaded_resolve_within(follow->workspace, grid, follow->gap, follow->input->compliance_factor, j,
                            follow->input->load[follow->end], follow->settled, &follow->solved);
   eo_loaded_last_shares(follow->workspace, position, follow->share);
+  eo_loaded_last_reach(follow->workspace, position, follow->input->compliance_factor, follow->reach);
   memset(state, 0, sizeof *state);
+  for (int k = 0; k < EO_COURSE_PAIRS; k++)
+    state->reach[k] = -INFINITY;
   state->approach = follow->solved.approach[j];
   state->tangent = follow->solved.tangent[j];
   for (int l = 0; l < position->lines; l++) {
@@ -72,6 +62,7 @@ static void solve(struct eo_follow *follow, struct eo_course_state *state)
              pressure = q > 0 ? eo_loaded_pressure(grid, q, position->radius[i]) : 0;
       state->load[k] += q * position->length[i];
       state->share[k] += follow->share[i];
+      state->reach[k] = fmax(state->reach[k], follow->reach[i]);
       state->square[k] = fmax(state->square[k], pressure * pressure);
     }
   }
@@ -177,6 +168,11 @@ static int line_of(const struct eo_follow *follow, int k)
   return follow->place.first + k - follow->first_line;
 }
 
+static bool is_there(const struct eo_follow_place *place, int k)
+{
+  return isfinite(place->alike.reach[k]);
+}
+
 /* Gap of a pair in every cycle. */
 static void set_apart(struct eo_follow *follow, int k)
 {
@@ -184,9 +180,9 @@ static void set_apart(struct eo_follow *follow, int k)
   double *apart = follow->apart + (size_t)line_of(follow, k) * (size_t)follow->cycles;
   if (follow->apart_known[line_of(follow, k)])
     return;
-  follow->apart_known[line_of(follow, k)] = !follow->formed && !isinf(follow->place.touch[k]);
+  follow->apart_known[line_of(follow, k)] = !follow->formed && is_there(&follow->place, k);
   memset(apart, 0, sizeof *apart * (size_t)follow->cycles);
-  for (int member = 0; member < 2 && !isinf(follow->place.touch[k]); member++) {
+  for (int member = 0; member < 2 && is_there(&follow->place, k); member++) {
     const struct eo_tooth_deviation *tooth = input->tooth[follow->end][member];
     int teeth = follow->teeth[member], number = wrap(-follow->place.first - k, teeth);
     if (!tooth)
@@ -216,7 +212,6 @@ static void refine(struct eo_follow *follow, struct eo_tooth_course *course, dou
 {
   double at = (from + to) / 2;
   struct eo_course_state guess;
-  eo_tooth_course_settle(course);
   eo_tooth_course_find(course, 0, at, false, &guess);
   struct eo_course_state *state = eo_tooth_course_add(course, at);
   if (!state)
@@ -245,10 +240,21 @@ static void find_range(const struct eo_follow *follow, int k, double range[2])
 }
 
 /* A pair carries, or would where it is nearest. */
-static bool is_reached(const struct eo_follow *follow, int k, const struct eo_course_state *state,
-                       const double range[2])
+static bool is_reached(int k, const struct eo_course_state *state, const double range[2])
 {
-  return range[1] > range[0] && (state->load[k] > 0 || follow->place.touch[k] + range[0] < state->approach);
+  return range[1] > range[0] && state->reach[k] > range[0];
+}
+
+/* Where on the way back from the near end (0) or the far one the first pair touches that carries nothing there: another
+   one, or the mover itself. The end where all carry; hardly as far as the middle. */
+static double touch_of(const struct eo_course_state *state, int k, int side, double end, double middle)
+{
+  static const double HARDLY = 0.999;
+  double most = side == 0 ? -INFINITY : state->reach[k], at, last = end + HARDLY * (middle - end);
+  for (int other = 0; other < EO_COURSE_PAIRS && side == 0; other++)
+    most = other != k ? fmax(most, state->reach[other]) : most;
+  at = side == 0 ? end - fmin(0, most) : end + fmin(0, most);
+  return side == 0 ? fmin(at, last) : fmax(at, last);
 }
 
 /* Solves one end of a course, where few are solved as the places before lead to. */
@@ -262,33 +268,52 @@ static void solve_end(struct eo_follow *follow, struct eo_tooth_course *course, 
   eo_trail_add(follow, trail);
 }
 
+/* Puts what an outer node says where that begins: on the way there nothing changes but that Z moves with a pair which
+   carries alone. */
+static void put_touch(struct eo_tooth_course *course, int node, double at)
+{
+  struct eo_course_state *state = &course->state[node];
+  double by = at - course->at[node], rise = state->share[course->mover] * by;
+  course->at[node] = at;
+  state->approach += rise;
+  for (int k = 0; k < EO_COURSE_PAIRS; k++)
+    state->reach[k] += rise - (k == course->mover ? by : 0);
+}
+
 /* Solves where a pair is nearest, farthest, and on the way as often as it takes; from a state in which it stands as it
    does without deviations. */
 static void make_course(struct eo_follow *follow, struct eo_tooth_course *course, int k, const double range[2],
                         const struct eo_course_state *from)
 {
   enum { DEPTH = 3 }; /* halves at most: as many nodes as there are */
+  double middle = fmin(0, from->reach[k]);
   course->mover = k;
   course->nodes = 0;
   *eo_tooth_course_add(course, 0) = *from;
-  for (int i = 0; i < 2 && is_reached(follow, k, from, range); i++) {
-    if (range[i] == 0)
-      continue;
-    solve_end(follow, course, i, range[i]);
-    if (isfinite(follow->within))
-      refine(follow, course, fmin(range[i], 0), fmax(range[i], 0), DEPTH);
+  if (is_reached(k, from, range)) {
+    put_touch(course, 0, middle);
+    for (int i = 0; i < (middle < 0 ? 1 : 2); i++) { /* nothing changes behind where it touches */
+      if (range[i] == 0)
+        continue;
+      solve_end(follow, course, i, range[i]);
+      int node = i == 0 ? 0 : course->nodes - 1;
+      double at = touch_of(&course->state[node], k, i, range[i], middle);
+      put_touch(course, node, at);
+      if (isfinite(follow->within))
+        refine(follow, course, fmin(at, middle), fmax(at, middle), DEPTH);
+    }
   }
   move_pair(follow, k, 0);
-  eo_tooth_course_settle(course);
 }
 
-/* Of the second pair, with the first where its nodes are. */
-static void make_across(struct eo_follow *follow, const double range[2])
+/* Of the second pair, with the first where its nodes are, but where that carries nothing as far as it goes, so that it
+   does not touch while the second one moves. */
+static void make_across(struct eo_follow *follow, const double first_range[2], const double range[2])
 {
   struct eo_follow_place *place = &follow->place;
   const struct eo_tooth_course *first = &place->course[0];
   for (int i = 0; i < first->nodes; i++) {
-    move_pair(follow, first->mover, first->at[i]);
+    move_pair(follow, first->mover, i < first->nodes - 1 ? first->at[i] : fmax(first->at[i], first_range[1]));
     make_course(follow, &place->across[i], place->course[1].mover, range, &first->state[i]);
   }
   move_pair(follow, first->mover, 0);
@@ -302,7 +327,7 @@ static void make_courses(struct eo_follow *follow)
   double range[MOST][2];
   for (int k = 0; k < place->pairs; k++) {
     find_range(follow, k, range[k]);
-    if (k == place->leader || !is_reached(follow, k, &place->alike, range[k]))
+    if (k == place->leader || !is_reached(k, &place->alike, range[k]))
       continue;
     int i = movers++;
     for (; i > 0 && place->alike.load[mover[i - 1]] < place->alike.load[k]; i--)
@@ -317,7 +342,7 @@ static void make_courses(struct eo_follow *follow)
     else
       place->course[i] = (struct eo_tooth_course){.mover = mover[i]};
   if (place->crossed)
-    make_across(follow, range[mover[1]]);
+    make_across(follow, range[mover[0]], range[mover[1]]);
 }
 
 void eo_follow_prepare(struct eo_follow *follow, int at)
@@ -326,12 +351,17 @@ void eo_follow_prepare(struct eo_follow *follow, int at)
   place->j = at * follow->step;
   number_pairs(place, position_of(follow));
   solve_alike(follow, at);
-  find_touches(follow);
   if (follow->formed)
     weigh(follow);
   for (int k = 0; k < place->pairs; k++)
     set_apart(follow, k);
   make_courses(follow);
+}
+
+/* As far as a pair goes before nothing changes any more. */
+static double inside(const struct eo_tooth_course *course, double at)
+{
+  return fmin(fmax(at, course->at[0]), course->at[course->nodes - 1]);
 }
 
 /* What a course adds to teeth alike, with what it and the others bend each other, to first order. */
@@ -346,7 +376,8 @@ static void add_course(const struct eo_follow *follow, int c, const struct eo_co
   for (int other = 0; other < place->courses && place->courses > 1; other++) {
     int k = place->course[other].mover;
     if (other != c && !(place->crossed && c + other == 1))
-      state->approach += (moved->share[k] - place->alike.share[k]) * (apart[(size_t)k * cycles] - lead) / 2;
+      state->approach += (moved->share[k] - place->alike.share[k]) *
+                         inside(&place->course[other], apart[(size_t)k * cycles] - lead) / 2;
   }
   for (int k = 0; k < place->pairs && loads; k++) {
     state->load[k] += moved->load[k] - place->alike.load[k];

@@ -13,7 +13,7 @@
 #include "numerics/periodic.h"
 
 /* How far interpolated contact may be off where it is looked at, m. */
-static const double WITHIN = 2e-8;
+static const double WITHIN = 5e-9;
 
 /* What a run works with beside the result. */
 struct work {

@@ -6,19 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The coarse grid: a third of the positions, cells and harmonics; teeth of their own are looked at at a third of these
+/* The coarse grid: a third of the positions and harmonics; teeth of their own are looked at at a third of these
    positions. What that leaves of the numbers' order among pairs, and what it costs: theory, Gears as made. */
-enum { COARSE_POSITIONS = 24, COARSE_CELLS = 10, COARSE_HARMONICS = 12, COARSE_TEETH = 8 };
+enum { COARSE_POSITIONS = 24, COARSE_HARMONICS = 12, COARSE_TEETH = 8 };
 
-/* Pairs in full: at first, evenly spread as the first points are, in each round behind, and with the rounds at most.
-   One with teeth of its own takes as long as a hundred on the coarse level, so that there are few of them, and the
-   rounds end where the intervals still have something of it in them. Where the progress stands when the coarse rows are
-   there, and in full where as many as expected are done. */
+/* Cells of a line on it. Pairs in full: at first, evenly spread as the first points are, in each round behind, and with
+   the rounds at most; pairs from which on it pays. One with teeth of its own takes eight times as long as on the coarse
+   level, so that this has more cells, few are in full, and the rounds end where the intervals still have something of
+   it in them. Where the progress stands when the coarse rows are there, and in full where as many as expected are done.
+ */
 enum { MOST_ROUNDS_FOR_LARGEST = 8 };
 static const struct levels {
-  int first, more, most;
+  int cells, first, more, most, fewest;
   double coarse_fraction, expected;
-} MESH_CYCLE = {64, 16, INT_MAX, 0.7, 160}, HUNTING_PERIOD = {24, 8, 48, 0.2, 48};
+} MESH_CYCLE = {10, 64, 16, INT_MAX, 160, 0.7, 160}, HUNTING_PERIOD = {14, 16, 8, 32, 64, 0.78, 36};
 
 /* How far the completion may leave the 95 % percentile of what decides open: its standard deviation over the value. */
 static const double WELL_KNOWN = 0.01;
@@ -40,8 +41,8 @@ bool eo_scatter_is_coarse_first(const struct eo_design *design)
 {
   const struct eo_tolerance_settings *settings = &design->tolerance;
   const struct levels *levels = levels_of(design);
-  bool teeth = settings->single_teeth, can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) &&
-                                             settings->pairs >= 2 * (levels->first + levels->more);
+  bool teeth = settings->single_teeth,
+       can = !settings->root_stress && !eo_gear_pair_is_uneven(&design->gear_pair) && settings->pairs >= levels->fewest;
   bool pays = settings->pairs >= EO_COARSE_FIRST_FROM && design->resolution.positions >= 2 * COARSE_POSITIONS;
   return can && (!teeth || ends_float(design)) &&
          (settings->method == EO_SCATTER_COARSE_FIRST || (settings->method == EO_SCATTER_AUTO && (teeth || pays)));
@@ -65,7 +66,7 @@ void eo_scatter_make_coarse(struct eo_design *coarse, const struct eo_design *de
 {
   memcpy(coarse, design, sizeof *coarse);
   at_most(&coarse->resolution.positions, COARSE_POSITIONS);
-  at_most(&coarse->resolution.cells_per_line, COARSE_CELLS);
+  at_most(&coarse->resolution.cells_per_line, levels_of(design)->cells);
   at_most(&coarse->resolution.harmonics, COARSE_HARMONICS);
   at_most(&coarse->resolution.te_harmonics, COARSE_POSITIONS / 2);
   if (!design->tolerance.single_teeth)
