@@ -31,15 +31,6 @@ __attribute__((format(printf, 7, 8))) static void tell(const struct check *check
   check->tell(check->context, &fault);
 }
 
-static bool is_word(const char *words, const char *word)
-{
-  size_t length = strlen(word);
-  for (const char *at = words; length && (at = strstr(at, word)); at += length)
-    if ((at == words || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
-      return true;
-  return false;
-}
-
 static void check_range(const struct check *check, const struct eo_rexs_rule *rule,
                         const struct eo_rexs_component *component, const struct eo_rexs_attribute *attribute,
                         double value)
@@ -73,12 +64,12 @@ static void check_value(const struct check *check, const struct eo_rexs_rule *ru
     check_number(check, rule, component, attribute);
     break;
   case EO_REXS_FLAG:
-    if (!is_word("true false", attribute->text))
+    if (!eo_rexs_is_in("true false", attribute->text))
       tell(check, "not_a_boolean", true, component, attribute, NULL, "%s is \"%.40s\"; true or false is needed.",
            attribute->id, attribute->text);
     break;
   case EO_REXS_WORD:
-    if (!is_word(rule->words, attribute->text))
+    if (!eo_rexs_is_in(rule->words, attribute->text))
       tell(check, "unknown_value", true, component, attribute, NULL, "%s is \"%.40s\"; it is one of: %s.",
            attribute->id, attribute->text, rule->words);
     break;

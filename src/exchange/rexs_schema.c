@@ -15,8 +15,7 @@ int eo_rexs_version(const char *version)
   return 0;
 }
 
-/* True when the word is one of a list with one blank between them. */
-static bool is_in(const char *list, const char *word)
+bool eo_rexs_is_in(const char *list, const char *word)
 {
   size_t length = strlen(word);
   for (const char *at = list; length && (at = strstr(at, word)); at += length)
@@ -36,7 +35,7 @@ const struct eo_rexs_rule *eo_rexs_rule_of(const char *attribute)
 
 bool eo_rexs_rule_on(const struct eo_rexs_rule *rule, const char *type)
 {
-  return is_in(rule->on, eo_rexs_type_today(type));
+  return eo_rexs_is_in(rule->on, eo_rexs_type_today(type));
 }
 
 static const char *today(const struct eo_rexs_renamed *names, const char *name)
@@ -125,7 +124,7 @@ enum eo_rexs_unit_verdict eo_rexs_unit_judge(const char *unit, const char *given
 static bool stands_in_a_role(const char *type)
 {
   for (const struct eo_rexs_relation_role *row = eo_rexs_roles; row->relation; row++)
-    if (is_in(row->types, type))
+    if (eo_rexs_is_in(row->types, type))
       return true;
   return false;
 }
@@ -142,7 +141,7 @@ enum eo_rexs_role_verdict eo_rexs_role_judge(const char *relation, const char *r
     if (strcmp(row->role, role) != 0)
       continue;
     *types = row->types;
-    if (is_in(row->types, name))
+    if (eo_rexs_is_in(row->types, name))
       return EO_REXS_ROLE_RIGHT;
     return row->others || !stands_in_a_role(name) ? EO_REXS_ROLE_OPEN : EO_REXS_ROLE_WRONG;
   }

@@ -31,6 +31,9 @@ struct eo_rexs_rule {
   bool beside;       /* says how the file is made or names a thing, so an import may leave it without a word */
 };
 
+/* True when the word is one of a list with one blank between them. */
+bool eo_rexs_is_in(const char *list, const char *word);
+
 /* 107 of "1.7", 200 of "2.0.0" and "2.0"; 0: not a version that is known. */
 int eo_rexs_version(const char *version);
 
