@@ -358,66 +358,42 @@ void eo_follow_prepare(struct eo_follow *follow, int at)
   make_courses(follow);
 }
 
-/* As far as a pair goes before nothing changes any more. */
-static double inside(const struct eo_tooth_course *course, double at)
-{
-  return fmin(fmax(at, course->at[0]), course->at[course->nodes - 1]);
-}
-
-/* What a course adds to teeth alike, with what it and the others bend each other, to first order. */
-static void add_course(const struct eo_follow *follow, int c, const struct eo_course_state *moved, const double *apart,
+/* What a course adds where others have lifted Z by so much, which brings its pair as much nearer: theory (P6). */
+static void add_course(const struct eo_follow *follow, const struct eo_tooth_course *course, double at, double lift,
                        bool loads, struct eo_course_state *state)
 {
-  const struct eo_follow_place *place = &follow->place;
-  size_t cycles = (size_t)follow->cycles;
-  double lead = apart[(size_t)place->leader * cycles];
-  state->approach += moved->approach - place->alike.approach;
-  state->tangent += moved->tangent - place->alike.tangent;
-  for (int other = 0; other < place->courses && place->courses > 1; other++) {
-    int k = place->course[other].mover;
-    if (other != c && !(place->crossed && c + other == 1))
-      state->approach += (moved->share[k] - place->alike.share[k]) *
-                         inside(&place->course[other], apart[(size_t)k * cycles] - lead) / 2;
+  struct eo_course_state from, to;
+  int pairs = loads ? follow->place.pairs : 0;
+  eo_tooth_course_find(course, pairs, -lift, loads, &from);
+  eo_tooth_course_find(course, pairs, at - lift, loads, &to);
+  state->approach += to.approach - from.approach;
+  state->tangent += to.tangent - from.tangent;
+  for (int k = 0; k < pairs; k++) {
+    state->load[k] += to.load[k] - from.load[k];
+    state->square[k] += to.square[k] - from.square[k];
   }
-  for (int k = 0; k < place->pairs && loads; k++) {
-    state->load[k] += moved->load[k] - place->alike.load[k];
-    state->square[k] += moved->square[k] - place->alike.square[k];
-  }
-}
-
-/* Where one pair alone goes a course of its own, which is so mostly. */
-static void find_one(const struct eo_follow_place *place, double at, double lead, struct eo_course_state *state)
-{
-  double approach, tangent;
-  eo_tooth_course_level(&place->course[0], at, &approach, &tangent);
-  state->approach = place->alike.approach + lead + (approach - place->alike.approach); /* theory (P6) */
-  state->tangent = place->alike.tangent + (tangent - place->alike.tangent);
 }
 
 void eo_follow_find(const struct eo_follow *follow, int cycle, bool loads, struct eo_course_state *state)
 {
   const struct eo_follow_place *place = &follow->place;
+  const struct eo_tooth_course *first = &place->course[0];
   const double *apart = follow->apart + (size_t)line_of(follow, 0) * (size_t)follow->cycles + cycle;
   size_t cycles = (size_t)follow->cycles;
-  double lead = apart[(size_t)place->leader * cycles];
-  int pairs = place->courses > 1 ? place->pairs : 0;
-  if (place->courses == 1 && !loads) {
-    find_one(place, apart[(size_t)place->course[0].mover * cycles] - lead, lead, state);
-    return;
-  }
-  eo_course_state_copy(state, &place->alike, loads ? place->pairs : pairs, loads);
-  state->approach += lead; /* theory (P6) */
-  for (int c = 0; c < place->courses; c++) {
-    const struct eo_tooth_course *course = &place->course[c];
-    double at = apart[(size_t)course->mover * cycles] - lead;
-    struct eo_course_state moved;
-    if (c == 1 && place->crossed)
-      continue;
-    if (c == 0 && place->crossed)
-      eo_tooth_course_cross(course, place->across, pairs, at, apart[(size_t)place->course[1].mover * cycles] - lead,
-                            loads, &moved);
-    else
-      eo_tooth_course_find(course, pairs, at, loads, &moved);
-    add_course(follow, c, &moved, apart, loads, state);
-  }
+  double lead = apart[(size_t)place->leader * cycles],
+         at = place->courses > 0 ? apart[(size_t)first->mover * cycles] - lead : 0;
+  int pairs = loads || place->crossed ? place->pairs : 0;
+  if (place->courses == 0)
+    eo_course_state_copy(state, &place->alike, pairs, loads);
+  else if (place->crossed)
+    eo_tooth_course_cross(first, place->across, pairs, at, apart[(size_t)place->course[1].mover * cycles] - lead, loads,
+                          state);
+  else if (loads)
+    eo_tooth_course_find(first, pairs, at, loads, state);
+  else
+    eo_tooth_course_level(first, at, &state->approach, &state->tangent);
+  for (int c = place->crossed ? 2 : 1; c < place->courses; c++)
+    add_course(follow, &place->course[c], apart[(size_t)place->course[c].mover * cycles] - lead,
+               state->approach - place->alike.approach, loads, state);
+  state->approach += lead;
 }

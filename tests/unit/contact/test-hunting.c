@@ -460,10 +460,10 @@ static void test_followed_drawn(void)
   double swing = swing_of(&full), far = sqrt(mean_square(&rough.period, &full)),
          near = sqrt(mean_square(&fine.period, &full)),
          worst = apart(full.instants, fine.period.approach[0], full.approach[0], 0);
-  ok(far < 0.00125 * swing, "three solutions of each pair: %.1f nm off a swing of %.2f um (root mean square)",
+  ok(far < 0.00075 * swing, "three solutions of each pair: %.1f nm off a swing of %.2f um (root mean square)",
      1e9 * far, 1e6 * swing);
   ok(near < 3.5e-10 && worst < 4e-9, "solutions within 2 nm: %.2f nm off, %.1f nm at most", 1e9 * near, 1e9 * worst);
-  ok(stiffness_off(&fine.period, &full) < 0.006 && stiffness_off(&rough.period, &full) < 0.035,
+  ok(stiffness_off(&fine.period, &full) < 0.006 && stiffness_off(&rough.period, &full) < 0.026,
      "the stiffness is %.3f %% off, of three solutions %.3f %%", 100 * stiffness_off(&fine.period, &full),
      100 * stiffness_off(&rough.period, &full));
   close_to(swing_of(&fine.period) / swing, 1, 5e-4, "the swing over the period");
