@@ -311,6 +311,6 @@ const struct eo_command eo_command_tolerance = {
     "full.\n"
     "--keep FILE keeps every pair as it is computed: the same command goes on from there. All cores work unless "
     "--threads says\n"
-    "otherwise; the numbers do not depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n",
+    "otherwise; the numbers do not depend on it. --work N works on that job of a server's queue.\n\n" EO_APP_CREW_HELP
+        EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};
