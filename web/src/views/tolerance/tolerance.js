@@ -260,7 +260,10 @@ class ToleranceView {
 
   #halt() {
     this.#stopped = true;
-    if (this.#job) post(`jobs/${this.#job}/cancel`, {}).catch(() => {});
+    if (this.#job)
+      post(`jobs/${this.#job}/cancel`, {})
+        .then(answer => this.app.jobs.put(answer))
+        .catch(error => this.#say(error.message));
     else {
       this.lane.overtake({ path: 'tolerance', body: { design: JSON.parse(this.#of), pairs: 1 } });
       this.#end(this.#result ? `Stopped at ${this.#result.pairs} pairs.` : 'Stopped.');
