@@ -415,6 +415,17 @@ void eo_tolerance_write(const struct eo_tolerance_report *report, const struct e
   json_decref(document);
 }
 
+/* Few pairs leave an end open. */
+static void put_interval(char *words, size_t size, double low, double high)
+{
+  char first[32] = "open", last[32] = "open";
+  if (isfinite(low))
+    snprintf(first, sizeof first, "%.4g", low);
+  if (isfinite(high))
+    snprintf(last, sizeof last, "%.4g", high);
+  snprintf(words, size, "%s .. %s", first, last);
+}
+
 static void print_output(const struct eo_tolerance_report *report, const struct eo_tolerance_case *tolerance_case,
                          struct eo_text_table *sheet)
 {
@@ -429,7 +440,7 @@ static void print_output(const struct eo_tolerance_report *report, const struct 
   eo_text_table_number(sheet, output_report->summary.deviation, NULL, 3);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
     eo_text_table_number(sheet, output_report->percentile[shown[i]].value, NULL, 4);
-  snprintf(words, sizeof words, "%.4g .. %.4g", output_report->percentile[7].low, output_report->percentile[7].high);
+  put_interval(words, sizeof words, output_report->percentile[7].low, output_report->percentile[7].high);
   eo_text_table_string(sheet, words);
   eo_text_table_number(sheet, output_report->r2, NULL, 2);
   eo_text_table_number(sheet, output_report->q2, NULL, 2);

@@ -129,6 +129,9 @@ head -n 3 "$folder/teeth" >"$folder/cut"
 tolerance --pairs 4 --json --threads 3 --keep "$folder/cut"
 same "$folder/out" "$folder/teeth.json" "single teeth: the same bytes with 3 threads after a stop"
 write_design "{$toothed}, \"pitch\": {\"positions_per_cycle\": 4}"
+tolerance --pairs 4 --single-teeth
+grep -q '[0-9] \.\. open' "$folder/out" && ! grep -qw nan "$folder/out"
+result $? "an interval that few pairs leave open says so"
 tolerance --pairs 4 --json --single-teeth
 same "$folder/out" "$folder/teeth.json" "and asked for by the option"
 "$EASEOFF" analyze "$folder/toothed.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
