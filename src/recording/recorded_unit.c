@@ -153,9 +153,11 @@ static bool fold(const char *text, size_t length, char *unit, size_t size)
 static bool is_spelling(const char *unit, size_t length, const char *spelling, size_t n)
 {
   bool exact = false;
+  if (n != length)
+    return false;
   for (size_t i = 0; i < n; i++)
     exact = exact || isupper((unsigned char)spelling[i]);
-  return n == length && (exact ? !memcmp(unit, spelling, n) : !strncasecmp(unit, spelling, n));
+  return exact ? !memcmp(unit, spelling, n) : !strncasecmp(unit, spelling, n);
 }
 
 enum eo_quantity eo_unit_find(const char *text, double *factor)
