@@ -141,8 +141,8 @@ static void find_between(const struct eo_course_state *from, const struct eo_cou
 /* Keeps a place between the outer nodes; returns by how much it is beyond them. */
 static double bring_inside(const struct eo_tooth_course *course, double *at)
 {
-  double first = course->at[0], last = course->at[course->nodes - 1], asked = *at;
-  *at = asked < first ? first : asked > last ? last : asked;
+  double asked = *at;
+  *at = bounded(asked, course->at[0], course->at[course->nodes - 1]);
   return asked - *at;
 }
 
@@ -161,42 +161,38 @@ void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, doubl
   state->approach += beyond * course->state[t > 0.5 ? i + 1 : i].share[course->mover];
 }
 
-void eo_tooth_course_level(const struct eo_tooth_course *course, double at, double *approach, double *tangent)
+/* From where its first node was solved: all that is not the pair stands `beyond` further away from it, which it takes
+   with it as it carries alone. */
+static void find_alone(const struct eo_tooth_course *across, int pairs, double beyond, double other, bool loads,
+                       struct eo_course_state *state)
 {
-  double beyond = bring_inside(course, &at);
-  const struct eo_course_state *from = &course->state[stretch_of(course, at)], *to = from + 1;
-  int i = (int)(from - course->state), mover = course->mover;
-  *approach = from->approach + beyond * from->share[course->mover];
-  *tangent = from->tangent;
-  if (course->nodes == 1)
-    return;
-  double width = course->at[i + 1] - course->at[i], t = (at - course->at[i]) / width, share;
-  *approach = approach_between(from, to, mover, width, t, &share) + beyond * (t > 0.5 ? to : from)->share[mover];
-  *tangent = tangent_between(from, to, mover, t, share);
+  eo_tooth_course_find(across, pairs, other - beyond, loads, state);
+  state->approach += beyond;
 }
 
 void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,
                            double at, double other, bool loads, struct eo_course_state *state)
 {
-  int last = course->nodes - 1;
-  double end = course->at[last], beyond = 0;
+  enum { STEPS = 2 }; /* to where another one touches, which what lowers Z keeps from it */
+  int i = stretch_of(course, at), last = course->nodes - 1;
   struct eo_course_state from, to;
-  eo_tooth_course_find(&across[last], pairs, other, loads, &to);
-  if (course->state[last].load[course->mover] == 0)
+  eo_tooth_course_find(&across[i + 1], pairs, other, loads, &to);
+  double begin = course->at[i], end = course->at[i + 1];
+  if (i + 1 == last && is_away(&course->state[last], course->mover))
     end += to.approach - course->state[last].approach; /* what lifts the others brings it back into contact */
-  if (at >= end || last == 0) {
+  if (i == 0) {
+    find_alone(&across[0], pairs, begin - course->end[0], other, loads, &from);
+    bool alone = is_alone(&course->state[0], course->mover);
+    for (int step = 0; step < STEPS && alone && !is_away(&from, course->mover); step++) {
+      begin += (course->state[0].approach - from.approach) / from.share[course->mover];
+      find_alone(&across[0], pairs, begin - course->end[0], other, loads, &from);
+    }
+  } else
+    eo_tooth_course_find(&across[i], pairs, other, loads, &from);
+  if (at >= end)
     *state = to;
-    return;
-  }
-  if (at < course->at[0]) {
-    beyond = at - course->at[0];
-    at = course->at[0];
-  }
-  int i = stretch_of(course, at);
-  double width = (i + 1 == last ? end : course->at[i + 1]) - course->at[i], t = (at - course->at[i]) / width;
-  eo_tooth_course_find(&across[i], pairs, other, loads, &from);
-  if (i + 1 < last)
-    eo_tooth_course_find(&across[i + 1], pairs, other, loads, &to);
-  find_between(&from, &to, course->mover, pairs, width, t, loads, state);
-  state->approach += beyond * from.share[course->mover];
+  else if (i == 0 && at <= begin)
+    find_alone(&across[0], pairs, at - course->end[0], other, loads, state);
+  else
+    find_between(&from, &to, course->mover, pairs, end - begin, (at - begin) / (end - begin), loads, state);
 }

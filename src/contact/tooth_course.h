@@ -22,6 +22,7 @@ struct eo_tooth_course {
   int mover; /* pair that is moved */
   int nodes;
   double at[EO_COURSE_NODES]; /* m, ascending */
+  double end[2];              /* m, the outer nodes' solutions: between there and the nodes nothing changes but Z */
   struct eo_course_state state[EO_COURSE_NODES];
 };
 
@@ -31,16 +32,12 @@ void eo_course_state_copy(struct eo_course_state *state, const struct eo_course_
 /* Makes room for a node and returns its state; NULL: there is none left. */
 struct eo_course_state *eo_tooth_course_add(struct eo_tooth_course *course, double at);
 
-/* All of it there, of so many pairs: approach and tangent by cubics, the others straight between the nodes. loads: with
-   load and square. */
+/* All of it there, of so many pairs: between the nodes as theory (P8) and (P9) say. loads: with load and square. */
 void eo_tooth_course_find(const struct eo_tooth_course *course, int pairs, double at, bool loads,
                           struct eo_course_state *state);
 
-/* Of this approach and tangent alone. */
-void eo_tooth_course_level(const struct eo_tooth_course *course, double at, double *approach, double *tangent);
-
-/* All of it where another pair moves as well: across[course->nodes] are the courses of that one from the nodes of this.
- */
+/* All of it where another pair moves as well: across[course->nodes] are the courses of that one from the nodes of this,
+   of the outer ones from their solutions. */
 void eo_tooth_course_cross(const struct eo_tooth_course *course, const struct eo_tooth_course *across, int pairs,
                            double at, double other, bool loads, struct eo_course_state *state);
 

@@ -268,16 +268,21 @@ static void solve_end(struct eo_follow *follow, struct eo_tooth_course *course, 
   eo_trail_add(follow, trail);
 }
 
-/* Puts what an outer node says where that begins: on the way there nothing changes but that Z moves with a pair which
+/* A pair that carries alone or nothing is moved while it does: nothing changes but that Z goes with the one that
    carries alone. */
-static void put_touch(struct eo_tooth_course *course, int node, double at)
+static void move_state(struct eo_course_state *state, int mover, double by)
 {
-  struct eo_course_state *state = &course->state[node];
-  double by = at - course->at[node], rise = state->share[course->mover] * by;
-  course->at[node] = at;
+  double rise = state->share[mover] * by;
   state->approach += rise;
   for (int k = 0; k < EO_COURSE_PAIRS; k++)
-    state->reach[k] += rise - (k == course->mover ? by : 0);
+    state->reach[k] += rise - (k == mover ? by : 0);
+}
+
+/* Puts what an outer node says where that begins. */
+static void put_touch(struct eo_tooth_course *course, int node, double at)
+{
+  move_state(&course->state[node], course->mover, at - course->at[node]);
+  course->at[node] = at;
 }
 
 /* Solves where a pair is nearest, farthest, and on the way as often as it takes; from a state in which it stands as it
@@ -290,6 +295,7 @@ static void make_course(struct eo_follow *follow, struct eo_tooth_course *course
   course->mover = k;
   course->nodes = 0;
   *eo_tooth_course_add(course, 0) = *from;
+  memcpy(course->end, range, sizeof course->end);
   if (is_reached(k, from, range)) {
     put_touch(course, 0, middle);
     for (int i = 0; i < (middle < 0 ? 1 : 2); i++) { /* nothing changes behind where it touches */
@@ -306,15 +312,18 @@ static void make_course(struct eo_follow *follow, struct eo_tooth_course *course
   move_pair(follow, k, 0);
 }
 
-/* Of the second pair, with the first where its nodes are, but where that carries nothing as far as it goes, so that it
-   does not touch while the second one moves. */
-static void make_across(struct eo_follow *follow, const double first_range[2], const double range[2])
+/* Of the second pair, with the first where its nodes are, but the outer ones where they were solved, so that what does
+   not carry there does not touch while the second one moves. */
+static void make_across(struct eo_follow *follow, const double range[2])
 {
   struct eo_follow_place *place = &follow->place;
   const struct eo_tooth_course *first = &place->course[0];
   for (int i = 0; i < first->nodes; i++) {
-    move_pair(follow, first->mover, i < first->nodes - 1 ? first->at[i] : fmax(first->at[i], first_range[1]));
-    make_course(follow, &place->across[i], place->course[1].mover, range, &first->state[i]);
+    double at = i == 0 ? first->end[0] : i == first->nodes - 1 ? first->end[1] : first->at[i];
+    struct eo_course_state from = first->state[i];
+    move_state(&from, first->mover, at - first->at[i]);
+    move_pair(follow, first->mover, at);
+    make_course(follow, &place->across[i], place->course[1].mover, range, &from);
   }
   move_pair(follow, first->mover, 0);
 }
@@ -342,7 +351,7 @@ static void make_courses(struct eo_follow *follow)
     else
       place->course[i] = (struct eo_tooth_course){.mover = mover[i]};
   if (place->crossed)
-    make_across(follow, range[mover[0]], range[mover[1]]);
+    make_across(follow, range[mover[1]]);
 }
 
 void eo_follow_prepare(struct eo_follow *follow, int at)
@@ -388,10 +397,8 @@ void eo_follow_find(const struct eo_follow *follow, int cycle, bool loads, struc
   else if (place->crossed)
     eo_tooth_course_cross(first, place->across, pairs, at, apart[(size_t)place->course[1].mover * cycles] - lead, loads,
                           state);
-  else if (loads)
-    eo_tooth_course_find(first, pairs, at, loads, state);
   else
-    eo_tooth_course_level(first, at, &state->approach, &state->tangent);
+    eo_tooth_course_find(first, pairs, at, loads, state);
   for (int c = place->crossed ? 2 : 1; c < place->courses; c++)
     add_course(follow, &place->course[c], apart[(size_t)place->course[c].mover * cycles] - lead,
                state->approach - place->alike.approach, loads, state);

@@ -474,6 +474,28 @@ static void test_followed_drawn(void)
   eo_hunting_done(&full);
 }
 
+/* Teeth so far apart that either pair carries alone in some cycles. */
+static void test_followed_alone(void)
+{
+  draw_tables(30e-6, 15e-6);
+  struct eo_hunting_input input = plain_input(1);
+  put_tables(&input);
+  struct eo_hunting full = run(&input);
+  struct followed rough = follow(&input, INFINITY, 0), fine = follow(&input, 2e-9, 0);
+  double swing = swing_of(&full), far = sqrt(mean_square(&rough.period, &full)),
+         near = sqrt(mean_square(&fine.period, &full));
+  ok(far < 0.003 * swing && near < 6e-9, "teeth that carry alone: %.1f nm off a swing of %.1f um, %.2f nm in full",
+     1e9 * far, 1e6 * swing, 1e9 * near);
+  ok(stiffness_off(&fine.period, &full) < 0.015 && stiffness_off(&rough.period, &full) < 0.08,
+     "the stiffness is %.3f %% off, of three solutions %.3f %%", 100 * stiffness_off(&fine.period, &full),
+     100 * stiffness_off(&rough.period, &full));
+  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 1e-3, "the largest load of a tooth");
+  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-3, "its largest pressure");
+  followed_done(&rough);
+  followed_done(&fine);
+  eo_hunting_done(&full);
+}
+
 /* The contact with teeth alike is known: where that begins changes no more than what a solution may be off, and the
    places are as they are one after the other. */
 static void test_followed_known(void)
@@ -544,6 +566,7 @@ int main(void)
   test_fewer_positions();
   test_followed_alike();
   test_followed_drawn();
+  test_followed_alone();
   test_followed_known();
   test_followed_forms();
   close_bench();
