@@ -46,6 +46,10 @@ await chapter('stopping', async () => {
   await page.getByRole('button', { name: 'Stop' }).click();
   await page.getByText('what was drawn is kept').waitFor({ timeout: WAIT });
   ok((await jobs())[0].state === 'cancelled', 'and is stopped');
+  const [{ id }] = (await (await fetch(new URL('api/v1/jobs?kind=prepare', server.address))).json()).items;
+  const other = await fetch(new URL(`api/v1/jobs/${id}/clone`, server.address), { method: 'POST' });
+  await page.waitForTimeout(1000); // it reaches the page and ends
+  ok(other.ok && (await state.textContent()).includes('is kept'), 'which is still said when another job changes');
 });
 
 ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);

@@ -40,6 +40,8 @@ class ToleranceView {
   #asked = 0;
   /** The job that draws all pairs; 0: none. */
   #job = 0;
+  /** The newest job of the service when something ended here; 0: nothing has. */
+  #ended = 0;
   #stopped = false;
   /** The design, as text, that the figures belong to; empty: one that was drawn before this page was opened. */
   #of = '';
@@ -270,12 +272,15 @@ class ToleranceView {
     }
   }
 
-  /** The newest job, when this page has drawn nothing yet: its pairs, or how far it is. */
+  /**
+   * The newest job, when this page has drawn nothing yet: its pairs, or how far it is. An older one would take the place
+   * of how the last one ended.
+   */
   #recall() {
     const [newest] = [...this.app.jobs.all.values()]
       .filter(job => job.kind === 'tolerance' && (ACTIVE.includes(job.state) || job.state === 'done'))
       .sort((a, b) => b.id - a.id);
-    if (!newest || this.#result || this.#asked || this.#job) return;
+    if (!newest || newest.id <= this.#ended || this.#result || this.#asked || this.#job) return;
     this.#job = newest.id;
     this.#lock();
   }
@@ -283,6 +288,7 @@ class ToleranceView {
   /** @param {string} text */
   #end(text) {
     this.#asked = 0;
+    this.#ended = Math.max(0, ...this.app.jobs.all.keys());
     this.#sayEmpty();
     this.start.disabled = false;
     this.stop.hidden = true;
