@@ -13,31 +13,10 @@
 
 /* XML: */
 
-static void put_escaped(struct eo_text *text, const char *string)
-{
-  for (const char *c = string; *c; c++)
-    switch (*c) {
-    case '&':
-      eo_text_add(text, "&amp;");
-      break;
-    case '<':
-      eo_text_add(text, "&lt;");
-      break;
-    case '>':
-      eo_text_add(text, "&gt;");
-      break;
-    case '"':
-      eo_text_add(text, "&quot;");
-      break;
-    default:
-      eo_text_add_bytes(text, (unsigned char)*c < 0x20 ? " " : c, 1);
-    }
-}
-
 static void put_member(struct eo_text *text, const char *name, const char *value)
 {
   eo_text_print(text, " %s=\"", name);
-  put_escaped(text, value);
+  eo_text_add_escaped(text, value);
   eo_text_add(text, "\"");
 }
 
@@ -72,7 +51,7 @@ static void write_attribute(const struct eo_rexs_attribute *attribute, const cha
   put_member(text, "unit", attribute->unit);
   eo_text_add(text, ">");
   if (attribute->shape == EO_REXS_SCALAR)
-    put_escaped(text, attribute->text);
+    eo_text_add_escaped(text, attribute->text);
   else {
     eo_text_add(text, "<array>");
     for (int i = 0; i < attribute->count; i++) {

@@ -204,15 +204,6 @@ static void write_rows(const json_t *const *documents, int count, struct eo_text
 
 /* Workbooks (ECMA-376): */
 
-static void put_escaped(struct eo_text *text, const char *string)
-{
-  for (const char *c = string; *c; c++)
-    if (*c == '&' || *c == '<' || *c == '>')
-      eo_text_add(text, *c == '&' ? "&amp;" : *c == '<' ? "&lt;" : "&gt;");
-    else
-      eo_text_add_bytes(text, (unsigned char)*c < 0x20 ? " " : c, 1);
-}
-
 static void write_sheet_row(void *context, const char *const cell[COLUMNS], bool number)
 {
   struct eo_text *text = context;
@@ -221,7 +212,7 @@ static void write_sheet_row(void *context, const char *const cell[COLUMNS], bool
     char *end;
     bool is_number = number && (i == PINION || i == GEAR) && *cell[i] && (strtod(cell[i], &end), !*end);
     eo_text_add(text, is_number ? "<c><v>" : "<c t=\"inlineStr\"><is><t>");
-    put_escaped(text, cell[i]);
+    eo_text_add_escaped(text, cell[i]);
     eo_text_add(text, is_number ? "</v></c>" : "</t></is></c>");
   }
   eo_text_add(text, "</row>");

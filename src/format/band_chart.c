@@ -85,11 +85,11 @@ static void draw_x_axis(const struct frame *frame)
     eo_text_add(text, "\n");
   }
   eo_text_print(text, "<text x=\"8\" y=\"%d\">", bottom + 16);
-  eo_plot_escape(text, chart->x_label);
+  eo_text_add_escaped(text, chart->x_label);
   eo_text_add(text, "</text>\n");
   for (int i = 0; i < chart->scales; i++) {
     eo_text_print(text, "<text x=\"8\" y=\"%d\" fill=\"#555\">", bottom + 16 + SCALE * (i + 1));
-    eo_plot_escape(text, chart->scale[i].label);
+    eo_text_add_escaped(text, chart->scale[i].label);
     eo_text_add(text, "</text>\n");
   }
 }
@@ -106,7 +106,7 @@ static void draw_y_axis(const struct frame *frame)
   }
   eo_text_print(text, "<text transform=\"translate(%d %d) rotate(-90)\" text-anchor=\"middle\">", LEFT - 44,
                 TOP + FRAME / 2);
-  eo_plot_escape(text, frame->chart->y_label);
+  eo_text_add_escaped(text, frame->chart->y_label);
   eo_text_add(text, "</text>\n");
 }
 
@@ -156,7 +156,7 @@ static void draw_range(const struct frame *frame)
                 TOP - 8, TOP - 8);
   eo_text_print(frame->text, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#b04a00\">", (from + to) / 2,
                 TOP - 13);
-  eo_plot_escape(frame->text, chart->range_label);
+  eo_text_add_escaped(frame->text, chart->range_label);
   eo_text_add(frame->text, "</text>\n");
 }
 
@@ -173,7 +173,7 @@ static void draw_marks(const struct frame *frame)
                   TOP, TOP + FRAME);
     eo_text_print(frame->text, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"11\" fill=\"#333\">",
                   at > WIDTH - RIGHT - 14 ? at - 4 : at + 11, TOP + FRAME - 6);
-    eo_plot_escape(frame->text, chart->mark[i].label);
+    eo_text_add_escaped(frame->text, chart->mark[i].label);
     eo_text_add(frame->text, "</text>\n");
   }
 }
@@ -185,7 +185,7 @@ static void draw_sides(const struct frame *frame)
     if (side[i]) {
       eo_text_print(frame->text, "<text x=\"%d\" y=\"%d\" font-style=\"italic\" fill=\"#777\">", 8,
                     i ? TOP + FRAME - 6 : TOP + 12);
-      eo_plot_escape(frame->text, side[i]);
+      eo_text_add_escaped(frame->text, side[i]);
       eo_text_add(frame->text, "</text>\n");
     }
 }
@@ -197,7 +197,7 @@ void eo_band_chart_svg(const struct eo_band_chart *chart, struct eo_text *text)
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
                 "font-family=\"sans-serif\" font-size=\"12\">\n<text x=\"8\" y=\"18\" font-weight=\"bold\">",
                 WIDTH, frame.height);
-  eo_plot_escape(text, chart->title);
+  eo_text_add_escaped(text, chart->title);
   eo_text_add(text, "</text>\n");
   draw_x_axis(&frame);
   draw_y_axis(&frame);

@@ -21,27 +21,6 @@ struct frame {
   struct eo_text *text;
 };
 
-void eo_plot_escape(struct eo_text *text, const char *string)
-{
-  for (; *string; string++)
-    switch (*string) {
-    case '&':
-      eo_text_add(text, "&amp;");
-      break;
-    case '<':
-      eo_text_add(text, "&lt;");
-      break;
-    case '>':
-      eo_text_add(text, "&gt;");
-      break;
-    case '"':
-      eo_text_add(text, "&quot;");
-      break;
-    default:
-      eo_text_add_bytes(text, string, 1);
-    }
-}
-
 /* Steps of 1, 2 or 5 times a power of ten, about six of them. */
 static struct axis round_axis(double low, double high)
 {
@@ -115,13 +94,13 @@ static void draw_labels(const struct frame *frame)
 {
   struct eo_text *text = frame->text;
   eo_text_print(text, "<text class=\"title\" x=\"%d\" y=\"18\" font-weight=\"bold\">", LEFT);
-  eo_plot_escape(text, frame->plot->title);
+  eo_text_add_escaped(text, frame->plot->title);
   eo_text_print(text, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">", (LEFT + WIDTH - RIGHT) / 2,
                 HEIGHT - BOTTOM + 32);
-  eo_plot_escape(text, frame->plot->x_label);
+  eo_text_add_escaped(text, frame->plot->x_label);
   eo_text_print(text, "</text>\n<text transform=\"translate(14 %d) rotate(-90)\" text-anchor=\"middle\">",
                 (TOP + HEIGHT - BOTTOM) / 2);
-  eo_plot_escape(text, frame->plot->y_label);
+  eo_text_add_escaped(text, frame->plot->y_label);
   eo_text_add(text, "</text>\n");
 }
 
@@ -171,7 +150,7 @@ static void draw_legend(const struct frame *frame)
                     "stroke-width=\"1.6\" stroke-dasharray=\"%s\"/>",
                     i, x, x + 20, y - 4, y - 4, colours[i], dashes[i]);
     eo_text_print(frame->text, "<text x=\"%.1f\" y=\"%d\">", x + 24, y);
-    eo_plot_escape(frame->text, name);
+    eo_text_add_escaped(frame->text, name);
     eo_text_add(frame->text, "</text>\n");
     x += width;
   }

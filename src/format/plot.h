@@ -25,7 +25,4 @@ struct eo_plot {
 /* Appends one <svg> element. */
 void eo_plot_svg(const struct eo_plot *plot, struct eo_text *text);
 
-/* Appends text with &, <, > and " escaped, for HTML and SVG. */
-void eo_plot_escape(struct eo_text *text, const char *string);
-
 #endif

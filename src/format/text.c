@@ -53,6 +53,31 @@ void eo_text_add(struct eo_text *text, const char *string)
   eo_text_add_bytes(text, string, strlen(string));
 }
 
+static const char *entity(char c)
+{
+  switch (c) {
+  case '&':
+    return "&amp;";
+  case '<':
+    return "&lt;";
+  case '>':
+    return "&gt;";
+  case '"':
+    return "&quot;";
+  default:
+    return NULL;
+  }
+}
+
+void eo_text_add_escaped(struct eo_text *text, const char *string)
+{
+  for (; *string; string++) {
+    const char *instead = entity(*string);
+    bool control = (unsigned char)*string < ' ' && *string != '\t' && *string != '\n';
+    eo_text_add_bytes(text, instead ? instead : control ? " " : string, instead ? strlen(instead) : 1);
+  }
+}
+
 void eo_text_print(struct eo_text *text, const char *format, ...)
 {
   va_list arguments, again;

@@ -22,6 +22,9 @@ void eo_text_add(struct eo_text *text, const char *string);
 void eo_text_add_bytes(struct eo_text *text, const void *data, size_t size);
 /* Where `more` bytes and a NUL may be written, to be counted in size by who writes them; NULL: failed. */
 char *eo_text_room(struct eo_text *text, size_t more);
+/* As content or attribute of XML and HTML: the characters they keep for themselves as entities, control characters but
+   tab and line feed as blanks. */
+void eo_text_add_escaped(struct eo_text *text, const char *string);
 void eo_text_print(struct eo_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void eo_text_done(struct eo_text *text);
 

@@ -195,7 +195,7 @@ static void draw_map(const struct map *map, const struct eo_page *page)
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
                 "font-family=\"sans-serif\" font-size=\"12\">\n<text x=\"8\" y=\"18\" font-weight=\"bold\">",
                 WIDTH, HEIGHT);
-  eo_plot_escape(page->text, map->title);
+  eo_text_add_escaped(page->text, map->title);
   eo_text_add(page->text, "</text>\n");
   for (int end = 0; end < ends; end++) {
     double x = LEFT + end * (width + GAP);

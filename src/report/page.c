@@ -25,7 +25,7 @@ void eo_page_begin(const struct eo_page *page, const char *title)
 {
   eo_text_add(page->text, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
                           "<meta name=\"viewport\" content=\"width=device-width\"><title>");
-  eo_plot_escape(page->text, title);
+  eo_text_add_escaped(page->text, title);
   eo_text_print(page->text, "</title><style>%s</style></head><body>\n", style);
 }
 
@@ -64,7 +64,7 @@ void eo_page_say(const struct eo_page *page, const char *sentence)
   if (page->inches)
     eo_inch_sentence(&spelt, sentence);
   page->text->failed = page->text->failed || spelt.failed;
-  eo_plot_escape(page->text, spelt.data ? spelt.data : sentence);
+  eo_text_add_escaped(page->text, spelt.data ? spelt.data : sentence);
   eo_text_done(&spelt);
 }
 
@@ -100,7 +100,7 @@ void eo_page_value(const struct eo_page *page, const json_t *value)
 {
   switch (value ? json_typeof(value) : JSON_NULL) {
   case JSON_STRING:
-    eo_plot_escape(page->text, json_string_value(value));
+    eo_text_add_escaped(page->text, json_string_value(value));
     break;
   case JSON_INTEGER:
   case JSON_REAL:

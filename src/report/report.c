@@ -24,9 +24,9 @@ static void put_identity(const json_t *result, const struct eo_page *page)
 {
   const char *name = find_text(result, "design/name");
   eo_text_add(page->text, "<h1>");
-  eo_plot_escape(page->text, *name ? name : "A gear pair without a name");
+  eo_text_add_escaped(page->text, *name ? name : "A gear pair without a name");
   eo_text_add(page->text, "</h1>\n<p>Report of load capacity, contact and flanks, made by ");
-  eo_plot_escape(page->text, find_text(result, "program"));
+  eo_text_add_escaped(page->text, find_text(result, "program"));
   eo_text_print(page->text,
                 "</p>\n<p class=\"hash\">design %s<br>evaluation %s</p>\n"
                 "<p>The design's hash is the SHA-256 of its canonical document (keys sorted, no spaces): the same hash "
@@ -45,7 +45,7 @@ static void put_verdict(const json_t *result, const struct eo_page *page)
     eo_text_add(page->text, "<p class=\"no\">A safety does not reach its minimum.</p>\n");
   else {
     eo_text_add(page->text, "<p class=\"no\">Not rated: ");
-    eo_plot_escape(page->text, find_text(rating, "reason"));
+    eo_text_add_escaped(page->text, find_text(rating, "reason"));
     eo_text_add(page->text, "</p>\n");
   }
   eo_sheet_outline(page, eo_sheet_part(outline, "verdict"), json_object_get(rating, "verdict"), 3, NULL);

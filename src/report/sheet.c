@@ -57,7 +57,7 @@ static void put_head(const struct eo_page *page, const struct columns *columns)
   eo_text_add(page->text, "<table><tr><th>quantity</th><th>key</th>");
   for (int i = 0; i < columns->count; i++) {
     eo_text_add(page->text, "<th class=\"n\">");
-    eo_plot_escape(page->text, columns->name[i]);
+    eo_text_add_escaped(page->text, columns->name[i]);
     eo_text_add(page->text, "</th>");
   }
   eo_text_add(page->text, "<th>unit</th></tr>\n");

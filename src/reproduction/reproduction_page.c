@@ -235,7 +235,7 @@ static void write_table(const struct eo_text_table *sheet, struct eo_text *text)
                       : cell->number                  ? "<td>"
                       : strcmp(cell->text, "no") == 0 ? "<td class=\"text no\">"
                                                       : "<td class=\"text\">");
-    eo_plot_escape(text, cell->text);
+    eo_text_add_escaped(text, cell->text);
     eo_text_add(text, head ? "</th>" : "</td>");
   }
   eo_text_add(text, "</tr>\n</table></div>\n");
@@ -289,7 +289,7 @@ static void write_list(const json_t *items, struct eo_text *text)
   json_array_foreach((json_t *)items, i, item)
   {
     eo_text_add(text, "<li>");
-    eo_plot_escape(text, json_string_value(item) ? json_string_value(item) : "");
+    eo_text_add_escaped(text, json_string_value(item) ? json_string_value(item) : "");
     eo_text_add(text, "</li>\n");
   }
   eo_text_add(text, "</ul>\n");
@@ -327,7 +327,7 @@ void eo_reproduction_page(const json_t *document, struct eo_text *text)
                 "<title>The paper and ours</title><link rel=\"icon\" href=\"data:,\"><style>%s</style></head><body>\n",
                 style);
   eo_text_add(text, "<h1>Optimum microgeometry modifications of herringbone gear, reproduced</h1>\n<p>");
-  eo_plot_escape(text, find_text(document, "program"));
+  eo_text_add_escaped(text, find_text(document, "program"));
   eo_text_add(text, "; the paper: doi.org/10.21595/jve.2016.17179. ");
   write_verdict(document, text);
   eo_text_print(text, ".%s</p>\n",

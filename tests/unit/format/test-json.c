@@ -268,6 +268,11 @@ static void test_text(void)
   ok(strcmp(clean, "0123456789...") == 0, "no character is cut in two: %s", clean);
   eo_text_clean(clean, sizeof clean, "012345678901234");
   ok(strcmp(clean, "012345678901234") == 0, "what fits stays");
+  struct eo_text escaped = {0};
+  eo_text_add_escaped(&escaped, "a<b> & \"c\"\t\n\x01\x1f\xc3\xa4");
+  ok(!strcmp(escaped.data, "a&lt;b&gt; &amp; &quot;c&quot;\t\n  \xc3\xa4"),
+     "what XML and HTML keep for themselves is escaped, controls are blanks: %s", escaped.data);
+  eo_text_done(&escaped);
 }
 
 static void test_sheet(void)

@@ -135,7 +135,7 @@ static void test_lines(const char *example, int least, bool inches)
 static bool holds(const struct eo_text *page, const char *text)
 {
   struct eo_text escaped = {0};
-  eo_plot_escape(&escaped, text);
+  eo_text_add_escaped(&escaped, text);
   bool found = strstr(page->data, escaped.data) != NULL;
   eo_text_done(&escaped);
   return found;
