@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "document/tolerance_document.h"
 #include "evaluation/scalar.h"
 #include "format/json.h"

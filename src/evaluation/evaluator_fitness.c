@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "design/drawn_pairs.h"
 #include "evaluation/objective_terms.h"
 #include "tolerance/statistics.h"

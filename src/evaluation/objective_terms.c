@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/sort.h"
 #include "evaluation/scalar.h"
 #include "tolerance/statistics.h"
 

@@ -2,8 +2,9 @@
 #include "exchange/flank_pieces_private.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/sort.h"
 
 /* Lines and bands: */
 
@@ -43,12 +44,6 @@ static void find_lines(struct eo_flank_pieces *pieces)
   add_corner_lines(pieces);
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Where two lines cross within the flank; NaN: they do not. */
 static double crossing_of(const struct eo_flank_pieces *pieces, const struct eo_flank_line *a,
                           const struct eo_flank_line *b)
@@ -70,7 +65,7 @@ static double least_band(const struct eo_flank_pieces *pieces)
 static void set_bands(struct eo_flank_pieces *pieces, int count, double at[MOST_ENDS])
 {
   double half = pieces->tooth->geometry->member_width[pieces->tooth->member] / 2, least = least_band(pieces);
-  qsort(at, (size_t)count, sizeof *at, compare_numbers);
+  eo_sort_numbers(count, at);
   pieces->bands = 0;
   pieces->y[0] = -half;
   for (int i = 0; i < count && pieces->bands < EO_FLANK_BANDS - 1; i++)

@@ -2,9 +2,9 @@
 #include "exchange/flank_rest.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "gear/surface.h"
 
 /* The unmodified flank in the frame of eo_tooth_point(): an involute helicoid that begins on the base cylinder at the
@@ -77,12 +77,6 @@ static struct involute involute_of(const struct eo_flank_pieces *pieces)
   return involute;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Where the flank is looked at: everywhere, and closer and closer to kinks. */
 static int list_places(const struct eo_flank_pieces *pieces, int kinks, const double *kink, double *place)
 {
@@ -96,7 +90,7 @@ static int list_places(const struct eo_flank_pieces *pieces, int kinks, const do
       if (u > pieces->u[0] && u < pieces->u[1])
         place[count++] = u;
     }
-  qsort(place, (size_t)count, sizeof *place, compare_numbers);
+  eo_sort_numbers(count, place);
   return count;
 }
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 /* 3 x 3 blocks between neighbouring section nodes. */
 enum {
   LOWER,
@@ -116,11 +118,6 @@ static enum eo_code number_unknowns(struct eo_sector *sector)
   return EO_OK;
 }
 
-static int compare(const void *a, const void *b)
-{
-  return *(const int *)a - *(const int *)b;
-}
-
 /* Lists the neighbours of every free node, through the quadrilaterals that belong. */
 static enum eo_code find_neighbours(const struct eo_sector *sector, enum eo_sector_extent extent, struct blocks *blocks)
 {
@@ -146,7 +143,7 @@ static enum eo_code find_neighbours(const struct eo_sector *sector, enum eo_sect
   int filled = 0;
   for (int f = 0, from = 0; f < free_nodes; f++) {
     int end = start[f + 1], last = -1;
-    qsort(list + from, (size_t)(end - from), sizeof *list, compare);
+    eo_sort_integers(end - from, list + from);
     start[f] = filled;
     for (int p = from; p < end; p++)
       if (list[p] > last)

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/sort.h"
+
 enum { SIDEBANDS = 2 }; /* whole turns that count as such */
 static const double REPEATS =
     2.5; /* times the power between the orders: the median of a dozen reaches it by chance in 1 % */
@@ -77,12 +79,6 @@ static double power_at(const struct eo_beside *beside, int h, int i)
   return beside->real[h][i] * beside->real[h][i] + beside->imaginary[h][i] * beside->imaginary[h][i];
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The mean power of noise from the median: power is exponentially distributed, and the r-th smallest of n such values
    has the mean 1/n + ... + 1/(n - r + 1) of theirs (Renyi 1953); ln 2 for many. */
 static double mean_power(double *power, int n)
@@ -92,7 +88,7 @@ static double mean_power(double *power, int n)
   for (int k = upper + 1; k <= n; k++)
     expected += 1.0 / k;
   expected += (n % 2 ? 1.0 : 0.5) / upper;
-  qsort(power, (size_t)n, sizeof *power, ascending);
+  eo_sort_numbers(n, power);
   return (power[(n - 1) / 2] + power[n / 2]) / (2 * expected);
 }
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 static const double SAME_TORQUE = 0.01, SAME_SPEED = 0.02;
 static const double FAR = 3.5;        /* robust standard deviations (Iglewicz and Hoaglin 1993) */
 static const double LEAST_FAR = 0.25; /* of log(ratio): nearer is no outlier whatever the spread */
@@ -73,15 +75,9 @@ void eo_comparison_curves(const struct eo_measured *measured, const struct eo_co
   }
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double median(double *value, int count)
 {
-  qsort(value, (size_t)count, sizeof *value, ascending);
+  eo_sort_numbers(count, value);
   return count ? (value[(count - 1) / 2] + value[count / 2]) / 2 : NAN;
 }
 

@@ -5,22 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 enum { BLOCK = 4096, CHUNK = 256 };
 static const double LANDING = 0.3;   /* typical steps: a step back by less is noise */
 static const double NEAR_ZERO = 1.5; /* typical steps from 0, in the row after an index pulse */
 static const double LEAP = 100;      /* typical intervals: a step of the time by more is a fault */
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 double eo_scan_quantile(double *value, int count, double share)
 {
   if (count < 1)
     return NAN;
-  qsort(value, (size_t)count, sizeof *value, ascending);
+  eo_sort_numbers(count, value);
   return value[(int)(share * (count - 1) + 0.5)];
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/sort.h"
 #include "numerics/fft.h"
 
 enum { MOST_SAMPLES = 1 << 22, MOST_LEVELS = 1 << 15 };
@@ -169,12 +170,6 @@ static void read_spectrum(const struct eo_synchronous *synchronous, struct eo_tr
   transmission->rms_band = sqrt(band);
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* A change of level between two pairs of neighbouring means that stands out of all others. */
 static enum eo_code find_step(const struct eo_synchronous *synchronous, struct eo_transmission *transmission,
                               struct eo_error *error)
@@ -194,7 +189,7 @@ static enum eo_code find_step(const struct eo_synchronous *synchronous, struct e
       at = i;
     }
   }
-  qsort(size, (size_t)n, sizeof *size, ascending);
+  eo_sort_numbers(n, size);
   if (fabs(largest) > STEP_LIMIT * 1.4826 * size[n / 2] && fabs(largest) > 1e-7) {
     transmission->step = largest;
     transmission->step_row = synchronous->level_row[at + 1];

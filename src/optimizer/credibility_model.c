@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 static const double ridge = 1e-9;
 
 enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings,
@@ -33,12 +35,6 @@ void eo_credibility_model_done(struct eo_credibility_model *model)
   free(model->ranked);
   free(model->used);
   eo_composite_done(&model->composite);
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-  const double p = *(const double *)a, q = *(const double *)b;
-  return (p > q) - (p < q);
 }
 
 static int compare_ranked(const void *a, const void *b)
@@ -114,7 +110,7 @@ void eo_credibility_model_fit(struct eo_credibility_model *model, const struct e
     memcpy(model->x + (size_t)j * n, row_x(archive, model->rows[j], n), (size_t)n * sizeof(double));
     model->sorted[j] = model->y[j] = archive->value[model->rows[j]];
   }
-  qsort(model->sorted, (size_t)count, sizeof(double), compare_doubles);
+  eo_sort_numbers(count, model->sorted);
   const double median = model->sorted[count / 2];
   model->spread = median - model->sorted[0];
   for (int j = 0; j < count && model->composite.anatomy->parts == 0; j++)

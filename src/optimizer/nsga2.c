@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 static const double clip_quantile =
     0.9; /* values above are cut off before the fit: far from the front only order matters */
 static const double ridge = 1e-9;
@@ -136,16 +138,10 @@ static int order_archive(struct eo_optimizer *optimizer)
   return usable;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-  const double p = *(const double *)a, q = *(const double *)b;
-  return (p > q) - (p < q);
-}
-
 static void clip(struct nsga2 *nsga2, double *y, int rows)
 {
   memcpy(nsga2->sorted, y, (size_t)rows * sizeof *y);
-  qsort(nsga2->sorted, (size_t)rows, sizeof *y, compare_doubles);
+  eo_sort_numbers(rows, nsga2->sorted);
   const double limit = nsga2->sorted[(int)(clip_quantile * (rows - 1))];
   for (int j = 0; j < rows; j++)
     y[j] = fmin(y[j], limit);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
+
 #define BLOCK 2048      /* rows read at once */
 #define STEPS 20000     /* steps from which the resolution of times is told */
 #define FEW 20          /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
@@ -75,19 +77,13 @@ static enum eo_code pass(const struct eo_guess *guess, int column, struct line *
   return code;
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The smallest distance of a step from the usual one, when there are enough such steps or most rows have the time of
    the row before: what the times resolve. 0: all steps are equal. */
 static double resolution(double *step, int64_t count, bool *standing)
 {
   if (count < 2 * FEW)
     return 0;
-  qsort(step, (size_t)count, sizeof *step, ascending);
+  eo_sort_numbers(count, step);
   double usual = step[count / 2], least = INFINITY;
   *standing = usual == 0;
   int64_t odd = 0;

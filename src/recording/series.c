@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <strings.h>
 
+#include "base/sort.h"
+
 #define BLOCK 4096 /* rows that are copied at once */
 #define SHORT 20   /* a channel this many times shorter than the longest belongs to something else */
 
@@ -55,11 +57,6 @@ static const struct eo_series *find_group(const struct eo_series_file *file)
   return best;
 }
 
-static int ascending(const void *a, const void *b)
-{
-  return *(const int *)a - *(const int *)b;
-}
-
 /* Fills chosen[] with the channels of the table and says what stays out. */
 static int choose(const struct eo_series_file *file, int *chosen, struct eo_notes *notes)
 {
@@ -77,7 +74,7 @@ static int choose(const struct eo_series_file *file, int *chosen, struct eo_note
       else
         left_out++, other = series;
     }
-  qsort(chosen, (size_t)count, sizeof *chosen, ascending);
+  eo_sort_integers(count, chosen);
   if (left_out)
     eo_notes_add(notes, "%d channel%s far shorter than the others %s left out, for instance \"%s\" with %lld values.",
                  left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "tolerance/statistics.h"
 
 const double eo_index_tolerance = 0.005;

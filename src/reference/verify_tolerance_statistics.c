@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "tolerance/influence.h"
 #include "tolerance/interval.h"
 #include "tolerance/statistics.h"

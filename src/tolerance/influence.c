@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/random.h"
 #include "numerics/dense.h"
 #include "tolerance/pair_sampler.h"

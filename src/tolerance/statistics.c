@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/random.h"
 
 enum { STREAM_BOOTSTRAP = 905 }; /* of the counter generator */
@@ -22,17 +23,6 @@ struct eo_summary eo_summary_of(int n, const double *value)
     squares += (value[i] - summary.mean) * (value[i] - summary.mean);
   summary.deviation = n > 1 ? sqrt(squares / (n - 1)) : 0;
   return summary;
-}
-
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-void eo_sort_numbers(int n, double *value)
-{
-  qsort(value, (size_t)n, sizeof *value, ascending);
 }
 
 /* theory (A3) */

@@ -13,9 +13,6 @@ struct eo_summary {
 };
 struct eo_summary eo_summary_of(int n, const double *value);
 
-/* Sorts in place, ascending. */
-void eo_sort_numbers(int n, double *value);
-
 /* Percentile 0 .. 100 of sorted values, by linear interpolation at rank 1 + (n - 1) percent/100 (type 7 of Hyndman and
    Fan 1996). */
 double eo_percentile(int n, const double *sorted, double percent);

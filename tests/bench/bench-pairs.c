@@ -10,6 +10,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/sort.h"
 #include "document/design_document.h"
 #include "document/scatter_document.h"
 #include "document/tolerance_document.h"

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/random.h"
 #include "document/design_document.h"
 #include "document/examples.h"

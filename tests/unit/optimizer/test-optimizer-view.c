@@ -2,11 +2,11 @@
 /* A search that is shown what a point looks like: the stretched cube, distances by what is seen, blocks of variables
    that add up; and what it makes of a valley in the corner of far too wide bounds. */
 #include "base/random.h"
+#include "base/sort.h"
 #include "optimizer/composite.h"
 #include "optimizer/optimizer.h"
 #include "optimizer/view_distance.h"
 #include "support/tap.h"
-#include "tolerance/statistics.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/random.h"
 #include "support/tap.h"
 #include "tolerance/pair_completion.h"
