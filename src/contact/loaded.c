@@ -126,12 +126,12 @@ static void advance(struct eo_loaded_workspace *ws, const struct eo_loaded_probl
   enum { CUTS = 30 };
   static const double SMALL = 1e-13;
   int n = problem->position->rank + 1;
-  double slope = eo_loaded_dot(n, ws->residual, ws->step), length = 1;
+  double slope = eo_dot(n, ws->residual, ws->step), length = 1;
   for (int cut = 0; cut < CUTS; cut++) {
     for (int k = 0; k < n; k++)
       ws->trial[k] = ws->mode[k] + length * ws->step[k];
     evaluate(ws, problem, ws->trial);
-    double there = eo_loaded_dot(n, ws->residual, ws->step);
+    double there = eo_dot(n, ws->residual, ws->step);
     if (there <= 0 || there < -0.5 * slope || fabs(there) < SMALL * problem->force)
       break;
     length *= fmax(0.1, slope / (slope - there));
@@ -156,7 +156,7 @@ static void take_step(struct eo_loaded_workspace *ws, const struct eo_contact_po
 /* How far a step goes, m: sqrt(r'H^-1 r dZ/dP), the approach that stores as much energy; at least that of the step. */
 double eo_loaded_step_length(const struct eo_loaded_workspace *ws, const struct eo_contact_position *position)
 {
-  double energy = -eo_loaded_dot(position->rank + 1, ws->step, ws->residual),
+  double energy = -eo_dot(position->rank + 1, ws->step, ws->residual),
          compliance = -(double)ws->matrix[position->rank * (eo_gram_width(position->rank) + 1)];
   return sqrt(eo_loaded_larger(0, energy) * compliance);
 }

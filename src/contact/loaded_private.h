@@ -4,6 +4,7 @@
 #define EASEOFF_CONTACT_LOADED_PRIVATE_H
 
 #include "contact/loaded.h"
+#include "numerics/dense.h"
 #include "numerics/gram.h"
 #include "numerics/local_inverse.h"
 
@@ -35,14 +36,6 @@ struct eo_loaded_problem {
 static inline double eo_loaded_larger(double a, double b)
 {
   return a > b ? a : b;
-}
-
-static inline double eo_loaded_dot(int n, const double *a, const double *b)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
 }
 
 /* In loaded.c. */

@@ -54,7 +54,7 @@ double eo_loaded_tangent(struct eo_loaded_workspace *ws, const struct eo_contact
   memset(mode, 0, sizeof *mode * (size_t)position->rank);
   ws->gram->gather(position->points, position->rank, position->stride, position->factor, ws->load, mode);
   eo_loaded_blend(ws, position);
-  square += eo_loaded_dot(position->rank, mode, mode);
+  square += eo_dot(position->rank, mode, mode);
   for (int i = 0; i < position->points; i++)
     square += ws->load[i] * ws->correction[i];
   return square / (sum * sum); /* theory (C4) */

@@ -7,6 +7,7 @@
 
 #include "dynamics/long_motion.h"
 #include "dynamics/propagator.h"
+#include "numerics/dense.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
 
@@ -37,14 +38,6 @@ struct response {
   double *acceleration[EO_READINGS][2]; /* [samples] */
 };
 
-static double dot(int n, const double *a, const double *b)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 /* The least number of the kind 4, 5, 6 or 7 times a power of two: quick to transform. */
 static int even_number(double least)
 {
@@ -63,7 +56,7 @@ static enum eo_code resample(const struct response *response, int end, double *r
   const struct eo_long_case *load = response->load;
   const double *z = load->deflection[end], *k = load->tangent[end];
   int n = load->cycles * load->positions, steps = response->steps;
-  double size = sqrt(dot(n, z, z) / dot(n, k, k));
+  double size = sqrt(eo_dot(n, z, z) / eo_dot(n, k, k));
   double complex *x = malloc(sizeof *x * (size_t)n), *y = calloc((size_t)steps, sizeof *y);
   enum eo_code code = x && y ? EO_OK : eo_error_memory(error);
   for (int i = 0; i < n && !code; i++)
@@ -305,7 +298,7 @@ static void read_levels(struct response *response)
   for (int reading = 0; reading < readings_of(response); reading++)
     for (int end = 0; end < ends; end++) {
       double level = eo_periodic_mean(n, response->acceleration[reading][end]),
-             square = dot(n, response->acceleration[reading][end], response->acceleration[reading][end]) / n;
+             square = eo_dot(n, response->acceleration[reading][end], response->acceleration[reading][end]) / n;
       response->result->rms[reading] += sqrt(fmax(0, square - level * level)) / ends;
     }
 }

@@ -128,25 +128,17 @@ static void set_readings(struct eo_dynamics_model *model)
   }
 }
 
-static double dot(int n, const double *a, const double *b)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 /* Takes the components along `count` orthonormal vectors out of v, twice for the sake of roundoff; returns what is left
    of it. */
 static double orthogonalise(int n, double *v, int count, double (*vector)[EO_MAX_FREEDOMS])
 {
   for (int pass = 0; pass < 2; pass++)
     for (int k = 0; k < count; k++) {
-      double along = dot(n, v, vector[k]);
+      double along = eo_dot(n, v, vector[k]);
       for (int i = 0; i < n; i++)
         v[i] -= along * vector[k][i];
     }
-  return sqrt(dot(n, v, v));
+  return sqrt(eo_dot(n, v, v));
 }
 
 /* Extends `count` orthonormal vectors by those of the candidates that are independent of them, the clearest first
@@ -181,7 +173,7 @@ static void scale_directions(const struct eo_dynamics_model *model, int count, d
   for (int c = 0; c < count; c++) {
     for (int i = 0; i < n; i++)
       direction[c][i] /= sqrt(model->mass[i]);
-    double length = sqrt(dot(n, direction[c], direction[c]));
+    double length = sqrt(eo_dot(n, direction[c], direction[c]));
     for (int i = 0; i < n; i++)
       direction[c][i] /= length;
   }
@@ -234,7 +226,7 @@ static void project_matrix(const struct eo_dynamics_model *model, const double *
     for (int i = 0; i < f; i++)
       column[i] = model->basis[i * n + k];
     for (int i = 0; i < f; i++)
-      image[i] = dot(f, full + i * f, column);
+      image[i] = eo_dot(f, full + i * f, column);
     for (int l = 0; l <= k; l++) {
       double sum = 0;
       for (int i = 0; i < f; i++)
@@ -338,7 +330,7 @@ void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum
       work += model->zero[i * model->zero_modes + z] * load[i];
       motion += pow(model->zero[i * model->zero_modes + z], 2);
     }
-    double size = sqrt(dot(model->freedoms, load, load) * motion);
+    double size = sqrt(eo_dot(model->freedoms, load, load) * motion);
     model->zero_mode_load = fmax(model->zero_mode_load, size > 0 ? fabs(work) / size : 0);
   }
 }
@@ -393,7 +385,7 @@ double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model)
   }
   if (eo_dense_solve(n, k, pivot, 1, response))
     return 0;
-  double soft = oscillator->shift * dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
+  double soft = oscillator->shift * eo_dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
   const double none = 1e-12;
   return soft < none ? INFINITY : 2 * lean * lean * oscillator->shift * (1 / soft - 1);
 }
@@ -420,5 +412,6 @@ double eo_dynamics_model_axial_rest(struct eo_dynamics_model *model)
     for (int j = 0; j < n; j++)
       k[i * n + j] += oscillator->shift * (mesh[0][i] + mesh[1][i]) * (mesh[0][j] + mesh[1][j]);
   }
-  return eo_dense_solve(n, k, pivot, 1, rest) ? 0 : dot(n, mesh[0], rest) - dot(n, mesh[1], rest); /* theory (F13) */
+  return eo_dense_solve(n, k, pivot, 1, rest) ? 0
+                                              : eo_dot(n, mesh[0], rest) - eo_dot(n, mesh[1], rest); /* theory (F13) */
 }

@@ -4,12 +4,9 @@
 
 #include <math.h>
 
-static const double beside = 1e-9; /* m: one side of a kink is taken this far from it */
+#include "numerics/dense.h"
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+static const double beside = 1e-9; /* m: one side of a kink is taken this far from it */
 
 static void cross(const double a[3], const double b[3], double product[3])
 {
@@ -82,7 +79,7 @@ double eo_flank_turn(const double a[3], const double b[3])
 {
   double product[3];
   cross(a, b, product);
-  return sqrt(dot(product, product));
+  return sqrt(eo_dot(3, product, product));
 }
 
 struct eo_flank_frame eo_flank_frame_at(const struct eo_flank_pieces *pieces, double u, double y)
@@ -93,7 +90,7 @@ struct eo_flank_frame eo_flank_frame_at(const struct eo_flank_pieces *pieces, do
   generate(pieces, u, y, 0, none, &frame.origin);
   const double helix[3] = {twist * frame.origin.position[1], -twist * frame.origin.position[0], 1};
   cross(frame.origin.normal, helix, frame.tangent);
-  length = pieces->sense * sqrt(dot(frame.tangent, frame.tangent));
+  length = pieces->sense * sqrt(eo_dot(3, frame.tangent, frame.tangent));
   for (int i = 0; i < 3; i++)
     frame.tangent[i] /= length;
   return frame;
@@ -104,7 +101,7 @@ double eo_flank_ahead(const struct eo_flank_frame *frame, const double position[
   double from[3];
   for (int i = 0; i < 3; i++)
     from[i] = position[i] - frame->origin.position[i];
-  return dot(from, frame->tangent);
+  return eo_dot(3, from, frame->tangent);
 }
 
 double eo_flank_above(const struct eo_flank_frame *frame, const double position[3])
@@ -112,7 +109,7 @@ double eo_flank_above(const struct eo_flank_frame *frame, const double position[
   double from[3];
   for (int i = 0; i < 3; i++)
     from[i] = position[i] - frame->origin.position[i];
-  return dot(from, frame->origin.normal);
+  return eo_dot(3, from, frame->origin.normal);
 }
 
 /* Newton's steps, or halves where they leave what is left. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "numerics/dense.h"
 
 static const double same = 1e-6;           /* relative: numbers of two ends that are one */
 static const double place_tolerance = 0.1; /* mm, by which the distances of both members' ends may differ */
@@ -50,11 +51,6 @@ void eo_rexs_axis(const struct eo_rexs_component *component, double axis[3], dou
   }
 }
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static int shaft_index(const struct eo_rexs_train *train, const struct eo_rexs_component *shaft)
 {
   for (int i = 0; i < train->shafts; i++)
@@ -87,12 +83,14 @@ static void place_wheel(struct eo_rexs_wheel *wheel, const struct eo_rexs_compon
   double axis[3], origin[3], shaft_axis[3], shaft_origin[3];
   eo_rexs_axis(wheel->gear, axis, origin);
   eo_rexs_axis(shaft, shaft_axis, shaft_origin);
-  wheel->along = (eo_rexs_attribute(wheel->gear, "u_axis_vector") ? dot(axis, x) : dot(shaft_axis, x)) < 0 ? -1 : 1;
-  double forward = dot(shaft_axis, x) < 0 ? -1 : 1, u = eo_rexs_value(wheel->gear, "u_coordinate_on_shaft");
-  double start = isnan(u) ? NAN : dot(shaft_origin, x) + forward * u;
+  wheel->along = (eo_rexs_attribute(wheel->gear, "u_axis_vector") ? eo_dot(3, axis, x) : eo_dot(3, shaft_axis, x)) < 0
+                     ? -1
+                     : 1;
+  double forward = eo_dot(3, shaft_axis, x) < 0 ? -1 : 1, u = eo_rexs_value(wheel->gear, "u_coordinate_on_shaft");
+  double start = isnan(u) ? NAN : eo_dot(3, shaft_origin, x) + forward * u;
   double other = isnan(u) ? NAN : start + forward * wheel->face_width;
   if (isnan(u) && eo_rexs_attribute(wheel->gear, "support_vector")) { /* the face, of 1.0 its middle */
-    start = dot(origin, x) - (oldest ? wheel->along * wheel->face_width / 2 : 0);
+    start = eo_dot(3, origin, x) - (oldest ? wheel->along * wheel->face_width / 2 : 0);
     other = start + wheel->along * wheel->face_width;
   }
   wheel->left = fmin(start, other);
@@ -134,9 +132,9 @@ static void find_distance(const struct eo_rexs_train *train, struct eo_rexs_mesh
     return;
   for (int i = 0; i < 2; i++)
     eo_rexs_axis(train->shaft[mesh->wheel[i].shaft], axis[i], origin[i]);
-  mesh->crossed = fabs(fabs(dot(axis[0], axis[1])) - 1) > same;
+  mesh->crossed = fabs(fabs(eo_dot(3, axis[0], axis[1])) - 1) > same;
   double apart[3] = {origin[1][0] - origin[0][0], origin[1][1] - origin[0][1], origin[1][2] - origin[0][2]};
-  double along = dot(apart, axis[0]);
+  double along = eo_dot(3, apart, axis[0]);
   for (int i = 0; i < 3; i++)
     across += pow(apart[i] - along * axis[0][i], 2);
   if (isnan(mesh->centre_distance) && across > 0) {

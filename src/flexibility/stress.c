@@ -5,16 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numerics/dense.h"
+
 /* Difference quotients with respect to the node number: first layer, inside, last layer. */
 static const struct {
   int step[3];
   double weight[3];
 } difference[3] = {{{0, 1, 2}, {-1.5, 2, -0.5}}, {{-1, 0, 1}, {-0.5, 0, 0.5}}, {{-2, -1, 0}, {0.5, -2, 1.5}}};
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* Turn by the helix over some layers: to the frame of layer l from the frame of layer l + step. */
 static void turned(const struct eo_sector *sector, int step, const double v[3], double out[3])
@@ -54,7 +51,7 @@ static void tangents(const struct eo_sector *sector, int i, int kind, double alo
 static void stress_of_strains(const double along[3], const double sweep[3], const struct eo_material *material,
                               double matrix[EO_STRESSES][3])
 {
-  double l = sqrt(dot(along, along)), p = dot(along, sweep) / l, q = sqrt(dot(sweep, sweep) - p * p);
+  double l = sqrt(eo_dot(3, along, along)), p = eo_dot(3, along, sweep) / l, q = sqrt(eo_dot(3, sweep, sweep) - p * p);
   double strain[3][3] = {{1 / (l * l), 0, 0},
                          {p * p / (l * l * q * q), 1 / (q * q), -2 * p / (l * q * q)},
                          {-p / (l * l * q), 0, 1 / (l * q)}};
@@ -78,11 +75,11 @@ static void add_node(struct eo_stress_stencil *stencil, const struct eo_sector *
   for (int c = 0; c < 3; c++) {
     double unit[3] = {c == 0, c == 1, c == 2}, moved[3];
     turned(sector, layer_step, unit, moved);
-    double on_along = dot(tangent[0], moved), on_sweep = dot(tangent[1], moved);
+    double on_along = eo_dot(3, tangent[0], moved), on_sweep = eo_dot(3, tangent[1], moved);
     double strain[3] = {weight[0] * on_along, weight[1] * on_sweep,
                         0.5 * (weight[1] * on_along + weight[0] * on_sweep)};
     for (int r = 0; r < EO_STRESSES; r++)
-      stencil->matrix[n][r][c] = dot(law[r], strain);
+      stencil->matrix[n][r][c] = eo_dot(3, law[r], strain);
   }
 }
 
@@ -132,7 +129,7 @@ void eo_stress_operator_apply(const struct eo_stress_operator *operator, const d
       for (int k = 0; k < stencil->count; k++) {
         const double *u = displacement + 3 * ((i + 1 + stencil->step[k][0]) * across + l + stencil->step[k][1]);
         for (int r = 0; r < EO_STRESSES; r++)
-          stress[r] += dot(stencil->matrix[k][r], u);
+          stress[r] += eo_dot(3, stencil->matrix[k][r], u);
       }
     }
 }

@@ -173,14 +173,6 @@ static enum eo_code make_evaluators(struct eo_fit *fit, struct eo_error *error)
   return code;
 }
 
-static double sum_of_squares(int count, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < count; i++)
-    sum += value[i] * value[i];
-  return sum;
-}
-
 /* The model error with which the squares of the best fit come out as large as they should, one for each order beyond
    the unknowns; by halving, its square grows the sum's denominators. */
 static enum eo_code find_model_error(struct eo_fit *fit, const double *x, double *residual, struct eo_error *error)
@@ -190,8 +182,8 @@ static enum eo_code find_model_error(struct eo_fit *fit, const double *x, double
   for (int i = 0; i < 40 && !code; i++) {
     fit->model_error = sqrt(low * high);
     weigh(fit, residual);
-    *(sum_of_squares(fit->residuals, residual) > fit->residuals - fit->settings->unknowns ? &low
-                                                                                          : &high) = fit->model_error;
+    *(eo_dot(fit->residuals, residual, residual) > fit->residuals - fit->settings->unknowns ? &low
+                                                                                            : &high) = fit->model_error;
   }
   return code;
 }
@@ -369,7 +361,7 @@ static enum eo_code find_and_judge(struct eo_fit *fit, struct eo_update *update,
   for (int i = 0; i < n; i++)
     start[i] = eo_fit_to_unit(&fit->settings->range[i], eo_unknown_get(fit->design, fit->settings->range[i].unknown));
   EO_TRY(eo_fit_residuals(fit, start, room, error));
-  update->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
+  update->before = sqrt(eo_dot(fit->residuals, room, room) / fit->residuals);
   update->after = sqrt(minima->minimum[0].square / fit->residuals);
   update->model_error = fit->model_error;
   update->converged = minima->minimum[0].converged;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "numerics/dense.h"
 #include "numerics/least_squares.h"
 
 enum { ITERATIONS = 30, NEIGHBOURS_PER_UNKNOWN = 2, DESCENTS = 8, DESCENTS_PER_UNKNOWN = 8 };
@@ -31,14 +32,6 @@ static int permuting_factor(int at, int of)
   return factor;
 }
 
-static double sum_of_squares(int count, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < count; i++)
-    sum += value[i] * value[i];
-  return sum;
-}
-
 /* Points with one in each slice of every unknown (McKay, Beckman, Conover 1979), and what the design says now. */
 static enum eo_code look_around(struct eo_fit *fit, int starts, struct sample *sample, double *residual,
                                 struct eo_error *error)
@@ -56,7 +49,7 @@ static enum eo_code look_around(struct eo_fit *fit, int starts, struct sample *s
     enum eo_code code = eo_fit_residuals(fit, sample[i].x, residual, error);
     if (code)
       return code;
-    sample[i].square = sum_of_squares(fit->residuals, residual);
+    sample[i].square = eo_dot(fit->residuals, residual, residual);
   }
   return EO_OK;
 }

@@ -7,6 +7,15 @@
 
 #include <complex.h>
 
+/* a' b of vectors [n], summed in their order. */
+static inline double eo_dot(int n, const double *a, const double *b)
+{
+  double sum = 0;
+  for (int i = 0; i < n; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
 /* Solves a x = b for `columns` right-hand sides; b[columns][n] is replaced by the solutions, a[n][n] by its factors,
    pivot[n] is scratch. Returns 0, or non-zero when a is singular (b is then meaningless). */
 int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b);

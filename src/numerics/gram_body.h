@@ -166,20 +166,26 @@ TARGET static void blend(int rows, int stride, const float *f, const double *loa
   }
 }
 
-/* `rows` rows of A'A from `row` on over `lanes` vectors of columns from `column` on. */
-INLINE void square_tile(int rows, int lanes, int points, int stride, const float *a, int row, int column, float *matrix)
+/* c = a b, or c += a b, over `rows` rows and `lanes` vectors of columns; the sums stay in registers over all of b's
+   rows. a_row, a_column: from one number of a to the next in its column and in its row. */
+INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_row, int a_column, const float *b,
+                          int b_stride, bool add, float *c, int c_stride)
 {
   float_lane sum[TILE_ROWS][TILE_LANES];
-  memset(sum, 0, sizeof sum);
-  for (int i = 0; i < points; i++) {
-    const float *from = a + (long)i * stride;
+  UNROLL
+  for (int r = 0; r < rows; r++) {
+    UNROLL
+    for (int l = 0; l < lanes; l++)
+      sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
+  }
+  for (int k = 0; k < inner; k++) {
     float_lane right[TILE_LANES];
     UNROLL
     for (int l = 0; l < lanes; l++)
-      right[l] = *(const float_lane *)(from + column + l * FLOATS);
+      right[l] = *(const float_lane *)(b + (long)k * b_stride + l * FLOATS);
     UNROLL
     for (int r = 0; r < rows; r++) {
-      float_lane left = SPLAT_FLOAT(from[row + r]);
+      float_lane left = SPLAT_FLOAT(a[(long)r * a_row + (long)k * a_column]);
       UNROLL
       for (int l = 0; l < lanes; l++)
         sum[r][l] = MADD_FLOAT(left, right[l], sum[r][l]);
@@ -189,7 +195,14 @@ INLINE void square_tile(int rows, int lanes, int points, int stride, const float
   for (int r = 0; r < rows; r++)
     UNROLL
   for (int l = 0; l < lanes; l++)
-    *(float_lane *)(matrix + (long)(row + r) * stride + column + l * FLOATS) = sum[r][l];
+    *(float_lane *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
+}
+
+/* `rows` rows of A'A from `row` on over `lanes` vectors of columns from `column` on. */
+INLINE void square_tile(int rows, int lanes, int points, int stride, const float *a, int row, int column, float *matrix)
+{
+  multiply_tile(rows, lanes, points, a + row, 1, stride, a + column, stride, false,
+                matrix + (long)row * stride + column, stride);
 }
 
 /* The rows with a weight, times its root; -1 stands behind the columns of f. Returns their number. */
@@ -344,38 +357,6 @@ TARGET static void solve(int n, const float *inverse, const double *b, double *x
     x[k] = (double)sum[k];
 }
 
-/* c = a b, or c += a b, over `rows` rows and `lanes` vectors of columns; the sums stay in registers over all of b's
-   rows. */
-INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_stride, const float *b, int b_stride,
-                          bool add, float *c, int c_stride)
-{
-  float_lane sum[TILE_ROWS][TILE_LANES];
-  UNROLL
-  for (int r = 0; r < rows; r++) {
-    UNROLL
-    for (int l = 0; l < lanes; l++)
-      sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
-  }
-  for (int k = 0; k < inner; k++) {
-    float_lane right[TILE_LANES];
-    UNROLL
-    for (int l = 0; l < lanes; l++)
-      right[l] = *(const float_lane *)(b + (long)k * b_stride + l * FLOATS);
-    UNROLL
-    for (int r = 0; r < rows; r++) {
-      float_lane left = SPLAT_FLOAT(a[(long)r * a_stride + k]);
-      UNROLL
-      for (int l = 0; l < lanes; l++)
-        sum[r][l] = MADD_FLOAT(left, right[l], sum[r][l]);
-    }
-  }
-  UNROLL
-  for (int r = 0; r < rows; r++)
-    UNROLL
-  for (int l = 0; l < lanes; l++)
-    *(float_lane *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
-}
-
 enum { ROW_LANES = 6 };
 
 /* Of one row, `lanes` vectors of columns. */
@@ -417,11 +398,11 @@ TARGET static void multiply(int rows, int inner, int columns, const float *a, in
   int tiled = rows / TILE_ROWS * TILE_ROWS, whole = columns / STRIP * STRIP;
   for (int column = 0; column < whole; column += STRIP)
     for (int row = 0; row < tiled; row += TILE_ROWS)
-      multiply_tile(TILE_ROWS, TILE_LANES, inner, a + (long)row * a_stride, a_stride, b + column, b_stride, add,
+      multiply_tile(TILE_ROWS, TILE_LANES, inner, a + (long)row * a_stride, a_stride, 1, b + column, b_stride, add,
                     c + (long)row * c_stride + column, c_stride);
   for (int column = whole; column < columns; column += FLOATS)
     for (int row = 0; row < tiled; row += TILE_ROWS)
-      multiply_tile(TILE_ROWS, 1, inner, a + (long)row * a_stride, a_stride, b + column, b_stride, add,
+      multiply_tile(TILE_ROWS, 1, inner, a + (long)row * a_stride, a_stride, 1, b + column, b_stride, add,
                     c + (long)row * c_stride + column, c_stride);
   for (int row = tiled; row < rows; row++)
     multiply_row(inner, columns, a + (long)row * a_stride, b, b_stride, add, c + (long)row * c_stride);

@@ -19,14 +19,6 @@ struct search {
   double *residual, *trial, *jacobian; /* [m], [m], [m][n] */
 };
 
-static double square(int m, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < m; i++)
-    sum += value[i] * value[i];
-  return sum;
-}
-
 static enum eo_code evaluate(struct search *search, const double *x, double *residual, struct eo_error *error)
 {
   search->report->evaluations++;
@@ -98,7 +90,7 @@ static enum eo_code improve(struct search *search, double *x, double *damping, d
     enum eo_code code = evaluate(search, next, search->trial, error);
     if (code)
       return code;
-    double value = square(search->m, search->trial);
+    double value = eo_dot(search->m, search->trial, search->trial);
     if (value < search->report->square) {
       memcpy(x, next, sizeof *x * (size_t)search->n);
       memcpy(search->residual, search->trial, sizeof *search->residual * (size_t)search->m);
@@ -123,7 +115,7 @@ enum eo_code eo_least_squares(eo_residual_function *function, void *context, int
     return eo_error_memory(error);
   struct search search = {function, context, n, m, options, report, room, room + m, room + 2 * m};
   enum eo_code code = evaluate(&search, x, search.residual, error);
-  report->square = code ? NAN : square(m, search.residual);
+  report->square = code ? NAN : eo_dot(m, search.residual, search.residual);
   while (!code && !report->converged && report->iterations < options->iterations) {
     report->iterations++;
     code = differentiate(&search, x, error);
