@@ -470,15 +470,43 @@ static void name_nodes(json_t *flank)
   json_object_del(flank, "grid_nodes");
 }
 
-void eo_modification_name_nodes(json_t *document)
+static void name_all_nodes(json_t *modification)
 {
   const char *member, *end;
   json_t *ends, *flank;
-  json_object_foreach(document, member, ends) json_object_foreach(ends, end, flank)
+  json_object_foreach(modification, member, ends) json_object_foreach(ends, end, flank)
   {
     name_nodes(flank);
     name_nodes(json_object_get(flank, "coast"));
   }
+}
+
+static void collect_columns(const json_t *value, const char *path, json_t *columns)
+{
+  const char *key;
+  json_t *inner;
+  json_object_foreach((json_t *)value, key, inner)
+  {
+    char longer[200];
+    snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
+    if (json_is_object(inner))
+      collect_columns(inner, longer, columns);
+    else
+      json_object_set_new(columns, longer, json_true());
+  }
+}
+
+json_t *eo_modification_columns(const json_t *rows)
+{
+  json_t *columns = json_object(), *row;
+  size_t i;
+  json_array_foreach((json_t *)rows, i, row)
+  {
+    json_t *modification = json_object_get(row, "modification");
+    name_all_nodes(modification);
+    collect_columns(modification, "", columns);
+  }
+  return columns;
 }
 
 enum eo_code eo_modification_read(const char *text, struct eo_modification *modification, struct eo_error *error)

@@ -54,9 +54,10 @@ void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LE
 /* A modification as canonical JSON without defaults, "{}" for none, and back. ends: of the pair. */
 enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text,
                                    struct eo_error *error);
-/* In such a document, numbers in place of a grid's under a name of their own, "grid_um[u2 y*]", as variables have it:
-   for tables. */
-void eo_modification_name_nodes(json_t *document);
+/* For tables: the columns of rows with such a "modification" each, "pinion/left/tip_relief_um" true for all that stand
+   in any, the caller's to release; NULL: no memory. In the rows a number in place of a grid's gets a name of its own,
+   "grid_um[u2 y*]", as variables have it. */
+json_t *eo_modification_columns(const json_t *rows);
 enum eo_code eo_modification_read(const char *text, struct eo_modification *modification, struct eo_error *error);
 
 #endif

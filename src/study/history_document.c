@@ -102,6 +102,20 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *job, stru
   return append(list->array, eo_outline_encode(&job_outline, &row), error);
 }
 
+/* Makes a document of what was read without a code. */
+static enum eo_code make_document(enum eo_code code, const struct eo_outline *outline, const void *read,
+                                  json_t **document, struct eo_error *error)
+{
+  json_t *all = eo_outline_encode(outline, read); /* takes over what was read in any case */
+  if (!code && !all)
+    code = eo_error_memory(error);
+  if (code)
+    json_decref(all);
+  else
+    *document = all;
+  return code;
+}
+
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)
 {
   const struct written_lists lists = {json_array(), json_array()};
@@ -110,14 +124,7 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
                                                    : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
-  json_t *all = eo_outline_encode(&eo_records_outline, &lists);
-  if (!code && !all)
-    code = eo_error_memory(error);
-  if (code)
-    json_decref(all);
-  else
-    *document = all;
-  return code;
+  return make_document(code, &eo_records_outline, &lists, document, error);
 }
 
 struct wanted_job {
@@ -256,30 +263,7 @@ enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **d
   struct row_list list = {.problem = problem, .rows = json_array()};
   enum eo_code code = collect_rows(store, &list, error);
   const struct written_rows rows = {list.spec ? list.spec : json_null(), list.rows};
-  json_t *all = eo_outline_encode(&eo_outline_problem_rows, &rows);
-  if (!code && !all)
-    code = eo_error_memory(error);
-  if (code)
-    json_decref(all);
-  else
-    *document = all;
-  return code;
-}
-
-/* All "pinion/left/tip_relief_um" of a modification into a set (an object with true for each). */
-static void collect_paths(const json_t *value, const char *path, json_t *set)
-{
-  const char *key;
-  json_t *inner;
-  json_object_foreach((json_t *)value, key, inner)
-  {
-    char longer[200];
-    snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
-    if (json_is_object(inner))
-      collect_paths(inner, longer, set);
-    else
-      json_object_set_new(set, longer, json_true());
-  }
+  return make_document(code, &eo_outline_problem_rows, &rows, document, error);
 }
 
 static const char *const value_keys[] = {
@@ -351,14 +335,8 @@ static void write_rows(const json_t *rows, const json_t *paths, char **heading, 
 
 enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, struct eo_error *error)
 {
-  const json_t *rows = json_object_get(document, "rows"), *row;
-  json_t *paths = json_object();
-  size_t i;
-  json_array_foreach((json_t *)rows, i, row)
-  {
-    eo_modification_name_nodes(json_object_get(row, "modification"));
-    collect_paths(json_object_get(row, "modification"), "", paths);
-  }
+  const json_t *rows = json_object_get(document, "rows");
+  json_t *paths = eo_modification_columns(rows);
   int columns = 3 + (int)json_object_size(paths) +
                 VALUES * (int)json_array_size(first_scenario(json_array_get(rows, 0)));
   char **heading = calloc((size_t)columns, sizeof *heading);

@@ -203,22 +203,6 @@ enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int 
   return code;
 }
 
-/* All "pinion/left/tip_relief_um" of a modification into a set. */
-static void collect_paths(const json_t *value, const char *path, json_t *set)
-{
-  const char *key;
-  json_t *inner;
-  json_object_foreach((json_t *)value, key, inner)
-  {
-    char longer[200];
-    snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
-    if (json_is_object(inner))
-      collect_paths(inner, longer, set);
-    else
-      json_object_set_new(set, longer, json_true());
-  }
-}
-
 static const char *const plain_columns[] = {"ordinal", "generation", "individual",  "outcome", "reused",
                                             "f1_um",   "f2_N",       "f3_m_per_s2", "J",       "fitness"};
 enum { PLAIN = sizeof plain_columns / sizeof plain_columns[0] };
@@ -256,13 +240,7 @@ static void write_rows(const json_t *items, const json_t *paths, const char **he
 
 static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct eo_error *error)
 {
-  json_t *paths = json_object(), *row;
-  size_t i;
-  json_array_foreach((json_t *)items, i, row)
-  {
-    eo_modification_name_nodes(json_object_get(row, "modification"));
-    collect_paths(json_object_get(row, "modification"), "", paths);
-  }
+  json_t *paths = eo_modification_columns(items);
   const char **heading = calloc(PLAIN + json_object_size(paths), sizeof *heading);
   if (paths && heading)
     write_rows(items, paths, heading, text);
