@@ -16,22 +16,6 @@
 #include "service/rig_tasks.h"
 #include "store/measurements.h"
 
-/* Hands the work to the service, which owns it then. */
-static void ask(struct eo_request *request, const struct eo_design *design, struct eo_work *work)
-{
-  enum eo_admission admission;
-  struct eo_error error;
-  int64_t job = 0;
-  struct eo_question question = eo_request_to_question(request, design, NULL);
-  if (!eo_request_lane(request, &question)) {
-    work->release(work->data);
-    return;
-  }
-  eo_request_defer(request);
-  enum eo_code code = eo_service_compute(request->http->service, &question, work, &admission, &job, &error);
-  eo_reply_unless_accepted(request, code, admission, job, &error);
-}
-
 struct collected {
   struct eo_rig_points points;
   const json_t *wanted; /* NULL: all; else an array of numbers */
@@ -74,7 +58,7 @@ static void compare(struct eo_request *request, const struct eo_design *design, 
   if (eo_rig_comparison(&work, points, request->csv, &error))
     eo_reply_error(&request->reply, "", &error);
   else
-    ask(request, design, &work);
+    eo_request_compute(request, design, &work);
 }
 
 static void compare_all(struct eo_request *request, int64_t id, const struct eo_design *design)
@@ -136,12 +120,9 @@ struct basis {
 /* Takes "measurements" and "design" out of the body: the rest is what eo_update_decode() knows. */
 static bool read_fit(struct eo_request *request, json_t *body, struct basis *basis, struct eo_update_settings *settings)
 {
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  struct eo_error error;
-  if (!faults) {
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+  struct eo_faults *faults = eo_request_memory(request, sizeof *faults);
+  if (!faults)
     return false;
-  }
   basis->wanted = json_incref(json_object_get(body, "measurements"));
   basis->given = json_incref(json_object_get(body, "design"));
   json_object_del(body, "measurements");
@@ -184,7 +165,7 @@ static void put_fit(struct eo_request *request, int64_t id, const struct basis *
   if (code)
     eo_reply_error(&request->reply, "", &error);
   else
-    ask(request, &basis->design, &work);
+    eo_request_compute(request, &basis->design, &work);
   eo_rig_points_done(&collected.points);
   free(given);
 }
@@ -222,7 +203,7 @@ static void put_rig(struct eo_request *request, const struct eo_design *design, 
   if (eo_rig_recording(&work, rig, &error))
     eo_reply_error(&request->reply, "", &error);
   else
-    ask(request, design, &work);
+    eo_request_compute(request, design, &work);
 }
 
 static void record(struct eo_request *request)

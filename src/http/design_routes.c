@@ -121,7 +121,6 @@ static bool read_given(struct eo_request *request, struct given *given)
   struct order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  struct eo_error error;
   bool named = json_object_get(eo_request_json(request), "design");
   if (!read_order(request, named, &order) ||
       !eo_request_design(request, order.design, named ? "/design" : "", &design, &geometry, &given->warnings))
@@ -129,7 +128,7 @@ static bool read_given(struct eo_request *request, struct given *given)
   snprintf(given->name, sizeof given->name, "%s", *order.name ? order.name : *design.name ? design.name : "unnamed");
   given->text = json_dumps(order.design, JSON_COMPACT);
   if (!given->text)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   return given->text != NULL;
 }
 

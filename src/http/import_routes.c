@@ -16,10 +16,8 @@ static int flank_of(const char *word)
 static void refuse(struct eo_request *request, const struct eo_import *import)
 {
   struct eo_problem_fault *fault = malloc((size_t)import->faults * sizeof *fault);
-  struct eo_error error;
   if (!fault) {
-    eo_error_memory(&error);
-    eo_reply_error(&request->reply, "", &error);
+    eo_reply_no_memory(&request->reply);
     return;
   }
   for (int i = 0; i < import->faults; i++) {

@@ -165,11 +165,10 @@ static void get_result(struct eo_request *request)
 /* The front of a result; false: the reply says what is in the way. */
 static bool read_front(struct eo_request *request, const struct eo_text *result, struct eo_text *front)
 {
-  struct eo_error error;
   json_t *document = json_loadb(result->data, result->size, 0, NULL);
   const bool there = document && eo_study_front_csv(document, front);
   if (!document)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   else if (!there)
     eo_reply_problem(&request->reply, 404, NULL, "This job has no Pareto front: the algorithm nsga2 finds one.");
   json_decref(document);

@@ -307,26 +307,20 @@ static void answer_trial(struct eo_request *request, struct asked *asked)
   json_decref(document);
 }
 
+static void answer_asked(struct eo_request *request, void (*answer)(struct eo_request *request, struct asked *asked))
+{
+  struct asked *asked = eo_request_memory(request, sizeof *asked);
+  if (asked)
+    answer(request, asked);
+  free(asked);
+}
+
 void eo_measurement_try(struct eo_request *request)
 {
-  struct asked *asked = calloc(1, sizeof *asked);
-  struct eo_error error;
-  if (!asked) {
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
-    return;
-  }
-  answer_trial(request, asked);
-  free(asked);
+  answer_asked(request, answer_trial);
 }
 
 void eo_measurement_add(struct eo_request *request)
 {
-  struct asked *asked = calloc(1, sizeof *asked);
-  struct eo_error error;
-  if (!asked) {
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
-    return;
-  }
-  answer_upload(request, asked);
-  free(asked);
+  answer_asked(request, answer_upload);
 }

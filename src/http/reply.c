@@ -14,11 +14,9 @@
 
 void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, struct eo_text *text)
 {
-  struct eo_error error;
   if (text->failed) {
     eo_text_done(text);
-    eo_error_memory(&error);
-    eo_reply_error(reply, "", &error);
+    eo_reply_no_memory(reply);
     return;
   }
   eo_text_done(&reply->body);
@@ -188,6 +186,13 @@ void eo_reply_error(struct eo_reply *reply, const char *path, const struct eo_er
                 "The server's data cannot be read or written; its log says more under the request's id.");
   } else
     put_problem(reply, 500, "failed", error->text);
+}
+
+void eo_reply_no_memory(struct eo_reply *reply)
+{
+  struct eo_error error;
+  eo_error_memory(&error);
+  eo_reply_error(reply, "", &error);
 }
 
 void eo_reply_done(struct eo_reply *reply)

@@ -76,6 +76,8 @@ void eo_reply_faults(struct eo_reply *reply, const char *path, const struct eo_f
 
 /* An error of the core: 422 when the input is wrong, else 500. */
 void eo_reply_error(struct eo_reply *reply, const char *path, const struct eo_error *error);
+/* 503: an allocation failed. */
+void eo_reply_no_memory(struct eo_reply *reply);
 
 void eo_reply_done(struct eo_reply *reply);
 

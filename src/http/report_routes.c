@@ -23,41 +23,21 @@ static enum eo_code make(void *data, const struct eo_pair *pair, const struct eo
   return eo_report_make(pair, design, &order->warnings, progress, &page, error);
 }
 
-static void put_report(struct eo_request *request, const struct eo_design *design, struct order *order)
-{
-  enum eo_admission admission;
-  struct eo_error error;
-  int64_t job = 0;
-  const struct eo_work work = {.run = make, .release = free, .data = order};
-  struct eo_question question = eo_request_to_question(request, design, NULL);
-  if (!eo_request_lane(request, &question)) {
-    free(order);
-    return;
-  }
-  request->answer_type = "text/html; charset=utf-8";
-  eo_request_defer(request);
-  enum eo_code code = eo_service_compute(request->http->service, &question, &work, &admission, &job, &error);
-  eo_reply_unless_accepted(request, code, admission, job, &error);
-}
-
 static void report(struct eo_request *request)
 {
   struct eo_design design;
   struct eo_geometry geometry;
   const json_t *body = eo_request_json(request);
-  struct order *order = body ? calloc(1, sizeof *order) : NULL;
-  struct eo_error error;
-  if (body && !order) {
-    eo_error_memory(&error);
-    eo_reply_error(&request->reply, "", &error);
-  }
+  struct order *order = body ? eo_request_memory(request, sizeof *order) : NULL;
   if (!order)
     return;
   order->inches = request->reply.inches;
-  if (eo_request_design(request, body, "", &design, &geometry, &order->warnings))
-    put_report(request, &design, order);
-  else
+  if (!eo_request_design(request, body, "", &design, &geometry, &order->warnings)) {
     free(order);
+    return;
+  }
+  request->answer_type = "text/html; charset=utf-8";
+  eo_request_compute(request, &design, &(struct eo_work){.run = make, .release = free, .data = order});
 }
 
 const struct eo_route eo_routes_report[] = {

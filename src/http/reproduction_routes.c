@@ -15,13 +15,12 @@ static void submit(struct eo_request *request, const struct eo_reproduction_orde
                    const struct eo_design *design)
 {
   struct eo_text spec = {0};
-  struct eo_error error;
   struct eo_job_order wanted = {
       .kind = EO_JOB_REPRODUCE, .design = design, .name = "the paper once more", .algorithm = ""};
   eo_reproduction_order_write(order, &spec);
   wanted.spec = spec.data;
   if (spec.failed)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   else
     eo_request_order_job(request, &wanted, false);
   eo_text_done(&spec);

@@ -105,6 +105,14 @@ const char *eo_request_query(const struct eo_request *request, const char *name)
   return MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
+void *eo_request_memory(struct eo_request *request, size_t size)
+{
+  void *memory = calloc(1, size);
+  if (!memory)
+    eo_reply_no_memory(&request->reply);
+  return memory;
+}
+
 const json_t *eo_request_json(struct eo_request *request)
 {
   struct eo_error error;
@@ -121,12 +129,12 @@ const json_t *eo_request_json(struct eo_request *request)
 bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,
                        struct eo_geometry *geometry, struct eo_warnings *warnings)
 {
-  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_faults *faults = eo_request_memory(request, sizeof *faults);
   struct eo_error error;
   bool good = false;
   if (!faults)
-    eo_reply_error(&request->reply, path, (eo_error_memory(&error), &error));
-  else if (!eo_design_decode(document, design, warnings, faults))
+    return false;
+  if (!eo_design_decode(document, design, warnings, faults))
     eo_reply_faults(&request->reply, path, faults);
   else if (eo_design_complete(design, geometry, &error)) {
     eo_inch_place(document, &error);

@@ -63,6 +63,9 @@ const char *eo_method_name(unsigned method);
 const char *eo_request_header(const struct eo_request *request, const char *name); /* NULL: it is not there */
 const char *eo_request_query(const struct eo_request *request, const char *name);
 
+/* Zeroed memory for a handler, its to free; NULL: the reply says so. */
+void *eo_request_memory(struct eo_request *request, size_t size);
+
 /* The body as JSON; it lasts until the handler returns. NULL: the reply says what is wrong with it. */
 const json_t *eo_request_json(struct eo_request *request);
 

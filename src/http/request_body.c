@@ -27,11 +27,10 @@ static const json_t *find_document(struct eo_request *request, struct eo_faults 
 bool eo_body_read(struct eo_request *request, void *order)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
-  struct eo_error error;
   const json_t *document = faults ? find_document(request, faults) : NULL;
   bool good = document && decode(request, document, faults, order);
   if (!document && !request->reply.status)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   free(faults);
   return good;
 }

@@ -118,3 +118,18 @@ struct eo_question eo_request_to_question(struct eo_request *request, const stru
                               .answer = receive,
                               .context = request};
 }
+
+void eo_request_compute(struct eo_request *request, const struct eo_design *design, const struct eo_work *work)
+{
+  enum eo_admission admission;
+  struct eo_error error;
+  int64_t job = 0;
+  struct eo_question question = eo_request_to_question(request, design, NULL);
+  if (!eo_request_lane(request, &question)) {
+    work->release(work->data);
+    return;
+  }
+  eo_request_defer(request);
+  enum eo_code code = eo_service_compute(request->http->service, &question, work, &admission, &job, &error);
+  eo_reply_unless_accepted(request, code, admission, job, &error);
+}

@@ -18,4 +18,7 @@ bool eo_request_lane(struct eo_request *request, struct eo_question *question);
 void eo_reply_unless_accepted(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job,
                               const struct eo_error *error);
 
+/* Hands work on the pair of a design to the service, which releases it in any case; its answer becomes the reply. */
+void eo_request_compute(struct eo_request *request, const struct eo_design *design, const struct eo_work *work);
+
 #endif

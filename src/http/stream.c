@@ -165,7 +165,7 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
   struct eo_error error;
   struct eo_stream *stream = calloc(1, sizeof *stream);
   if (!stream) {
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
     return;
   }
   *stream = (struct eo_stream){.http = request->http, .connection = request->connection, .place = request->place};
@@ -179,7 +179,7 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
                                                                     free_stream);
   if (!response) {
     free_stream(stream);
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
     return;
   }
   if (eo_service_subscribe(request->http->service, job, after, take_event, stream, &stream->subscription, &error)) {

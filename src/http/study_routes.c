@@ -14,11 +14,11 @@
 /* Reads the study in the body; false: the reply says everything that is wrong. done() in any case. */
 static bool read_plan(struct eo_request *request, struct eo_variant_plan *plan)
 {
-  struct eo_faults *faults = calloc(1, sizeof *faults);
   const json_t *document = eo_request_json(request);
+  struct eo_faults *faults = document ? eo_request_memory(request, sizeof *faults) : NULL;
   memset(plan, 0, sizeof *plan);
-  bool good = faults && document && eo_variant_plan_init(plan, document, faults);
-  if (faults && document && !good)
+  bool good = faults && eo_variant_plan_init(plan, document, faults);
+  if (faults && !good)
     eo_reply_faults(&request->reply, "", faults);
   free(faults);
   return good;
@@ -38,7 +38,6 @@ static void add(struct eo_request *request)
 {
   struct eo_variant_plan plan;
   struct eo_text spec = {0};
-  struct eo_error error;
   if (read_plan(request, &plan)) {
     json_t *document = eo_variant_plan_encode(request->document, &plan);
     if (document)
@@ -46,7 +45,7 @@ static void add(struct eo_request *request)
     if (document && !spec.failed)
       submit(request, &plan, spec.data);
     else
-      eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+      eo_reply_no_memory(&request->reply);
     json_decref(document);
   }
   eo_text_done(&spec);
@@ -129,7 +128,7 @@ static void get_design(struct eo_request *request)
   if (*end || end == request->argument[1] || variant < 0 || variant > EO_STUDY_MOST_ROWS)
     eo_reply_problem(&request->reply, 404, NULL, "There is no variant with this number.");
   else if (!design)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   else if (eo_variant_table_design(request->store, id, (int)variant, design, &error))
     eo_reply_error(&request->reply, "", &error);
   else

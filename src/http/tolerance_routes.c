@@ -48,23 +48,6 @@ static enum eo_code make(void *data, const struct eo_pair *pair, const struct eo
   return code;
 }
 
-static void put_tolerance(struct eo_request *request, const struct eo_design *design, struct order *order)
-{
-  enum eo_admission admission;
-  struct eo_error error;
-  int64_t job = 0;
-  const struct eo_work work = {.run = make, .release = free, .data = order};
-  struct eo_question question = eo_request_to_question(request, design, NULL);
-  if (!eo_request_lane(request, &question)) {
-    free(order);
-    return;
-  }
-  order->csv = question.format == EO_ANSWER_CSV;
-  eo_request_defer(request);
-  enum eo_code code = eo_service_compute(request->http->service, &question, &work, &admission, &job, &error);
-  eo_reply_unless_accepted(request, code, admission, job, &error);
-}
-
 struct tolerance_order {
   const json_t *design;
   int pairs; /* 0: as the design says */
@@ -112,17 +95,14 @@ static void tolerance(struct eo_request *request)
   bool later = eo_field_is_async(eo_request_header(request, "Prefer"));
   if (!eo_body_read(request, &asked))
     return;
-  struct order *order = calloc(1, sizeof *order);
-  if (!order) {
-    struct eo_error error;
-    eo_error_memory(&error);
-    eo_reply_error(&request->reply, "", &error);
+  struct order *order = eo_request_memory(request, sizeof *order);
+  if (!order)
     return;
-  }
+  order->csv = request->csv;
   bool good = eo_request_design(request, asked.design, "/design", &design, &geometry, &order->warnings) &&
               settle(request, &design, asked.pairs, later, order);
   if (good && !later)
-    put_tolerance(request, &design, order);
+    eo_request_compute(request, &design, &(struct eo_work){.run = make, .release = free, .data = order});
   else
     free(order);
   if (good && later)
@@ -158,7 +138,7 @@ static void get_pairs(struct eo_request *request)
   struct eo_text text = {0};
   int64_t id;
   if (!design)
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
   else if (eo_request_id_at(request, 0, &id) && find_done(request, id, design)) {
     if (eo_tolerance_job_csv(request->store, id, design, &text, &error))
       eo_reply_error(&request->reply, "", &error);

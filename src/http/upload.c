@@ -242,7 +242,7 @@ void eo_upload_begin(struct eo_request *request, int64_t size)
     return;
   struct eo_upload *upload = calloc(1, sizeof *upload);
   if (!upload) {
-    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    eo_reply_no_memory(&request->reply);
     return;
   }
   upload->output = -1;
