@@ -97,13 +97,18 @@ int eo_app_fail(const char *file, const struct eo_error *error)
   return error->code == EO_ERROR_INPUT ? EO_EXIT_INPUT : EO_EXIT_FAILED;
 }
 
-void *eo_app_request(size_t size, int *status)
+int eo_app_fail_memory(void)
 {
   struct eo_error error;
+  eo_error_memory(&error);
+  return eo_app_fail(NULL, &error);
+}
+
+void *eo_app_request(size_t size, int *status)
+{
   void *request = calloc(1, size);
   if (!request) {
-    eo_error_memory(&error);
-    *status = eo_app_fail(NULL, &error);
+    *status = eo_app_fail_memory();
   }
   return request;
 }
@@ -130,17 +135,33 @@ int eo_app_print(struct eo_text *text)
   return status;
 }
 
+int eo_app_print_unless(enum eo_code code, struct eo_text *text, const struct eo_error *error)
+{
+  if (!code)
+    return eo_app_print(text);
+  eo_text_done(text);
+  return eo_app_fail(NULL, error);
+}
+
 int eo_app_print_json(json_t *document, bool compact)
 {
   struct eo_text text = {0};
-  struct eo_error error;
   if (!document) {
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
+    return eo_app_fail_memory();
   }
   eo_json_write(&text, document, compact ? EO_JSON_COMPACT : EO_JSON_PRETTY);
   if (compact)
     eo_text_add(&text, "\n");
+  json_decref(document);
+  return eo_app_print(&text);
+}
+
+int eo_app_show(json_t *document, bool json, void (*sum_up)(const json_t *document, struct eo_text *text))
+{
+  struct eo_text text = {0};
+  if (json || !document)
+    return eo_app_print_json(document, false);
+  sum_up(document, &text);
   json_decref(document);
   return eo_app_print(&text);
 }
@@ -153,8 +174,7 @@ bool eo_app_load_stated(const char *path, json_t **stated, struct eo_design *des
   json_t *document = NULL;
   *status = EO_EXIT_DONE;
   if (!faults) {
-    eo_error_memory(&error);
-    *status = eo_app_fail(path, &error);
+    *status = eo_app_fail_memory();
     goto out;
   }
   document = eo_json_load(path, EO_JSON_DESIGN_BYTES, &error);
@@ -182,10 +202,24 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
   return good;
 }
 
-enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error)
+bool eo_app_design_or_job(const struct eo_command *command, bool by_number, int operands, int *status)
 {
+  if (by_number == !operands)
+    return true;
+  fprintf(stderr, "easeoff %s: %s; usage: easeoff %s %s\n", command->name,
+          operands ? "a job is named by its number, no design is needed" : "an argument is missing", command->name,
+          command->usage);
+  *status = EO_EXIT_INPUT;
+  return false;
+}
+
+bool eo_app_units(const char *word, bool *inches, int *status)
+{
+  struct eo_error error;
   *inches = in_inches = word && strcmp(word, "inch") == 0;
   if (!word || *inches || strcmp(word, "mm") == 0)
-    return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", word);
+    return true;
+  eo_error_set(&error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", word);
+  *status = eo_app_fail(NULL, &error);
+  return false;
 }

@@ -74,15 +74,21 @@ void *eo_app_request(size_t size, int *status);
 /* One line on standard error; returns the exit status that belongs to the error. file: NULL when no file is concerned.
  */
 int eo_app_fail(const char *file, const struct eo_error *error);
+int eo_app_fail_memory(void); /* an allocation failed */
 
 /* One line per fault. */
 int eo_app_fail_all(const char *file, const struct eo_faults *faults);
 
 /* Prints to standard output in one go and frees the text. */
 int eo_app_print(struct eo_text *text);
+/* The same, or with a code the error in its place. */
+int eo_app_print_unless(enum eo_code code, struct eo_text *text, const struct eo_error *error);
 
 /* Prints a document and releases it; NULL: no memory. */
 int eo_app_print_json(json_t *document, bool compact);
+
+/* Prints a document, or what sums it up, and releases it; NULL: no memory. */
+int eo_app_show(json_t *document, bool json, void (*sum_up)(const json_t *document, struct eo_text *text));
 
 /* Reads, decodes and completes a design ("-": standard input), warnings collected. False with *status set and told. */
 bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
@@ -91,8 +97,12 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
 bool eo_app_load_stated(const char *path, json_t **stated, struct eo_design *design, struct eo_geometry *geometry,
                         struct eo_warnings *warnings, int *status);
 
-/* --units mm|inch, before a design is read: what is told of it from then on, faults too, is told so. EO_ERROR_INPUT for
-   another word. */
-enum eo_code eo_app_units(const char *word, bool *inches, struct eo_error *error);
+/* Of a command that takes a design or, by_number, the job that was ordered: false with *status set and told where both
+   are given or none. */
+bool eo_app_design_or_job(const struct eo_command *command, bool by_number, int operands, int *status);
+
+/* --units mm|inch, before a design is read: what is told of it from then on, faults too, is told so. False with *status
+   set and told for another word. */
+bool eo_app_units(const char *word, bool *inches, int *status);
 
 #endif

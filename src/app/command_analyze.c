@@ -139,7 +139,6 @@ static bool read_teeth(struct request *request, int *status)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct eo_error error;
   int operands, status;
   struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
@@ -151,13 +150,11 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--pitch", .value = &request->pitch},
                                       {.name = "--no-cache", .flag = &request->no_cache},
                                       {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status)) {
-    if (eo_app_units(request->units, &request->inches, &error))
-      status = eo_app_fail(NULL, &error);
-    else if (eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
-             (!request->pitch || read_teeth(request, &status)))
-      status = run_request(request);
-  }
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      eo_app_units(request->units, &request->inches, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+      (!request->pitch || read_teeth(request, &status)))
+    status = run_request(request);
   free(request);
   return status;
 }

@@ -26,19 +26,12 @@ static int show(const struct request *request)
 {
   if (request->complete)
     return eo_app_print_json(in_units(request, eo_design_encode(&request->design)), false);
-  json_t *completion = in_units(request,
-                                eo_completion_encode(&request->design, &request->geometry, &request->warnings));
-  struct eo_text text = {0};
-  if (request->json || !completion)
-    return eo_app_print_json(completion, false);
-  eo_completion_summary(completion, &text);
-  json_decref(completion);
-  return eo_app_print(&text);
+  json_t *completion = eo_completion_encode(&request->design, &request->geometry, &request->warnings);
+  return eo_app_show(in_units(request, completion), request->json, eo_completion_summary);
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct eo_error error;
   int operands, status;
   struct request *request = eo_app_request(sizeof *request, &status);
   if (!request)
@@ -47,12 +40,10 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--complete", .flag = &request->complete},
                                       {.name = "--units", .value = &request->units},
                                       {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status)) {
-    if (eo_app_units(request->units, &request->inches, &error))
-      status = eo_app_fail(NULL, &error);
-    else if (eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
-      status = show(request);
-  }
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      eo_app_units(request->units, &request->inches, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+    status = show(request);
   free(request);
   return status;
 }

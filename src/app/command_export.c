@@ -119,8 +119,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
   const struct eo_export *format = find_format(name, &status);
   if (!format || !read_grid(rows, columns, grid, &status))
     return status;
-  if (units && eo_app_units(units, &inches, &error))
-    return eo_app_fail(NULL, &error);
+  if (!eo_app_units(units, &inches, &status))
+    return status;
   if (inches && (operands > 1 || !eo_export_has_columns(format))) {
     eo_error_set(
         &error, EO_ERROR_INPUT, "",

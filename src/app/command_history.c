@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -96,16 +95,11 @@ static int run_list(struct request *request)
 static int run_show(struct request *request)
 {
   struct eo_error error;
-  struct eo_text text = {0};
   json_t *document = NULL;
   int id;
   if (read_id(request->operand[1], "show", &id, &error) || eo_records_result(request->store, id, &document, &error))
     return eo_app_fail(NULL, &error);
-  if (request->json)
-    return eo_app_print_json(document, false);
-  eo_study_result_summary(document, &text);
-  json_decref(document);
-  return eo_app_print(&text);
+  return eo_app_show(document, request->json, eo_study_result_summary);
 }
 
 static int export_path(struct request *request)
@@ -113,10 +107,10 @@ static int export_path(struct request *request)
   struct eo_error error;
   struct eo_text text = {0};
   int id;
-  if (!read_id(request->job, "--job", &id, &error) && !eo_records_path_csv(request->store, id, &text, &error))
-    return eo_app_print(&text);
-  eo_text_done(&text);
-  return eo_app_fail(NULL, &error);
+  enum eo_code code = read_id(request->job, "--job", &id, &error);
+  if (!code)
+    code = eo_records_path_csv(request->store, id, &text, &error);
+  return eo_app_print_unless(code, &text, &error);
 }
 
 static int run_export(struct request *request)
@@ -133,10 +127,7 @@ static int run_export(struct request *request)
     return eo_app_print_json(rows, false);
   enum eo_code code = eo_records_rows_csv(rows, &text, &error);
   json_decref(rows);
-  if (!code)
-    return eo_app_print(&text);
-  eo_text_done(&text);
-  return eo_app_fail(NULL, &error);
+  return eo_app_print_unless(code, &text, &error);
 }
 
 static int run_prune(struct request *request)

@@ -382,8 +382,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
   if (!request || !operand || !(request->documents = json_array())) {
     free(request);
     free(operand);
-    eo_error_memory(&error);
-    return eo_app_fail(NULL, &error);
+    return eo_app_fail_memory();
   }
   const struct eo_option options[] = {{.name = "--label", .value = &request->label},
                                       {.name = "--torque", .value = &request->torque},

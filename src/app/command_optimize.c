@@ -93,16 +93,6 @@ static enum eo_code prepare(struct request *request, const struct eo_progress *p
   return eo_pair_new(pair, &request->design, &options, progress, error);
 }
 
-static int show(const struct request *request, json_t *document)
-{
-  struct eo_text text = {0};
-  if (request->json)
-    return eo_app_print_json(document, false);
-  eo_study_result_summary(document, &text);
-  json_decref(document);
-  return eo_app_print(&text);
-}
-
 static enum eo_code save_front(const struct request *request, const json_t *document, struct eo_error *error)
 {
   struct eo_text text = {0};
@@ -145,7 +135,7 @@ static int run_study(struct request *request, const struct eo_pair *pair, struct
   eo_watch_clear(&request->watch);
   eo_study_result_done(&result);
   if (!code && !request->work)
-    return show(request, document);
+    return eo_app_show(document, request->json, eo_study_result_summary);
   json_decref(document);
   return code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : EO_EXIT_DONE;
 }
@@ -213,19 +203,6 @@ static int run_request(struct request *request)
   return status;
 }
 
-/* A design, or with --work none. */
-static bool load(const struct eo_command *command, struct request *request, int operands, int *status)
-{
-  if (request->work && !operands)
-    return true;
-  if (!request->work && operands)
-    return eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, status);
-  fprintf(stderr, "easeoff optimize: %s; usage: easeoff optimize %s\n",
-          operands ? "--work names a job, no design is needed" : "an argument is missing", command->usage);
-  *status = EO_EXIT_INPUT;
-  return false;
-}
-
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   int operands, status = EO_EXIT_FAILED;
@@ -248,7 +225,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = NULL}};
   request->crew = &crew;
   if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status) &&
-      load(command, request, operands, &status))
+      eo_app_design_or_job(command, request->work, operands, &status) &&
+      (request->work ||
+       eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status)))
     status = run_request(request);
   free(request);
   eo_app_crew_end(&crew);

@@ -32,16 +32,6 @@ static enum eo_code save(const struct request *request, const json_t *document, 
   return code;
 }
 
-static int show(const struct request *request, json_t *document)
-{
-  struct eo_text text = {0};
-  if (request->json)
-    return eo_app_print_json(document, false);
-  eo_reproduction_summary(document, &text);
-  json_decref(document);
-  return eo_app_print(&text);
-}
-
 static enum eo_code reproduce(const struct request *request, const char *data, const char *cache,
                               struct eo_watch *watch, json_t **document, struct eo_error *error)
 {
@@ -71,7 +61,7 @@ static int run_request(struct request *request)
   bool keep = eo_app_cache_directory(request->data, &cache);
   if (!code)
     code = reproduce(request, data.data, keep ? cache.data : NULL, &watch, &document, &error);
-  int status = code ? eo_app_fail(NULL, &error) : show(request, document);
+  int status = code ? eo_app_fail(NULL, &error) : eo_app_show(document, request->json, eo_reproduction_summary);
   eo_watch_end(&watch);
   eo_text_done(&data);
   eo_text_done(&cache);

@@ -181,8 +181,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
   const char *operand;
   int operands, status;
   if (!request || !options) {
-    eo_error_memory(&error);
-    status = eo_app_fail(NULL, &error);
+    status = eo_app_fail_memory();
     goto out;
   }
   make_options(request, options);

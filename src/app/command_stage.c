@@ -64,8 +64,7 @@ static int run_stage(const struct eo_stage *stage, const char *path)
   void *input = calloc(1, stage->input->size), *output = calloc(1, stage->output->size);
   json_t *document = NULL;
   if (!faults || !input || !output) {
-    eo_error_memory(&error);
-    status = eo_app_fail(path, &error);
+    status = eo_app_fail_memory();
     goto out;
   }
   document = eo_json_load(path, EO_JSON_CASES_BYTES, &error);

@@ -326,10 +326,7 @@ static int show(struct request *request, int64_t job, const struct eo_variant_re
     return eo_app_fail(NULL, &error);
   query.most = limit;
   enum eo_code code = write(request, job, &query, result, &text, &error);
-  if (!code)
-    return eo_app_print(&text);
-  eo_text_done(&text);
-  return eo_app_fail(NULL, &error);
+  return eo_app_print_unless(code, &text, &error);
 }
 
 static int run_study(struct request *request)
@@ -382,15 +379,6 @@ static int run_request(struct request *request)
   return status;
 }
 
-static bool check_operands(const struct eo_command *command, const struct request *request, int operands)
-{
-  if (operands == (!request->job && !request->work))
-    return true;
-  fprintf(stderr, "easeoff study: %s; usage: easeoff study %s\n",
-          operands ? "--job and --work name a study, no design is needed" : "an argument is missing", command->usage);
-  return false;
-}
-
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   int operands, status = EO_EXIT_FAILED;
@@ -422,8 +410,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--cache", .value = &request->cache},
                                       {.name = NULL}};
   request->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
-    status = check_operands(command, request, operands) ? run_request(request) : EO_EXIT_INPUT;
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status) &&
+      eo_app_design_or_job(command, request->job || request->work, operands, &status))
+    status = run_request(request);
   eo_variant_plan_done(&request->plan);
   json_decref(request->document);
   free(request);

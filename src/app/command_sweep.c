@@ -80,8 +80,7 @@ static bool decode_axes(const json_t *document, struct eo_sweep_axes *axes, int 
   struct eo_faults *faults = calloc(1, sizeof *faults);
   *status = EO_EXIT_DONE;
   if (!faults) {
-    eo_error_memory(&error);
-    *status = eo_app_fail(NULL, &error);
+    *status = eo_app_fail_memory();
     return false;
   }
   eo_table_decode(&eo_sweep_request_table, document, NULL, &asked, faults);

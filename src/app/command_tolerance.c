@@ -239,20 +239,13 @@ static int work(struct request *request)
   return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
 }
 
-/* A design, or with --work none. */
-static int run_design_or_job(const struct eo_command *command, struct request *request, int operands)
+static int run_design(struct request *request)
 {
-  int status = EO_EXIT_INPUT;
-  if (request->work && !operands)
-    return work(request);
-  if (!request->work && operands)
-    return eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
-                   read_options(request, &status)
-               ? run_request(request)
-               : status;
-  fprintf(stderr, "easeoff tolerance: %s; usage: easeoff tolerance %s\n",
-          operands ? "--work names a job, no design is needed" : "an argument is missing", command->usage);
-  return status;
+  int status;
+  return eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+                 read_options(request, &status)
+             ? run_request(request)
+             : status;
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
@@ -280,8 +273,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--single-teeth", .flag = &request->single_teeth},
                                       {.name = NULL}};
   request->crew = &crew;
-  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status))
-    status = run_design_or_job(command, request, operands);
+  if (eo_app_arguments(command, argc, argv, options, 0, 1, &request->file, &operands, &status) &&
+      eo_app_design_or_job(command, request->work, operands, &status))
+    status = request->work ? work(request) : run_design(request);
   free(request);
   eo_app_crew_end(&crew);
   return status;

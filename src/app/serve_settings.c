@@ -116,7 +116,7 @@ static int decode(const struct option_set *set, struct eo_serve_settings *settin
   if (!document && set->config)
     status = eo_app_fail(set->config, &error);
   else if (!faults || !document || !put_options(set, document))
-    status = eo_app_fail(NULL, (eo_error_memory(&error), &error));
+    status = eo_app_fail_memory();
   else {
     eo_table_decode(&server_table, document, NULL, settings, faults);
     if (faults->count)
@@ -138,11 +138,10 @@ bool eo_serve_settings_read(const struct eo_command *command, int argc, char **a
                             int *status)
 {
   struct option_set *set = calloc(1, sizeof *set);
-  struct eo_error error;
   const char *none;
   int operands;
   if (!set) {
-    *status = eo_app_fail(NULL, (eo_error_memory(&error), &error));
+    *status = eo_app_fail_memory();
     return false;
   }
   struct eo_text help = {0};
