@@ -3,7 +3,7 @@
 # Data flows down the floors: a file includes its own folder and those above it in src/README.md's list, never below. The core prints
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
-cd "$SOURCES/src" || exit 99
+cd "$SOURCES/src" && [ -f README.md ] || exit 99
 floors="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement format crew document library exchange report store study variants reproduction service http reference app"
 core="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement"
 count=0 failed=0
