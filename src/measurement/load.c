@@ -71,6 +71,7 @@ enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recor
   }
   for (int member = 0; member < 2; member++)
     load->open[member] = !tracks->speed[member].stated;
+  load->unnamed = !tracks->speed[EO_PINION].named;
   load->pinion_torque = NAN;
   if (!wanted || tracks->channel[0].track == EO_TRACK_PULSES)
     return EO_OK;
@@ -156,10 +157,25 @@ static void settle_unit(struct eo_load *load, const struct eo_load_known *known,
     }
 }
 
+/* A column that names no shaft is taken for the pinion's; it may be the gear's. */
+static void settle_shaft(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
+{
+  double ratio = (double)known->teeth[EO_GEAR] / known->teeth[EO_PINION];
+  if (!load->unnamed || !isnan(load->speed[EO_GEAR].mean) ||
+      !(fabs(speed_ratio(load, known, EO_PINION) * ratio - 1) <= SAME_SPEED))
+    return;
+  load->speed[EO_GEAR] = load->speed[EO_PINION];
+  load->speed[EO_PINION].mean = NAN;
+  load->open[EO_GEAR] = load->open[EO_PINION];
+  eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_NOTE, EO_GEAR, load->speed[EO_GEAR].mean,
+                  "The speed column tells no shaft; its speed is that of the gear.");
+}
+
 /* True when the column speaks for the encoder's speed. */
 static bool judge_column(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
 {
   bool agrees = false;
+  settle_shaft(load, known, findings);
   for (int member = 0; member < 2; member++) {
     settle_unit(load, known, member, findings);
     double off = fabs(speed_ratio(load, known, member) - 1), speed = speed_ratio(load, known, member) * known->measured;

@@ -16,6 +16,7 @@ struct eo_load_column {
 struct eo_load {
   struct eo_load_column torque[2], speed[2]; /* [member] */
   bool open[2];                              /* [member]: nothing states the unit of the speed; rpm are a guess */
+  bool unnamed;                              /* the name of the pinion's speed tells no shaft */
   double pinion_torque;                      /* N m, from the columns; NaN: none tells */
 };
 

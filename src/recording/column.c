@@ -117,7 +117,7 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
   if (!values)
     return eo_error_memory(error);
   memset(look, 0, sizeof *look);
-  look->quantity = eo_unit_find(eo_recording_unit(recording, column), &look->factor);
+  look->quantity = eo_unit_find_multiple(eo_recording_unit(recording, column), &look->factor);
   if (look->quantity == EO_QUANTITY_NONE)
     take_name(look, eo_recording_name(recording, column));
   enum eo_code code = read_column(recording, column, rows, values, look, error);
@@ -157,24 +157,55 @@ double eo_column_turn(const struct eo_column *look)
   return look->whole ? find_counts(look) : 0;
 }
 
-/* The next word of a name: letters (bytes of UTF-8 among them) or digits; returns its end. */
-static const char *next_word(const char *name, const char **word)
+/* What German puts behind a word without a gap ("Abtriebsmoment"), and names of channels in any case ("gearangle"). */
+static const char *const tails[] = {"drehmoment", "drehzahl", "drehwinkel", "moment",   "winkel", "geber", "welle",
+                                    "wert",       "position", "encoder",    "velocity", "torque", "speed", "angle"};
+
+/* Letters of a word of `length` bytes that stand in front of such a tail; 0: it has none. */
+static size_t head_of(const char *word, size_t length)
+{
+  for (size_t i = 0; i < sizeof tails / sizeof *tails; i++) {
+    size_t n = strlen(tails[i]);
+    if (length == n && !strncasecmp(word, tails[i], n))
+      return 0;
+    if (length >= n + 3 && !strncasecmp(word + length - n, tails[i], n))
+      return length - n;
+  }
+  return 0;
+}
+
+/* Of "SetPos" the words are "Set" and "Pos", of "kHz" and "dT" there is one. */
+static bool begins_word(const char *word, const char *at)
+{
+  return at - word >= 2 && islower((unsigned char)at[-1]) && isupper((unsigned char)at[0]) &&
+         islower((unsigned char)at[1]);
+}
+
+/* The next word of a name: letters (bytes of UTF-8 among them) or digits, of `length` bytes; returns where to go on. */
+static const char *next_word(const char *name, const char **word, size_t *length)
 {
   while (*name && !isalnum((unsigned char)*name) && (unsigned char)*name < 0x80)
     name++;
   *word = name;
   bool digits = isdigit((unsigned char)*name);
   while (*name && (isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80) &&
-         (isdigit((unsigned char)*name) != 0) == digits)
+         (isdigit((unsigned char)*name) != 0) == digits && !begins_word(*word, name))
     name++;
+  *length = (size_t)(name - *word);
+  size_t head = head_of(*word, *length);
+  if (!head)
+    return name;
+  name = *word + head;
+  *length = head - (head > 4 && name[-1] == 's' && strchr("bg", name[-2])); /* "Eingangs" */
   return name;
 }
 
 bool eo_column_named(const char *name, const char *words)
 {
   const char *word;
-  for (const char *end = next_word(name, &word); *word; end = next_word(end, &word))
-    if (eo_letters_listed(word, (size_t)(end - word), words))
+  size_t length;
+  for (const char *end = next_word(name, &word, &length); *word; end = next_word(end, &word, &length))
+    if (eo_letters_listed(word, length, words))
       return true;
   return false;
 }
@@ -182,15 +213,16 @@ bool eo_column_named(const char *name, const char *words)
 int eo_column_shared_words(const char *name, const char *other, const char *ignored)
 {
   const char *word, *again;
+  size_t length, other_length;
   int shared = 0;
   uint64_t used = 0;
-  for (const char *end = next_word(name, &word); *word; end = next_word(end, &word)) {
-    size_t length = (size_t)(end - word);
+  for (const char *end = next_word(name, &word, &length); *word; end = next_word(end, &word, &length)) {
     int place = 0;
     if (eo_letters_listed(word, length, ignored))
       continue;
-    for (const char *stop = next_word(other, &again); *again; stop = next_word(stop, &again), place++)
-      if (place < 64 && !(used >> place & 1) && (size_t)(stop - again) == length && !strncasecmp(word, again, length)) {
+    for (const char *stop = next_word(other, &again, &other_length); *again;
+         stop = next_word(stop, &again, &other_length), place++)
+      if (place < 64 && !(used >> place & 1) && other_length == length && !strncasecmp(word, again, length)) {
         used |= (uint64_t)1 << place;
         shared++;
         break;

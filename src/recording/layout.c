@@ -380,9 +380,11 @@ static enum eo_code find(struct eo_guess *guess, struct eo_error *error)
     guess->time[chosen] = true;
   }
   find_candidates(guess);
+  guess->rival[0] = -1;
   guess_kind(guess);
-  code = assign(guess, error);
-  return code ? code : settle_channels(guess, error);
+  EO_TRY(eo_layout_ask_rival(guess, error));
+  EO_TRY(assign(guess, error));
+  return settle_channels(guess, error);
 }
 
 /* Brings the channels to one clock, or decodes them, where that is needed. */

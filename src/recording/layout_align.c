@@ -283,6 +283,10 @@ static void carry_beside(struct eo_guess *guess, struct aligner *aligner)
       side = same && whole && aligner->side[s].columns < CARRIED ? s : -1;
     }
     if (side < 0) {
+      char text[80];
+      if (beside[i]->scale != 0)
+        eo_notes_add(guess->notes, "%s has a clock of its own and is left out.",
+                     eo_layout_label(guess, beside[i]->column, text, sizeof text));
       beside[i]->scale = 0;
       continue;
     }

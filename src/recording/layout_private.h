@@ -31,6 +31,7 @@ struct eo_guess {
   bool time[EO_RECORDING_COLUMNS];                 /* holds times */
   bool number[EO_RECORDING_COLUMNS];               /* counts the rows */
   int candidates, candidate[EO_RECORDING_COLUMNS]; /* columns that may be angles, tracks or pulses */
+  int rival[2];                                    /* another pair that turns in the ratio of the teeth; -1: none */
   enum eo_layout_kind kind;
   bool equal, together;            /* times of both channels are equal; rows hold values of both */
   bool square;                     /* the tracks are square waves */
@@ -71,6 +72,10 @@ double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_
 
 /* Of many candidates the two that turn in the ratio of the teeth; true when there are such. */
 bool eo_layout_find_pair(struct eo_guess *guess);
+/* Asks where names and units do not tell one pair from another. */
+enum eo_code eo_layout_ask_rival(const struct eo_guess *guess, struct eo_error *error);
+/* The file states a unit of the column, known or not. */
+bool eo_layout_has_unit(const struct eo_guess *guess, int column);
 /* Columns of torque and speed beside the channels. */
 void eo_layout_find_beside(struct eo_guess *guess);
 

@@ -60,6 +60,12 @@ static double counts_per_turn(const struct eo_guess *guess, int member)
   return eo_column_turn(&guess->look[column]);
 }
 
+bool eo_layout_has_unit(const struct eo_guess *guess, int column)
+{
+  const char *unit = eo_recording_unit(guess->recording, column);
+  return *unit && strcmp(unit, "-") && strcmp(unit, "1") && strcasecmp(unit, "none") && strcmp(unit, "--");
+}
+
 /* A unit that the file states must be known: a guess in its place would be a wrong speed. */
 static enum eo_code check_unit(const struct eo_guess *guess, int member, struct eo_error *error)
 {
@@ -67,8 +73,7 @@ static enum eo_code check_unit(const struct eo_guess *guess, int member, struct 
   const char *unit = eo_recording_unit(guess->recording, column);
   enum eo_quantity q = guess->look[column].quantity;
   char text[80];
-  bool none = !*unit || !strcmp(unit, "-") || !strcmp(unit, "1") || !strcasecmp(unit, "none") || !strcmp(unit, "--");
-  if (guess->choice->unit || none || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
+  if (guess->choice->unit || !eo_layout_has_unit(guess, column) || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
     return EO_OK;
   if (q == EO_QUANTITY_NONE)
     return eo_error_set(error, EO_ERROR_INPUT, "/unit",

@@ -3,13 +3,16 @@
 #include "recording/letters.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #define DEGREE 0.017453292519943295   /* rad */
 #define TURN 6.283185307179586        /* rad */
 #define INCH_POUND 0.1129848290276167 /* N m */
+#define KILOPOND 9.80665              /* N */
 
 /* Units by their spelling after fold(); of a list that shares a factor. */
 static const struct {
@@ -62,19 +65,28 @@ static const struct {
     {"khz ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
     {"mhz ms/s msa/s msps megahertz", EO_QUANTITY_FREQUENCY, 1e6},
     {"ghz gs/s gsa/s", EO_QUANTITY_FREQUENCY, 1e9},
+    {"krpm 1000rpm x1000rpm rpmx1000 1000/min x1000/min tsd/min", EO_QUANTITY_SPEED, 1e3 * TURN / 60},
+    {"rad/min", EO_QUANTITY_SPEED, 1. / 60},
+    {"deg/min \xc2\xb0/min", EO_QUANTITY_SPEED, DEGREE / 60},
     {"rpm 1/min min-1 u/min umdr/min rev/min r/min rev./min tr/min trs/min tours/min giri/min g/min vueltas/min "
      "rot/min upm",
      EO_QUANTITY_SPEED, TURN / 60},
     {"rps u/s rev/s r/s umdr/s turns/s", EO_QUANTITY_SPEED, TURN},
     {"rad/s rad/sec rads-1", EO_QUANTITY_SPEED, 1},
     {"deg/s \xc2\xb0/s deg/sec grad/s", EO_QUANTITY_SPEED, DEGREE},
-    {"Nm NM newtonmeter newtonmetre", EO_QUANTITY_TORQUE, 1},
+    {"Nm NM newtonmeter newtonmeters newtonmetre newtonmetres", EO_QUANTITY_TORQUE, 1},
     {"kNm KNM knm", EO_QUANTITY_TORQUE, 1e3},
-    {"mNm", EO_QUANTITY_TORQUE, 1e-3},
+    {"mNm Nmm NMM", EO_QUANTITY_TORQUE, 1e-3},
     {"MNm", EO_QUANTITY_TORQUE, 1e6},
-    {"Ncm", EO_QUANTITY_TORQUE, 1e-2},
-    {"lbin inlb lbfin inlbf", EO_QUANTITY_TORQUE, INCH_POUND},
-    {"lbft ftlb lbfft ftlbf", EO_QUANTITY_TORQUE, 12 * INCH_POUND},
+    {"daNm", EO_QUANTITY_TORQUE, 10},
+    {"dNm", EO_QUANTITY_TORQUE, 0.1},
+    {"Ncm cNm", EO_QUANTITY_TORQUE, 1e-2},
+    {"kgfm kpm mkp mkg kgm", EO_QUANTITY_TORQUE, KILOPOND},
+    {"kgfcm kpcm cmkg kgcm", EO_QUANTITY_TORQUE, KILOPOND * 1e-2},
+    {"gfcm gcm", EO_QUANTITY_TORQUE, KILOPOND * 1e-5},
+    {"lbin lbsin lbfin inlb inlbs inlbf inchpound inchpounds poundinch poundinches", EO_QUANTITY_TORQUE, INCH_POUND},
+    {"lbft lbsft lbfft ftlb ftlbs ftlbf footpound footpounds poundfoot poundfeet", EO_QUANTITY_TORQUE, 12 * INCH_POUND},
+    {"ozin ozfin inoz inozf", EO_QUANTITY_TORQUE, INCH_POUND / 16},
     {"n kn lbf g mg gn m/s2 mm/s2 m/ss m/s mm/s m mm um nm cm km c \xc2\xb0"
      "c degc f k celsius bar mbar pa kpa mpa psi n/mm2 % 1 db dbv w kw l/min kg ohm mm/m um/m ue rad/s2 hpa pc nc "
      "ppm mv/v",
@@ -160,6 +172,34 @@ static bool is_spelling(const char *unit, size_t length, const char *spelling, s
   return exact ? !memcmp(unit, spelling, n) : !strncasecmp(unit, spelling, n);
 }
 
+static enum eo_quantity look_up(const char *unit, double *factor)
+{
+  size_t length = strlen(unit);
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    for (const char *p = units[i].spellings; *p;) {
+      size_t n = strcspn(p, " ");
+      if (is_spelling(unit, length, p, n)) {
+        *factor = units[i].factor;
+        return units[i].quantity;
+      }
+      p += n + (p[n] == ' ');
+    }
+  return EO_QUANTITY_NONE;
+}
+
+/* "ft-lb", "lb.in", "kN-m": a hyphen or a point for the product, which only torques have. */
+static bool find_product(char *unit, double *factor)
+{
+  size_t n = 0;
+  for (const char *c = unit; *c; c++)
+    if (*c != '-' && *c != '.')
+      unit[n++] = *c;
+  unit[n] = '\0';
+  bool torque = look_up(unit, factor) == EO_QUANTITY_TORQUE;
+  *factor = torque ? *factor : 1;
+  return torque;
+}
+
 enum eo_quantity eo_unit_find(const char *text, double *factor)
 {
   char unit[48];
@@ -175,21 +215,35 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
     length--;
   if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))
     return EO_QUANTITY_NONE;
-  length = strlen(unit);
-  if (memchr(unit, 0xc3, length)) /* "degrés" */
-    eo_letters_plain(text, strlen(text), unit, sizeof unit), length = strlen(unit);
-  if (unit[0] == 'N' && !strcasecmp(unit, "n.m")) /* a point for the product */
-    memcpy(unit, "Nm", 3), length = 2;
-  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-    for (const char *p = units[i].spellings; *p;) {
-      size_t n = strcspn(p, " ");
-      if (is_spelling(unit, length, p, n)) {
-        *factor = units[i].factor;
-        return units[i].quantity;
-      }
-      p += n + (p[n] == ' ');
-    }
-  return EO_QUANTITY_NONE;
+  if (memchr(unit, 0xc3, strlen(unit))) /* "degrés" */
+    eo_letters_plain(text, strlen(text), unit, sizeof unit);
+  enum eo_quantity quantity = look_up(unit, factor);
+  if (quantity == EO_QUANTITY_NONE && find_product(unit, factor))
+    return EO_QUANTITY_TORQUE;
+  return quantity;
+}
+
+/* What a multiple of a unit begins with; 0: nothing that could be one. A number like 360 tells a range. */
+static double multiple_of(const char **text)
+{
+  char *end;
+  const char *from = *text + (**text == 'x');
+  double number = isdigit((unsigned char)*from) ? strtod(from, &end) : 0;
+  if (!(number > 0) || !isfinite(number) || (number > 1 && log10(number) != floor(log10(number))))
+    return 0;
+  *text = end;
+  return number;
+}
+
+enum eo_quantity eo_unit_find_multiple(const char *text, double *factor)
+{
+  enum eo_quantity quantity = eo_unit_find(text, factor);
+  double number = quantity == EO_QUANTITY_NONE ? multiple_of(&text) : 0;
+  if (!(number > 0))
+    return quantity;
+  quantity = eo_unit_find(text, factor);
+  *factor *= quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER ? 1 : number;
+  return quantity;
 }
 
 static void copy_part(char *to, int size, const char *from, size_t length)

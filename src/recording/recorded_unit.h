@@ -23,6 +23,9 @@ enum eo_quantity {
    known in UTF-8 and Latin 1. */
 enum eo_quantity eo_unit_find(const char *text, double *factor);
 
+/* The same of a column's unit, which may be a multiple: "0.0001 deg", "x1000 rpm". */
+enum eo_quantity eo_unit_find_multiple(const char *text, double *factor);
+
 /* Splits "angle [deg]", "angle (deg)", "angle / deg", "angle_deg", "angle in deg" into name and unit, both cut to their
    size. unit is "" when there is none that is known or stands in brackets; round brackets around a word that is no unit
    ("(raw)", "(encoder 1)") belong to the name. */

@@ -42,6 +42,8 @@ struct eo_track_beside {
   double scale; /* N m or rad/s per unit of the column; 0: there is no such column */
   int column;   /* of the recording */
   bool stated;  /* the unit is the file's own, else it is a guess from the name */
+  bool named;   /* the name tells the shaft, else it is taken for the pinion's */
+  int told;     /* how much name and unit tell; what tells more takes its place */
 };
 
 struct eo_tracks {
