@@ -67,7 +67,10 @@ static enum eo_code measure(struct work *work, const struct eo_measure_request *
                                              .transmission = {.harmonics = request->harmonics}};
   settings.stated_torque = request->torque;
   settings.transmission.part = request->part;
-  struct eo_layout_pair pair = {.speed = {request->speed[0], request->speed[1]}};
+  const bool stated = request->stated_speed > 0;
+  struct eo_layout_pair pair = {
+      .speed = {stated ? request->stated_speed : request->speed[0], stated ? request->stated_speed : request->speed[1]},
+      .stated = stated};
   for (int i = 0; i < 2; i++) {
     pair.teeth[i] = request->geometry->teeth[i];
     settings.expected_speed[i] = request->speed[i];

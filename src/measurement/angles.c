@@ -106,10 +106,13 @@ static void judge_still(struct eo_angles_maker *maker, int channel)
   }
 }
 
-/* A counter overflows at a power of two: the jumps only tell where within a step or so. */
+/* A counter overflows at a power of two or a round number, which the jumps tell but for the step's own changes. */
 static double exact_overflow(const struct eo_scan_column *column, double period)
 {
-  double width = exp2(round(log2(period)));
+  double width = exp2(round(log2(period))), near = 0.1 * column->typical + 1;
+  for (double unit = 1e6; unit >= 100 && fabs(period - width) > near; unit /= 10)
+    if (round(period / unit) > 0 && fabs(round(period / unit) * unit - period) <= near)
+      return round(period / unit) * unit;
   return fabs(period - width) <= 2 * column->typical && width > 8 * column->typical ? width : period;
 }
 
@@ -126,7 +129,9 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   if (isnan(period))
     return;
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
-  const char *unit = fabs(degrees - 1) < 0.05 ? "degrees" : fabs(radians - 1) < 0.05 ? "radians" : NULL;
+  bool may = fabs(scale - 1) < 1e-9 || fabs(scale * DEGREES - 1) < 1e-9; /* counts and gon are none of both */
+  const char *unit = !may ? NULL : fabs(degrees - 1) < 0.05 ? "degrees" : fabs(radians - 1) < 0.05 ? "radians" : NULL;
+  double quarters = round(4 * turn / (2 * M_PI));
   if (unit) {
     maker->sampler.scale[channel] *= fabs(degrees - 1) < 0.05 ? 1 / DEGREES : DEGREES;
     eo_findings_add(maker->findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, channel, period,
@@ -135,6 +140,8 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
+  } else if (column->quantum < 1 && quarters > 0 && fabs(4 * turn / (2 * M_PI) - quarters) < 0.1) {
+    turn = quarters * M_PI / 2; /* half turns, several turns: the jumps tell them but for the last digits */
   } else if (column->quantum >= 1) {
     period = exact_overflow(column, period);
     turn = period * scale;
@@ -155,6 +162,39 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   eo_findings_add(maker->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)column->jumps,
                   "The %s angle starts again every %.6g, %d times; its turns were counted.", eo_channel_name(channel),
                   turn / maker->sampler.scale[channel], column->jumps);
+}
+
+/* s after the first row; NaN where it cannot be read. */
+static double time_at(const struct eo_angles_maker *maker, int64_t row)
+{
+  double values[EO_RECORDING_COLUMNS];
+  struct eo_error error;
+  if (maker->tracks->time_column < 0)
+    return maker->tracks->interval * (double)row - maker->scan->time_first;
+  return eo_recording_read(maker->recording, row, 1, values, &error)
+             ? NAN
+             : values[maker->tracks->time_column] * maker->tracks->time_scale - maker->scan->time_first;
+}
+
+/* The angles of two runs have nothing to do with each other. */
+static void judge_restarts(struct eo_angles_maker *maker)
+{
+  int64_t row[EO_SCAN_JUMPS];
+  int all = maker->tracks->channel[0].track == EO_TRACK_ANGLE ? eo_scan_restarts(maker->scan, row) : 0, inside = 0;
+  for (int i = 0; i < all; i++) {
+    double time = time_at(maker, row[i]);
+    if (time > maker->asked->from && !(maker->asked->to > 0 && time > maker->asked->to))
+      row[inside++] = row[i];
+  }
+  if (inside)
+    eo_angles_at_row(
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, inside,
+                        "Both angles start anew in the same row, %d time%s, first in row %lld after %.6g s: "
+                        "runs follow each other, whose angles do not belong together. State the times of "
+                        "one of them (from, to).",
+                        inside, inside == 1 ? "" : "s", (long long)row[0] + 1, time_at(maker, row[0])),
+        row[0]);
 }
 
 static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
@@ -301,6 +341,7 @@ static double usual_rate(double *rate, int blocks)
 
 static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
 {
+  const struct eo_track_channel *pinion = &maker->tracks->channel[0];
   double advance = maker->high.angle[0] - maker->low.angle[0];
   angles->rows = eo_recording_rows(angles->series);
   angles->interval = maker->usual.interval;
@@ -316,6 +357,8 @@ static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
   }
   if (!even)
     advance = fabs(angles->rate[0]) * angles->interval * EO_SAMPLER_BLOCK;
+  if (pinion->doubt == EO_DOUBT_UNIT) /* what is taken for radians may be degrees */
+    advance *= fmin(1, 1 / DEGREES / pinion->scale);
   angles->ratio_tolerance = fmax(1e-6, 0.02 / fmax(advance, 0.1));
   eo_jumps_judge(maker, angles);
   eo_resampled_judge(maker);
@@ -334,6 +377,7 @@ static enum eo_code prepare(struct eo_angles_maker *maker, struct eo_angles *ang
   EO_TRY(eo_scan_run(maker->scan, maker->recording, maker->tracks, maker->progress, error));
   judge_time(maker);
   judge_gaps(maker);
+  judge_restarts(maker);
   return prepare_tracks(maker, angles, error);
 }
 

@@ -57,8 +57,11 @@ static enum eo_code measure(struct eo_measurement *measurement, struct eo_angles
   }
   if (!angles->series || is_refused(measurement))
     return EO_OK;
-  if (enough && unit_is_open(angles, tracks, settings->stated_speed))
-    EO_TRY(eo_units_judge(angles, &settings->transmission, doubt_of(tracks), &measurement->findings, error));
+  if (enough && unit_is_open(angles, tracks, settings->stated_speed)) {
+    const struct eo_unit_doubt doubt = {doubt_of(tracks),
+                                        tracks->channel[angles->from[0]].scale * fabs(angles->factor[0])};
+    EO_TRY(eo_units_judge(angles, &settings->transmission, &doubt, &measurement->findings, error));
+  }
   if (is_refused(measurement))
     return EO_OK;
   EO_TRY(eo_transmission_measure(&measurement->transmission, angles, &settings->transmission, &measurement->findings,

@@ -84,11 +84,15 @@ static bool add_value(struct eo_scan_column *column, double value, int64_t at, i
   }
   column->at_low += value == column->low;
   column->at_high += value == column->high;
+  column->rises += (step > 0) - (step < 0);
   column->run = used && step == 0 ? column->run + 1 : 1;
   column->travel = column->run > 1 ? column->travel : 0;
-  if (used && fabs(step) > 10 * column->typical && column->typical > 0) {
-    if (column->jumps < EO_SCAN_JUMPS)
+  bool wide = fabs(step) > 3 * column->typical && fabs(step) > 0.5 * (column->high - column->low);
+  if (used && (wide || fabs(step) > 10 * column->typical) && column->typical > 0) {
+    if (column->jumps < EO_SCAN_JUMPS) {
       column->jump[column->jumps] = fabs(step) + column->typical;
+      column->jump_row[column->jumps] = step < 0 ? -at : at;
+    }
     column->jumps++;
     column->falls += step < 0;
   }
@@ -233,6 +237,25 @@ double eo_scan_period(const struct eo_scan_column *column, double turn)
   bool first_differs = kept > 1 && alike == wide - 1 && fabs(column->jump[0] / period - 1) >= 0.1;
   free(sorted);
   return wide && (alike >= 0.8 * wide || first_differs) && range < 1.05 * period ? period : NAN;
+}
+
+/* The jumps against the way the values go, by their rows. */
+static int falls_back(const struct eo_scan_column *column, int64_t row[EO_SCAN_JUMPS])
+{
+  int n = 0;
+  for (int i = 0; i < column->jumps && i < EO_SCAN_JUMPS; i++)
+    if ((column->jump_row[i] < 0) == (column->rises > 0))
+      row[n++] = llabs(column->jump_row[i]);
+  return n;
+}
+
+int eo_scan_restarts(const struct eo_scan *scan, int64_t row[EO_SCAN_JUMPS])
+{
+  int64_t other[EO_SCAN_JUMPS];
+  int restarts = falls_back(&scan->column[0][0], row);
+  bool same = restarts == falls_back(&scan->column[1][0], other) &&
+              !memcmp(row, other, (size_t)restarts * sizeof row[0]);
+  return same ? restarts : 0;
 }
 
 int64_t eo_scan_index_row(const struct eo_scan_column *column, double period)

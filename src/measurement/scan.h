@@ -21,11 +21,13 @@ struct eo_scan_column {
   int64_t run;
   double travel; /* of the other channel in that run, its own typical steps */
   double before;
-  int jumps; /* steps of more than ten typical ones, all; the first EO_SCAN_JUMPS are kept */
+  int jumps; /* steps of more than ten typical ones, or three and half the range; the first EO_SCAN_JUMPS are kept */
   double jump[EO_SCAN_JUMPS];
-  int falls;          /* of the jumps, those downwards */
-  int64_t landing[2]; /* first row at which the values step back to 0: from above, from below; -1: never */
-  double landed[2];   /* size of that step */
+  int64_t jump_row[EO_SCAN_JUMPS]; /* negative: downwards into that row */
+  int64_t rises;                   /* steps up less those down */
+  int falls;                       /* of the jumps, those downwards */
+  int64_t landing[2];              /* first row at which the values step back to 0: from above, from below; -1: never */
+  double landed[2];                /* size of that step */
 };
 
 struct eo_scan {
@@ -47,6 +49,10 @@ enum eo_code eo_scan_run(struct eo_scan *scan, const struct eo_recording *record
 /* The turn after which a column starts again, in its unit; NaN when it does not. turn: of its unit, 0: not known. The
    first turn may be a part of one, up to an index pulse. */
 double eo_scan_period(const struct eo_scan_column *column, double turn);
+
+/* How often both angles fall back in the same rows, which turns of two shafts never do: runs follow each other. row: in
+   which the next one begins. */
+int eo_scan_restarts(const struct eo_scan *scan, int64_t row[EO_SCAN_JUMPS]);
 
 /* The row of the index pulse that ended a first turn in part, so that the values before it have another zero; 0: none.
  */

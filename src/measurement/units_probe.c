@@ -80,24 +80,32 @@ struct unit {
   const char *sentence; /* behind "Both angles are" or "The counters take" */
 };
 
-enum { UNITS = 5 };
+enum { UNITS = 6 };
+
+/* What a guess may have taken for one another, rad. */
+static const struct unit guessed[] = {{M_PI / 180, "Both angles are in degrees, not in the stated unit"},
+                                      {1, "Both angles are in radians, not in the stated unit"},
+                                      {M_PI / 200, "Both angles are in gon"},
+                                      {2 * M_PI, "Both angles are in turns"}};
 
 /* The units that a doubt leaves, the one that was read first; returns how many. */
-static int open_units(enum eo_track_doubt doubt, struct unit unit[UNITS])
+static int open_units(const struct eo_unit_doubt *doubt, struct unit unit[UNITS])
 {
   int n = 0;
   unit[n++] = (struct unit){1, ""};
+  if (doubt->kind == EO_DOUBT_UNIT) {
+    for (size_t i = 0; i < sizeof guessed / sizeof *guessed; i++)
+      if (fabs(guessed[i].factor / doubt->scale - 1) > 1e-9)
+        unit[n++] = (struct unit){guessed[i].factor / doubt->scale, guessed[i].sentence};
+    return n;
+  }
   unit[n++] = (struct unit){180 / M_PI, "Both angles are in radians, not in the stated unit"};
   unit[n++] = (struct unit){M_PI / 180, "Both angles are in degrees, not in the stated unit"};
-  if (doubt == EO_DOUBT_GRAD)
+  if (doubt->kind == EO_DOUBT_GRAD)
     unit[n++] = (struct unit){0.9, "Both angles are in gon, which \"grad\" means outside Germany"};
-  if (doubt == EO_DOUBT_EDGES) {
+  if (doubt->kind == EO_DOUBT_EDGES) {
     unit[n++] = (struct unit){0.5, "Both counters take two edges of each line"};
     unit[n++] = (struct unit){0.25, "Both counters take four edges of each line"};
-  }
-  if (doubt == EO_DOUBT_UNIT) {
-    unit[n++] = (struct unit){0.9, "Both angles are in gon, not in degrees"};
-    unit[n++] = (struct unit){360, "Both angles are in turns, not in degrees"};
   }
   return n;
 }
@@ -115,7 +123,7 @@ static enum eo_code fill_probe(struct probe *probe, const struct eo_angles *angl
 
 /* A recording that is too short as it is read does not speak against that. */
 static double most_seen(const struct probe *probe, const struct eo_transmission_settings *settings,
-                        enum eo_track_doubt doubt)
+                        const struct eo_unit_doubt *doubt)
 {
   struct unit unit[UNITS];
   double seen[UNITS] = {0};
@@ -128,7 +136,7 @@ static double most_seen(const struct probe *probe, const struct eo_transmission_
 }
 
 enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            enum eo_track_doubt doubt, double *factor, struct eo_error *error)
+                            const struct eo_unit_doubt *doubt, double *factor, struct eo_error *error)
 {
   struct probe probe = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
   probe.row = malloc(sizeof *probe.row * (size_t)probe.rows);
@@ -139,7 +147,7 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
   return code;
 }
 
-static void repair(struct eo_angles *angles, enum eo_track_doubt doubt, double factor, double speed,
+static void repair(struct eo_angles *angles, const struct eo_unit_doubt *doubt, double factor, double speed,
                    struct eo_findings *findings)
 {
   struct unit unit[UNITS];
@@ -155,7 +163,7 @@ static void repair(struct eo_angles *angles, enum eo_track_doubt doubt, double f
 }
 
 enum eo_code eo_units_judge(struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                            enum eo_track_doubt doubt, struct eo_findings *findings, struct eo_error *error)
+                            const struct eo_unit_doubt *doubt, struct eo_findings *findings, struct eo_error *error)
 {
   double factor, speed = fabs(angles->rate[angles->from[0]] * angles->factor[0]) * 30 / M_PI;
   enum eo_code code = eo_units_probe(angles, settings, doubt, &factor, error);
@@ -164,7 +172,7 @@ enum eo_code eo_units_judge(struct eo_angles *angles, const struct eo_transmissi
   if (isnan(factor) && angles->units_in_doubt)
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
                     "Which channel is in degrees and which in radians cannot be told; state the speed.");
-  else if (isnan(factor) && doubt == EO_DOUBT_WIDTH)
+  else if (isnan(factor) && doubt->kind == EO_DOUBT_WIDTH)
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
                     "The counts start again where a counter overflows, nothing says that this is a turn, and no mesh "
                     "orders show as if it were: give the counts per turn.");

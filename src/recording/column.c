@@ -131,22 +131,29 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
 }
 
 /* Counts run from 0 to one below the turn and pass over the last ones at speed: powers of two and whole hundreds come
-   into question. */
+   into question, those first that are as high as the resets. */
 static double find_counts(const struct eo_column *look)
 {
+  const double near[] = {0.1 * fabs(look->step) + 1, INFINITY};
   double least = look->high - (look->low < 0 ? look->low : 0) + 1, most = least + 2 * fabs(look->step) + 1;
-  for (double power = 64; power <= most; power *= 2)
-    if (power >= least)
-      return power;
-  for (double unit = 1e6; unit >= 100; unit /= 10)
-    if (ceil(least / unit) * unit <= most)
-      return ceil(least / unit) * unit;
+  for (int i = 0; i < 2; i++) {
+    for (double power = 64; power <= most; power *= 2)
+      if (power >= least && fabs(power - look->period) <= near[i])
+        return power;
+    for (double unit = 1e6; unit >= 100; unit /= 10) {
+      double turn = ceil(least / unit) * unit;
+      if (turn <= most && fabs(turn - look->period) <= near[i])
+        return turn;
+    }
+  }
   return 0;
 }
 
 double eo_column_turn(const struct eo_column *look)
 {
-  static const double turns[] = {360, 6.283185307179586, 1};
+  /* degrees and their parts, radians, turns, gon, mils */
+  static const double turns[] = {360, 3600, 36000, 360000, 21600, 1296000, 6.283185307179586, 6283.185307179586,
+                                 1,   1000, 400,   6400};
   if (!look->resets)
     return 0;
   if (look->whole && look->high > 400)

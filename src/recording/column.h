@@ -44,8 +44,8 @@ struct eo_column {
 enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look,
                             struct eo_error *error);
 
-/* The turn after which a column starts again, exactly: 360, 2 pi, 1, or the roundest number of counts that the values
-   allow. 0: it does not start again, or after what cannot be told. */
+/* The turn after which a column starts again, exactly: 360, 2 pi, 1, 400 and the like, or the roundest number of counts
+   that the values allow. 0: it does not start again, or after what cannot be told. */
 double eo_column_turn(const struct eo_column *look);
 
 /* Words that two names share, each as often as it is in both; words of the list count for nothing. */

@@ -27,6 +27,7 @@ struct eo_layout_choice {
 struct eo_layout_pair {
   int teeth[2];    /* [member]: the encoders turn in the inverse ratio */
   double speed[2]; /* lowest and highest of the pinion in the load cases of the design, rad/s */
+  bool stated;     /* both are the one that was stated for the recording */
 };
 
 /* Finds what the columns of *recording mean: fills *tracks and adds what was guessed to notes. Where pinion and gear

@@ -72,15 +72,19 @@ static double speed_of(const struct eo_guess *guess, int column)
   return eo_layout_rate(guess, column, &clock);
 }
 
+bool eo_layout_is_tooth_ratio(const struct eo_guess *guess, double ratio)
+{
+  double teeth = guess->pair && guess->pair->teeth[0] > 0 ? (double)guess->pair->teeth[1] / guess->pair->teeth[0] : NAN;
+  return fabs(fabs(ratio) / teeth - 1) < CLOSE || fabs(fabs(ratio) * teeth - 1) < CLOSE;
+}
+
 /* True when two columns turn in the ratio of the teeth, the first faster or the second. */
 static bool fits_teeth(const struct eo_guess *guess, int a, int b)
 {
   double fa = factor_of(guess, a), fb = factor_of(guess, b);
   if (!(fa > 0) || !(fb > 0))
     fa = fb = 1;
-  double ratio = fabs(speed_of(guess, a) * fa / (speed_of(guess, b) * fb)),
-         teeth = (double)guess->pair->teeth[1] / guess->pair->teeth[0];
-  return fabs(ratio / teeth - 1) < CLOSE || fabs(ratio * teeth - 1) < CLOSE;
+  return eo_layout_is_tooth_ratio(guess, speed_of(guess, a) * fa / (speed_of(guess, b) * fb));
 }
 
 static int points_of(const struct eo_guess *guess, int column)

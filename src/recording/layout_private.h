@@ -58,6 +58,9 @@ int eo_layout_pick_time(const struct eo_guess *guess, int channel);
 enum eo_code eo_layout_find_clocks(struct eo_guess *guess, struct eo_error *error);
 /* Nothing states the unit of a member's times: they are taken for seconds so far. */
 bool eo_layout_is_open(const struct eo_guess *guess, int member);
+/* s per unit of a member's times where nothing states it, as read so far: the unit in which rows come at a rate that an
+   encoder is recorded with. 1: seconds, or the unit is known. */
+double eo_layout_time_factor(const struct eo_guess *guess, int member);
 /* Settles units of time that nothing states and asks where the speed is far from every load case; the channels' scales
    are known. */
 enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error);
@@ -70,6 +73,8 @@ const char *eo_layout_member(int member);       /* "pinion", "gear" */
 /* Values per second of a column by its clock, without the resets, in the column's unit. */
 double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_layout_clock *clock);
 
+/* Two speeds whose ratio is that of the teeth, whichever of them is the pinion's. */
+bool eo_layout_is_tooth_ratio(const struct eo_guess *guess, double ratio);
 /* Of many candidates the two that turn in the ratio of the teeth; true when there are such. */
 bool eo_layout_find_pair(struct eo_guess *guess);
 /* Asks where names and units do not tell one pair from another. */

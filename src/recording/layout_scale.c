@@ -15,27 +15,37 @@ static double distance(const struct eo_guess *guess, double speed)
                                          : 0;
 }
 
-/* The unit of the time is open as well: the units of both that bring the pinion nearest to a load case. */
-static double scale_with_time(const struct eo_guess *guess, double rate)
+/* The unit of the angle that brings the pinion nearest to a load case, or to the speed that was stated, which is more:
+   gon and turns come into question then, too. */
+static double nearest_scale(const struct eo_guess *guess, double rate)
 {
-  static const double times[] = {1, 1e-3, 1e-6, 1e-9, 86400}, angles[] = {EO_TURN / 360, 1};
-  double best = INFINITY, scale = 1;
-  for (int a = 0; a < 2; a++)
-    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-      double off = distance(guess, rate * angles[a] / times[i]);
-      if (off < best)
-        best = off, scale = angles[a];
-    }
-  return scale;
+  static const double scales[] = {EO_TURN / 360, 1, EO_TURN, EO_TURN / 400};
+  int best = 0;
+  for (int i = 1; i < (guess->pair->stated ? 4 : 2); i++)
+    best = distance(guess, rate * scales[i]) < distance(guess, rate * scales[best]) ? i : best;
+  return scales[best];
 }
 
-/* Without a unit and without turns: degrees unless the shaft would then crawl. */
+/* Of the pinion, in the unit of both columns, whichever of them is taken for it so far. */
+static double pinion_rate(const struct eo_guess *guess, double own, double other, int member)
+{
+  const int *teeth = guess->pair->teeth;
+  if (eo_layout_is_tooth_ratio(guess, other / own))
+    return teeth[1] > teeth[0] ? fmax(own, other) : fmin(own, other);
+  return own * teeth[member] / fmax(teeth[0], 1);
+}
+
+/* Without a unit and without turns: degrees unless the shaft would then crawl; both shafts have one unit where they
+   turn in the ratio of the teeth. */
 static double scale_by_speed(const struct eo_guess *guess, int member)
 {
-  double ratio = guess->pair ? (double)guess->pair->teeth[member] / guess->pair->teeth[0] : 1;
-  double rate = fabs(eo_layout_rate(guess, guess->tracks->channel[member].column[0], &guess->clock[member]));
-  if (eo_layout_is_open(guess, member) && guess->pair && guess->pair->speed[1] > 0 && rate > 0)
-    return scale_with_time(guess, rate * ratio);
+  const struct eo_track_channel *channel = guess->tracks->channel;
+  double rate = fabs(eo_layout_rate(guess, channel[member].column[0], &guess->clock[member]));
+  double other = fabs(eo_layout_rate(guess, channel[!member].column[0], &guess->clock[!member]));
+  if (member && channel[0].doubt == EO_DOUBT_UNIT && eo_layout_is_tooth_ratio(guess, other / rate))
+    return channel[0].scale;
+  if (guess->pair && guess->pair->speed[1] > 0 && rate > 0 && (guess->pair->stated || eo_layout_is_open(guess, member)))
+    return nearest_scale(guess, pinion_rate(guess, rate, other, member) / eo_layout_time_factor(guess, member));
 
   double rpm = rate / 6; /* as degrees */
   return rpm < 60 && rpm * 180 / M_PI < 30000 ? 1 : EO_TURN / 360;
@@ -46,6 +56,7 @@ const char *eo_layout_scale_name(double scale)
   return scale == 1                           ? "radians"
          : scale == EO_TURN                   ? "turns"
          : fabs(scale - EO_TURN / 360) < 1e-9 ? "degrees"
+         : fabs(scale - EO_TURN / 400) < 1e-9 ? "gon"
                                               : "counts";
 }
 
@@ -108,9 +119,9 @@ enum eo_code eo_layout_find_scale(struct eo_guess *guess, int member, struct eo_
                    : guess->choice->unit == EO_LAYOUT_TURN   ? EO_TURN
                                                              : 0;
   if (!guess->choice->unit && look->quantity == EO_QUANTITY_ANGLE) {
-    channel->scale = look->factor;
-    channel->doubt = strcasecmp(eo_recording_unit(guess->recording, channel->column[0]), "grad") ? EO_DOUBT_NONE
-                                                                                                 : EO_DOUBT_GRAD;
+    bool grad = !strcasecmp(eo_recording_unit(guess->recording, channel->column[0]), "grad");
+    channel->scale = grad && eo_column_turn(look) == 400 ? EO_TURN / 400 : look->factor;
+    channel->doubt = grad && !look->resets ? EO_DOUBT_GRAD : EO_DOUBT_NONE;
   } else if (turn > 0 && (counts || (!guess->choice->unit && (!stated || look->whole)))) {
     channel->scale = EO_TURN / turn;
     channel->doubt = stated ? EO_DOUBT_EDGES : is_counter_width(turn) ? EO_DOUBT_WIDTH : EO_DOUBT_NONE;

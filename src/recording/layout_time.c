@@ -8,7 +8,10 @@
 
 #define ODD_ROWS 2 /* times that start again more often are no times of one recording */
 #define FAR 100.0  /* times a load case: no speed of this pair */
-#define NEAR 30.0  /* times a load case: a unit of time is believed; units differ by more than the square of it */
+#define SHORTEST \
+  2e-6 /* s from row to row: encoders are recorded with more than 50 and less than 500,000 rows a second */
+#define LONGEST 0.02
+#define NEAR 30.0 /* times a load case: a unit of time is believed; units differ by more than the square of it */
 
 #define WEAK_WORDS "x|axis|abscissa" /* may as well name a signal */
 
@@ -193,6 +196,20 @@ static enum eo_code even_clock(struct eo_guess *guess, int channel, struct eo_la
   return clock->interval > 0 ? EO_OK : refuse_times(guess, error);
 }
 
+/* A unit that the file states must be known, of times as of angles: a guess in its place would be a wrong speed. */
+static enum eo_code check_time_unit(const struct eo_guess *guess, int column, struct eo_error *error)
+{
+  char text[80];
+  enum eo_quantity quantity = guess->look[column].quantity;
+  bool ticks = eo_recording_tick(guess->recording) > 0 || quantity == EO_QUANTITY_COUNT;
+  if (guess->choice->time_scale > 0 || quantity != EO_QUANTITY_NONE || ticks || !eo_layout_has_unit(guess, column))
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "/time_unit",
+                      "The file states \"%.40s\" as the unit of %s, which is not known here: give the unit of the time "
+                      "(s, ms, us, ns, or the seconds that one of them takes).",
+                      eo_recording_unit(guess->recording, column), eo_layout_label(guess, column, text, sizeof text));
+}
+
 static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_error *error)
 {
   struct eo_layout_clock *clock = &guess->clock[member];
@@ -212,6 +229,7 @@ static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_err
   if (clock->column < 0)
     return even_clock(guess, channel, clock, error);
   const struct eo_column *look = &guess->look[clock->column];
+  EO_TRY(check_time_unit(guess, clock->column, error));
   if (!(guess->choice->time_scale > 0) && look->quantity == EO_QUANTITY_TIME)
     clock->scale = look->factor;
   else if (!(guess->choice->time_scale > 0) && eo_recording_tick(guess->recording) > 0 &&
@@ -267,6 +285,22 @@ bool eo_layout_is_open(const struct eo_guess *guess, int member)
          guess->clock[member].scale == 1;
 }
 
+static const double time_units[] = {1, 1e-3, 1e-6, 1e-9, 86400};
+
+/* Rows come at a rate that an encoder is recorded with. */
+static bool is_usual(double interval)
+{
+  return fabs(interval) > SHORTEST && fabs(interval) < LONGEST;
+}
+
+double eo_layout_time_factor(const struct eo_guess *guess, int member)
+{
+  for (size_t i = 0; eo_layout_is_open(guess, member) && i < sizeof time_units / sizeof *time_units; i++)
+    if (is_usual(guess->clock[member].interval * time_units[i]))
+      return time_units[i];
+  return 1;
+}
+
 static void set_scale(struct eo_guess *guess, int member, double scale)
 {
   struct eo_layout_clock *clock = &guess->clock[member];
@@ -288,15 +322,23 @@ static double pinion_speed(const struct eo_guess *guess)
   return fabs(eo_layout_rate(guess, channel->column[0], &guess->clock[0]) * channel->scale);
 }
 
-/* The one unit of time that makes a speed near the load cases; 0: none or several do. */
+/* The one unit of time but s that makes a speed near the load cases, of rows at a usual rate; 0: none or several do. */
 static double scale_by_speed(const struct eo_guess *guess, double speed)
 {
-  static const double scales[] = {1e-3, 1e-6, 1e-9, 86400};
   double found = 0;
-  for (size_t i = 0; i < sizeof scales / sizeof *scales; i++)
-    if (speed / scales[i] > guess->pair->speed[0] / NEAR && speed / scales[i] < guess->pair->speed[1] * NEAR)
-      found = found > 0 ? -1 : scales[i];
+  for (size_t i = 1; i < sizeof time_units / sizeof *time_units; i++)
+    if (speed / time_units[i] > guess->pair->speed[0] / NEAR && speed / time_units[i] < guess->pair->speed[1] * NEAR &&
+        is_usual(guess->clock[0].interval * time_units[i]))
+      found = found > 0 ? -1 : time_units[i];
   return found > 0 ? found : 0;
+}
+
+/* "timestamp (80 MHz clock)", "t / 10 us", "ticks in 12.5 ns": what the name says of the unit is not understood here.
+ */
+static bool says_more(const struct eo_guess *guess, int column)
+{
+  const char *name = eo_recording_name(guess->recording, column);
+  return strpbrk(name, "([/*") || eo_column_named(name, "in|zu|of|each|je");
 }
 
 enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error)
@@ -311,7 +353,7 @@ enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *erro
          high = guess->pair ? guess->pair->speed[1] : 0;
   if (!(high > 0) || isnan(speed) || (speed > low / FAR && speed < high * FAR))
     return EO_OK;
-  double scale = open[0] ? scale_by_speed(guess, speed) : 0;
+  double scale = open[0] && !says_more(guess, guess->clock[0].column) ? scale_by_speed(guess, speed) : 0;
   if (scale > 0) {
     for (int member = 0; member < 2; member++)
       if (open[member])
@@ -325,9 +367,10 @@ enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *erro
   }
   if (guess->choice->time_scale > 0 || guess->choice->sample_rate > 0)
     return EO_OK;
-  return eo_error_set(
-      error, EO_ERROR_INPUT, guess->clock[0].column < 0 ? "/sample_rate_Hz" : "/time_unit",
-      "The pinion would turn at %.3g rpm, a hundred times away from every load case of the design (%.4g "
-      "to %.4g rpm): state the unit of the time or the sampling rate, and the unit of the angles.",
-      speed * 60 / EO_TURN, low * 60 / EO_TURN, high * 60 / EO_TURN);
+  return eo_error_set(error, EO_ERROR_INPUT, guess->clock[0].column < 0 ? "/sample_rate_Hz" : "/time_unit",
+                      "The pinion would turn at %.3g rpm, a hundred times away from %s (%.4g to %.4g rpm): state the "
+                      "unit of the time or "
+                      "the sampling rate, and the unit of the angles.",
+                      speed * 60 / EO_TURN, guess->pair->stated ? "what was stated" : "every load case of the design",
+                      low * 60 / EO_TURN, high * 60 / EO_TURN);
 }

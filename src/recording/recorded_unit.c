@@ -26,6 +26,8 @@ static const struct {
     {"us usec usecs microsec microsecs microsecond microseconds micros mikrosekunden", EO_QUANTITY_TIME, 1e-6},
     {"ns nsec nsecs nanosec nanosecs nanosecond nanoseconds nanos nanosekunden", EO_QUANTITY_TIME, 1e-9},
     {"ps", EO_QUANTITY_TIME, 1e-12},
+    {"cs centisec centiseconds", EO_QUANTITY_TIME, 1e-2},
+    {"ds decisec deciseconds", EO_QUANTITY_TIME, 0.1},
     {"min mins minute minutes minuten", EO_QUANTITY_TIME, 60},
     {"h hr hrs hour hours std stunden", EO_QUANTITY_TIME, 3600},
     {"d day days tag tage", EO_QUANTITY_TIME, 86400},
@@ -223,25 +225,36 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
   return quantity;
 }
 
-/* What a multiple of a unit begins with; 0: nothing that could be one. A number like 360 tells a range. */
-static double multiple_of(const char **text)
+/* What a multiple of a unit begins with: "0.0001", "0,1", "x10", "x 10^-5", "1E-4", "1/4000"; what follows it is copied
+   to unit without blanks. 0: nothing that could be one; a number like 360 tells a range. */
+static double multiple_of(const char *text, char *unit, size_t size)
 {
-  char *end;
-  const char *from = *text + (**text == 'x');
-  double number = isdigit((unsigned char)*from) ? strtod(from, &end) : 0;
+  char plain[48], *end = plain;
+  size_t n = 0;
+  for (const char *c = text; *c && n + 1 < sizeof plain; c++)
+    if (*c != ' ')
+      plain[n++] = *c == ',' ? '.' : *c;
+  plain[n] = '\0';
+  const char *from = plain + (*plain == 'x');
+  double number = !strncmp(from, "10^", 3)        ? pow(10, strtod(from + 3, &end))
+                  : isdigit((unsigned char)*from) ? strtod(from, &end)
+                                                  : 0;
+  if (number > 0 && *end == '/' && isdigit((unsigned char)end[1]))
+    number /= strtod(end + 1, &end);
   if (!(number > 0) || !isfinite(number) || (number > 1 && log10(number) != floor(log10(number))))
     return 0;
-  *text = end;
+  snprintf(unit, size, "%s", end);
   return number;
 }
 
 enum eo_quantity eo_unit_find_multiple(const char *text, double *factor)
 {
+  char unit[48];
   enum eo_quantity quantity = eo_unit_find(text, factor);
-  double number = quantity == EO_QUANTITY_NONE ? multiple_of(&text) : 0;
+  double number = quantity == EO_QUANTITY_NONE ? multiple_of(text, unit, sizeof unit) : 0;
   if (!(number > 0))
     return quantity;
-  quantity = eo_unit_find(text, factor);
+  quantity = eo_unit_find(unit, factor);
   *factor *= quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER ? 1 : number;
   return quantity;
 }
@@ -266,7 +279,24 @@ static bool names_channel(const char *text, size_t length)
     word = word && (isalnum((unsigned char)text[i]) || text[i] == ' ' || text[i] == '_' || text[i] == '-');
   for (size_t i = 0; i < length; i++)
     number = number && isdigit((unsigned char)text[i]);
-  return number || (eo_unit_find(unit, &factor) == EO_QUANTITY_NONE && word);
+  return number || (eo_unit_find_multiple(unit, &factor) == EO_QUANTITY_NONE && word);
+}
+
+/* Where a number in front of `at` begins that belongs to the unit behind it, as "t / 10 us" and "ticks of 12.5 ns" have
+   it; else `at`: in "encoder 1 deg" it belongs to the name. */
+static size_t multiple_before(const char *label, size_t at)
+{
+  size_t from = at, to;
+  while (from && strchr("0123456789.,", label[from - 1]))
+    from--;
+  to = from;
+  while (to && label[to - 1] == ' ')
+    to--;
+  size_t word = to;
+  while (word && isalpha((unsigned char)label[word - 1]))
+    word--;
+  bool of = to < from && eo_letters_listed(label + word, to - word, "in|zu|of|je|each");
+  return from < at && to && (of || strchr("/@x*", label[to - 1])) ? from : at;
 }
 
 /* Splits at a slash, an underscore, a comma, a blank or the word "in" when a unit stands behind it. */
@@ -280,7 +310,8 @@ static bool split_word(const char *label, size_t length, size_t at, char *name, 
   if (eo_unit_find(last, &factor) == EO_QUANTITY_NONE ||
       (!time && strlen(last) == 1 && strchr("1cmgnaukfdhvw\"'", tolower((unsigned char)last[0]))))
     return false;
-  copy_part(unit, unit_size, last, strlen(last));
+  at = multiple_before(label, at);
+  copy_part(unit, unit_size, label + at + (strchr("_ /,:", label[at]) != NULL), length - at);
   while (at > 1 && strchr("_ /,:-", label[at - 1]))
     at--;
   if (at > 3 && !strncasecmp(label + at - 3, " in", 3))

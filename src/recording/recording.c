@@ -4,6 +4,7 @@
 #include "recording/bytes.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -11,7 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#define MARKS 65536 /* changes of the distance between row and line that are remembered */
+#define LARGEST 1e30 /* no time, angle or load: instruments mark what they could not measure (9.91e37, 9.9e37) */
+#define MARKS 65536  /* changes of the distance between row and line that are remembered */
 
 /* From this row on, line = this line + (row - this row). */
 struct mark {
@@ -233,7 +235,9 @@ enum eo_code eo_recording_append(struct eo_recording *recording, const double *r
     int64_t room = recording->capacity - recording->buffer_rows;
     int64_t n = count < room ? count : room;
     size_t values = (size_t)n * (size_t)recording->columns;
-    memcpy(recording->buffer + recording->buffer_rows * recording->columns, rows, values * sizeof *rows);
+    double *to = recording->buffer + recording->buffer_rows * recording->columns;
+    for (size_t i = 0; i < values; i++)
+      to[i] = fabs(rows[i]) < LARGEST ? rows[i] : NAN;
     recording->buffer_rows += n;
     if (recording->next_line)
       recording->next_line += n;

@@ -115,7 +115,7 @@ static void take_units(struct eo_text_format *format, const struct eo_header_lin
     eo_text_cell_copy(text, sizeof text, &cell);
     size_t length = strlen(text);
     bool bracketed = length >= 2 && text[0] == '[' && text[length - 1] == ']';
-    if (!cell.length || (!bracketed && eo_unit_find(text, &factor) == EO_QUANTITY_NONE))
+    if (!cell.length || (!bracketed && eo_unit_find_multiple(text, &factor) == EO_QUANTITY_NONE))
       continue;
     snprintf(format->unit[c], sizeof format->unit[c], "%.*s", (int)(bracketed ? length - 2 : length), text + bracketed);
   }

@@ -768,6 +768,38 @@ static void check_rounded_times(void)
 
 /* The encoder with the fewer lines limits the mesh orders, and what is lost between its pulses is put back or stated.
  */
+static void halve_turns(double row[3])
+{
+  row[1] = fmod(row[1], 180);
+  row[2] = fmod(row[2], 180);
+}
+
+static int64_t counted; /* rows so far */
+
+/* A logger that zeroes both counters and goes on. */
+static void zero_both(double row[3])
+{
+  static double zero[2];
+  if (counted++ % 12000 == 0)
+    zero[0] = row[1], zero[1] = row[2];
+  row[1] -= zero[0];
+  row[2] -= zero[1];
+}
+
+/* What the angles tell of themselves: half a turn after which they start again, runs behind each other. */
+static void check_starts(void)
+{
+  struct eo_synthetic s = usual();
+  double truth = eo_synthetic_rms(&s, 8);
+  const struct eo_measurement *m = measure_rewritten(&s, halve_turns);
+  ok(m && !m->refused && fabs(m->transmission.rms / truth - 1) < 0.03, "angles that start again at 180: %.4f of %.4f",
+     m ? m->transmission.rms : NAN, truth);
+  counted = 0;
+  m = measure_rewritten(&s, zero_both);
+  ok(m && m->refused && said(m, EO_FINDING_SLIP, EO_SEVERITY_REFUSED), "two runs in one file are a question");
+  show(m);
+}
+
 static void check_few_lines(void)
 {
   static const int lines[][2] = {{720, 360}, {360, 720}, {500, 1024}, {1024, 800}, {1024, 1024}, {2048, 1024}};
@@ -853,6 +885,7 @@ int main(int argc, char **argv)
   check_faults();
   check_limits();
   check_few_lines();
+  check_starts();
   check_printed_radii();
   check_speeds();
   check_parts();

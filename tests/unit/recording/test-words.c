@@ -91,6 +91,16 @@ static void test_units(void)
   unit("min\xe2\x81\xbb\xc2\xb9", EO_QUANTITY_SPEED, M_PI / 30);
   unit("N\xc2\xb7m", EO_QUANTITY_TORQUE, 1);
   unit("lbf ft", EO_QUANTITY_TORQUE, 1.3558179483314);
+  static const char *const pound_inches[] = {"in-lb", "in-lbs", "lb.in", "lbf-in", "inch-pounds"},
+                           *const pound_feet[] = {"ft-lb", "ft lbs", "lb-ft", "ft\xc2\xb7lbf", "foot-pounds"};
+  for (int i = 0; i < 5; i++) {
+    unit(pound_inches[i], EO_QUANTITY_TORQUE, 0.1129848290276167);
+    unit(pound_feet[i], EO_QUANTITY_TORQUE, 1.3558179483314);
+  }
+  unit("kN-m", EO_QUANTITY_TORQUE, 1e3);
+  unit("N mm", EO_QUANTITY_TORQUE, 1e-3);
+  unit("kgf\xc2\xb7m", EO_QUANTITY_TORQUE, 9.80665);
+  unit("krpm", EO_QUANTITY_SPEED, 100 * M_PI / 3);
   unit("nm", EO_QUANTITY_OTHER, 1);
   unit("S", EO_QUANTITY_NONE, 1);
   unit("degr\xc3\xa9s", EO_QUANTITY_ANGLE, degree);
