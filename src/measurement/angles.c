@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const double DEGREES = 180 / M_PI;
+static const double NEAR = 0.2;   /* steps that the jumps tell a turn to */
 static const double MOVING = 0.1; /* of the fastest block: slower ones do not tell the usual speed */
 
 static int64_t line_of(const struct eo_angles_maker *maker, int64_t row)
@@ -131,7 +132,7 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
   bool may = fabs(scale - 1) < 1e-9 || fabs(scale * DEGREES - 1) < 1e-9; /* counts and gon are none of both */
   const char *unit = !may ? NULL : fabs(degrees - 1) < 0.05 ? "degrees" : fabs(radians - 1) < 0.05 ? "radians" : NULL;
-  double quarters = round(4 * turn / (2 * M_PI));
+  double quarters = round(4 * turn / (2 * M_PI)), seen = turn;
   if (unit) {
     maker->sampler.scale[channel] *= fabs(degrees - 1) < 0.05 ? 1 / DEGREES : DEGREES;
     eo_findings_add(maker->findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, channel, period,
@@ -140,13 +141,14 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
-  } else if (column->quantum < 1 && quarters > 0 && fabs(4 * turn / (2 * M_PI) - quarters) < 0.1) {
+  } else if (column->quantum < 1 && fabs(turn - quarters * M_PI / 2) < NEAR * column->typical * scale) {
     turn = quarters * M_PI / 2; /* half turns, several turns: the jumps tell them but for the last digits */
   } else if (column->quantum >= 1) {
     period = exact_overflow(column, period);
     turn = period * scale;
   }
-  int64_t index = eo_scan_index_row(column, turn / maker->sampler.scale[channel]);
+  bool parts = quarters != 4 && column->quantum < 1; /* the first turn is told by what was seen of it */
+  int64_t index = eo_scan_index_row(column, (parts ? seen : turn) / maker->sampler.scale[channel]);
   if (index) {
     maker->sampler.begin = index > maker->sampler.begin ? index : maker->sampler.begin;
     eo_angles_at_row(

@@ -7,7 +7,7 @@
 
 #include "base/sort.h"
 
-enum { BLOCK = 4096, CHUNK = 256 };
+enum { BLOCK = 4096, CHUNK = 256, WRONG_ROWS = 100 };
 static const double LANDING = 0.3;   /* typical steps: a step back by less is noise */
 static const double NEAR_ZERO = 1.5; /* typical steps from 0, in the row after an index pulse */
 static const double LEAP = 100;      /* typical intervals: a step of the time by more is a fault */
@@ -239,12 +239,21 @@ double eo_scan_period(const struct eo_scan_column *column, double turn)
   return wide && (alike >= 0.8 * wide || first_differs) && range < 1.05 * period ? period : NAN;
 }
 
+/* Values that come back after so many rows were wrong ones. */
+static bool comes_back(const struct eo_scan_column *column, int jump, int64_t rows)
+{
+  int64_t here = column->jump_row[jump],
+          next = jump + 1 < column->jumps && jump + 1 < EO_SCAN_JUMPS ? column->jump_row[jump + 1] : 0;
+  bool opposite = next != 0 && (next < 0) != (here < 0);
+  return (opposite ? llabs(next) : rows) - llabs(here) < WRONG_ROWS;
+}
+
 /* The jumps against the way the values go, by their rows. */
-static int falls_back(const struct eo_scan_column *column, int64_t row[EO_SCAN_JUMPS])
+static int falls_back(const struct eo_scan_column *column, int64_t rows, int64_t row[EO_SCAN_JUMPS])
 {
   int n = 0;
   for (int i = 0; i < column->jumps && i < EO_SCAN_JUMPS; i++)
-    if ((column->jump_row[i] < 0) == (column->rises > 0))
+    if ((column->jump_row[i] < 0) == (column->rises > 0) && !comes_back(column, i, rows))
       row[n++] = llabs(column->jump_row[i]);
   return n;
 }
@@ -252,8 +261,8 @@ static int falls_back(const struct eo_scan_column *column, int64_t row[EO_SCAN_J
 int eo_scan_restarts(const struct eo_scan *scan, int64_t row[EO_SCAN_JUMPS])
 {
   int64_t other[EO_SCAN_JUMPS];
-  int restarts = falls_back(&scan->column[0][0], row);
-  bool same = restarts == falls_back(&scan->column[1][0], other) &&
+  int restarts = falls_back(&scan->column[0][0], scan->rows, row);
+  bool same = restarts == falls_back(&scan->column[1][0], scan->rows, other) &&
               !memcmp(row, other, (size_t)restarts * sizeof row[0]);
   return same ? restarts : 0;
 }

@@ -333,12 +333,11 @@ static double scale_by_speed(const struct eo_guess *guess, double speed)
   return found > 0 ? found : 0;
 }
 
-/* "timestamp (80 MHz clock)", "t / 10 us", "ticks in 12.5 ns": what the name says of the unit is not understood here.
+/* "timestamp (80 MHz clock)", "t*1000": what the name says of the unit is not understood here.
  */
 static bool says_more(const struct eo_guess *guess, int column)
 {
-  const char *name = eo_recording_name(guess->recording, column);
-  return strpbrk(name, "([/*") || eo_column_named(name, "in|zu|of|each|je");
+  return strpbrk(eo_recording_name(guess->recording, column), "([/*");
 }
 
 enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error)
