@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest table of an OpenDocument spreadsheet, or all large ones, as text with tabs. Source: OASIS
+/* The tables of an OpenDocument spreadsheet, cell by cell (sheet_text.h settles which are written). Source: OASIS
    OpenDocument 1.2, part 1: table:table, table:table-row, table:table-cell with office:value-type. */
 #include "recording/zip_files.h"
 #include "recording/sheet_text.h"
@@ -12,17 +12,11 @@
 #define VALUE \
   ((size_t)512 << 10) /* bytes of a cell's value at most: a grid of a flank as one list; longer texts are cut */
 
-enum { TABLES = 64 /* that are told apart */ };
-
 struct document {
   struct eo_archive *archive;
   struct eo_sheet_text out;
-  int table, best;              /* number of the current table, of the one with most numbers */
-  int64_t numbers, most;        /* of the current table, of the best one */
-  int64_t of_table[TABLES + 1]; /* numbers in each */
-  int tables;                   /* nearly as large as the best */
-  char name[64], best_name[64];
-  bool writing, failed, in_cell, in_paragraph, filled;
+  bool taken; /* the cells of the current table */
+  bool failed, in_cell, in_paragraph, filled, formula;
   int column, repeat;
   char type[16], value[VALUE];
   size_t length;
@@ -70,20 +64,13 @@ static double duration(const char *text)
   return seconds;
 }
 
-/* Whether the current table is written: the best one, or one of several that are nearly as large. */
-static bool is_written(const struct document *document)
-{
-  bool large = document->archive->tables && document->table <= TABLES &&
-               document->of_table[document->table] > document->most / EO_ARCHIVE_SHARE;
-  return document->writing && (document->table == document->best || large);
-}
-
 static void begin_cell(struct document *document, const char **attributes)
 {
   const char *type = attribute(attributes, "office:value-type"), *value = attribute(attributes, "office:value"),
              *date = attribute(attributes, "office:date-value"), *time = attribute(attributes, "office:time-value"),
              *repeat = attribute(attributes, "table:number-columns-repeated");
   document->in_cell = true;
+  document->formula = attribute(attributes, "table:formula") != NULL;
   document->repeat = repeat ? (int)strtol(repeat, NULL, 10) : 1;
   document->repeat = document->repeat < 1 ? 1 : document->repeat;
   snprintf(document->type, sizeof document->type, "%s", type ? type : "");
@@ -105,18 +92,10 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
   struct document *document = context;
   if (!strcmp(name, "table:table")) {
     const char *label = attribute(attributes, "table:name");
-    document->table++;
-    document->numbers = 0;
-    snprintf(document->name, sizeof document->name, "%s", label ? label : "");
-    if (document->tables > 1 && is_written(document)) {
-      char title[80];
-      snprintf(title, sizeof title, "Sheet: %s", document->name);
-      eo_sheet_text_cell(&document->out, 0, title);
-      eo_sheet_text_row(&document->out);
-    }
+    document->taken = eo_sheet_text_next(&document->out, label ? label : "");
   } else if (!strcmp(name, "table:table-row")) {
     document->column = 0;
-  } else if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell")) {
+  } else if (document->taken && (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))) {
     begin_cell(document, attributes);
   } else if (!strcmp(name, "text:p")) {
     document->in_paragraph = !document->filled;
@@ -125,37 +104,26 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
 
 static void end_cell(struct document *document)
 {
-  bool number = !strcmp(document->type, "float") || !strcmp(document->type, "percentage");
+  bool text = !*document->type || !strcmp(document->type, "string");
   document->in_cell = false;
-  document->numbers += number;
+  if (document->formula && strcmp(document->type, "string") != 0)
+    eo_sheet_text_formula(&document->out, document->value);
   for (int i = 0; i < document->repeat && i < EO_SHEET_COLUMNS && document->length; i++)
-    if (is_written(document))
-      eo_sheet_text_cell(&document->out, document->column + i, document->value);
+    (text ? eo_sheet_text_cell : eo_sheet_text_number)(&document->out, document->column + i, document->value);
   document->column = document->column + document->repeat < 1 << 20 ? document->column + document->repeat : 1 << 20;
-}
-
-static void end_table(struct document *document)
-{
-  if (document->table <= TABLES)
-    document->of_table[document->table] = document->numbers;
-  if (document->numbers <= document->most)
-    return;
-  document->most = document->numbers;
-  document->best = document->table;
-  memcpy(document->best_name, document->name, sizeof document->name);
 }
 
 static void XMLCALL end(void *context, const char *name)
 {
   struct document *document = context;
+  if (!document->taken)
+    return;
   if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))
     end_cell(document);
-  else if (!strcmp(name, "table:table-row") && is_written(document))
+  else if (!strcmp(name, "table:table-row"))
     eo_sheet_text_row(&document->out);
   else if (!strcmp(name, "text:p"))
     document->in_paragraph = false;
-  else if (!strcmp(name, "table:table") && !document->writing)
-    end_table(document);
 }
 
 static bool parse(void *context, struct eo_archive *archive, const char *name)
@@ -167,6 +135,7 @@ static bool parse(void *context, struct eo_archive *archive, const char *name)
   char *bytes = malloc(EO_ARCHIVE_PIECE);
   int64_t got = 1;
   document->failed = !parser || !bytes;
+  document->taken = false;
   if (parser) {
     XML_SetUserData(parser, document);
     XML_SetElementHandler(parser, begin, end);
@@ -193,17 +162,8 @@ enum eo_code eo_opendocument_write(struct eo_archive *archive, FILE *file, char 
     return eo_error_memory(archive->error);
   document->archive = archive;
   document->out.file = file;
-  enum eo_code code = eo_archive_visit(archive, parse, document);
-  if (!code && !document->most)
-    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No table of the spreadsheet holds numbers.");
-  if (!code) {
-    for (int i = 1; i <= TABLES && archive->tables; i++)
-      document->tables += document->of_table[i] > document->most / EO_ARCHIVE_SHARE;
-    document->writing = true;
-    document->table = 0;
-    code = eo_archive_visit(archive, parse, document);
-  }
-  snprintf(name, size, "%s", document->best_name);
+  enum eo_code code = eo_sheet_text_write(&document->out, archive, parse, document);
+  snprintf(name, size, "%s", eo_sheet_text_name(&document->out));
   free(document);
   return code;
 }

@@ -1,71 +1,237 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/sheet_text.h"
+#include "recording/decimal.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 #define TICKS 864000000000LL /* tenths of a microsecond in a day: what a number of days still resolves */
+#define SHARE 4              /* of the cells of the largest table: one in so many is nearly as large */
 
-static int go_to(struct eo_sheet_text *sheet, int column)
+enum {
+  FACT_SHEETS = 8, /* sheets that are no table, */
+  FACT_CELLS = 200 /* and what they hold at most */
+};
+
+static bool is_table(const struct eo_sheet_text *text, int sheet)
 {
-  if (column < sheet->written || column >= EO_SHEET_COLUMNS)
-    return 0;
-  for (; sheet->written < column; sheet->written++)
-    putc('\t', sheet->file);
-  return 1;
+  int64_t cells = text->sheet[sheet].cells, most = text->sheet[text->best].cells;
+  return sheet == text->best || (text->several && cells > FACT_CELLS && cells > most / SHARE);
 }
 
-void eo_sheet_text_cell(struct eo_sheet_text *sheet, int column, const char *text)
+static bool may_hold_facts(const struct eo_sheet_text *text, int sheet)
 {
-  if (!go_to(sheet, column))
-    return;
+  int64_t cells = text->sheet[sheet].cells;
+  return sheet != text->best && cells > 0 && cells <= FACT_CELLS && text->facts < FACT_SHEETS;
+}
+
+/* What is written, once all sheets have been counted. */
+static void settle(struct eo_sheet_text *text)
+{
+  int64_t commas = 0, points = 0;
+  for (int i = 1; i < text->sheets; i++)
+    if (text->sheet[i].cells > text->sheet[text->best].cells)
+      text->best = i;
+  for (int i = 0; i < text->sheets; i++) {
+    text->sheet[i].facts = may_hold_facts(text, i);
+    text->facts += text->sheet[i].facts;
+    if (!is_table(text, i))
+      continue;
+    text->tables++;
+    commas += text->sheet[i].commas;
+    points += text->sheet[i].points;
+  }
+  text->comma = text->several && commas > points;
+}
+
+static bool go_to(struct eo_sheet_text *text, int column)
+{
+  if (!text->writing || column < text->written || column >= EO_SHEET_COLUMNS)
+    return false;
+  for (; text->written < column; text->written++)
+    putc('\t', text->file);
+  return true;
+}
+
+static void put(struct eo_sheet_text *text, const char *cell, char point)
+{
+  while (*cell == ' ')
+    cell++;
+  for (; *cell; cell++)
+    putc(*cell == '\t' || *cell == '\n' || *cell == '\r' ? ' ' : *cell == '.' ? point : *cell, text->file);
+}
+
+bool eo_sheet_text_next(struct eo_sheet_text *text, const char *name)
+{
+  int sheet = ++text->current;
+  bool known = sheet < EO_SHEETS;
+  text->written = text->widest = 0;
+  text->filled = text->number = text->numbers = text->writing = false;
+  if (known && text->pass == EO_SHEET_COUNT) {
+    snprintf(text->sheet[sheet].name, sizeof text->sheet[sheet].name, "%s", name);
+    text->sheets = sheet + 1;
+    return true;
+  }
+  if (!known || sheet >= text->sheets)
+    return false;
+  text->writing = text->pass == EO_SHEET_FACTS ? text->sheet[sheet].facts : is_table(text, sheet);
+  if (text->pass == EO_SHEET_TABLES && text->writing && text->tables > 1)
+    fprintf(text->file, "Sheet: %s\n", text->sheet[sheet].name);
+  return text->writing;
+}
+
+/* A text that is a number, by its decimal mark; 0: it is none, or the mark may as well be that of thousands. */
+static char mark_of(const char *text)
+{
+  double value;
   while (*text == ' ')
     text++;
-  for (; *text; text++)
-    putc(*text == '\t' || *text == '\n' || *text == '\r' ? ' ' : *text, sheet->file);
+  size_t sign = *text == '-' || *text == '+', digits = strspn(text + sign, "0123456789");
+  const char *mark = text + sign + digits;
+  if (!digits || (*mark != ',' && *mark != '.'))
+    return 0;
+  const char *end = eo_decimal_read(text, *mark, &value);
+  bool thousands = digits <= 3 && text[sign] != '0' && strspn(mark + 1, "0123456789") == 3 && !mark[4];
+  return end && !*end && !thousands ? *mark : 0;
 }
 
-static void print_time(struct eo_sheet_text *sheet, int64_t ticks)
+/* A cell that holds something. */
+static struct eo_sheet *count(struct eo_sheet_text *text, bool number)
+{
+  struct eo_sheet *sheet = text->current < EO_SHEETS ? &text->sheet[text->current] : NULL;
+  text->filled = true;
+  text->number = text->number || number;
+  if (!sheet || text->pass != EO_SHEET_COUNT)
+    return NULL;
+  sheet->cells++;
+  return sheet;
+}
+
+void eo_sheet_text_cell(struct eo_sheet_text *text, int column, const char *cell)
+{
+  struct eo_sheet *sheet = count(text, false);
+  char mark = sheet ? mark_of(cell) : 0;
+  if (sheet) {
+    sheet->commas += mark == ',';
+    sheet->points += mark == '.';
+  }
+  if (go_to(text, column))
+    put(text, cell, '.');
+}
+
+void eo_sheet_text_number(struct eo_sheet_text *text, int column, const char *number)
+{
+  count(text, true);
+  if (go_to(text, column))
+    put(text, number, text->comma ? ',' : '.');
+}
+
+static void print_time(struct eo_sheet_text *text, int64_t ticks)
 {
   int64_t second = ticks / 10000000;
-  char text[64];
-  snprintf(text, sizeof text, "%02d:%02d:%02d.%07d", (int)(second / 3600), (int)(second / 60 % 60), (int)(second % 60),
+  char out[64];
+  snprintf(out, sizeof out, "%02d:%02d:%02d.%07d", (int)(second / 3600), (int)(second / 60 % 60), (int)(second % 60),
            (int)(ticks % 10000000));
-  fputs(text, sheet->file);
+  fputs(out, text->file);
 }
 
 /* Year, month and day from days since 1970, by years that begin in March. */
-static void print_date(struct eo_sheet_text *sheet, int64_t day)
+static void print_date(struct eo_sheet_text *text, int64_t day)
 {
   int64_t shifted = day + 719468, era = (shifted >= 0 ? shifted : shifted - 146096) / 146097;
   int64_t of_era = shifted - era * 146097;
   int64_t of_year = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
   int64_t rest = of_era - (365 * of_year + of_year / 4 - of_year / 100), month = (5 * rest + 2) / 153;
   int64_t date = rest - (153 * month + 2) / 5 + 1, real = month < 10 ? month + 3 : month - 9;
-  char text[64];
-  snprintf(text, sizeof text, "%04d-%02d-%02dT", (int)(of_year + era * 400 + (real <= 2)), (int)real, (int)date);
-  fputs(text, sheet->file);
+  char out[64];
+  snprintf(out, sizeof out, "%04d-%02d-%02dT", (int)(of_year + era * 400 + (real <= 2)), (int)real, (int)date);
+  fputs(out, text->file);
 }
 
-void eo_sheet_text_moment(struct eo_sheet_text *sheet, int column, double days)
+void eo_sheet_text_moment(struct eo_sheet_text *text, int column, double days)
 {
-  if (!(fabs(days) < 1e6) || !go_to(sheet, column))
+  count(text, true);
+  if (!(fabs(days) < 1e6) || !go_to(text, column))
     return;
   double whole = floor(days);
   int64_t ticks = llround((days - whole) * (double)TICKS), day = (int64_t)whole + ticks / TICKS;
-  print_date(sheet, day);
-  print_time(sheet, ticks % TICKS);
+  print_date(text, day);
+  print_time(text, ticks % TICKS);
 }
 
-void eo_sheet_text_time(struct eo_sheet_text *sheet, int column, double days)
+void eo_sheet_text_time(struct eo_sheet_text *text, int column, double days)
 {
-  if (days >= 0 && days < 1 && go_to(sheet, column))
-    print_time(sheet, llround(days * (double)TICKS));
+  count(text, true);
+  if (days >= 0 && days < 1 && go_to(text, column))
+    print_time(text, llround(days * (double)TICKS));
 }
 
-void eo_sheet_text_row(struct eo_sheet_text *sheet)
+void eo_sheet_text_formula(struct eo_sheet_text *text, const char *value)
 {
-  putc('\n', sheet->file);
-  sheet->written = 0;
+  if (text->pass != EO_SHEET_COUNT || text->current >= EO_SHEETS)
+    return;
+  struct eo_sheet *sheet = &text->sheet[text->current];
+  sheet->formulas++;
+  sheet->empty += !*value;
+  sheet->zero += !strcmp(value, "0");
+}
+
+/* A heading begins another table, which may be narrower than the one above it. */
+void eo_sheet_text_row(struct eo_sheet_text *text)
+{
+  if (text->filled && !text->number && text->numbers)
+    text->widest = 0;
+  if (text->filled) {
+    text->numbers = text->number;
+    text->widest = text->written > text->widest ? text->written : text->widest;
+    go_to(text, text->widest);
+  }
+  if (text->writing)
+    putc('\n', text->file);
+  text->written = 0;
+  text->filled = text->number = false;
+}
+
+/* Programs that write workbooks and compute nothing leave formulas without a value, or all of them with the value 0. */
+static void note_formulas(const struct eo_sheet_text *text, struct eo_notes *notes)
+{
+  for (int i = 0; i < text->sheets; i++) {
+    const struct eo_sheet *sheet = &text->sheet[i];
+    bool zeros = text->recalculated && sheet->zero > 1 && sheet->zero + sheet->empty == sheet->formulas;
+    int64_t missing = sheet->empty + (zeros ? sheet->zero : 0);
+    if (missing && (is_table(text, i) || sheet->facts))
+      eo_notes_add(notes,
+                   "%lld cell%s of the sheet \"%.60s\" hold%s formulas that were never computed, so that the file has "
+                   "no numbers there: open it in a spreadsheet program and save it once.",
+                   (long long)missing, missing == 1 ? "" : "s", sheet->name, missing == 1 ? "s" : "");
+  }
+}
+
+static enum eo_code pass_over(struct eo_sheet_text *text, enum eo_sheet_pass pass, struct eo_archive *archive,
+                              bool (*visit)(void *context, struct eo_archive *archive, const char *name), void *context)
+{
+  text->pass = pass;
+  text->current = -1;
+  return eo_archive_visit(archive, visit, context);
+}
+
+enum eo_code eo_sheet_text_write(struct eo_sheet_text *text, struct eo_archive *archive,
+                                 bool (*visit)(void *context, struct eo_archive *archive, const char *name),
+                                 void *context)
+{
+  text->several = archive->tables;
+  EO_TRY(pass_over(text, EO_SHEET_COUNT, archive, visit, context));
+  settle(text);
+  if (!text->sheet[text->best].cells)
+    return eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the spreadsheet holds anything.");
+  note_formulas(text, archive->notes);
+  if (text->facts)
+    EO_TRY(pass_over(text, EO_SHEET_FACTS, archive, visit, context));
+  return pass_over(text, EO_SHEET_TABLES, archive, visit, context);
+}
+
+const char *eo_sheet_text_name(const struct eo_sheet_text *text)
+{
+  return text->sheets && text->sheet[text->best].cells ? text->sheet[text->best].name : "";
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The largest sheet of an Excel workbook, or all large ones, as text with tabs, small ones before it. Source: ECMA-376,
+/* The sheets of an Excel workbook, cell by cell (sheet_text.h settles which are written). Source: ECMA-376,
    SpreadsheetML: sheets in xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml.
  */
 #include "recording/zip_files.h"
@@ -15,17 +15,10 @@
 #define TEXTS ((size_t)64 << 20) /* bytes of shared texts at most */
 #define VALUE \
   ((size_t)512 << 10) /* bytes of a cell's value at most: a grid of a flank as one list; longer texts are cut */
-#define NAME 64
-
-enum {
-  FACT_SHEETS = 8,  /* sheets that are no table, */
-  FACT_CELLS = 200, /* and what they hold at most */
-  SHEETS = 64       /* that are told apart */
-};
 
 /* A sheet is called by its name in the book, which refers to its file by an identity. */
 struct sheet {
-  char name[NAME], id[NAME];
+  char name[EO_SHEET_NAME], id[64];
 };
 
 struct workbook {
@@ -39,38 +32,29 @@ struct workbook {
   bool date[FORMATS], custom[FORMATS];
   int formats;
   bool in_formats;
-  bool since_1904, failed, typed; /* typed: a part has a document type */
-  /* sheets */
-  char best[NAME], current[NAME];
-  int64_t cells, most; /* of the current sheet, of the best one */
-  char small[FACT_SHEETS][NAME];
-  int smalls;
-  struct sheet named[SHEETS], filed[SHEETS]; /* names of sheets; their files */
-  struct {
-    char file[NAME];
-    int64_t cells;
-  } sheet[SHEETS];
-  int names, files, sheets, tables; /* tables: sheets that are nearly as large as the best */
+  bool since_1904, failed, typed;                  /* typed: a part has a document type */
+  struct sheet named[EO_SHEETS], filed[EO_SHEETS]; /* names of sheets; their files */
+  int names, files;
   /* the cell or text that is being read */
-  bool in_value, in_text, writing;
+  bool in_value, in_text, formula;
   char type[16], value[VALUE];
   size_t length;
   int column, style;
 };
-
-static const char *attribute(const char **attributes, const char *name)
-{
-  for (; *attributes; attributes += 2)
-    if (!strcmp(attributes[0], name))
-      return attributes[1];
-  return NULL;
-}
 
 /* Names of XML come with or without the prefix of their name space. */
 static const char *local(const char *name)
 {
   const char *colon = strrchr(name, ':');
   return colon ? colon + 1 : name;
+}
+
+static const char *attribute(const char **attributes, const char *name)
+{
+  for (; *attributes; attributes += 2)
+    if (!strcmp(local(attributes[0]), name))
+      return attributes[1];
+  return NULL;
 }
 
 static void XMLCALL take_characters(void *context, const char *text, int length)
@@ -168,21 +152,28 @@ static void keep_sheet(struct sheet *sheet, const char *name, const char *id)
   snprintf(sheet->id, sizeof sheet->id, "%s", id ? id : "");
 }
 
+static bool is_true(const char *value)
+{
+  return !strcmp(value, "1") || !strcmp(value, "true");
+}
+
 static void XMLCALL begin_book(void *context, const char *name, const char **attributes)
 {
   struct workbook *workbook = context;
-  const char *since = attribute(attributes, "date1904");
+  const char *since = attribute(attributes, "date1904"), *full = attribute(attributes, "fullCalcOnLoad");
   if (!strcmp(local(name), "workbookPr") && since)
-    workbook->since_1904 = !strcmp(since, "1") || !strcmp(since, "true");
-  if (!strcmp(local(name), "sheet") && workbook->names < SHEETS)
-    keep_sheet(&workbook->named[workbook->names++], attribute(attributes, "name"), attribute(attributes, "r:id"));
+    workbook->since_1904 = is_true(since);
+  if (!strcmp(local(name), "calcPr") && full)
+    workbook->out.recalculated = is_true(full);
+  if (!strcmp(local(name), "sheet") && workbook->names < EO_SHEETS)
+    keep_sheet(&workbook->named[workbook->names++], attribute(attributes, "name"), attribute(attributes, "id"));
 }
 
 static void XMLCALL begin_relation(void *context, const char *name, const char **attributes)
 {
   struct workbook *workbook = context;
   const char *target = attribute(attributes, "Target");
-  if (!strcmp(local(name), "Relationship") && target && strstr(target, "worksheets/") && workbook->files < SHEETS)
+  if (!strcmp(local(name), "Relationship") && target && strstr(target, "worksheets/") && workbook->files < EO_SHEETS)
     keep_sheet(&workbook->filed[workbook->files++], strrchr(target, '/') + 1, attribute(attributes, "Id"));
 }
 
@@ -224,9 +215,11 @@ static void XMLCALL begin_cell(void *context, const char *name, const char **att
     snprintf(workbook->type, sizeof workbook->type, "%s", type ? type : "n");
     workbook->length = 0;
     workbook->value[0] = '\0';
+    workbook->formula = false;
   } else if (!strcmp(element, "row")) {
     workbook->column = -1;
   }
+  workbook->formula = workbook->formula || !strcmp(element, "f");
   workbook->in_value = !strcmp(element, "v");
   workbook->in_text = !strcmp(element, "t");
 }
@@ -240,14 +233,18 @@ static void write_date(struct workbook *workbook, double days)
     eo_sheet_text_time(&workbook->out, workbook->column, days);
 }
 
-static void write_cell(struct workbook *workbook)
+static void take_cell(struct workbook *workbook)
 {
-  bool number = !strcmp(workbook->type, "n"), shared = !strcmp(workbook->type, "s");
+  bool number = !strcmp(workbook->type, "n") || !strcmp(workbook->type, "b"), shared = !strcmp(workbook->type, "s");
   long index = shared ? strtol(workbook->value, NULL, 10) : 0;
+  if (workbook->formula && number)
+    eo_sheet_text_formula(&workbook->out, workbook->value);
   if (!workbook->length || !strcmp(workbook->type, "e"))
     return;
   if (number && workbook->style >= 0 && workbook->style < workbook->formats && workbook->date[workbook->style])
     write_date(workbook, strtod(workbook->value, NULL));
+  else if (number)
+    eo_sheet_text_number(&workbook->out, workbook->column, workbook->value);
   else if (shared && index >= 0 && index < workbook->texts)
     eo_sheet_text_cell(&workbook->out, workbook->column, workbook->text + workbook->text_at[index]);
   else if (!shared)
@@ -259,11 +256,9 @@ static void XMLCALL end_cell(void *context, const char *name)
   struct workbook *workbook = context;
   const char *element = local(name);
   workbook->in_value = workbook->in_text = false;
-  if (!strcmp(element, "c")) {
-    workbook->cells += workbook->length > 0; /* a table may hold its numbers as texts */
-    if (workbook->writing)
-      write_cell(workbook);
-  } else if (!strcmp(element, "row") && workbook->writing)
+  if (!strcmp(element, "c"))
+    take_cell(workbook);
+  else if (!strcmp(element, "row"))
     eo_sheet_text_row(&workbook->out);
 }
 
@@ -314,7 +309,8 @@ static bool is_sheet(const char *name)
   return !strncmp(name, "xl/worksheets/", 14) && strchr(name + 14, '/') == NULL && strstr(name, ".xml");
 }
 
-static bool look(void *context, struct eo_archive *archive, const char *name)
+/* What holds for all sheets, wherever it stands in the archive. */
+static bool read_book(void *context, struct eo_archive *archive, const char *name)
 {
   struct workbook *workbook = context;
   (void)archive;
@@ -326,77 +322,23 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
     return parse(workbook, begin_book, end_nothing);
   if (!strcmp(name, "xl/_rels/workbook.xml.rels"))
     return parse(workbook, begin_relation, end_nothing);
-  if (!is_sheet(name))
-    return true;
-  workbook->cells = 0;
-  bool good = parse(workbook, begin_cell, end_cell);
-  if (workbook->sheets < SHEETS) {
-    snprintf(workbook->sheet[workbook->sheets].file, NAME, "%s", name);
-    workbook->sheet[workbook->sheets++].cells = workbook->cells;
-  }
-  if (workbook->cells > 0 && workbook->cells <= FACT_CELLS && workbook->smalls < FACT_SHEETS)
-    snprintf(workbook->small[workbook->smalls++], sizeof *workbook->small, "%s", name);
-  if (workbook->cells > workbook->most) {
-    workbook->most = workbook->cells;
-    snprintf(workbook->best, sizeof workbook->best, "%s", name);
-  }
-  return good;
+  return true;
 }
 
-/* A small sheet beside the table: what it states stands before the rows. */
-static bool write_facts(void *context, struct eo_archive *archive, const char *name)
+static bool read_sheet(void *context, struct eo_archive *archive, const char *name)
 {
   struct workbook *workbook = context;
-  bool small = false;
   (void)archive;
-  for (int i = 0; i < workbook->smalls; i++)
-    small = small || !strcmp(workbook->small[i], name);
-  if (!small || !strcmp(name, workbook->best))
+  if (!is_sheet(name) || !eo_sheet_text_next(&workbook->out, name_of(workbook, name)))
     return true;
-  workbook->writing = true;
-  bool good = parse(workbook, begin_cell, end_cell);
-  workbook->writing = false;
-  return good;
+  return parse(workbook, begin_cell, end_cell);
 }
 
-static bool is_table(const struct workbook *workbook, int sheet)
-{
-  int64_t cells = workbook->sheet[sheet].cells;
-  return cells > FACT_CELLS && cells > workbook->most / EO_ARCHIVE_SHARE;
-}
-
-/* The best sheet, or one of several tables below its name. */
-static bool write_table(void *context, struct eo_archive *archive, const char *name)
-{
-  struct workbook *workbook = context;
-  bool several = archive->tables && workbook->tables > 1, table = !strcmp(name, workbook->best);
-  for (int i = 0; i < workbook->sheets && several; i++)
-    table = table || (!strcmp(workbook->sheet[i].file, name) && is_table(workbook, i));
-  if (!table)
-    return true;
-  if (several) {
-    char label[NAME + 16];
-    snprintf(label, sizeof label, "Sheet: %s", name_of(workbook, name));
-    eo_sheet_text_cell(&workbook->out, 0, label);
-    eo_sheet_text_row(&workbook->out);
-  }
-  workbook->writing = true;
-  bool good = parse(workbook, begin_cell, end_cell);
-  workbook->writing = false;
-  return good && several;
-}
-
-/* Every sheet is looked at before the best, or several, and what stands beside them are written. */
-static enum eo_code write_sheets(struct workbook *workbook)
+static enum eo_code read_all(struct workbook *workbook)
 {
   struct eo_archive *archive = workbook->archive;
-  EO_TRY(eo_archive_visit(archive, look, workbook));
-  if (!workbook->most)
-    return eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds anything.");
-  for (int i = 0; i < workbook->sheets; i++)
-    workbook->tables += is_table(workbook, i);
-  EO_TRY(eo_archive_visit(archive, write_facts, workbook));
-  return eo_archive_visit(archive, write_table, workbook);
+  EO_TRY(eo_archive_visit(archive, read_book, workbook));
+  return eo_sheet_text_write(&workbook->out, archive, read_sheet, workbook);
 }
 
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
@@ -406,9 +348,8 @@ enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *nam
     return eo_error_memory(archive->error);
   workbook->archive = archive;
   workbook->out.file = file;
-  enum eo_code code = write_sheets(workbook);
-  const char *base = strrchr(workbook->best, '/');
-  snprintf(name, size, "%s", base ? base + 1 : workbook->best);
+  enum eo_code code = read_all(workbook);
+  snprintf(name, size, "%s", eo_sheet_text_name(&workbook->out));
   free(workbook->text);
   free(workbook->text_at);
   free(workbook);

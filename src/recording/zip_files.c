@@ -154,15 +154,18 @@ enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options 
   struct stat state;
   struct contents *contents = calloc(1, sizeof *contents);
   FILE *file = contents ? fopen(options->unpack_to, "w") : NULL;
-  (void)notes;
   if (!file || stat(path, &state)) {
     if (file)
       fclose(file);
     free(contents);
     return eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be made in %.200s.", options->unpack_to);
   }
-  struct eo_archive archive = {
-      .path = path, .bytes = state.st_size, .limit = options->max_bytes, .error = error, .tables = true};
+  struct eo_archive archive = {.path = path,
+                               .bytes = state.st_size,
+                               .limit = options->max_bytes,
+                               .error = error,
+                               .notes = notes,
+                               .tables = true};
   enum eo_code code = unpack(&archive, options->unpack_number, file, contents);
   if (fclose(file) && !code)
     code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written.");

@@ -18,11 +18,10 @@ struct eo_archive {
   int64_t bytes, taken, limit; /* size of the file; bytes that came out of it so far and may come out */
   struct archive *handle;
   struct eo_error *error;
+  struct eo_notes *notes; /* NULL: none are taken */
   bool
       tables; /* of a spreadsheet all that are nearly as large as the largest are written, below a line with the name */
 };
-
-#define EO_ARCHIVE_SHARE 4 /* of the cells of the largest table: one in so many is nearly as large */
 
 /* Calls visit for each file in the archive, in order; visit returns false to stop. Errors: EO_ERROR_INPUT. */
 enum eo_code eo_archive_visit(struct eo_archive *archive,
