@@ -429,7 +429,7 @@ const struct eo_command eo_command_measure = {
     "column with the channel of each row, a name before each value (t=0.1 pinion:12.3); also gzip, tar or zip (a "
     "readme "
     "beside it, a\n"
-    "file for each channel, one archive in another); .xlsx, .ods (also a\n"
+    "file for each channel, one archive in another); .xlsx, .ods, .fods (also a\n"
     "sheet for each channel); MATLAB 4 to\n"
     "7.3 (structs, cells, matrices with names), TDMS (scaled, raw DAQmx), UFF 58 and 58b, HDF5 (records, data frames "
     "of pandas), ASAM\n"

@@ -129,7 +129,7 @@ static void XMLCALL end(void *context, const char *name)
 static bool parse(void *context, struct eo_archive *archive, const char *name)
 {
   struct document *document = context;
-  if (strcmp(name, "content.xml"))
+  if (!archive->flat && strcmp(name, "content.xml"))
     return true;
   XML_Parser parser = XML_ParserCreate(NULL);
   char *bytes = malloc(EO_ARCHIVE_PIECE);

@@ -138,6 +138,13 @@ static bool is_tar(const unsigned char *head, size_t size)
   return strtoul(stated, NULL, 8) == sum;
 }
 
+/* An OpenDocument spreadsheet of one file (.fods). */
+static bool is_flat_document(const unsigned char *head, size_t size)
+{
+  static const char root[] = "<office:document ";
+  return memmem(head, size, "<?xml", 5) && memmem(head, size, root, sizeof root - 1);
+}
+
 /* A universal file begins with a line that holds "-1" alone and one with the number of a data set that such files begin
  * with. */
 static bool is_uff(const unsigned char *head, size_t size)
@@ -177,7 +184,7 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_MDF;
   else if (is_uff(head, size))
     *kind = EO_READER_UFF;
-  else if (begins(head, size, "PK\003\004", 4) || is_tar(head, size))
+  else if (begins(head, size, "PK\003\004", 4) || is_tar(head, size) || is_flat_document(head, size))
     *kind = EO_READER_ARCHIVE;
   else {
     enum eo_code code = refuse_others(head, size, error);

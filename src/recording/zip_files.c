@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE /* memmem */
 #include "recording/zip_files.h"
 #include "recording/source.h"
 #include "recording/tables.h"
@@ -14,7 +15,7 @@
 /* What an archive holds, by the names in it. */
 struct contents {
   int files;
-  bool workbook, opendocument, numpy;
+  bool workbook, binary, opendocument, numpy;
   struct eo_series file[EO_TABLES]; /* names of rig files, the ends of long ones */
 };
 
@@ -35,6 +36,8 @@ enum eo_code eo_archive_visit(struct eo_archive *this_archive,
     return eo_error_memory(this_archive->error);
   archive_read_support_format_zip_seekable(this_archive->handle);
   archive_read_support_format_tar(this_archive->handle);
+  if (this_archive->flat)
+    archive_read_support_format_raw(this_archive->handle);
   if (archive_read_open_filename(this_archive->handle, this_archive->path, EO_ARCHIVE_PIECE) != ARCHIVE_OK)
     code = damaged(this_archive);
   for (bool more = true; !code && more;) {
@@ -85,9 +88,9 @@ static bool look(void *context, struct eo_archive *archive, const char *name)
 {
   struct contents *contents = context;
   size_t length = strlen(name);
-  (void)archive;
   contents->workbook = contents->workbook || !strcmp(name, "xl/workbook.xml");
-  contents->opendocument = contents->opendocument || !strcmp(name, "content.xml");
+  contents->binary = contents->binary || !strcmp(name, "xl/workbook.bin");
+  contents->opendocument = contents->opendocument || archive->flat || !strcmp(name, "content.xml");
   if (is_by_the_way(name))
     return true;
   contents->numpy = contents->numpy || (length > 4 && !strcmp(name + length - 4, ".npy"));
@@ -131,6 +134,10 @@ static enum eo_code unpack(struct eo_archive *archive, int number, FILE *file, s
   struct copy copy = {number, file};
   EO_TRY(eo_archive_visit(archive, look, contents));
   bool sheets = contents->workbook || contents->opendocument;
+  if (contents->binary)
+    return eo_error_set(archive->error, EO_ERROR_INPUT, "",
+                        "The file is a binary Excel workbook (.xlsb); open it in a spreadsheet program and save it as "
+                        ".xlsx or as text.");
   if (!sheets && contents->numpy)
     return eo_error_set(archive->error, EO_ERROR_INPUT, "",
                         "The file is a NumPy archive (.npz); save the arrays as text or .mat (numpy.savetxt, "
@@ -146,6 +153,17 @@ static enum eo_code unpack(struct eo_archive *archive, int number, FILE *file, s
   return contents->workbook
              ? eo_workbook_write(archive, file, contents->file[0].name, sizeof contents->file[0].name)
              : eo_opendocument_write(archive, file, contents->file[0].name, sizeof contents->file[0].name);
+}
+
+/* A flat OpenDocument spreadsheet (.fods) is the content of an .ods by itself. */
+static bool is_xml(const char *path)
+{
+  char head[8] = "";
+  FILE *file = fopen(path, "r");
+  bool read = file && fread(head, 1, sizeof head, file) == sizeof head;
+  if (file)
+    fclose(file);
+  return read && memmem(head, sizeof head, "<?xml", 5);
 }
 
 enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options *options,
@@ -165,6 +183,7 @@ enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options 
                                .limit = options->max_bytes,
                                .error = error,
                                .notes = notes,
+                               .flat = is_xml(path),
                                .tables = true};
   enum eo_code code = unpack(&archive, options->unpack_number, file, contents);
   if (fclose(file) && !code)

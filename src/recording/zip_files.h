@@ -19,6 +19,7 @@ struct eo_archive {
   struct archive *handle;
   struct eo_error *error;
   struct eo_notes *notes; /* NULL: none are taken */
+  bool flat;              /* one file of XML in the place of an archive */
   bool
       tables; /* of a spreadsheet all that are nearly as large as the largest are written, below a line with the name */
 };

@@ -137,6 +137,21 @@ static void test_formulas(bool workbook)
   refuse("No sheet of the spreadsheet holds anything", book_kind[!workbook]);
 }
 
+static void test_flat(void)
+{
+  struct eo_error error;
+  write_text(book_content(false, "t;deg\n0;1\n1;2\n2;4\n3;8\n", ""));
+  struct eo_recording *r = take(NULL, &error);
+  ok(r && eo_recording_rows(r) == 4 && cell_of(r, 3, 1) == 8, "a flat OpenDocument spreadsheet%s", r ? "" : error.text);
+  eo_recording_free(r);
+  write_text("<?xml version=\"1.0\"?>\n<other/>\n");
+  refuse("The file is XML", "another file of XML");
+  add("[Content_Types].xml", "<Types/>");
+  add("xl/workbook.bin", "x");
+  finish();
+  refuse("(.xlsb); open it", "a binary workbook is called by its name, with the way to convert it");
+}
+
 static void test_workbook(void)
 {
   struct eo_error error;
@@ -247,5 +262,6 @@ int main(void)
     test_comma_texts(workbook);
     test_formulas(workbook);
   }
+  test_flat();
   return fixture_close();
 }
