@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "gear/gear_pair.h"
+#include "recording/recorded_unit.h"
 
 enum { BLOCK = 4096, SLICES = 50 };
 static const double STEADY_TORQUE = 0.1; /* range of the torque over its mean: more is no single operating point */
@@ -13,6 +14,7 @@ static const double SAME_RATIO = 0.1;    /* losses between both shafts */
 static const double SAME_SPEED = 0.02, OTHER_SPEED = 0.2; /* column against encoder: a doubt, a contradiction */
 static const double FAR = 30; /* times the speeds of the load cases: between them and a unit of time or angle taken for
                                  another one (57, 60, 1000) */
+static const double SAME_INTERVAL = 1e-6;
 static const double RPM = 30 / M_PI;
 
 static const char *const member_name[2] = {"pinion", "gear"};
@@ -57,17 +59,100 @@ static double time_of(const struct eo_tracks *tracks, const double *row, int64_t
   return tracks->time_column < 0 ? tracks->interval * (double)at : row[tracks->time_column] * tracks->time_scale;
 }
 
+/* When the rows of a column beside the encoders were taken, which may be slower than they are. */
+struct own_clock {
+  bool same;       /* as theirs */
+  int column;      /* of times; -1: rows are even */
+  double scale;    /* s per unit of that column */
+  double start;    /* s after the first row of the encoders; of times what is added to them */
+  double interval; /* s */
+  int origin;      /* column of the encoders' times, whose first is time 0; -1: none */
+};
+
+static struct own_clock own_clock_of(const struct eo_recording *recording, const struct eo_tracks *tracks, int column)
+{
+  struct eo_clock own = eo_recording_clock(recording, column),
+                  theirs = eo_recording_clock(recording, tracks->channel[0].column[0]);
+  double factor;
+  bool dated = own.epoch != EO_CLOCK_NO_EPOCH && theirs.epoch != EO_CLOCK_NO_EPOCH;
+  struct own_clock clock = {.column = own.column,
+                            .scale = tracks->time_scale,
+                            .start = dated ? (double)(own.epoch - theirs.epoch) * 1e-9 : 0,
+                            .interval = own.interval,
+                            .origin = own.column < 0      ? -1
+                                      : theirs.column < 0 ? tracks->time_column
+                                                          : theirs.column};
+  if (own.column >= 0) {
+    clock.same = own.column == clock.origin;
+    if (eo_unit_find(eo_recording_unit(recording, own.column), &factor) == EO_QUANTITY_TIME)
+      clock.scale = factor;
+  } else {
+    clock.same = !(own.interval > 0) || fabs(own.interval / theirs.interval - 1) < SAME_INTERVAL;
+    clock.start += theirs.interval > 0 ? own.start - theirs.start : 0;
+  }
+  return clock;
+}
+
+struct reading {
+  const struct eo_tracks *tracks;
+  const struct eo_track_beside *beside[4];
+  struct own_clock clock[4];
+  double begin, origin[4]; /* s: the first time of the encoders, on each clock */
+  double from, to;
+  struct sums sums[4];
+};
+
+static void add_row(struct reading *reading, const double *row, int64_t at)
+{
+  double time = time_of(reading->tracks, row, at);
+  reading->begin = isnan(reading->begin) ? time : reading->begin;
+  for (int k = 0; k < 4; k++) {
+    const struct own_clock *clock = &reading->clock[k];
+    if (reading->beside[k]->scale == 0)
+      continue;
+    if (isnan(reading->origin[k]))
+      reading->origin[k] = clock->origin < 0 ? 0 : row[clock->origin] * reading->tracks->time_scale;
+    double own = clock->same          ? time - reading->begin
+                 : clock->column >= 0 ? row[clock->column] * clock->scale + clock->start - reading->origin[k]
+                                      : clock->start + clock->interval * (double)at;
+    if (own >= reading->from && own <= reading->to)
+      add_value(&reading->sums[k], row[reading->beside[k]->column] * reading->beside[k]->scale,
+                (own - reading->from) / (reading->to - reading->from));
+  }
+}
+
+static enum eo_code read_rows(struct reading *reading, const struct eo_recording *recording, struct eo_error *error)
+{
+  int columns = eo_recording_columns(recording);
+  int64_t rows = eo_recording_rows(recording);
+  double *block = malloc(sizeof *block * BLOCK * (size_t)columns);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; first < rows && !code; first += BLOCK) {
+    int count = rows - first < BLOCK ? (int)(rows - first) : BLOCK;
+    code = eo_recording_read(recording, first, count, block, error);
+    for (int i = 0; i < count && !code; i++)
+      add_row(reading, block + (size_t)i * (size_t)columns, first + i);
+  }
+  free(block);
+  return code;
+}
+
 enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recording, const struct eo_tracks *tracks,
                           double from, double to, struct eo_error *error)
 {
-  const struct eo_track_beside *beside[4] = {&tracks->torque[0], &tracks->torque[1], &tracks->speed[0],
-                                             &tracks->speed[1]};
+  struct reading reading = {.tracks = tracks,
+                            .beside = {&tracks->torque[0], &tracks->torque[1], &tracks->speed[0], &tracks->speed[1]},
+                            .begin = NAN,
+                            .origin = {NAN, NAN, NAN, NAN},
+                            .from = from,
+                            .to = to};
   struct eo_load_column *column[4] = {&load->torque[0], &load->torque[1], &load->speed[0], &load->speed[1]};
-  int columns = eo_recording_columns(recording), wanted = 0;
-  int64_t rows = eo_recording_rows(recording);
+  int wanted = 0;
   for (int i = 0; i < 4; i++) {
     *column[i] = (struct eo_load_column){NAN, NAN, NAN};
-    wanted += beside[i]->scale != 0;
+    wanted += reading.beside[i]->scale != 0;
+    if (reading.beside[i]->scale != 0)
+      reading.clock[i] = own_clock_of(recording, tracks, reading.beside[i]->column);
   }
   for (int member = 0; member < 2; member++)
     load->open[member] = !tracks->speed[member].stated;
@@ -75,27 +160,10 @@ enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recor
   load->pinion_torque = NAN;
   if (!wanted || tracks->channel[0].track == EO_TRACK_PULSES)
     return EO_OK;
-  struct sums *sums = calloc(4, sizeof *sums);
-  double *block = malloc(sizeof *block * BLOCK * (size_t)columns), begin = NAN;
-  enum eo_code code = sums && block ? EO_OK : eo_error_memory(error);
-  for (int64_t first = 0; first < rows && !code; first += BLOCK) {
-    int count = rows - first < BLOCK ? (int)(rows - first) : BLOCK;
-    code = eo_recording_read(recording, first, count, block, error);
-    for (int i = 0; i < count && !code; i++) {
-      const double *row = block + (size_t)i * (size_t)columns;
-      double time = time_of(tracks, row, first + i);
-      begin = isnan(begin) ? time : begin;
-      time -= begin;
-      for (int k = 0; k < 4 && time >= from && time <= to; k++)
-        if (beside[k]->scale != 0)
-          add_value(&sums[k], row[beside[k]->column] * beside[k]->scale, (time - from) / (to - from));
-    }
-  }
-  for (int k = 0; k < 4 && !code; k++)
-    *column[k] = conclude(&sums[k]);
-  free(sums);
-  free(block);
-  return code;
+  EO_TRY(read_rows(&reading, recording, error));
+  for (int k = 0; k < 4; k++)
+    *column[k] = conclude(&reading.sums[k]);
+  return EO_OK;
 }
 
 static void judge_torque(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)

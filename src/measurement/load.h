@@ -27,7 +27,8 @@ struct eo_load_known {
   double expected[2];   /* lowest and highest speed of the load cases, rad/s; 0: not known */
 };
 
-/* Means over rows from .. to, s after the first row. Errors: memory, files. */
+/* Means over rows from .. to, s after the first row; columns with a clock of their own by that. Errors: memory, files.
+ */
 enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recording, const struct eo_tracks *tracks,
                           double from, double to, struct eo_error *error);
 

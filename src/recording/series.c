@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/series.h"
+#include "recording/recorded_unit.h"
 #include "recording/source.h"
 
 #include <math.h>
@@ -11,7 +12,8 @@
 #include "base/sort.h"
 
 #define BLOCK 4096 /* rows that are copied at once */
-#define SHORT 20   /* a channel this many times shorter than the longest belongs to something else */
+#define SHORT 20   /* a channel with so many times fewer values than the longest belongs to something else */
+#define LASTS 0.5  /* unless it is a slow one, which lasts as long: of the time of the others */
 
 static bool same_interval(double a, double b)
 {
@@ -57,28 +59,54 @@ static const struct eo_series *find_group(const struct eo_series_file *file)
   return best;
 }
 
+/* Torque and speed are often taken more slowly than the encoders; their clock tells when. */
+static bool is_slow_load(const struct eo_series *series, const struct eo_series *group)
+{
+  double factor, lasts = (double)series->length * series->clock.interval;
+  enum eo_quantity quantity = eo_unit_find(series->unit, &factor);
+  if (quantity != EO_QUANTITY_TORQUE && quantity != EO_QUANTITY_SPEED)
+    return false;
+  return series->clock.column >= 0 ||
+         (lasts > 0 && group && lasts >= LASTS * (double)group->length * group->clock.interval);
+}
+
+/* Marks the channels that are taken however few values they have, with their times. */
+static void find_slow(const struct eo_series_file *file, const struct eo_series *group, bool slow[EO_SERIES])
+{
+  for (int i = 0; i < file->count && i < EO_SERIES; i++) {
+    if (!is_slow_load(&file->series[i], group))
+      continue;
+    int time = file->series[i].clock.column;
+    slow[i] = true;
+    if (time >= 0 && time < EO_SERIES)
+      slow[time] = true;
+  }
+}
+
 /* Fills chosen[] with the channels of the table and says what stays out. */
 static int choose(const struct eo_series_file *file, int *chosen, struct eo_notes *notes)
 {
   const struct eo_series *group = find_group(file), *other = NULL;
   int64_t least = longest(file) / SHORT;
   int count = 0, left_out = 0;
+  bool slow[EO_SERIES] = {false};
+  find_slow(file, group, slow);
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < file->count; i++) {
       const struct eo_series *series = &file->series[i];
       bool first = group && sampled_together(series, group);
       if (first != (pass == 0) || series->length <= 1)
         continue;
-      if (count < EO_RECORDING_COLUMNS && series->length >= least)
+      if (count < EO_RECORDING_COLUMNS && (series->length >= least || (i < EO_SERIES && slow[i])))
         chosen[count++] = i;
       else
         left_out++, other = series;
     }
   eo_sort_integers(count, chosen);
   if (left_out)
-    eo_notes_add(notes, "%d channel%s far shorter than the others %s left out, for instance \"%s\" with %lld values.",
-                 left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name,
-                 (long long)other->length);
+    eo_notes_add(
+        notes, "%d channel%s with far fewer values than the others %s left out, for instance \"%s\" with %lld values.",
+        left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name, (long long)other->length);
   return count;
 }
 

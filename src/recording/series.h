@@ -52,9 +52,10 @@ typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_o
                                       const struct eo_series_sink *sink, struct eo_notes *notes,
                                       struct eo_error *error);
 
-/* Hands all channels that are long enough to the sink row by row, each with its clock; what is left out is noted. Where
-   there are more than a recording holds, those that share interval and length with the most come first. Errors:
-   EO_ERROR_INPUT: no channel with data, a table that is far larger than its file, and those of read and sink. */
+/* Hands all channels that are long enough, and torque and speed of a slower clock, to the sink row by row, each with
+   its clock; what is left out is noted. Where there are more than a recording holds, those that share interval and
+   length with the most come first. Errors: EO_ERROR_INPUT: no channel with data, a table that is far larger than its
+   file, and those of read and sink. */
 enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
                             struct eo_notes *notes, struct eo_error *error);
 

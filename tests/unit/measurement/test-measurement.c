@@ -875,6 +875,39 @@ static void check_open_speed(void)
     }
 }
 
+/* Torque every 0.1 s, which rises by 100 N m a second, and speed with times of its own beside encoders of 1 kHz. */
+static void check_slow_load(void)
+{
+  enum { ROWS = 4000, SLOW_ROWS = 40, COLUMNS = 5 };
+  struct eo_recording *r = NULL;
+  struct eo_load load;
+  struct eo_tracks tracks = {.time_column = -1, .time_scale = 1, .interval = 1e-3, .channel = {{.column = {0}}}};
+  if (eo_recording_new(&r, COLUMNS, NULL, &error))
+    exit(99);
+  for (int i = 0; i < ROWS; i++) {
+    double k = i < SLOW_ROWS ? (double)i : (double)NAN;
+    double row[COLUMNS] = {i, i, 10 * k, 100 * k, 50 + k};
+    if (eo_recording_append(r, row, 1, &error))
+      exit(99);
+  }
+  eo_recording_set_column(r, 3, "t", "ms");
+  const struct eo_clock own[COLUMNS] = {
+      {-1, 1e-3, 5, EO_CLOCK_NO_EPOCH, 0}, {-1, 1e-3, 5, EO_CLOCK_NO_EPOCH, 0}, {-1, 0.1, 6, EO_CLOCK_NO_EPOCH, 0},
+      {-1, 0, 0, EO_CLOCK_NO_EPOCH, 0},    {3, 0, 0, EO_CLOCK_NO_EPOCH, 0},
+  };
+  for (int c = 0; c < COLUMNS; c++) {
+    eo_recording_set_clock(r, c, &own[c]);
+    eo_recording_set_length(r, c, c < 2 ? ROWS : SLOW_ROWS);
+  }
+  tracks.torque[0] = (struct eo_track_beside){1, 2, true};
+  tracks.speed[0] = (struct eo_track_beside){1, 4, true};
+  enum eo_code code = eo_load_read(&load, r, &tracks, 1.95, 3.05, &error);
+  ok(!code && fabs(load.torque[0].mean - 150) < 1e-9 && fabs(load.torque[0].high - 200) < 1e-9,
+     "a torque of another rate that begins 1 s later is read at its own times: %.6g N m", load.torque[0].mean);
+  ok(fabs(load.speed[0].mean - 75) < 1e-9, "and a speed with times of its own: %.6g rad/s", load.speed[0].mean);
+  eo_recording_free(r);
+}
+
 int main(int argc, char **argv)
 {
   int recordings = argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW : SHORT;
@@ -900,6 +933,7 @@ int main(int argc, char **argv)
   check_computed_angles();
   check_load();
   check_open_speed();
+  check_slow_load();
   check_run_out();
   check_slow_clock();
   check_own_interpolation();

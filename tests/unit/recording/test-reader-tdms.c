@@ -263,6 +263,38 @@ static void test_scaled(void)
   check_typed(12, 13, "raw values with a linear scale");
 }
 
+/* Encoders of 400 values in 0.02 s; torque that lasts as long or not, and a temperature, which nobody asks for. */
+static void test_slow(double interval, int taken)
+{
+  static const char *const name[] = {"pinion", "gear", "torque", "oil"}, *const unit[] = {"deg", "deg", "N m", "degC"};
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 4, 4);
+  for (int c = 0; c < 4; c++) {
+    char path[32];
+    snprintf(path, sizeof path, "/'g'/'%s'", name[c]);
+    put_string(&w, path);
+    put_index(DOUBLE, c < 2 ? 400 : 10);
+    put_number(&w, 2, 4);
+    put_double_property("wf_increment", c < 2 ? 5e-5 : c == 2 ? interval : 2e-3);
+    put_string_property("unit_string", unit[c]);
+  }
+  end_metadata();
+  put_chunk(0, 400, 0);
+  for (int i = 0; i < 20; i++)
+    put_double(&w, 828);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && eo_recording_columns(r) == 2 + taken && (!taken || eo_recording_length(r, 2) == 10) &&
+         noted(&notes, taken ? "1 channel with far fewer" : "2 channels with far fewer"),
+     "a torque of 10 values, %g s each, beside 400 values of 50 us is %s%s", interval, taken ? "taken" : "left out",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 static void test_damage(void)
 {
   struct eo_error error;
@@ -392,6 +424,8 @@ int main(void)
   test_texts(28);
   test_texts(20);
   test_scaled();
+  test_slow(2e-3, 1);
+  test_slow(5e-5, 0);
   test_damage();
   test_paths();
   test_every_byte();
