@@ -67,7 +67,8 @@ bool eo_sheet_text_next(struct eo_sheet_text *text, const char *name)
   int sheet = ++text->current;
   bool known = sheet < EO_SHEETS;
   text->written = text->widest = 0;
-  text->filled = text->number = text->numbers = text->writing = false;
+  text->numbers = text->texts = 0;
+  text->names = text->heading = text->writing = false;
   if (known && text->pass == EO_SHEET_COUNT) {
     snprintf(text->sheet[sheet].name, sizeof text->sheet[sheet].name, "%s", name);
     text->sheets = sheet + 1;
@@ -81,27 +82,28 @@ bool eo_sheet_text_next(struct eo_sheet_text *text, const char *name)
   return text->writing;
 }
 
-/* A text that is a number, by its decimal mark; 0: it is none, or the mark may as well be that of thousands. */
-static char mark_of(const char *text)
+/* A text that is a number with a decimal point or comma; *mark: which, 0: none, or it may as well be that of thousands.
+ */
+static bool is_number(const char *text, char *mark)
 {
   double value;
   while (*text == ' ')
     text++;
   size_t sign = *text == '-' || *text == '+', digits = strspn(text + sign, "0123456789");
-  const char *mark = text + sign + digits;
-  if (!digits || (*mark != ',' && *mark != '.'))
-    return 0;
-  const char *end = eo_decimal_read(text, *mark, &value);
-  bool thousands = digits <= 3 && text[sign] != '0' && strspn(mark + 1, "0123456789") == 3 && !mark[4];
-  return end && !*end && !thousands ? *mark : 0;
+  const char *at = text + sign + digits;
+  char point = *at == ',' ? ',' : '.';
+  const char *end = digits ? eo_decimal_read(text, point, &value) : NULL;
+  bool thousands = digits <= 3 && text[sign] != '0' && *at == point && strspn(at + 1, "0123456789") == 3 && !at[4];
+  *mark = end && !*end && *at == point && !thousands ? point : 0;
+  return end && !*end;
 }
 
 /* A cell that holds something. */
 static struct eo_sheet *count(struct eo_sheet_text *text, bool number)
 {
   struct eo_sheet *sheet = text->current < EO_SHEETS ? &text->sheet[text->current] : NULL;
-  text->filled = true;
-  text->number = text->number || number;
+  text->numbers += number;
+  text->texts += !number;
   if (!sheet || text->pass != EO_SHEET_COUNT)
     return NULL;
   sheet->cells++;
@@ -110,8 +112,10 @@ static struct eo_sheet *count(struct eo_sheet_text *text, bool number)
 
 void eo_sheet_text_cell(struct eo_sheet_text *text, int column, const char *cell)
 {
-  struct eo_sheet *sheet = count(text, false);
-  char mark = sheet ? mark_of(cell) : 0;
+  char mark;
+  if (!cell[strspn(cell, " ")])
+    return;
+  struct eo_sheet *sheet = count(text, is_number(cell, &mark));
   if (sheet) {
     sheet->commas += mark == ',';
     sheet->points += mark == '.';
@@ -177,20 +181,29 @@ void eo_sheet_text_formula(struct eo_sheet_text *text, const char *value)
   sheet->zero += !strcmp(value, "0");
 }
 
-/* A heading begins another table, which may be narrower than the one above it. */
+/* A heading begins another table, which may be narrower than the one above it. Names stand without a gap, and units
+   below them may be fewer; a title may stand far apart. Facts have numbers among their texts. */
+static void settle_width(struct eo_sheet_text *text)
+{
+  bool heading = text->texts > text->numbers, above = heading && !(text->heading && text->names);
+  if (above || (heading && text->numbers))
+    text->widest = 0;
+  if (!heading || !text->numbers)
+    text->widest = text->written > text->widest ? text->written : text->widest;
+  text->heading = heading;
+  text->names = heading && !text->numbers && text->texts == text->written + 1;
+}
+
 void eo_sheet_text_row(struct eo_sheet_text *text)
 {
-  if (text->filled && !text->number && text->numbers)
-    text->widest = 0;
-  if (text->filled) {
-    text->numbers = text->number;
-    text->widest = text->written > text->widest ? text->written : text->widest;
-    go_to(text, text->widest);
+  if (text->writing && text->numbers + text->texts > 0) {
+    settle_width(text);
+    if (!text->heading)
+      go_to(text, text->widest);
   }
   if (text->writing)
     putc('\n', text->file);
-  text->written = 0;
-  text->filled = text->number = false;
+  text->written = text->numbers = text->texts = 0;
 }
 
 /* Programs that write workbooks and compute nothing leave formulas without a value, or all of them with the value 0. */

@@ -42,8 +42,10 @@ struct eo_sheet_text {
   /* of the current one */
   int current;
   bool writing;
-  int written, widest;          /* tabs of the current row so far; of the widest row of its table */
-  bool filled, number, numbers; /* the row holds something, a number; the row before held numbers */
+  int written, widest; /* tabs of the current row so far; of the widest row of its table */
+  int numbers, texts;  /* cells of the row */
+  bool names;          /* the row before is of texts without a gap, */
+  bool heading;        /* or of texts at all */
 };
 
 /* Visits the archive once for each pass that has something to do; visit hands over the sheets that it finds. Notes of
@@ -66,8 +68,8 @@ void eo_sheet_text_time(struct eo_sheet_text *text, int column, double days);
 /* A formula, beside the value that is stored with it; "": none. */
 void eo_sheet_text_formula(struct eo_sheet_text *text, const char *value);
 
-/* Ends the row. Spreadsheets do not store the empty cells at the end of a row: it is filled up to the widest row of its
-   table so far. */
+/* Ends the row. Spreadsheets do not store the empty cells at the end of a row: rows of numbers are filled up to the
+   names above them and to the widest row of their table so far. */
 void eo_sheet_text_row(struct eo_sheet_text *text);
 
 /* Name of the largest sheet; "" when none holds anything. */

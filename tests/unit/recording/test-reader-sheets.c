@@ -103,6 +103,16 @@ static void test_short_rows(bool workbook)
   ok(r && eo_recording_rows(r) == 7 && eo_recording_columns(r) == 2, "below a wider table the next keeps its width%s",
      r ? "" : error.text);
   eo_recording_free(r);
+  write_book(workbook, "Report;;;;;page 3\nt;pinion\ns;rad\n0;1\n1;2\n2;4\n3;8\n", "");
+  r = take(NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && !strcmp(eo_recording_unit(r, 1), "rad"),
+     "a title that stands far apart does not widen the table%s", r ? "" : error.text);
+  eo_recording_free(r);
+  write_book(workbook, "t;pinion;remark\ns;deg\n0;1\n1;2;knock\n2;4\n3;8;knock\n", "");
+  r = take(NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 1, 1) == 2, "names without a unit below them do%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
 }
 
 /* Beside cells that are numbers, texts with a decimal comma are numbers, too; those with marks of thousands are not
