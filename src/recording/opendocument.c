@@ -18,6 +18,7 @@ struct document {
   bool taken; /* the cells of the current table */
   bool failed, in_cell, in_paragraph, filled, formula;
   int column, repeat;
+  long rows; /* like the current one, with it */
   char type[16], value[VALUE];
   size_t length;
 };
@@ -94,7 +95,9 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
     const char *label = attribute(attributes, "table:name");
     document->taken = eo_sheet_text_next(&document->out, label ? label : "");
   } else if (!strcmp(name, "table:table-row")) {
+    const char *repeat = attribute(attributes, "table:number-rows-repeated");
     document->column = 0;
+    document->rows = repeat ? strtol(repeat, NULL, 10) : 1;
   } else if (document->taken && (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))) {
     begin_cell(document, attributes);
   } else if (!strcmp(name, "text:p")) {
@@ -121,7 +124,7 @@ static void XMLCALL end(void *context, const char *name)
   if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))
     end_cell(document);
   else if (!strcmp(name, "table:table-row"))
-    eo_sheet_text_row(&document->out);
+    eo_sheet_text_row(&document->out, document->rows);
   else if (!strcmp(name, "text:p"))
     document->in_paragraph = false;
 }

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/sheet_text.h"
 #include "recording/decimal.h"
+#include "recording/source.h"
 
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define TICKS 864000000000LL /* tenths of a microsecond in a day: what a number of days still resolves */
@@ -50,7 +52,7 @@ static bool go_to(struct eo_sheet_text *text, int column)
   if (!text->writing || column < text->written || column >= EO_SHEET_COLUMNS)
     return false;
   for (; text->written < column; text->written++)
-    putc('\t', text->file);
+    putc('\t', text->line);
   return true;
 }
 
@@ -59,7 +61,7 @@ static void put(struct eo_sheet_text *text, const char *cell, char point)
   while (*cell == ' ')
     cell++;
   for (; *cell; cell++)
-    putc(*cell == '\t' || *cell == '\n' || *cell == '\r' ? ' ' : *cell == '.' ? point : *cell, text->file);
+    putc(*cell == '\t' || *cell == '\n' || *cell == '\r' ? ' ' : *cell == '.' ? point : *cell, text->line);
 }
 
 bool eo_sheet_text_next(struct eo_sheet_text *text, const char *name)
@@ -137,7 +139,7 @@ static void print_time(struct eo_sheet_text *text, int64_t ticks)
   char out[64];
   snprintf(out, sizeof out, "%02d:%02d:%02d.%07d", (int)(second / 3600), (int)(second / 60 % 60), (int)(second % 60),
            (int)(ticks % 10000000));
-  fputs(out, text->file);
+  fputs(out, text->line);
 }
 
 /* Year, month and day from days since 1970, by years that begin in March. */
@@ -150,7 +152,7 @@ static void print_date(struct eo_sheet_text *text, int64_t day)
   int64_t date = rest - (153 * month + 2) / 5 + 1, real = month < 10 ? month + 3 : month - 9;
   char out[64];
   snprintf(out, sizeof out, "%04d-%02d-%02dT", (int)(of_year + era * 400 + (real <= 2)), (int)real, (int)date);
-  fputs(out, text->file);
+  fputs(out, text->line);
 }
 
 void eo_sheet_text_moment(struct eo_sheet_text *text, int column, double days)
@@ -194,15 +196,21 @@ static void settle_width(struct eo_sheet_text *text)
   text->names = heading && !text->numbers && text->texts == text->written + 1;
 }
 
-void eo_sheet_text_row(struct eo_sheet_text *text)
+void eo_sheet_text_row(struct eo_sheet_text *text, int64_t times)
 {
-  if (text->writing && text->numbers + text->texts > 0) {
+  bool filled = text->numbers + text->texts > 0;
+  if (text->writing && filled) {
     settle_width(text);
     if (!text->heading)
       go_to(text, text->widest);
   }
-  if (text->writing)
-    putc('\n', text->file);
+  if (text->writing) {
+    putc('\n', text->line);
+    fflush(text->line);
+    for (int64_t i = 0; i < (filled ? times : 1) && text->bytes <= text->most; i++)
+      text->bytes += (int64_t)fwrite(text->row, 1, text->length, text->file);
+    rewind(text->line);
+  }
   text->written = text->numbers = text->texts = 0;
 }
 
@@ -229,11 +237,10 @@ static enum eo_code pass_over(struct eo_sheet_text *text, enum eo_sheet_pass pas
   return eo_archive_visit(archive, visit, context);
 }
 
-enum eo_code eo_sheet_text_write(struct eo_sheet_text *text, struct eo_archive *archive,
+static enum eo_code write_passes(struct eo_sheet_text *text, struct eo_archive *archive,
                                  bool (*visit)(void *context, struct eo_archive *archive, const char *name),
                                  void *context)
 {
-  text->several = archive->tables;
   EO_TRY(pass_over(text, EO_SHEET_COUNT, archive, visit, context));
   settle(text);
   if (!text->sheet[text->best].cells)
@@ -241,7 +248,28 @@ enum eo_code eo_sheet_text_write(struct eo_sheet_text *text, struct eo_archive *
   note_formulas(text, archive->notes);
   if (text->facts)
     EO_TRY(pass_over(text, EO_SHEET_FACTS, archive, visit, context));
-  return pass_over(text, EO_SHEET_TABLES, archive, visit, context);
+  EO_TRY(pass_over(text, EO_SHEET_TABLES, archive, visit, context));
+  if (text->bytes > text->most)
+    return eo_error_set(
+        archive->error, EO_ERROR_INPUT, "",
+        "The rows of the spreadsheet grow to more than %lld MB by being repeated; that is no recording.",
+        (long long)(text->most >> 20));
+  return EO_OK;
+}
+
+enum eo_code eo_sheet_text_write(struct eo_sheet_text *text, struct eo_archive *archive,
+                                 bool (*visit)(void *context, struct eo_archive *archive, const char *name),
+                                 void *context)
+{
+  text->several = archive->tables;
+  text->most = eo_source_growth(archive->path, archive->limit);
+  text->line = open_memstream(&text->row, &text->length);
+  if (!text->line)
+    return eo_error_memory(archive->error);
+  enum eo_code code = write_passes(text, archive, visit, context);
+  fclose(text->line);
+  free(text->row);
+  return code;
 }
 
 const char *eo_sheet_text_name(const struct eo_sheet_text *text)

@@ -31,9 +31,12 @@ struct eo_sheet {
 };
 
 struct eo_sheet_text {
-  FILE *file;
-  bool several;      /* tables that are nearly as large as the largest are written, too, each below its name */
-  bool recalculated; /* the book asks to be computed when it is opened: values 0 may stand for none */
+  FILE *file, *line; /* line: memory, for the row that is being written */
+  char *row;
+  size_t length;
+  int64_t bytes, most; /* that were written, that may be */
+  bool several;        /* tables that are nearly as large as the largest are written, too, each below its name */
+  bool recalculated;   /* the book asks to be computed when it is opened: values 0 may stand for none */
   /* of all sheets */
   enum eo_sheet_pass pass;
   struct eo_sheet sheet[EO_SHEETS];
@@ -69,8 +72,9 @@ void eo_sheet_text_time(struct eo_sheet_text *text, int column, double days);
 void eo_sheet_text_formula(struct eo_sheet_text *text, const char *value);
 
 /* Ends the row. Spreadsheets do not store the empty cells at the end of a row: rows of numbers are filled up to the
-   names above them and to the widest row of their table so far. */
-void eo_sheet_text_row(struct eo_sheet_text *text);
+   names above them and to the widest row of their table so far. times: of rows that follow each other with the same
+   cells an OpenDocument spreadsheet may store one. */
+void eo_sheet_text_row(struct eo_sheet_text *text, int64_t times);
 
 /* Name of the largest sheet; "" when none holds anything. */
 const char *eo_sheet_text_name(const struct eo_sheet_text *text);

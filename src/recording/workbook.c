@@ -259,7 +259,7 @@ static void XMLCALL end_cell(void *context, const char *name)
   if (!strcmp(element, "c"))
     take_cell(workbook);
   else if (!strcmp(element, "row"))
-    eo_sheet_text_row(&workbook->out);
+    eo_sheet_text_row(&workbook->out, 1);
 }
 
 static void take_doctype(void *context, const char *name, const char *system, const char *public, int subset)

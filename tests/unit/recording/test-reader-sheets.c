@@ -213,6 +213,34 @@ static void test_opendocument(void)
   eo_recording_free(r);
 }
 
+/* A counter at rest: one row stands for many. */
+static void test_repeated_rows(void)
+{
+  static const char *const times[] = {"3", "2000000000"};
+  struct eo_error error;
+  for (int hostile = 0; hostile < 2; hostile++) {
+    char content[1000];
+    snprintf(content, sizeof content,
+             "<doc><table:table table:name=\"S\"><table:table-row><table:table-cell office:value-type=\"float\" "
+             "office:value=\"7\"/></table:table-row><table:table-row table:number-rows-repeated=\"%s\">"
+             "<table:table-cell office:value-type=\"float\" office:value=\"8\"/></table:table-row>"
+             "<table:table-row><table:table-cell office:value-type=\"float\" office:value=\"9\"/></table:table-row>"
+             "<table:table-row table:number-rows-repeated=\"1048000\"><table:table-cell/></table:table-row>"
+             "</table:table></doc>",
+             times[hostile]);
+    add("content.xml", content);
+    finish();
+    if (hostile) {
+      refuse("by being repeated", "a row that is repeated too often");
+      continue;
+    }
+    struct eo_recording *r = take(NULL, &error);
+    ok(r && eo_recording_rows(r) == 5 && cell_of(r, 3, 0) == 8 && cell_of(r, 4, 0) == 9,
+       "a row of an OpenDocument spreadsheet that is repeated is as many rows%s", r ? "" : error.text);
+    eo_recording_free(r);
+  }
+}
+
 /* A sheet for each channel, called in the book as the files with the sheets are not: they come out side by side. */
 static void test_sheets(bool workbook)
 {
@@ -263,6 +291,7 @@ int main(void)
   fixture_open();
   test_workbook();
   test_opendocument();
+  test_repeated_rows();
   test_sheets(true);
   test_sheets(false);
   for (int workbook = 0; workbook < 2; workbook++) {
