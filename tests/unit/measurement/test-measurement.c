@@ -899,8 +899,8 @@ static void check_slow_load(void)
     eo_recording_set_clock(r, c, &own[c]);
     eo_recording_set_length(r, c, c < 2 ? ROWS : SLOW_ROWS);
   }
-  tracks.torque[0] = (struct eo_track_beside){1, 2, true};
-  tracks.speed[0] = (struct eo_track_beside){1, 4, true};
+  tracks.torque[0] = (struct eo_track_beside){.scale = 1, .column = 2, .stated = true};
+  tracks.speed[0] = (struct eo_track_beside){.scale = 1, .column = 4, .stated = true};
   enum eo_code code = eo_load_read(&load, r, &tracks, 1.95, 3.05, &error);
   ok(!code && fabs(load.torque[0].mean - 150) < 1e-9 && fabs(load.torque[0].high - 200) < 1e-9,
      "a torque of another rate that begins 1 s later is read at its own times: %.6g N m", load.torque[0].mean);
