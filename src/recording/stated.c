@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "recording/stated.h"
+#include "recording/stated_private.h"
 #include "recording/column.h"
 #include "recording/letters.h"
 #include "recording/recorded_unit.h"
@@ -7,12 +7,12 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define KEY 96
+#define KEY EO_STATED_KEY
 
-/* The key without accents, in lower case, with nothing but letters, digits and the slash of "samples/s". */
-static void fold(const char *key, char *folded)
+void eo_stated_fold(const char *key, char folded[KEY])
 {
   char plain[KEY];
   size_t n = 0;
@@ -23,8 +23,7 @@ static void fold(const char *key, char *folded)
   folded[n] = '\0';
 }
 
-/* True when the key is one of the words, which blanks part. */
-static bool is_one(const char *key, const char *words)
+bool eo_stated_is_one(const char *key, const char *words)
 {
   size_t length = strlen(key);
   for (const char *p = words; *p;) {
@@ -36,8 +35,7 @@ static bool is_one(const char *key, const char *words)
   return false;
 }
 
-/* True when one of the words stands in the key. */
-static bool holds(const char *key, const char *words)
+bool eo_stated_holds(const char *key, const char *words)
 {
   for (const char *p = words; *p;) {
     char word[KEY];
@@ -69,26 +67,29 @@ static bool holds(const char *key, const char *words)
 
 static bool is_about(const char *key, const char *what, const char *measure)
 {
-  return holds(key, what) && holds(key, measure) && !holds(key, NOT_SAMPLING);
+  return eo_stated_holds(key, what) && eo_stated_holds(key, measure) && !eo_stated_holds(key, NOT_SAMPLING);
 }
 
 static bool is_rate(const char *key)
 {
-  return is_one(key, "fs sr rate fsample fsamp fsampling fa ratehz samples/s samples/sec s/s sa/s frequenz "
-                     "fabtast fech samplespersec") ||
-         holds(key, "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
-                    "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate "
-                    "framerate") ||
+  return eo_stated_is_one(key, "fs sr rate fsample fsamp fsampling fa ratehz samples/s samples/sec s/s sa/s frequenz "
+                               "fabtast fech samplespersec") ||
+         eo_stated_holds(key,
+                         "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
+                         "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate "
+                         "framerate") ||
          is_about(key, SAMPLING, RATES " clk clock velocid") || is_about(key, TAKING, RATES);
 }
 
 static bool is_interval(const char *key)
 {
-  return is_one(key, "dt ts deltat deltax dx increment interval xincr xinc xincrement xinterval incrementx wfincrement "
-                     "tsample tsamp tsampling period timestep delta intervall xdelta xin step ta abtastung stepsize "
-                     "xstep tinc tincr tincrement tinterval hresolution") ||
-         holds(key, "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
-                    "samplingresolution wfincrement xincrement xinterval") ||
+  return eo_stated_is_one(
+             key, "dt ts deltat deltax dx increment interval xincr xinc xincrement xinterval incrementx wfincrement "
+                  "tsample tsamp tsampling period timestep delta intervall xdelta xin step ta abtastung stepsize "
+                  "xstep tinc tincr tincrement tinterval hresolution") ||
+         eo_stated_holds(
+             key, "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
+                  "samplingresolution wfincrement xincrement xinterval") ||
          is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
 
@@ -96,8 +97,8 @@ static bool is_interval(const char *key)
    acquisition a time may be its duration. */
 static bool is_sampling(const char *key, bool time)
 {
-  return is_one(key, "sampling abtastung echantillonnage muestreo campionamento amostragem bemonstering") ||
-         (!time && is_one(key, "sampled sample abgetastet scan scanning acquisition logging"));
+  return eo_stated_is_one(key, "sampling abtastung echantillonnage muestreo campionamento amostragem bemonstering") ||
+         (!time && eo_stated_is_one(key, "sampled sample abgetastet scan scanning acquisition logging"));
 }
 
 static bool ends_with(const char *key, const char *words)
@@ -115,48 +116,43 @@ static bool ends_with(const char *key, const char *words)
 /* Sentences: "the channels were sampled with 4 kHz", "recording of 2 s at 4 kHz"; "one sample every 250 us". */
 static bool is_told(const char *key, bool time)
 {
-  return !holds(key, NOT_SAMPLING) &&
-         (time ? holds(key, SAMPLING) && ends_with(key, "every each alle jede toutesles cada ogni")
-               : holds(key, SAMPLING " " TAKING " abgetastet") &&
+  return !eo_stated_holds(key, NOT_SAMPLING) &&
+         (time ? eo_stated_holds(key, SAMPLING) && ends_with(key, "every each alle jede toutesles cada ogni")
+               : eo_stated_holds(key, SAMPLING " " TAKING " abgetastet") &&
                      ends_with(key, "with at mit von bei of de avec con was war betrug by"));
 }
 
 static bool is_start(const char *key)
 {
-  return is_one(key, "x0 t0 tstart starttime startoffset wfstartoffset xzero xstart xoffset startvalue starts "
-                     "offsettime timeoffset tzero start xorg xorigin") ||
-         holds(key, "wfstartoffset");
+  return eo_stated_is_one(key,
+                          "x0 t0 tstart starttime startoffset wfstartoffset xzero xstart xoffset startvalue starts "
+                          "offsettime timeoffset tzero start xorg xorigin") ||
+         eo_stated_holds(key, "wfstartoffset");
 }
 
 static bool is_tick(const char *key)
 {
-  return is_one(key, "timebase clock fclk fclock tick timerclock timer zeitbasis clk takt mhz") ||
-         (holds(key, "timebasefreq timebaserate timebaseclock clockfreq clockrate counterclock counterfreq "
-                     "countertimebase timerfreq timerclock timerrate tickrate tickfreq tickspersec ticks/s ticksper "
-                     "tickduration ticklength tickperiod ticktime tickinterval taktfreq taktrate timerresolution "
-                     "timerperiod zaehlertakt zahlertakt clockperiod referenceclock") &&
-          !holds(key, SAMPLING));
-}
-
-static bool is_turn(const char *key)
-{
-  return is_one(key, "cpr ppr lpr encoderresolution resolution aufloesung auflosung strichzahl lines pulses striche "
-                     "teethofwheel encoderlines encoderpulses encodercounts geberstriche wheelteeth") ||
-         holds(key, "perrev perturn percycle /rev /turn /umdr /u /tour /giro /vuelta proumdr prou partour pervuelta "
-                    "porvuelta pergiro countsper360 encoderresolution geberaufl encoderaufl strichzahl impulszahl "
-                    "encodercpr encoderppr polepairs");
+  return eo_stated_is_one(key, "timebase clock fclk fclock tick timerclock timer zeitbasis clk takt mhz") ||
+         (eo_stated_holds(
+              key, "timebasefreq timebaserate timebaseclock clockfreq clockrate counterclock counterfreq "
+                   "countertimebase timerfreq timerclock timerrate tickrate tickfreq tickspersec ticks/s ticksper "
+                   "tickduration ticklength tickperiod ticktime tickinterval taktfreq taktrate timerresolution "
+                   "timerperiod zaehlertakt zahlertakt clockperiod referenceclock") &&
+          !eo_stated_holds(key, SAMPLING));
 }
 
 static bool is_scale(const char *key)
 {
-  return is_one(key, "scalefactor scale gain slope factor faktor conversionfactor bitvolts calibration "
-                     "calibrationfactor sensitivityfactor scaling multiplier umrechnungsfaktor lsb resolutionperbit") ||
-         holds(key, "scalefactor");
+  return eo_stated_is_one(
+             key, "scalefactor scale gain slope factor faktor conversionfactor bitvolts calibration "
+                  "calibrationfactor sensitivityfactor scaling multiplier umrechnungsfaktor lsb resolutionperbit") ||
+         eo_stated_holds(key, "scalefactor");
 }
 
 static bool is_offset(const char *key)
 {
-  return is_one(key, "addoffset offset intercept bias yoffset scaleoffset") || holds(key, "addoffset");
+  return eo_stated_is_one(key, "addoffset offset intercept bias yoffset scaleoffset") ||
+         eo_stated_holds(key, "addoffset");
 }
 
 /* "Pinion counts" and the like say whose it is. */
@@ -169,76 +165,67 @@ int eo_stated_member(const char *name)
 bool eo_stated_excludes(const char *words)
 {
   char folded[KEY];
-  fold(words, folded);
-  return holds(folded, NOT_SAMPLING);
+  eo_stated_fold(words, folded);
+  return eo_stated_holds(folded, NOT_SAMPLING);
 }
 
 bool eo_stated_thins(const char *words)
 {
   char folded[KEY];
-  fold(words, folded);
-  return holds(folded, "decimat dezimi downsampl unterabtast subsampl");
+  eo_stated_fold(words, folded);
+  return eo_stated_holds(folded, "decimat dezimi downsampl unterabtast subsampl");
 }
 
 bool eo_stated_begin(const char *key)
 {
   char folded[KEY];
-  fold(key, folded);
-  return is_one(folded, "start t0 beginn begin datetime timestamp date datum time zeit uhrzeit created acquired "
-                        "wfstarttime triggertime heure fecha hora data ora") ||
-         holds(folded, "starttime startdate startzeit startdatum starttimestamp startedat recordingstart messbeginn "
-                       "messstart begintime recordedat startat timeofstart startofrecording triggertime "
-                       "acquisitiondate aufnahmebeginn recordingdate recordingtime datetime timestamp");
+  eo_stated_fold(key, folded);
+  return eo_stated_is_one(folded,
+                          "start t0 beginn begin datetime timestamp date datum time zeit uhrzeit created acquired "
+                          "wfstarttime triggertime heure fecha hora data ora") ||
+         eo_stated_holds(folded,
+                         "starttime startdate startzeit startdatum starttimestamp startedat recordingstart messbeginn "
+                         "messstart begintime recordedat startat timeofstart startofrecording triggertime "
+                         "acquisitiondate aufnahmebeginn recordingdate recordingtime datetime timestamp");
 }
 
-static struct eo_stated nothing(void)
+int eo_stated_number(const char *name)
 {
-  return (struct eo_stated){EO_STATED_NOTHING, 0, -1};
+  int number = -1;
+  for (const char *p = name; *p;) {
+    size_t digits = strspn(p, "0123456789");
+    if (digits > 0 && digits < 5)
+      number = atoi(p);
+    p += digits ? digits : 1;
+  }
+  return number;
 }
 
 /* The key without the words that only say whose it is. */
 static void strip_owner(const char *key, char *rest, size_t size)
 {
   static const char owners[] = EO_PINION_WORDS "|" EO_GEAR_WORDS "|channel|chan|ch|kanal|canal|canale|voie|encoder|enc|"
-                                               "geber|codeur|of|the|for|des|der|von|du|de|del|della|1|2";
+                                               "geber|codeur|of|the|for|des|der|von|du|de|del|della|0|1|2";
   size_t n = 0;
   for (const char *p = key; *p;) {
     char word[KEY];
-    size_t length = strcspn(p, " _.-:;,()[]"), used = length < KEY ? length : KEY - 1;
+    size_t length = strcspn(p, " _.-:;,()[]"), digits = strspn(p, "0123456789"), letters = strcspn(p, "0123456789");
+    length = digits && digits < length ? digits : letters && letters < length ? letters : length; /* "CPR" of "CPR1" */
+    size_t used = length < KEY ? length : KEY - 1;
     memcpy(word, p, used);
     word[used] = '\0';
     if (length && !eo_column_named(word, owners) && n + used + 2 < size)
       n += (size_t)snprintf(rest + n, size - n, "%s ", word);
-    p += length + (p[length] != '\0');
+    p += length + (p[length] && strchr(" _.-:;,()[]", p[length]));
   }
   rest[n] = '\0';
 }
 
-/* "counts/rev" and "pulses per revolution". */
-static bool is_turn_unit(const char *unit)
+void eo_stated_fold_bare(const char *key, char folded[KEY])
 {
-  char folded[KEY];
-  fold(unit, folded);
-  return holds(folded, "perrev perturn /rev /turn /umdr proumdr");
-}
-
-static bool is_bits(const char *unit)
-{
-  char folded[KEY];
-  fold(unit, folded);
-  return is_one(folded, "bit bits");
-}
-
-/* Encoders of so many bits have two to that power of counts in a turn; an analogue input has bits too, and no turn. */
-static struct eo_stated read_bits(const char *name, double number)
-{
-  char folded[KEY];
-  fold(name, folded);
-  bool encoder = holds(folded, "encoder geber codeur codificador singleturn perturn perrev") &&
-                 holds(folded, "resol aufl bit turn rev");
-  if (!encoder || !(number >= 1 && number <= 40) || number != floor(number))
-    return nothing();
-  return (struct eo_stated){EO_STATED_TURN, exp2(number), eo_stated_member(name)};
+  char rest[KEY];
+  strip_owner(key, rest, sizeof rest);
+  eo_stated_fold(rest, folded);
 }
 
 /* "kS/s" and the like: whatever stands before it, the number is a sampling rate. */
@@ -246,8 +233,8 @@ static bool is_sampling_unit(const char *unit)
 {
   char folded[KEY];
   double factor;
-  fold(unit, folded);
-  return holds(folded, "s/s sps sa/s samples") && eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
+  eo_stated_fold(unit, folded);
+  return eo_stated_holds(folded, "s/s sps sa/s samples") && eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
 }
 
 /* "Values/h": a unit that is not known and counts something per something. A number under it is no rate in Hz. */
@@ -255,16 +242,16 @@ static bool is_unknown_ratio(const char *unit)
 {
   char folded[KEY];
   double factor;
-  fold(unit, folded);
-  return holds(folded, "/ per pro") &&
+  eo_stated_fold(unit, folded);
+  return eo_stated_holds(folded, "/ per pro") &&
          (eo_unit_find(unit, &factor) == EO_QUANTITY_OTHER || eo_unit_find(unit, &factor) == EO_QUANTITY_NONE);
 }
 
 /* German calls the rate of a logger and the clock of a counter a Takt; counters run at 1 MHz and more. */
 static bool is_slow_clock(const char *folded, double number, enum eo_quantity quantity, double factor)
 {
-  return quantity == EO_QUANTITY_FREQUENCY && number * factor < 1e6 && holds(folded, "taktrate taktfreq") &&
-         !holds(folded, "zaehler zahler timer counter");
+  return quantity == EO_QUANTITY_FREQUENCY && number * factor < 1e6 && eo_stated_holds(folded, "taktrate taktfreq") &&
+         !eo_stated_holds(folded, "zaehler zahler timer counter");
 }
 
 /* What a key of one meaning says; folded: in lower case, its unit taken off. */
@@ -278,8 +265,10 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
        tick = is_tick(folded);
   if (is_slow_clock(folded, number, quantity, factor))
     rate = true, tick = false;
-  if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)
+  if (plain && (eo_stated_is_turn(folded) || turn_unit) && positive && number < 1e12)
     stated->kind = EO_STATED_TURN, stated->value = number;
+  else if (plain && eo_stated_is_fold(folded) && number >= 1 && number <= 65536 && number == floor(number))
+    stated->kind = EO_STATED_FOLD, stated->value = number;
   else if (tick && positive && (time || frequency || number > 1000))
     stated->kind = EO_STATED_TICK, stated->value = time ? number * factor : 1 / (number * factor);
   else if ((rate || interval) && positive && (time || frequency || plain))
@@ -293,35 +282,43 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
     stated->kind = EO_STATED_OFFSET, stated->value = number;
 }
 
+/* Whose a key is, by its name; "Strichzahl Rad" ends with a word that is a unit, too. */
+static int member_of(const char *key, const char *name, const char *own)
+{
+  int member = eo_stated_member(name);
+  return member < 0 && *own && isalpha((unsigned char)key[strlen(key) - 1]) ? eo_stated_member(own) : member;
+}
+
 struct eo_stated eo_stated_read(const char *key, double number, const char *unit)
 {
   char name[KEY], own[32], folded[KEY];
   double factor = 1;
-  struct eo_stated stated = nothing();
+  struct eo_stated stated = eo_stated_nothing();
   if (!isfinite(number))
     return stated;
   eo_unit_split(key, name, (int)sizeof name, own, (int)sizeof own);
-  if (is_bits(*unit ? unit : own))
-    return read_bits(name, number);
+  stated.member = member_of(key, name, own);
+  stated.number = eo_stated_number(name);
+  eo_stated_fold(name, folded);
+  stated.lines = eo_stated_are_lines(key, unit);
+  if (!is_scale(folded) && eo_stated_read_turn(key, name, own, number, unit, &stated))
+    return stated;
   enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
-  fold(key, folded);
+  eo_stated_fold(key, folded);
   bool word = quantity == EO_QUANTITY_TIME && is_rate(folded) && (strchr(key, '/') || strstr(folded, "per"));
   if (!*unit && (word || !sampling)) /* "Samples/s" is a word of its own; other units are none of a sampling */
     quantity = EO_QUANTITY_NONE, factor = 1;
   const char *bare = !*unit && sampling && !word ? name : key;
-  stated.member = eo_stated_member(name);
-  fold(bare, folded);
-  judge_key(folded, number, quantity, factor, is_turn_unit(unit), &stated);
-  if (!stated.kind && number > 0 && is_sampling_unit(*unit ? unit : own) && !holds(folded, NOT_SAMPLING))
+  eo_stated_fold(bare, folded);
+  judge_key(folded, number, quantity, factor, eo_stated_is_turn_unit(name, unit), &stated);
+  if (!stated.kind && number > 0 && is_sampling_unit(*unit ? unit : own) && !eo_stated_holds(folded, NOT_SAMPLING))
     stated.kind = EO_STATED_INTERVAL, stated.value = 1 / (number * factor);
   if (!stated.kind) {
-    char rest[KEY];
-    strip_owner(bare, rest, sizeof rest);
-    fold(rest, folded);
+    eo_stated_fold_bare(bare, folded);
     judge_key(folded, number, quantity, factor, false, &stated);
   }
   if (stated.kind == EO_STATED_INTERVAL && is_unknown_ratio(unit))
-    return nothing();
+    return eo_stated_nothing();
   return stated;
 }

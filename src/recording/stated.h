@@ -12,6 +12,7 @@ enum eo_stated_kind {
   EO_STATED_START,    /* s: time of the first row */
   EO_STATED_TICK,     /* s of one tick of the clock that times are counted by */
   EO_STATED_TURN,     /* counts or pulses per turn of an encoder */
+  EO_STATED_FOLD,     /* counts for each line of an encoder: interpolation, or the edges that a counter takes */
   EO_STATED_SCALE,    /* value = scale * stored + offset */
   EO_STATED_OFFSET,
 };
@@ -20,6 +21,9 @@ struct eo_stated {
   enum eo_stated_kind kind;
   double value; /* in the unit above */
   int member;   /* 0: of the pinion, 1: of the gear, -1: the key does not say */
+  int number;   /* of a channel, in the key: "CPR1"; -1: none */
+  bool lines;   /* EO_STATED_TURN: lines or pulses, which EO_STATED_FOLD multiplies; not so counts */
+  bool vague;   /* EO_STATED_TURN: by a resolution in bits or in an angle, which need not be that of the counts */
 };
 
 /* What a number under a key means. unit: of the number, "" when it stands in the key ("Sampling rate [kHz]", "dt_ms")
@@ -29,6 +33,12 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
 
 /* 0 and 1 when a name says pinion and gear, -1 else. */
 int eo_stated_member(const char *name);
+
+/* The last number of a name, of a channel for instance: 1 of "Encoder 1"; -1: there is none. */
+int eo_stated_number(const char *name);
+
+/* True for units that tell what a number is whatever its key: bits, and angles of less than a turn. */
+bool eo_stated_keeps(const char *unit);
 
 /* True for words that tell what is no sampling: filters, numbers of points, what a device could do. */
 bool eo_stated_excludes(const char *words);

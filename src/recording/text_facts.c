@@ -212,7 +212,7 @@ static bool take_thinning(struct eo_text_format *format, const char *from, const
   copy_trimmed(key, sizeof key, from, number);
   if (!eo_stated_thins(key) || !(value > 1))
     return false;
-  struct eo_stated rate = {EO_STATED_INTERVAL, 0, -1};
+  struct eo_stated rate = {EO_STATED_INTERVAL, 0, -1, -1, false, false};
   bool frequency = eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
   rate.value = 1 / (value * factor);
   if (frequency)

@@ -188,8 +188,44 @@ static void test_stated(void)
   ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"), "when it began");
 }
 
+/* What an encoder's turn has, by the words on either side of the number. */
+static void test_turns(void)
+{
+  stated("Resolution", 23, "bit", EO_STATED_TURN, 0x1p23);
+  stated("Aufl\xc3\xb6sung Ritzel", 22, "Bit", EO_STATED_TURN, 0x1p22);
+  stated("Resolution", 23, "bit/rev", EO_STATED_TURN, 0x1p23);
+  stated("Resolution", 16, "bit per revolution", EO_STATED_TURN, 0x1p16);
+  stated("Bits per turn", 23, "", EO_STATED_TURN, 0x1p23);
+  stated("", 22, "bit singleturn", EO_STATED_TURN, 0x1p22);
+  stated("Encoder resolution", 12, "bit multiturn", EO_STATED_NOTHING, 0);
+  stated("Resolution", 24, "bit", EO_STATED_NOTHING, 0); /* of a converter, perhaps */
+  stated("Encoder stop bits", 1, "", EO_STATED_NOTHING, 0);
+  stated("Encoder resolution", 0.00004, "deg", EO_STATED_TURN, 9e6);
+  stated("Resolution [arcsec]", 0.144, "", EO_STATED_TURN, 9e6);
+  stated("Encoder scale: 1 count", 0.0001, "deg", EO_STATED_TURN, 3.6e6);
+  stated("Resolution", 25000, "counts/deg", EO_STATED_TURN, 9e6);
+  stated("Degrees per count", 0.00004, "", EO_STATED_TURN, 9e6);
+  stated("Resoluci\xc3\xb3n", 3600000, "cuentas por vuelta", EO_STATED_TURN, 3.6e6);
+  stated("Risoluzione encoder", 3600000, "impulsi/giro", EO_STATED_TURN, 3.6e6);
+  stated("Impulses per rotation", 9000000, "", EO_STATED_TURN, 9e6);
+  stated("Inkremente je Umdrehung (vierfach)", 9000000, "", EO_STATED_TURN, 9e6);
+  stated("Z\xc3\xa4hnezahl Geberrad Ritzel", 512, "", EO_STATED_TURN, 512);
+  stated("Pinion", 512, "PPR", EO_STATED_TURN, 512);
+  stated("Encoder", 9000, "lines", EO_STATED_TURN, 9000);
+  stated("Header", 12, "lines", EO_STATED_NOTHING, 0);
+  stated("Teeth", 17, "", EO_STATED_NOTHING, 0);
+  stated("Interpolation", 4096, "", EO_STATED_FOLD, 4096);
+  stated("Interpolation order", 3, "", EO_STATED_NOTHING, 0);
+  ok(eo_stated_read("CPR1", 9e6, "").number == 1 && eo_stated_read("CPR0", 9e6, "").kind == EO_STATED_TURN,
+     "CPR with the number of its channel");
+  ok(eo_stated_read("Strichzahl Rad", 9000, "").member == 1, "a wheel that is a unit, too");
+  ok(eo_stated_read("Line count", 9000, "").lines && !eo_stated_read("CPR", 9000, "").lines,
+     "lines may be multiplied, counts may not");
+}
+
 int main(void)
 {
+  test_turns();
   test_moments();
   test_units();
   test_stated();
