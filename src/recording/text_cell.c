@@ -86,10 +86,11 @@ static bool means_nothing(const char *text, size_t length)
   return false;
 }
 
-/* A mark of thousands: the other one of point and comma, an apostrophe, or a blank of any kind. Returns its bytes. */
+/* A mark of thousands: the other one of point and comma, an apostrophe, an underscore, or a blank of any kind. Returns
+   its bytes. */
 static size_t group_mark(const char *at, const char *end, char point)
 {
-  static const char *const marks[] = {"'", " ", "\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x99", "\xa0"};
+  static const char *const marks[] = {"'", "_", " ", "\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x99", "\xa0"};
   if (at < end && *at == (point == '.' ? ',' : '.'))
     return 1;
   for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
@@ -108,42 +109,43 @@ static size_t digits_at(const char *at, const char *end)
   return n;
 }
 
-/* "1,018.896": one to three digits, then groups of three that one mark parts, then perhaps the decimal point. Copies
-   the number without the marks to plain. */
-static bool ungroup(const struct eo_cell *cell, char point, char *plain, size_t size, bool *fraction)
+const char *eo_text_grouped(const char *at, const char *end, char point, int *groups, double *value)
 {
-  const char *at = cell->text, *end = at + cell->length;
+  char plain[64];
   size_t n = 0, length, mark = 0;
-  if (cell->length + 1 > size)
-    return false;
+  *groups = 0;
   if (at < end && (*at == '-' || *at == '+'))
     plain[n++] = *at++;
   length = digits_at(at, end);
   if (length < 1 || length > 3 || *at == '0' || !(mark = group_mark(at + length, end, point)))
-    return false;
+    return NULL;
   const char *first = at + length;
   memcpy(plain + n, at, length);
   n += length;
-  for (at = first; at < end && (size_t)(end - at) > mark && !memcmp(at, first, mark); at += mark + 3) {
-    if (digits_at(at + mark, end) != 3)
-      return false;
+  for (at = first; n + 4 < sizeof plain && (size_t)(end - at) > mark && !memcmp(at, first, mark); at += mark + 3) {
+    size_t digits = digits_at(at + mark, end);
+    if (digits != 3 && digits > 0)
+      return NULL;
+    if (!digits)
+      break;
     memcpy(plain + n, at + mark, 3);
     n += 3;
+    ++*groups;
   }
-  *fraction = at < end && *at == point;
-  memcpy(plain + n, at, (size_t)(end - at));
-  plain[n + (size_t)(end - at)] = '\0';
-  return at > first;
+  size_t left = (size_t)(end - at), room = sizeof plain - n - 1;
+  memcpy(plain + n, at, left < room ? left : room);
+  plain[n + (left < room ? left : room)] = '\0';
+  const char *last = *groups ? eo_decimal_read(plain, point, value) : NULL;
+  return last ? at + (last - plain - (ptrdiff_t)n) : NULL;
 }
 
 static enum eo_cell_kind grouped_value(const struct eo_cell *cell, char point, double *value)
 {
-  char plain[64];
-  bool fraction;
-  if (!ungroup(cell, point, plain, sizeof plain, &fraction))
+  int groups;
+  const char *end = cell->text + cell->length;
+  if (eo_text_grouped(cell->text, end, point, &groups, value) != end || !isfinite(*value))
     return EO_CELL_TEXT;
-  const char *end = eo_decimal_read(plain, point, value);
-  return end && !*end && isfinite(*value) ? fraction ? EO_CELL_NUMBER : EO_CELL_GROUPED : EO_CELL_TEXT;
+  return memchr(cell->text, point, cell->length) ? EO_CELL_NUMBER : EO_CELL_GROUPED;
 }
 
 bool eo_text_cell_hex(const struct eo_cell *cell, double *value)

@@ -52,6 +52,10 @@ bool eo_text_next_cell(const char **at, const char *end, char separator, struct 
    number. */
 enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, double *value);
 
+/* Reads a number whose digits stand in groups of three that one mark parts ("1,018.896", "1 018,896", "1'018"): the
+   groups behind the first, and its value. Returns the place after it, NULL when it is no such number. */
+const char *eo_text_grouped(const char *at, const char *end, char point, int *groups, double *value);
+
 /* A hexadecimal number with or without a mark ("0x3F", "3Fh", "$3F", "3F"); false when the cell is none. */
 bool eo_text_cell_hex(const struct eo_cell *cell, double *value);
 

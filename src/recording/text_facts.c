@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_facts.h"
-#include "recording/decimal.h"
 #include "recording/letters.h"
 #include "recording/moment.h"
 #include "recording/recorded_unit.h"
 #include "recording/stated.h"
 #include "recording/text_cell.h"
+#include "recording/text_number.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -45,83 +45,6 @@ int eo_header_cells(const struct eo_header_line *line, char separator)
   return filled;
 }
 
-static const char *skip_digits(const char *p, const char *end)
-{
-  while (p < end && isdigit((unsigned char)*p))
-    p++;
-  return p;
-}
-
-/* A number of the header. A comma with digits behind it is a decimal comma wherever commas part no cells or nothing
-   else makes sense of "0,00025"; before groups of three of a file with decimal points it marks thousands. in_one_cell:
-   its key stands in the same cell, as that of "rate: 5,000", so that no comma parts it from the next. */
-static const char *number_at(const struct eo_text_format *format, const char *p, const char *end, bool in_one_cell,
-                             double *value)
-{
-  const char *after = eo_decimal_read(p, '.', value);
-  if (!after || after >= end || *after != ',' || !isdigit((unsigned char)after[1]) ||
-      memchr(p, '.', (size_t)(after - p)))
-    return after;
-  const char *group = skip_digits(after + 1, end);
-  bool thousands = group - after == 4 && *value >= 1 && *value < 1000 && format->point == '.';
-  if (format->separator == ',' && *value != 0 && !(thousands && in_one_cell))
-    return after;
-  if (!thousands)
-    return eo_decimal_read(p, ',', value);
-  double rest;
-  after = eo_decimal_read(after + 1, '.', &rest);
-  *value = *value * 1000 + rest;
-  return after;
-}
-
-static void copy_trimmed(char *to, size_t size, const char *from, const char *end)
-{
-  while (from < end && strchr(" \t:=;,|\"", *from))
-    from++;
-  while (end > from && strchr(" \t:=;,|\"([{<", end[-1]))
-    end--;
-  snprintf(to, size, "%.*s", (int)((size_t)(end - from) < size ? (size_t)(end - from) : size - 1), from);
-}
-
-/* Bytes of the words at the beginning that are a unit of a rate or a time: of "kHz by rig 3" the first; 0: none is. */
-static size_t sampling_unit(const char *words, size_t length)
-{
-  char unit[32];
-  double factor;
-  while (length) {
-    snprintf(unit, sizeof unit, "%.*s", (int)(length < sizeof unit ? length : 0), words);
-    enum eo_quantity quantity = eo_unit_find(unit, &factor);
-    if (quantity == EO_QUANTITY_FREQUENCY || quantity == EO_QUANTITY_TIME)
-      return length;
-    while (length && words[length - 1] != ' ')
-      length--;
-    while (length && words[length - 1] == ' ')
-      length--;
-  }
-  return 0;
-}
-
-/* The word behind a number: "kHz", "counts/rev", "counts per rev". Another number is none, but that of another cell. */
-static const char *unit_behind(const char *number, const char *end, char *unit, size_t size)
-{
-  const char *p = number;
-  while (p < end && strchr(" \t[(;,", *p) && *p)
-    p++;
-  *unit = '\0';
-  if (p < end && (isdigit((unsigned char)*p) || strchr("+-.", *p)))
-    return number;
-  const char *last = p;
-  while (last < end && !strchr("\t;,|)]\"=:", *last))
-    last++;
-  size_t length = (size_t)(last - p);
-  while (length && p[length - 1] == ' ')
-    length--;
-  size_t known = sampling_unit(p, length);
-  length = known ? known : length;
-  snprintf(unit, size, "%.*s", (int)(length < size ? length : 0), p);
-  return known ? p + known : last;
-}
-
 static void use_fact(struct eo_text_format *format, const struct eo_stated *stated)
 {
   for (int c = 0; c < format->cells; c++) {
@@ -146,12 +69,12 @@ static void use_fact(struct eo_text_format *format, const struct eo_stated *stat
 static struct eo_stated read_fact(const char *from, const char *number, double value, const char *unit)
 {
   char key[KEY], cell[KEY];
-  copy_trimmed(key, sizeof key, from, number);
+  eo_header_trim(key, sizeof key, from, number);
   const char *cut = key;
   for (const char *p = key; *p; p++)
     if (strchr(";\t|,", *p))
       cut = p + 1;
-  copy_trimmed(cell, sizeof cell, cut, key + strlen(key));
+  eo_header_trim(cell, sizeof cell, cut, key + strlen(key));
   struct eo_stated stated = eo_stated_read(cell, value, unit);
   return stated.kind || cut == key ? stated : eo_stated_read(key, value, unit);
 }
@@ -175,7 +98,7 @@ static const char *words_behind(const char *at, const char *end, char words[KEY]
   const char *last = at;
   while (last < end && !strchr("\t;,|.:=()[]\"0123456789", *last))
     last++;
-  copy_trimmed(words, KEY, at, last);
+  eo_header_trim(words, KEY, at, last);
   *ended = last == end || !strchr(":=0123456789", *last) || (isdigit((unsigned char)*last) && leads_on(words));
   return last;
 }
@@ -209,7 +132,7 @@ static bool take_thinning(struct eo_text_format *format, const char *from, const
 {
   char key[KEY];
   double factor;
-  copy_trimmed(key, sizeof key, from, number);
+  eo_header_trim(key, sizeof key, from, number);
   if (!eo_stated_thins(key) || !(value > 1))
     return false;
   struct eo_stated rate = {EO_STATED_INTERVAL, 0, -1, -1, false, false};
@@ -241,7 +164,7 @@ static bool moment_at(const char *p, const char *end, struct eo_moment *moment, 
 static void use_moment(struct begin *begin, const char *from, const char *at, const struct eo_moment *moment)
 {
   char key[KEY];
-  copy_trimmed(key, sizeof key, from, at);
+  eo_header_trim(key, sizeof key, from, at);
   if (!eo_stated_begin(key))
     return;
   if (moment->has_day && !begin->moment.has_day)
@@ -275,10 +198,10 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
       from = p = after;
       continue;
     }
-    after = number_at(format, p, line->end, is_key_before(from, p), &value);
+    after = eo_header_number_at(format, p, line->end, is_key_before(from, p), &value);
     if (!after || after > line->end)
       continue;
-    behind = unit_behind(after, line->end, unit, sizeof unit);
+    behind = eo_header_unit(after, line->end, unit, sizeof unit);
     if (take_thinning(format, from, p, value, unit, begin) ||
         take_from_behind(format, value, unit, line->end, &behind)) {
       from = behind;
@@ -286,7 +209,7 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
       continue;
     }
     struct eo_stated stated = read_fact(from, p, value, unit);
-    if (!stated.kind)
+    if (!stated.kind && !eo_stated_keeps(unit))
       stated = read_fact(from, p, value, "");
     if (stated.kind) {
       use_fact(format, &stated);
@@ -306,7 +229,8 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
          eo_text_next_cell(&below, values->end, format->separator, &value)) {
     char key[KEY];
     double number;
-    const char *end = value.length ? number_at(format, value.text, value.text + value.length, true, &number) : NULL;
+    const char *end = value.length ? eo_header_number_at(format, value.text, value.text + value.length, true, &number)
+                                   : NULL;
     eo_text_cell_copy(key, sizeof key, &name);
     if (end != value.text + value.length)
       continue;
@@ -331,7 +255,8 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
   eo_text_cell_copy(key, sizeof key, &cell);
   for (int c = first; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;
-    if (!cell.length || number_at(format, cell.text, cell.text + cell.length, true, &number) != cell.text + cell.length)
+    if (!cell.length ||
+        eo_header_number_at(format, cell.text, cell.text + cell.length, true, &number) != cell.text + cell.length)
       continue;
     stated[c] = eo_stated_read(key, number, "");
     count += stated[c].kind != EO_STATED_NOTHING;
@@ -383,10 +308,10 @@ static void take_bare_rates(struct eo_text_format *format, const struct eo_heade
     char unit[32];
     double value, factor;
     const char *end = cell.text + cell.length,
-               *after = cell.length ? number_at(format, cell.text, end, true, &value) : NULL;
+               *after = cell.length ? eo_header_number_at(format, cell.text, end, true, &value) : NULL;
     if (!after || after > end || !(value > 0))
       return;
-    unit_behind(after, end, unit, sizeof unit);
+    eo_header_unit(after, end, unit, sizeof unit);
     if (eo_unit_find(unit, &factor) != EO_QUANTITY_FREQUENCY)
       return;
     interval[c] = 1 / (value * factor);

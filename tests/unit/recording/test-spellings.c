@@ -224,9 +224,48 @@ static void test_arcs(void)
   eo_recording_free(r);
 }
 
+/* Counts of encoders with so many in a turn. */
+static FILE *counted(const char *header, const char *names, double first, double second)
+{
+  FILE *f = begin(header);
+  fprintf(f, "%s\n", names);
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.6f;%.0f;%.0f\n", i / RATE, pinion(i / RATE) / (2 * M_PI) * first,
+            gear(i / RATE) / (2 * M_PI) * second);
+  return f;
+}
+
+#define COUNTS "t [s];Pinion [counts];Gear [counts]"
+
+/* Counts per turn of both encoders in one word. */
+static void test_turns(void)
+{
+  static const struct {
+    const char *header;
+    double turn;
+  } files[] = {
+      {"CPR: 9,000,000\n", 9e6},
+      {"CPR: 9.000.000\n", 9e6},
+      {"CPR: 9 000 000\n", 9e6},
+      {"CPR: 9'000'000\n", 9e6},
+      {"CPR: 9_000_000\n", 9e6},
+      {"Resolution: 9 000 000 counts/rev\n", 9e6},
+      {"Sampling rate: 4 000 Hz\nCPR: 9 000 000\n", 9e6},
+      {"Resolution: 2^23 counts/rev\n", 0x1p23},
+      {"Resolution: 23-bit\n", 0x1p23},
+      {"SSI 34 bit: 12 bit multiturn, 22 bit singleturn\n", 0x1p22},
+      {"ADC resolution: 16 bit\nCPR: 9000000\n", 9e6},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+    right(counted(files[i].header, COUNTS, files[i].turn, files[i].turn), NULL, 3e-6, NULL, files[i].header);
+  asked(counted("Resolution: 24 bit\n", COUNTS, 9e6, 9e6), NULL, "/lines", "give the counts per turn",
+        "bits that may be those of a converter");
+}
+
 int main(void)
 {
   fixture_open();
+  test_turns();
   test_names();
   test_places();
   test_overflows();
