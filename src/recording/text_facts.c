@@ -6,6 +6,7 @@
 #include "recording/stated.h"
 #include "recording/text_cell.h"
 #include "recording/text_number.h"
+#include "recording/text_turns.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -48,35 +49,19 @@ int eo_header_cells(const struct eo_header_line *line, char separator)
 static void use_fact(struct eo_text_format *format, const struct eo_stated *stated)
 {
   for (int c = 0; c < format->cells; c++) {
-    int member = eo_stated_member(format->name[c]);
-    if (stated->member >= 0 && member >= 0 && member != stated->member)
-      continue;
     struct eo_clock *clock = &format->clock[c];
+    if (!eo_header_means(format, stated, c))
+      continue;
     if (stated->kind == EO_STATED_INTERVAL && !(clock->interval > 0))
       clock->interval = stated->value;
     else if (stated->kind == EO_STATED_INTERVAL && fabs(stated->value / clock->interval - 1) > SAME_RATE)
       clock->other = stated->value;
     else if (stated->kind == EO_STATED_START)
-      format->clock[c].start = stated->value;
-    else if (stated->kind == EO_STATED_TURN && !(format->turn[c] > 0))
-      format->turn[c] = stated->value;
+      clock->start = stated->value;
   }
   if (stated->kind == EO_STATED_TICK)
     format->tick = stated->value;
-}
-
-/* The key as it stands in its cell, else with what is before it in the line. */
-static struct eo_stated read_fact(const char *from, const char *number, double value, const char *unit)
-{
-  char key[KEY], cell[KEY];
-  eo_header_trim(key, sizeof key, from, number);
-  const char *cut = key;
-  for (const char *p = key; *p; p++)
-    if (strchr(";\t|,", *p))
-      cut = p + 1;
-  eo_header_trim(cell, sizeof cell, cut, key + strlen(key));
-  struct eo_stated stated = eo_stated_read(cell, value, unit);
-  return stated.kind || cut == key ? stated : eo_stated_read(key, value, unit);
+  eo_turns_use(format, stated);
 }
 
 /* What no column states alone: when the recording began; that one row in so many was kept, 0: not stated. */
@@ -181,42 +166,51 @@ static bool is_key_before(const char *from, const char *number)
   return number > from && (number[-1] == ':' || number[-1] == '=');
 }
 
+/* Where a number may begin: behind a mark, a sign that it multiplies, or the slash behind the number before. */
+static bool begins_number(const char *start, const char *p, const char *before)
+{
+  bool digit = isdigit((unsigned char)*p) || ((*p == '-' || *p == '.') && isdigit((unsigned char)p[1]));
+  for (int i = 1; digit && i < 3 && p - i >= start; i++)
+    if (eo_header_times(p - i, p + 1) == (size_t)i)
+      p -= i, i = 3;
+  return digit && (p == start || strchr(MARKS, p[-1]) || (p - 1 == before && *before == '/'));
+}
+
 /* Every number of a line with the words before and behind it. */
 static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct begin *begin)
 {
-  const char *from = line->start;
+  struct eo_turns turns = {0};
+  struct eo_header_number number = {.from = line->start};
   for (const char *p = line->start; p < line->end; p++) {
-    bool digit = isdigit((unsigned char)*p) || ((*p == '-' || *p == '.') && isdigit((unsigned char)p[1]));
-    if (!digit || (p > line->start && !strchr(MARKS, p[-1])))
-      continue;
-    char unit[32];
-    double value;
     struct eo_moment moment;
-    const char *after, *behind;
+    const char *after;
+    if (!begins_number(line->start, p, number.after))
+      continue;
     if (moment_at(p, line->end, &moment, &after)) {
-      use_moment(begin, from, p, &moment);
-      from = p = after;
+      use_moment(begin, number.from, p, &moment);
+      number.from = p = after;
       continue;
     }
-    after = eo_header_number_at(format, p, line->end, is_key_before(from, p), &value);
-    if (!after || after > line->end)
+    number.at = p;
+    number.from = number.from < p ? number.from : p; /* in a unit of several words */
+    number.after = eo_header_number_at(format, p, line->end, is_key_before(number.from, p), &number.value);
+    if (!number.after || number.after > line->end)
       continue;
-    behind = eo_header_unit(after, line->end, unit, sizeof unit);
-    if (take_thinning(format, from, p, value, unit, begin) ||
-        take_from_behind(format, value, unit, line->end, &behind)) {
-      from = behind;
-      p = behind - 1;
+    number.behind = eo_header_unit(number.after, line->end, number.unit, sizeof number.unit);
+    p = number.after - 1;
+    if (take_thinning(format, number.from, number.at, number.value, number.unit, begin) ||
+        take_from_behind(format, number.value, number.unit, line->end, &number.behind)) {
+      number.from = number.behind;
+      p = number.behind - 1;
       continue;
     }
-    struct eo_stated stated = read_fact(from, p, value, unit);
-    if (!stated.kind && !eo_stated_keeps(unit))
-      stated = read_fact(from, p, value, "");
-    if (stated.kind) {
-      use_fact(format, &stated);
-      from = behind;
-    }
-    p = after - 1;
+    struct eo_stated stated = eo_turns_state(&turns, format, &number, line->end);
+    if (!stated.kind)
+      continue;
+    use_fact(format, &stated);
+    number.from = number.behind;
   }
+  eo_turns_end(&turns, format);
 }
 
 /* Names in one line and their numbers in the next: "..., Start, Increment" over "..., 0, 2.5e-4". */
@@ -266,24 +260,29 @@ static void take_for_columns(struct eo_text_format *format, const struct eo_head
       format->clock[c].interval = stated[c].value, format->clock[c].other = 0;
     if (stated[c].kind == EO_STATED_START)
       format->clock[c].start = stated[c].value;
-    if (stated[c].kind == EO_STATED_TURN)
-      format->turn[c] = stated[c].value;
+    if (stated[c].kind == EO_STATED_TURN || stated[c].kind == EO_STATED_FOLD)
+      eo_turns_set(format, c, &stated[c]);
   }
 }
 
 /* What is stated for one channel only holds for those of which nothing is said. */
 static void fill_clocks(struct eo_text_format *format)
 {
-  double interval = 0, turn = 0;
+  double interval = 0;
+  int told = -1;
   for (int c = 0; c < format->cells; c++) {
     interval = interval > 0 ? interval : format->clock[c].interval;
-    turn = turn > 0 ? turn : format->turn[c];
+    told = told < 0 && eo_turns_known(format, c) ? c : told;
   }
   for (int c = 0; c < format->cells; c++) {
     if (!(format->clock[c].interval > 0))
       format->clock[c].interval = interval;
-    if (!(format->turn[c] > 0) && eo_stated_member(format->name[c]) < 0)
-      format->turn[c] = turn;
+    if (told >= 0 && !eo_turns_known(format, c) && eo_stated_member(format->name[c]) < 0) {
+      format->turn[c] = format->turn[told];
+      format->lines[c] = format->lines[told];
+      format->fold[c] = format->fold[told];
+      format->edges[c] = format->edges[told];
+    }
   }
 }
 

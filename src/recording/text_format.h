@@ -37,6 +37,11 @@ struct eo_text_format {
   size_t header_byte;                          /* where the header starts: behind a byte order mark */
   struct eo_clock clock[EO_TEXT_CELLS];        /* [cells] as the heading states it */
   double tick, turn[EO_TEXT_CELLS];            /* s; counts per turn; 0: not stated */
+  double lines[EO_TEXT_CELLS];                 /* [cells] lines or pulses per turn; 0: not stated */
+  double fold[EO_TEXT_CELLS];                  /* [cells] counts for each line by interpolation; 0: not stated */
+  double edges[EO_TEXT_CELLS];                 /* [cells] that a counter takes of each line; 0: not stated */
+  bool vague[EO_TEXT_CELLS];                   /* [cells] the counts per turn are those of a resolution */
+  char listed[160];                            /* a note on counts per turn that one line lists; "": none */
   uint64_t key[EO_TEXT_CELLS];                 /* [cells] of their names in the rows (text_named.h); 0: none */
   char name[EO_TEXT_CELLS][EO_RECORDING_NAME]; /* [cells] */
   char unit[EO_TEXT_CELLS][EO_RECORDING_UNIT]; /* [cells] */

@@ -8,6 +8,7 @@
 #include "recording/text_cell.h"
 #include "recording/text_facts.h"
 #include "recording/text_format.h"
+#include "recording/text_turns.h"
 #include "recording/recorded_unit.h"
 
 #include <stdio.h>
@@ -121,6 +122,24 @@ static void take_units(struct eo_text_format *format, const struct eo_header_lin
   }
 }
 
+/* The unit without what stands beside it: "counts" of "counts, 18000000/rev", and of "[counts]" before "(9000/rev)". */
+static void settle_unit(char name[EO_RECORDING_NAME], char unit[EO_RECORDING_UNIT])
+{
+  char first[EO_RECORDING_UNIT], shorter[EO_RECORDING_NAME];
+  double factor;
+  if (!*unit || eo_unit_find(unit, &factor) != EO_QUANTITY_NONE)
+    return;
+  snprintf(first, sizeof first, "%.*s", (int)strcspn(unit, ",;"), unit);
+  if (eo_unit_find(first, &factor) == EO_QUANTITY_NONE)
+    eo_unit_split(name, shorter, (int)sizeof shorter, first, (int)sizeof first);
+  else
+    snprintf(shorter, sizeof shorter, "%s", name);
+  if (eo_unit_find(first, &factor) == EO_QUANTITY_NONE)
+    return;
+  memcpy(name, shorter, sizeof shorter);
+  memcpy(unit, first, sizeof first);
+}
+
 static void take_names(struct eo_text_format *format, const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
@@ -128,10 +147,12 @@ static void take_names(struct eo_text_format *format, const struct eo_header_lin
   for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char label[EO_RECORDING_NAME + EO_RECORDING_UNIT], unit[EO_RECORDING_UNIT];
     eo_text_cell_copy(label, sizeof label, &cell);
+    eo_turns_of_name(format, c, &cell);
     if (*format->unit[c])
       snprintf(format->name[c], sizeof format->name[c], "%.*s", (int)sizeof format->name[c] - 1, label);
     else {
       eo_unit_split(label, format->name[c], (int)sizeof format->name[c], unit, (int)sizeof unit);
+      settle_unit(format->name[c], unit);
       memcpy(format->unit[c], unit, sizeof unit);
     }
   }
@@ -218,6 +239,7 @@ void eo_text_read_header(struct eo_text_format *format, const char *head)
   if (names >= 0)
     take_names(format, &header->line[names], header_separator(format, &header->line[names]));
   eo_header_facts(header, format, format->cells > 1 ? names : -1); /* a fact may stand in the place of one name */
+  eo_turns_settle(format, head);
   settle_arcs(format);
   free(header);
 }

@@ -88,6 +88,7 @@ const char *eo_header_number_at(const struct eo_text_format *format, const char 
 
 void eo_header_trim(char *to, size_t size, const char *from, const char *end)
 {
+  end = end < from ? from : end;
   while (from < end && strchr(" \t:=;,|\"", *from))
     from++;
   while (end > from && strchr(" \t:=;,|\"([{<", end[-1]))

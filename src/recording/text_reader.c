@@ -9,6 +9,7 @@
 #include "recording/text_named.h"
 #include "recording/text_sections.h"
 #include "recording/text_tables.h"
+#include "recording/text_turns.h"
 #include "recording/text_values.h"
 
 #include <math.h>
@@ -442,6 +443,7 @@ static void note_format(const struct text *text)
                  format->cells, format->cells == 1 ? "" : "s", format->cells == 1 ? "" : " separated by ",
                  format->cells == 1 ? "" : separator_name(format->separator), format->point == ',' ? "comma" : "point",
                  (long long)rows, (long long)text->first_line);
+  eo_turns_note(format, text->notes);
   if (text->missing)
     eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
                  (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,

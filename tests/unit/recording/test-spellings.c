@@ -254,18 +254,65 @@ static void test_turns(void)
       {"Resolution: 2^23 counts/rev\n", 0x1p23},
       {"Resolution: 23-bit\n", 0x1p23},
       {"SSI 34 bit: 12 bit multiturn, 22 bit singleturn\n", 0x1p22},
+      {"Encoder resolution: 34 bit (12 bit multiturn, 22 bit singleturn)\n", 0x1p22},
       {"ADC resolution: 16 bit\nCPR: 9000000\n", 9e6},
+      {"Resolution: 0.001 deg\nCPR: 9000000\n", 9e6},
+      {"Encoder scale: 1 count = 0.0001 deg\n", 3.6e6},
+      {"Scale: 0.144 arcsec/count\n", 9e6},
+      {"Line count: 2048\nInterpolation: 4096\n", 0x1p23},
+      {"Encoder pinion: 9000 lines, interpolation 1000\nEncoder gear: 9000 lines, interpolation 1000\n", 9e6},
+      {"Pinion: 2250000 PPR x4\nGear: 9000000 PPR x1\n", 9e6},
+      {"Lines pinion: 2250000 (x4)\nLines gear: 9000000 (x1)\n", 9e6},
+      {"CPR: 9000000, 2 channels\n", 9e6},
+      {"CPR: 9000000\nDecoding: X4\n", 9e6},
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     right(counted(files[i].header, COUNTS, files[i].turn, files[i].turn), NULL, 3e-6, NULL, files[i].header);
+  FILE *f = counted("Strichzahl Rad: 9.000.000\nStrichzahl Ritzel: 9.000.000\n", "t;Ritzel;Rad", 9e6, 9e6);
+  right(f, NULL, 3e-6, NULL, "German thousands, the wheel first");
   asked(counted("Resolution: 24 bit\n", COUNTS, 9e6, 9e6), NULL, "/lines", "give the counts per turn",
         "bits that may be those of a converter");
+}
+
+/* Counts per turn that differ: 9 and 18 million. */
+static void test_two_turns(void)
+{
+  static const char *const files[][3] = {
+      {"CPR: 9000000, 18000000\n", COUNTS, "of the pinion, then of the gear"},
+      {"CPR: 9000000 / 18000000\n", COUNTS, "of the pinion, then of the gear"},
+      {"CPR: 9000000 and 18000000\n", COUNTS, "of the pinion, then of the gear"},
+      {"Encoders: 9000000/18000000 PPR\n", COUNTS, "of the pinion, then of the gear"},
+      {"CPR (gear/pinion): 18000000, 9000000\n", COUNTS, "of the gear, then of the pinion"},
+      {"CPR: 9000000, 18000000\n", "t [s];ctr0 [counts];ctr1 [counts]", "of the columns in their order"},
+      {"CPR: 9000000 (pinion), 18000000 (gear)\n", COUNTS, NULL},
+      {"CPR1: 9000000\nCPR2: 18000000\n", "t [s];Enc1;Enc2", NULL},
+      {"CPR0: 9000000\nCPR1: 18000000\n", "t [s];ctr0;ctr1", NULL},
+      {"Encoder 1 (pinion): 9000000 counts/rev\nEncoder 2 (gear): 18000000 counts/rev\n", "t [s];Encoder 1;Encoder 2",
+       NULL},
+      {"", "t [s];Pinion [counts, 9000000/rev];Gear [counts, 18000000/rev]", NULL},
+      {"", "t [s];Pinion [counts] (9000000/rev);Gear [counts] (18000000/rev)", NULL},
+      {"", "t [s];Pinion (9000000 CPR);Gear (18000000 CPR)", NULL},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+    right(counted(files[i][0], files[i][1], 9e6, 18e6), NULL, 3e-6, files[i][2],
+          *files[i][0] ? files[i][0] : files[i][1]);
+  FILE *f = begin("CPR: 18000000, 9000000\nt [s];Gear [counts];Pinion [counts]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.6f;%.0f;%.0f\n", i / RATE, gear(i / RATE) / (2 * M_PI) * 18e6, pinion(i / RATE) / (2 * M_PI) * 9e6);
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
+  ok(!r && !strcmp(error.pointer, "/lines") && noted(&notes, "\"CPR: 18000000, 9000000\" does not say which"),
+     "two counts per turn over columns of gear and pinion are asked about: %s", error.text);
+  eo_recording_free(r);
 }
 
 int main(void)
 {
   fixture_open();
   test_turns();
+  test_two_turns();
   test_names();
   test_places();
   test_overflows();
