@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #define WIDE 64                   /* a data set with more columns is no table of channels */
+#define TEXT 64                   /* bytes of a text that may be a date */
 #define FIELDS 64                 /* fields of a record that are looked at */
 #define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
 #define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
@@ -101,20 +102,56 @@ static void keep_channel(struct eo_hdf5 *hdf5, int number, struct eo_hdf5_channe
   hdf5->channel[number] = channel;
 }
 
-/* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
-static bool add_channels(struct eo_hdf5 *hdf5, hid_t set, hid_t type, bool whole, const char *path, int rank,
-                         const hsize_t *length)
+/* The dimensions of a data set that are longer than 1 (of "1 x 2 x N" the last two), two at most. */
+struct sides {
+  int count, place[2];
+  hsize_t length[2];
+};
+
+static bool find_sides(hid_t space, struct sides *sides)
 {
-  int along = rank == 2 && length[1] > length[0];
-  hsize_t across = rank == 2 ? length[!along] : 1;
-  int base = across > WIDE || length[along] > INT64_MAX / 16
+  hsize_t length[EO_HDF5_RANK];
+  int rank = H5Sget_simple_extent_ndims(space);
+  *sides = (struct sides){.length = {1, 1}};
+  if (rank < 0 || rank > EO_HDF5_RANK || H5Sget_simple_extent_dims(space, length, NULL) != rank)
+    return false;
+  for (int i = 0; i < rank; i++)
+    if (length[i] != 1 && sides->count++ < 2) {
+      sides->place[sides->count - 1] = i;
+      sides->length[sides->count - 1] = length[i];
+    }
+  return sides->count <= 2;
+}
+
+/* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
+static bool add_channels(struct eo_hdf5 *hdf5, hid_t set, hid_t type, bool whole, const char *path,
+                         const struct sides *sides)
+{
+  int along = sides->length[1] > sides->length[0], other = sides->count == 2 ? sides->place[!along] : -1;
+  hsize_t across = sides->length[!along], length = sides->length[along];
+  int base = across > WIDE || length > INT64_MAX / 16
                  ? -1
-                 : eo_tree_add_series(hdf5->tree, path, (int)across, (int64_t)length[along], whole);
+                 : eo_tree_add_series(hdf5->tree, path, (int)across, (int64_t)length, whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
-    keep_channel(
-        hdf5, base + (int)k,
-        (struct eo_hdf5_channel){.set = set, .type = type, .width = 1, .rank = rank, .along = along, .across = k});
+    keep_channel(hdf5, base + (int)k,
+                 (struct eo_hdf5_channel){
+                     .set = set, .type = type, .width = 1, .along = sides->place[along], .other = other, .across = k});
   return base >= 0;
+}
+
+/* Texts that are dates and times of day, a channel of seconds. */
+static bool add_moments(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const char *path, const struct sides *sides)
+{
+  struct eo_hdf5_channel channel = {.set = set, .text = true, .along = sides->place[0], .other = -1};
+  if (sides->count != 1 || H5Tget_class(type) != H5T_STRING || H5Tget_size(type) > TEXT ||
+      sides->length[0] > INT64_MAX / 16 || !eo_hdf5_find_moments(&channel))
+    return false;
+  int number = eo_tree_add_series(hdf5->tree, path, 1, (int64_t)sides->length[0], false);
+  if (number < 0)
+    return false;
+  snprintf(eo_tree_series(hdf5->tree)[number].unit, EO_RECORDING_UNIT, "s");
+  hdf5->channel[number] = channel;
+  return true;
 }
 
 /* A record with nothing but one field, which is of this type in memory. */
@@ -134,7 +171,7 @@ static bool add_array(struct eo_hdf5 *hdf5, hid_t set, hid_t memory, int width, 
                  : eo_tree_add_series(hdf5->tree, path, width, (int64_t)length, whole);
   for (int k = 0; base >= 0 && k < width; k++)
     keep_channel(hdf5, base + k,
-                 (struct eo_hdf5_channel){.set = set, .type = memory, .width = width, .place = k, .rank = 1});
+                 (struct eo_hdf5_channel){.set = set, .type = memory, .width = width, .place = k, .other = -1});
   return base >= 0;
 }
 
@@ -262,7 +299,7 @@ static bool keep_set(struct eo_hdf5 *hdf5, hid_t set)
 /* A data set with numbers, texts or references; it is closed unless channels read it. */
 static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth)
 {
-  hsize_t length[2] = {0, 0};
+  struct sides sides;
   char class_name[32], list[4096];
   if ((set = open_cached(hdf5, set)) < 0)
     return;
@@ -270,13 +307,10 @@ static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth
   H5T_class_t class = H5Tget_class(type);
   int rank = H5Sget_simple_extent_ndims(space);
   hssize_t count = H5Sget_simple_extent_npoints(space);
-  bool plain = rank >= 0 && rank <= 2 && H5Sget_simple_extent_dims(space, length, NULL) == rank &&
-               !reads_other_files(set) && count > 0;
+  bool plain = find_sides(space, &sides) && !reads_other_files(set) && count > 0;
   bool number = class == H5T_INTEGER || class == H5T_FLOAT, kept = false;
   matlab_class(set, class_name, sizeof class_name);
   bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
-  if (rank == 0)
-    length[0] = 1;
   add_attributes(hdf5, set, path);
   if (!plain || object)
     hdf5->left_out++;
@@ -289,9 +323,9 @@ static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth
   else if (number && count == 1)
     add_number(hdf5, set, path);
   else if (hdf5->sets < EO_HDF5_CHANNELS &&
-           ((number &&
-             add_channels(hdf5, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
-            (class == H5T_COMPOUND && rank == 1 && add_records(hdf5, set, type, NULL, path, length[0], 0))))
+           (add_moments(hdf5, set, type, path, &sides) ||
+            (number && add_channels(hdf5, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, &sides)) ||
+            (class == H5T_COMPOUND && rank == 1 && add_records(hdf5, set, type, NULL, path, sides.length[0], 0))))
     kept = keep_set(hdf5, set);
   else
     hdf5->left_out++;
@@ -316,9 +350,13 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
 {
   const struct group *this_group = context;
   char path[PATH];
-  bool index = !strncmp(name, "_i_", 3); /* PyTables keeps the sorted index of a table there */
-  if (info->type == H5L_TYPE_EXTERNAL || index || !eo_hdf5_join(path, this_group->path, name))
+  bool index = !strncmp(name, "_i_", 3);                   /* PyTables keeps the sorted index of a table there */
+  bool octave = H5Aexists(group, "OCTAVE_NEW_FORMAT") > 0; /* its variables are groups of "type" and "value" */
+  if (info->type == H5L_TYPE_EXTERNAL || index || (octave && !strcmp(name, "type")) ||
+      !eo_hdf5_join(path, this_group->path, name))
     return 0;
+  if (octave && !strcmp(name, "value"))
+    snprintf(path, sizeof path, "%s", this_group->path);
   hid_t object = H5Oopen(group, name, H5P_DEFAULT);
   if (object >= 0)
     add_object(this_group->h, object, path, this_group->depth + 1);
@@ -366,7 +404,8 @@ static enum eo_code read_file(struct eo_hdf5 *hdf5, hid_t file, int64_t bytes, c
                  hdf5->left_out == 1 ? "was" : "were");
   struct eo_series_file content = {
       eo_tree_series(hdf5->tree), eo_tree_count(hdf5->tree), bytes, options->max_bytes, eo_hdf5_values, hdf5};
-  return eo_series_copy(&content, sink, notes, error);
+  code = eo_tree_check_begins(hdf5->tree, &content, error);
+  return code ? code : eo_series_copy(&content, sink, notes, error);
 }
 
 enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,

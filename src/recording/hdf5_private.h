@@ -9,12 +9,16 @@
 #include <stdbool.h>
 
 #define EO_HDF5_CHANNELS EO_TREE_CHANNELS
+#define EO_HDF5_RANK 8 /* dimensions of a data set at most */
 
 struct eo_hdf5_channel {
   hid_t set, type;  /* borrowed from sets; of a value in memory: a double, or a record with one field */
   int width, place; /* values of one element in memory, and which of them is the channel's */
-  int rank, along;  /* dimensions; the one along which values follow each other */
+  int along;        /* dimension along which values follow each other */
+  int other;        /* the other one that is longer than 1, -1: none */
   hsize_t across;   /* place in the other one */
+  int64_t day;      /* of texts with dates: since 1970, that their times count from */
+  bool text;        /* its values are such texts, in s */
   bool large;       /* its chunks are too large to be kept */
   double *ahead;    /* owned: values that were read ahead, NULL: none */
   int64_t first, count;
@@ -36,6 +40,11 @@ bool eo_hdf5_join(char *path, const char *group, const char *name);
 
 /* Reads texts of an attribute (set: data set) into one list, one a line; false when they are none. */
 bool eo_hdf5_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, size_t size);
+
+/* Dates and times of day that are texts, as seconds since the midnight before the first; NaN where one is none.
+   eo_hdf5_find_moments() tells whether the data set begins with one, and its day. False: they cannot be read. */
+bool eo_hdf5_find_moments(struct eo_hdf5_channel *channel);
+bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values);
 
 void eo_hdf5_add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list);
 

@@ -3,6 +3,7 @@
 #define H5_USE_110_API
 #include "recording/hdf5_private.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,8 +52,72 @@ bool eo_hdf5_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, 
   return done;
 }
 
+/* Reads count texts of a data set from the first one on. With text of variable length `bytes` holds pointers, which the
+   caller gives back by H5Dvlen_reclaim(). */
+static bool read_texts(const struct eo_hdf5_channel *channel, hid_t type, hid_t memory, int64_t first, void *bytes)
+{
+  hsize_t start[EO_HDF5_RANK] = {0}, size[EO_HDF5_RANK];
+  for (int i = 0; i < EO_HDF5_RANK; i++)
+    size[i] = 1;
+  start[channel->along] = (hsize_t)first;
+  size[channel->along] = (hsize_t)H5Sget_simple_extent_npoints(memory);
+  hid_t space = H5Dget_space(channel->set);
+  bool good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL) >= 0 &&
+              H5Dread(channel->set, type, memory, space, H5P_DEFAULT, bytes) >= 0;
+  H5Sclose(space);
+  return good;
+}
+
+static double seconds_of(const char *text, size_t length, int64_t day)
+{
+  struct eo_moment moment;
+  while (length && text[length - 1] == ' ')
+    length--;
+  if (!eo_moment_read(text, length, &moment) || !moment.has_time)
+    return NAN;
+  return (moment.has_day ? (double)(moment.day - day) * EO_MOMENT_DAY : 0) + moment.seconds;
+}
+
+bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)
+{
+  hsize_t length = (hsize_t)count;
+  hid_t type = H5Dget_type(channel->set), memory = H5Screate_simple(1, &length, NULL);
+  size_t width = H5Tget_size(type);
+  bool variable = H5Tis_variable_str(type) > 0;
+  char *bytes = calloc((size_t)count, width);
+  bool good = bytes && read_texts(channel, type, memory, first, bytes);
+  for (int64_t i = 0; good && i < count; i++) {
+    const char *text = bytes + (size_t)i * width;
+    if (variable)
+      memcpy(&text, bytes + (size_t)i * width, sizeof text);
+    values[i] = text ? seconds_of(text, variable ? strlen(text) : strnlen(text, width), channel->day) : NAN;
+  }
+  if (good && variable)
+    H5Dvlen_reclaim(type, memory, H5P_DEFAULT, bytes);
+  free(bytes);
+  H5Sclose(memory);
+  H5Tclose(type);
+  return good;
+}
+
+bool eo_hdf5_find_moments(struct eo_hdf5_channel *channel)
+{
+  double first;
+  channel->day = 0;
+  if (!eo_hdf5_moments(channel, 0, 1, &first) || !isfinite(first))
+    return false;
+  channel->day = (int64_t)floor(first / EO_MOMENT_DAY);
+  return true;
+}
+
 void eo_hdf5_add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list)
 {
+  if (!strcmp(list, "N.")) { /* pandas pickles None as the name of what has none; the rows of a frame have an index */
+    const char *axis = strstr(path, "/axis1/name");
+    if (axis && !axis[strlen("/axis1/name")])
+      eo_tree_add_text(hdf5->tree, path, "index");
+    return;
+  }
   if (strchr(list, '\n'))
     eo_tree_add_list(hdf5->tree, path, list);
   else if (*list)

@@ -10,7 +10,11 @@
 /* Stored values from the file; false: they cannot be read, or there is no memory. */
 static bool read_stored(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)
 {
-  hsize_t start[2] = {channel->across, channel->across}, size[2] = {1, 1}, length = (hsize_t)count;
+  hsize_t start[EO_HDF5_RANK] = {0}, size[EO_HDF5_RANK], length = (hsize_t)count;
+  for (int i = 0; i < EO_HDF5_RANK; i++)
+    size[i] = 1;
+  if (channel->other >= 0)
+    start[channel->other] = channel->across;
   start[channel->along] = (hsize_t)first;
   size[channel->along] = length;
   double *all = channel->width > 1 ? malloc((size_t)count * (size_t)channel->width * sizeof *all) : values;
@@ -87,7 +91,8 @@ enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t co
 {
   struct eo_hdf5 *hdf5 = context;
   struct eo_hdf5_channel *channel = &hdf5->channel[series];
-  bool good = channel->large
+  bool good = channel->text ? eo_hdf5_moments(channel, first, count, values)
+              : channel->large
                   ? read_ahead(hdf5, channel, first, count, eo_tree_series(hdf5->tree)[series].length, values)
                   : read_stored(channel, first, count, values);
   if (!good)

@@ -5,7 +5,7 @@
 #include "recording/bytes.h"
 #include "recording/readers.h"
 #include "recording/source.h"
-#include "recording/tree.h"
+#include "recording/tree_columns.h"
 
 #include <matio.h>
 #include <stdbool.h>
@@ -14,22 +14,18 @@
 #include <string.h>
 #include <unistd.h>
 
-#define CHANNELS EO_TREE_CHANNELS
-#define WIDE 64                  /* a matrix with more columns is no table of channels */
-#define VARIABLES 1024           /* of a file that are looked at */
-#define DEPTH 8                  /* of structs and cells in each other */
-#define ELEMENTS 4096            /* of an array of structs or a cell that are looked at */
-#define PIECE 65536              /* values read at once from variables that are not compressed */
-#define MEMORY ((size_t)1 << 19) /* bytes of a channel in memory */
+#define WIDE 64        /* a matrix with more columns is no table of channels */
+#define VARIABLES 1024 /* of a file that are looked at */
+#define DEPTH 8        /* of structs and cells in each other */
+#define ELEMENTS 4096  /* of an array of structs or a cell that are looked at */
+#define PIECE 65536    /* values read at once from variables that are not compressed */
 
 struct matlab {
   mat_t *file;
   int64_t bytes;
-  const char *spool_directory;
   int left_out;
-  struct eo_tree *tree; /* owned */
   struct eo_notes *notes;
-  struct eo_recording *column[CHANNELS]; /* owned */
+  struct eo_tree_columns columns;
 };
 
 static int64_t class_size(enum matio_classes class)
@@ -85,12 +81,26 @@ struct table {
   int64_t length, channels, along, across; /* steps in the variable from value to value and from channel to channel */
 };
 
+/* The two sides of a variable; dimensions of length 1 do not count ("1 x 1 x N", "2 x 1 x N" of Simulink). */
+static bool find_sides(const matvar_t *this_t, int64_t *rows, int64_t *columns)
+{
+  int count = 0;
+  *rows = *columns = 1;
+  for (int i = 0; this_t->dims && i < this_t->rank; i++) {
+    if (!this_t->dims[i] || this_t->dims[i] > INT64_MAX)
+      return false;
+    if (this_t->dims[i] > 1)
+      *(count++ ? columns : rows) = (int64_t)this_t->dims[i];
+  }
+  return this_t->dims && this_t->rank >= 2 && count <= 2;
+}
+
 static bool find_table(const matvar_t *this_t, struct table *table)
 {
-  if (this_t->rank != 2 || !this_t->dims || this_t->isComplex || !class_size(this_t->class_type))
+  int64_t rows, columns;
+  if (!find_sides(this_t, &rows, &columns) || this_t->isComplex || !class_size(this_t->class_type))
     return false;
-  int64_t rows = (int64_t)this_t->dims[0], columns = (int64_t)this_t->dims[1];
-  if (rows < 1 || columns < 1 || rows > INT32_MAX || columns > INT32_MAX || rows * columns > INT32_MAX)
+  if (rows > INT32_MAX || columns > INT32_MAX || rows * columns > INT32_MAX)
     return false;
   *table = rows >= columns ? (struct table){rows, columns, 1, rows} : (struct table){columns, rows, rows, 1};
   return table->channels <= WIDE;
@@ -120,7 +130,7 @@ static enum eo_code keep_values(struct matlab *matlab, const struct table *table
     else
       for (int64_t i = 0; i + c < count; i += table->along)
         values[n++] = value_at(data, class, i + c);
-    enum eo_code code = eo_recording_append(matlab->column[base + c], values, n, error);
+    enum eo_code code = eo_recording_append(matlab->columns.column[base + c], values, n, error);
     if (code)
       return code;
   }
@@ -205,7 +215,7 @@ static void add_text_rows(struct matlab *matlab, matvar_t *this_t, const char *p
       used--;
     list[used++] = row + 1 < rows ? '\n' : '\0';
   }
-  eo_tree_add_list(matlab->tree, path, list);
+  eo_tree_add_list(matlab->columns.tree, path, list);
 }
 
 static void add_number(struct matlab *matlab, matvar_t *this_t, const char *path)
@@ -213,7 +223,7 @@ static void add_number(struct matlab *matlab, matvar_t *this_t, const char *path
   char data[8] = "";
   struct eo_error error;
   if (!read_values(matlab, this_t, 0, 1, data, &error))
-    eo_tree_add_number(matlab->tree, path, value_at(data, this_t->class_type, 0));
+    eo_tree_add_number(matlab->columns.tree, path, value_at(data, this_t->class_type, 0));
 }
 
 static enum eo_code add_channels(struct matlab *matlab, matvar_t *this_t, const char *path, struct eo_error *error)
@@ -227,18 +237,14 @@ static enum eo_code add_channels(struct matlab *matlab, matvar_t *this_t, const 
     add_number(matlab, this_t, path);
     return EO_OK;
   }
-  int base = eo_tree_add_series(matlab->tree, path, (int)table.channels, table.length, is_whole(this_t->class_type));
+  int base = eo_tree_add_series(matlab->columns.tree, path, (int)table.channels, table.length,
+                                is_whole(this_t->class_type));
   if (base < 0) {
     matlab->left_out++;
     return EO_OK;
   }
-  enum eo_code code = EO_OK;
-  for (int c = 0; !code && c < table.channels; c++) {
-    code = eo_recording_new(&matlab->column[base + c], 1, matlab->spool_directory, error);
-    if (!code && matlab->spool_directory)
-      eo_recording_set_memory(matlab->column[base + c], MEMORY);
-  }
-  return code ? code : copy_values(matlab, this_t, &table, base, error);
+  EO_TRY(eo_tree_columns_add(&matlab->columns, base, (int)table.channels, error));
+  return copy_values(matlab, this_t, &table, base, error);
 }
 
 static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const char *path, int depth,
@@ -280,7 +286,7 @@ static enum eo_code add_cell(struct matlab *matlab, matvar_t *this_t, const char
       used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? "\n" : "", text);
   }
   if (texts) {
-    eo_tree_add_list(matlab->tree, path, list);
+    eo_tree_add_list(matlab->columns.tree, path, list);
     return EO_OK;
   }
   enum eo_code code = EO_OK;
@@ -305,7 +311,7 @@ static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const 
     return add_cell(matlab, this_t, path, depth, error);
   case MAT_C_CHAR:
     if (text_of(matlab, this_t, text, sizeof text))
-      eo_tree_add_text(matlab->tree, path, text);
+      eo_tree_add_text(matlab->columns.tree, path, text);
     else
       add_text_rows(matlab, this_t, path);
     return EO_OK;
@@ -373,37 +379,13 @@ static enum eo_code check_elements(const char *path, int64_t *bytes_of_file, str
   return code;
 }
 
-static enum eo_code read_column(void *context, int series, int64_t first, int64_t count, double *values,
-                                struct eo_error *error)
-{
-  const struct matlab *matlab = context;
-  enum eo_code code = eo_recording_read(matlab->column[series], first, count, values, error);
-  for (int64_t i = 0; !code && i < count; i++)
-    values[i] = eo_tree_value(matlab->tree, series, values[i]);
-  return code;
-}
-
 static enum eo_code read_file(struct matlab *matlab, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   matlab->notes = notes;
-  enum eo_code code = eo_tree_new(&matlab->tree, error);
-  if (!code)
-    code = read_variables(matlab, error);
-  if (code)
-    return code;
-  eo_tree_settle(matlab->tree, notes);
-  if (matlab->left_out)
-    eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", matlab->left_out,
-                 matlab->left_out == 1 ? "" : "s", matlab->left_out == 1 ? "is" : "are",
-                 matlab->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = {eo_tree_series(matlab->tree),
-                                   eo_tree_count(matlab->tree),
-                                   matlab->bytes,
-                                   options->max_bytes,
-                                   read_column,
-                                   matlab};
-  return eo_series_copy(&content, sink, notes, error);
+  EO_TRY(eo_tree_new(&matlab->columns.tree, error));
+  EO_TRY(read_variables(matlab, error));
+  return eo_tree_columns_copy(&matlab->columns, matlab->left_out, matlab->bytes, options, sink, notes, error);
 }
 
 /* NOLINTNEXTLINE(readability-non-const-parameter): the type of a handler of matio */
@@ -424,7 +406,7 @@ enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *op
   if (!matlab)
     return eo_error_memory(error);
   matlab->bytes = size;
-  matlab->spool_directory = options->spool_directory;
+  matlab->columns.spool_directory = options->spool_directory;
   Mat_LogInitFunc("easeoff", ignore_message);
   matlab->file = Mat_Open(path, MAT_ACC_RDONLY);
   code = matlab->file
@@ -432,9 +414,7 @@ enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *op
              : eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: the file cannot be opened; its header is damaged.");
   if (matlab->file)
     Mat_Close(matlab->file);
-  for (int i = 0; i < CHANNELS; i++)
-    eo_recording_free(matlab->column[i]);
-  eo_tree_free(matlab->tree);
+  eo_tree_columns_done(&matlab->columns);
   free(matlab);
   return code;
 }

@@ -115,6 +115,9 @@ void eo_mdf_facts(struct eo_mdf *mdf, int64_t at, struct eo_series *series)
 {
   bool xml = false;
   char *all = read_text(mdf, at, &xml), key[128], unit[32];
+  const struct eo_clock outer = series->clock;
+  series->clock.interval = series->clock.other =
+      0; /* this text is nearer; only what it says twice contradicts itself */
   for (const char *e = all && xml ? strstr(all, "<e ") : NULL; e; e = strstr(e + 1, "<e ")) {
     const char *content = strchr(e, '>');
     if (!content)
@@ -130,5 +133,7 @@ void eo_mdf_facts(struct eo_mdf *mdf, int64_t at, struct eo_series *series)
       eo_series_state(series, &stated);
     }
   }
+  if (!(series->clock.interval > 0))
+    series->clock.interval = outer.interval, series->clock.other = outer.other;
   free(all);
 }

@@ -284,7 +284,7 @@ static void settle(struct eo_mdf *mdf)
     if (times->master >= 0 && times->master != c)
       series->clock.column = times->master;
     if (times->interval > 0) {
-      series->clock.interval = times->interval;
+      series->clock.interval = times->interval, series->clock.other = 0;
       series->clock.start = times->start;
     }
   }

@@ -116,12 +116,20 @@ static bool is_matlab4(const unsigned char *head, size_t size)
   if (size < 24)
     return false;
   memcpy(word, head, sizeof word);
-  for (int i = 0; word[0] > 5000 && i < 5; i++)
+  bool other_order = word[0] > 5000;
+  for (int i = 0; other_order && i < 5; i++)
     word[i] = __builtin_bswap32(word[i]);
   uint32_t digits = word[0];
   return digits < 5000 && digits % 10 <= 2 && digits / 10 % 10 <= 5 && digits / 100 % 10 == 0 && word[1] > 0 &&
          word[2] > 0 && word[3] <= 1 && word[4] >= 2 && word[4] <= 64 && 20 + word[4] <= size &&
          head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
+}
+
+/* "# Created by Octave 8.4.0, ...", then the name of the first variable. */
+static bool is_octave(const unsigned char *head, size_t size)
+{
+  const unsigned char *end = begins(head, size, "# Created by Octave", 19) ? memchr(head, '\n', size) : NULL;
+  return end && begins(end + 1, size - (size_t)(end + 1 - head), "# name: ", 8);
 }
 
 /* The first block of a tape archive states the sum of its own bytes, in octal, with blanks in the place of the sum. */
@@ -182,6 +190,8 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_HDF5;
   else if (begins(head, size, "MDF     ", 8) || begins(head, size, "UnFinMF ", 8))
     *kind = EO_READER_MDF;
+  else if (is_octave(head, size))
+    *kind = EO_READER_OCTAVE;
   else if (is_uff(head, size))
     *kind = EO_READER_UFF;
   else if (begins(head, size, "PK\003\004", 4) || is_tar(head, size) || is_flat_document(head, size))
@@ -282,8 +292,9 @@ static enum eo_code read_kind(const char *path, const struct sign *sign, const s
                               struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   static eo_series_reader *const readers[EO_READER_KINDS] = {
-      [EO_READER_TDMS] = eo_tdms_read,           [EO_READER_UFF] = eo_uff_read,         [EO_READER_MDF] = eo_mdf_read,
-      [EO_READER_MATLAB] = read_isolated_matlab, [EO_READER_HDF5] = read_isolated_hdf5,
+      [EO_READER_TDMS] = eo_tdms_read,       [EO_READER_UFF] = eo_uff_read,
+      [EO_READER_MDF] = eo_mdf_read,         [EO_READER_MATLAB] = read_isolated_matlab,
+      [EO_READER_HDF5] = read_isolated_hdf5, [EO_READER_OCTAVE] = eo_octave_read,
   };
   if (sign->kind == EO_READER_TEXT)
     return read_text(path, sign->wide, options, recording, notes, error);

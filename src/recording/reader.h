@@ -15,6 +15,7 @@
 enum eo_reader_kind {
   EO_READER_TEXT,   /* delimited text */
   EO_READER_MATLAB, /* .mat of versions 4, 5, 7 and 7.3 */
+  EO_READER_OCTAVE, /* text of Octave's own, with the names and types of variables */
   EO_READER_TDMS,   /* NI TDMS */
   EO_READER_UFF,    /* universal file, data sets 58 and 58b */
   EO_READER_HDF5,

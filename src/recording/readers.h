@@ -12,7 +12,7 @@
 enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options,
                                struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error);
 
-eo_series_reader eo_mdf_read, eo_tdms_read, eo_uff_read;
+eo_series_reader eo_mdf_read, eo_octave_read, eo_tdms_read, eo_uff_read;
 eo_series_reader eo_matlab_read, eo_hdf5_read; /* only by eo_isolate_read */
 
 #endif

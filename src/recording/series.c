@@ -11,9 +11,10 @@
 
 #include "base/sort.h"
 
-#define BLOCK 4096 /* rows that are copied at once */
-#define SHORT 20   /* a channel with so many times fewer values than the longest belongs to something else */
-#define LASTS 0.5  /* unless it is a slow one, which lasts as long: of the time of the others */
+#define BLOCK 4096     /* rows that are copied at once */
+#define SHORT 20       /* a channel with so many times fewer values than the longest belongs to something else */
+#define LASTS 0.5      /* unless it is a slow one, which lasts as long: of the time of the others */
+#define SAME_RATE 0.01 /* relative: an interval may be rounded */
 
 static bool same_interval(double a, double b)
 {
@@ -144,6 +145,9 @@ static void choose_columns(const struct eo_series_file *file, const int *chosen,
 {
   for (int c = 0; c < count; c++) {
     column[c] = file->series[chosen[c]];
+    struct eo_clock *clock = &column[c].clock;
+    if (column[c].thinned > 1 && !(clock->other > 0)) /* whether the rate is that before or behind it cannot be known */
+      clock->other = clock->interval * column[c].thinned;
     int time = column[c].clock.column;
     column[c].clock.column = -1;
     for (int k = 0; time >= 0 && k < count; k++)
@@ -199,11 +203,19 @@ void eo_series_init(struct eo_series *series, const char *name, int64_t length)
   snprintf(series->name, sizeof series->name, "%s", name);
 }
 
+bool eo_series_contradicts(double interval, double other)
+{
+  return interval > 0 && other > 0 && fabs(other / interval - 1) > SAME_RATE;
+}
+
 bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
 {
   switch (stated->kind) {
   case EO_STATED_INTERVAL:
-    series->clock.interval = stated->value;
+    if (eo_series_contradicts(series->clock.interval, stated->value))
+      series->clock.other = stated->value;
+    else
+      series->clock.interval = stated->value;
     return true;
   case EO_STATED_START:
     series->clock.start = stated->value;
@@ -213,6 +225,9 @@ bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
     return true;
   case EO_STATED_TURN:
     series->turn = stated->value;
+    return true;
+  case EO_STATED_THINNED:
+    series->thinned = stated->value;
     return true;
   default:
     return false;

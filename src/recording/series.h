@@ -20,14 +20,19 @@ struct eo_series {
   struct eo_clock clock; /* its column: number of the series with the times of this one, -1: none */
   double turn;           /* counts per turn; 0: not stated */
   double tick;           /* s of a tick, where the file states one; 0: not */
+  double thinned;        /* of so many rows one was kept, before or behind the stated rate; 0: not stated */
 };
 
 /* A series of this name and length whose clock is not known. */
 void eo_series_init(struct eo_series *series, const char *name, int64_t length);
 
 /* Takes what a number under a key says of a series (interval, start, tick, counts per turn); scale and offset are the
-   reader's. False when the key says nothing of that. */
+   reader's. An interval that contradicts the one that is there stands beside it. False when the key says nothing of
+   that. */
 bool eo_series_state(struct eo_series *series, const struct eo_stated *stated);
+
+/* The intervals are not those of one rate; they may be rounded. */
+bool eo_series_contradicts(double interval, double other);
 
 /* Where the table goes: once its columns, then all rows in order. */
 struct eo_series_sink {

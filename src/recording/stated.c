@@ -144,7 +144,7 @@ static bool is_tick(const char *key)
 static bool is_scale(const char *key)
 {
   return eo_stated_is_one(
-             key, "scalefactor scale gain slope factor faktor conversionfactor bitvolts calibration "
+             key, "scalefactor scale gain slope factor faktor conversionfactor conversion bitvolts calibration "
                   "calibrationfactor sensitivityfactor scaling multiplier umrechnungsfaktor lsb resolutionperbit") ||
          eo_stated_holds(key, "scalefactor");
 }
@@ -320,5 +320,7 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   }
   if (stated.kind == EO_STATED_INTERVAL && is_unknown_ratio(unit))
     return eo_stated_nothing();
+  if (!stated.kind && number > 1 && eo_stated_thins(key))
+    stated.kind = EO_STATED_THINNED, stated.value = number;
   return stated;
 }

@@ -4,7 +4,10 @@
 #ifndef EASEOFF_RECORDING_STATED_H
 #define EASEOFF_RECORDING_STATED_H
 
+#include "recording/moment.h"
+
 #include <stdbool.h>
+#include <stddef.h>
 
 enum eo_stated_kind {
   EO_STATED_NOTHING,
@@ -15,6 +18,8 @@ enum eo_stated_kind {
   EO_STATED_FOLD,     /* counts for each line of an encoder: interpolation, or the edges that a counter takes */
   EO_STATED_SCALE,    /* value = scale * stored + offset */
   EO_STATED_OFFSET,
+  EO_STATED_THINNED, /* of so many rows one was kept */
+  EO_STATED_KINDS
 };
 
 struct eo_stated {
@@ -48,5 +53,12 @@ bool eo_stated_thins(const char *words);
 
 /* True for keys that state when a recording began: "Start time", "Startzeit", "T0", ... */
 bool eo_stated_begin(const char *key);
+
+/* The number of a text such as "4 kHz" or "0,25 ms" and its unit, "" when it has none. False for other texts, and for
+   those that may mean two numbers ("4,000"). */
+bool eo_stated_read_number(const char *text, double *number, char *unit, size_t size);
+
+/* When the recording of the values began, by a text under a key that says so. */
+bool eo_stated_moment(const char *key, const char *text, struct eo_moment *moment);
 
 #endif

@@ -121,7 +121,7 @@ static enum eo_quantity part_of_ratio(const char *text, size_t length, bool last
 /* Counts per turn as counts of an angle ("counts/deg") or the angle of a count ("arcsec per LSB"); 0: no such words. */
 static double turn_by_ratio(const char *words, double number)
 {
-  static const char *const marks[] = {"/", " per ", " pro ", " je ", " par ", " por "};
+  static const char *const marks[] = {"/", " per ", "_per_", " pro ", " je ", " par ", " por "};
   for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
     const char *mark = strstr(words, marks[i]);
     double above, below;

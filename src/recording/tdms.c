@@ -111,13 +111,49 @@ static void inherit(struct eo_tdms *tdms, int c)
                              tdms->channel[c].path[length] == '/';
       if (!mine)
         continue;
-      if (!(series->clock.interval > 0))
+      if (!(series->clock.interval > 0)) {
         series->clock.interval = group->stated.clock.interval;
+        series->clock.other = group->stated.clock.other;
+      }
       if (series->clock.epoch == EO_CLOCK_NO_EPOCH)
         series->clock.epoch = group->stated.clock.epoch;
       series->turn = series->turn > 0 ? series->turn : group->stated.turn;
       series->tick = series->tick > 0 ? series->tick : group->stated.tick;
+      series->thinned = series->thinned > 0 ? series->thinned : group->stated.thinned;
     }
+}
+
+/* The step of a channel's own waveform is that of these values, whatever rate a property beside it states, that of the
+   hardware perhaps. A step of 1 is also what LabVIEW writes of a waveform whose step nobody set. Returns the rate that
+   was passed over, 0: none. */
+static double settle_waveform(const struct eo_tdms_channel *channel, struct eo_series *series)
+{
+  double unit = channel->abscissa > 0 ? channel->abscissa : 1, step = channel->increment * unit,
+         beside = series->clock.interval;
+  bool contradicts = eo_series_contradicts(step, beside);
+  if (channel->start != 0)
+    series->clock.start = channel->start * unit;
+  if (!(step > 0))
+    return 0;
+  series->clock.interval = step;
+  series->thinned = 0;
+  series->clock.other = contradicts && channel->increment == 1 ? beside : 0;
+  return contradicts && !(series->clock.other > 0) ? 1 / beside : 0;
+}
+
+static void settle_waveforms(struct eo_tdms *tdms, struct eo_notes *notes)
+{
+  bool said = false;
+  for (int c = 0; c < tdms->channels; c++) {
+    double beside = settle_waveform(&tdms->channel[c], &tdms->series[c]);
+    if (beside > 0 && !said)
+      eo_notes_add(
+          notes,
+          "\"%s\" states a rate of %.6g Hz beside the step of its values (wf_increment), which is %.6g Hz: the "
+          "step was taken, the other rate for that of the hardware.",
+          tdms->series[c].name, beside, 1 / tdms->series[c].clock.interval);
+    said = said || beside > 0;
+  }
 }
 
 /* Channels of one name in several groups are told apart by the group. */
@@ -161,6 +197,7 @@ static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
     }
     inherit(tdms, c);
   }
+  settle_waveforms(tdms, notes);
   for (int c = tdms->channels; c-- > 0;)
     name_by_group(tdms, c);
   if (tdms->cut)

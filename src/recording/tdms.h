@@ -81,7 +81,8 @@ struct eo_tdms_channel {
   int64_t scales;              /* stated in NI_Number_Of_Scales */
   struct eo_tdms_scale *scale; /* owned, [EO_TDMS_SCALES]; NULL: none */
   bool scaled;
-  int64_t base; /* s, whole seconds of the first timestamp */
+  double increment, start, abscissa; /* waveform: step, first place, s per unit of both; 0: not stated */
+  int64_t base;                      /* s, whole seconds of the first timestamp */
   bool base_known;
   int64_t segment, passed; /* where reading has come to: segment, values before it */
 };

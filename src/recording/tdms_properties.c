@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The properties of TDMS objects: sampling, units, scales of raw values. */
 #include "recording/bytes.h"
-#include "recording/decimal.h"
+#include "recording/recorded_unit.h"
 #include "recording/tdms_private.h"
 
 #include <math.h>
@@ -180,33 +180,41 @@ static void use_scale(struct eo_tdms_channel *channel, const char *name, const s
     use_term(scale, EO_TDMS_TABLE, 1, bracket + 1, value->number);
 }
 
-/* The number in a text such as "4000 Hz"; unit: what follows it. */
-static double number_in_text(const struct property *value, char *unit, size_t size)
-{
-  char text[64], *end;
-  *unit = '\0';
-  if (!value->text || value->length >= sizeof text)
-    return value->number;
-  memcpy(text, value->text, value->length);
-  text[value->length] = '\0';
-  double number;
-  const char *after = eo_decimal_read(text, strchr(text, ',') && !strchr(text, '.') ? ',' : '.', &number);
-  end = text + (after ? after - text : 0);
-  snprintf(unit, size, "%s", after ? end : "");
-  return after ? number : NAN;
-}
-
 /* What a property of a channel, a group or the file says of the sampling. */
 static void use_fact(struct eo_series *series, const char *name, const struct property *value)
 {
-  char unit[64];
-  double number = number_in_text(value, unit, sizeof unit);
-  struct eo_stated stated = eo_stated_read(name, number, unit);
-  if (stated.kind == EO_STATED_INTERVAL && !strcmp(name, "wf_increment") && !(number > 0))
+  char unit[64] = "", text[64] = "";
+  double number = value->number;
+  struct eo_moment moment;
+  if (value->text)
+    snprintf(text, sizeof text, "%.*s", (int)(value->length < sizeof text ? value->length : 0), value->text);
+  if (*text && eo_stated_moment(name, text, &moment))
+    series->clock.epoch = eo_moment_epoch(&moment);
+  else if (*text && !eo_stated_read_number(text, &number, unit, sizeof unit))
     return;
+  struct eo_stated stated = eo_stated_read(name, number, unit);
   eo_series_state(series, &stated);
-  if (value->epoch != EO_CLOCK_NO_EPOCH && (!strcmp(name, "wf_start_time") || eo_stated_begin(name)))
+  if (value->epoch != EO_CLOCK_NO_EPOCH && eo_stated_begin(name))
     series->clock.epoch = value->epoch;
+}
+
+/* The steps of the values themselves, as NI writes them; they are in the unit of the abscissa, which may come later.
+   False for other properties. */
+static bool use_waveform(struct eo_tdms_channel *channel, const char *name, const struct property *value)
+{
+  char unit[32];
+  double factor;
+  if (!strcmp(name, "wf_increment") && value->number > 0)
+    channel->increment = value->number;
+  else if (!strcmp(name, "wf_start_offset") && isfinite(value->number))
+    channel->start = value->number;
+  else if (!strcmp(name, "wf_xunit_string") && value->text && value->length < sizeof unit) {
+    snprintf(unit, sizeof unit, "%.*s", (int)value->length, value->text);
+    enum eo_quantity quantity = eo_unit_find(unit, &factor);
+    channel->abscissa = quantity == EO_QUANTITY_TIME ? factor : 1;
+  } else
+    return false;
+  return true;
 }
 
 /* What a channel's properties mean to us: its sampling and unit, and the scales of data that were stored raw. */
@@ -222,7 +230,7 @@ static void use_property(struct eo_tdms_channel *channel, struct eo_series *seri
   else if (value->text && (!strcmp(name, "unit_string") || (!*series->unit && !strcasecmp(name, "unit")) ||
                            (!*series->unit && !strcasecmp(name, "units"))))
     snprintf(series->unit, sizeof series->unit, "%.*s", (int)(value->length < 64 ? value->length : 64), value->text);
-  else if (strncmp(name, "NI_", 3) != 0)
+  else if (strncmp(name, "NI_", 3) != 0 && !use_waveform(channel, name, value))
     use_fact(series, name, value);
 }
 

@@ -9,7 +9,8 @@
 #include <string.h>
 #include <strings.h>
 
-#define LEAVES 4000 /* series and facts that are kept */
+#define LEAVES 4000      /* series and facts that are kept */
+#define SINCE_START 1000 /* s: times that begin later do not count from the start of the recording */
 
 enum eo_code eo_tree_new(struct eo_tree **tree, struct eo_error *error)
 {
@@ -61,8 +62,9 @@ int eo_tree_add_series(struct eo_tree *tree, const char *path, int channels, int
   leaf->channels = channels;
   for (int c = 0; c < channels; c++) {
     struct eo_own *own = &tree->own[tree->count];
-    *own = (struct eo_own){.whole = whole, .scale = 1, .name_depth = -1, .unit_depth = -1};
-    for (int k = 0; k <= EO_STATED_OFFSET; k++)
+    *own = (struct eo_own){
+        .whole = whole, .scale = 1, .name_depth = -1, .unit_depth = -1, .day_depth = -1, .hour_depth = -1};
+    for (int k = 0; k < EO_STATED_KINDS; k++)
       own->depth[k] = -1;
     eo_series_init(&tree->series[tree->count++], "", length);
   }
@@ -218,6 +220,45 @@ static void find_times(struct eo_tree *tree, const struct eo_leaf *series)
   }
 }
 
+/* MATLAB counts days since the year 0 ("t0 = 739316.375"). Starts that lie between 1971 and 2108 in such days and
+   differ by less than 86 s in them are days: in seconds they would differ by less than a millisecond. */
+static void read_day_numbers(struct eo_tree *tree, struct eo_notes *notes)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < tree->count; i++)
+    if (tree->own[i].depth[EO_STATED_START] >= 0) {
+      low = fmin(low, tree->series[i].clock.start);
+      high = fmax(high, tree->series[i].clock.start);
+    }
+  if (!(low > 720000 && high < 770000 && high > low && high - low < 1e-3))
+    return;
+  for (int i = 0; i < tree->count; i++)
+    if (tree->own[i].depth[EO_STATED_START] >= 0)
+      tree->series[i].clock.start = (tree->series[i].clock.start - low) * EO_MOMENT_DAY;
+  eo_notes_add(notes,
+               "The starts of the channels, %.9g and up, were read as MATLAB's day numbers: they are %.6g s apart.",
+               low, (high - low) * EO_MOMENT_DAY);
+}
+
+/* A moment at which the times begin says nothing of times that count from another one (since 1970, since midnight):
+   those do not begin near 0. */
+enum eo_code eo_tree_check_begins(struct eo_tree *tree, const struct eo_series_file *file, struct eo_error *error)
+{
+  for (int i = 0; i < tree->sets; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
+    struct eo_clock *clock = &tree->series[leaf->first].clock;
+    double first, factor = 1;
+    if (!eo_tree_is_time(leaf) || clock->epoch == EO_CLOCK_NO_EPOCH || tree->series[leaf->first].length < 1)
+      continue;
+    EO_TRY(file->read(file->context, leaf->first, 0, 1, &first, error));
+    if (eo_unit_find(tree->series[leaf->first].unit, &factor) != EO_QUANTITY_TIME)
+      factor = 1;
+    if (!(fabs(first * factor) < SINCE_START))
+      clock->epoch = EO_CLOCK_NO_EPOCH;
+  }
+  return EO_OK;
+}
+
 void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes)
 {
   for (int s = 0; s < tree->sets; s++) {
@@ -232,6 +273,7 @@ void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes)
       eo_notes_add(notes, "The values of \"%s\" were multiplied by %.9g and %.9g was added, as the file states.",
                    tree->series[series->first].name, own->scale, own->offset);
   }
+  read_day_numbers(tree, notes);
 }
 
 int eo_tree_count(const struct eo_tree *tree)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that keep channels in groups or structs with facts beside them (HDF5, MATLAB): which name, unit, rate, scale
-   and times belong to which channel. Readers add what they find under its path, parts separated by '/', then settle.
-   Internal to the readers. */
+/* Files that keep channels in groups or structs with facts beside them (HDF5, MATLAB, Octave): which name, unit, rate,
+   scale and times belong to which channel. Readers add what they find under its path, parts separated by '/', then
+   settle. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_TREE_H
 #define EASEOFF_RECORDING_TREE_H
 
@@ -29,6 +29,9 @@ void eo_tree_add_list(struct eo_tree *tree, const char *path, const char *texts)
    without channels speaks for the one it is in, or only for the channel whose name begins like its own
    ("Channel_1_Header" for "Channel_1_Data"); "pinion_scale" speaks for "pinion". The nearest fact wins. */
 void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes);
+
+/* Takes the stated moment of the start from times that do not count from it. file: the series of the tree. */
+enum eo_code eo_tree_check_begins(struct eo_tree *tree, const struct eo_series_file *file, struct eo_error *error);
 
 int eo_tree_count(const struct eo_tree *tree);
 struct eo_series *eo_tree_series(struct eo_tree *tree); /* [eo_tree_count()] */

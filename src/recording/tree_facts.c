@@ -145,38 +145,111 @@ static const char *unit_beside(const struct eo_tree *tree, const struct eo_leaf 
   return "";
 }
 
-static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+/* The unit of the abscissa beside a number ("xunit" beside "dx"); "" when there is none. */
+static const char *unit_of_axis(const struct eo_tree *tree, const struct eo_leaf *number)
+{
+  size_t group = eo_tree_group_size(number->path);
+  double factor;
+  for (int i = 0; i < tree->leaves; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[i];
+    const char *key = eo_tree_base_of(leaf->path);
+    if (leaf->kind == EO_LEAF_TEXT && eo_tree_group_size(leaf->path) == group &&
+        !strncmp(leaf->path, number->path, group) &&
+        eo_tree_is_one_of(key, strlen(key),
+                          "xunit|xunits|unitx|unitsx|xunitstring|wfxunitstring|xaxisunit|timeunit|timeunits") &&
+        eo_unit_find(leaf->text, &factor) == EO_QUANTITY_TIME)
+      return leaf->text;
+  }
+  return "";
+}
+
+/* How near a fact is to a series by its place and its name, and what the key is without the name of the series; -1: it
+   says nothing about the series. */
+static int claim(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series, char *key,
+                 size_t size, size_t *outer)
+{
+  int depth = nearness(tree, fact, series, outer);
+  if (depth < 0)
+    return -1;
+  if (strip_name(eo_tree_base_of(fact->path), eo_tree_base_of(series->path), key, size))
+    return depth + 50;
+  snprintf(key, size, "%s", eo_tree_base_of(fact->path));
+  return names_other(tree, fact, series) ? -1 : depth;
+}
+
+/* The key shares a word with the name of another channel and none with that of this one: "torque_rate" beside
+   "torque_Nm". */
+static bool hints_at_other(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  const char *key = eo_tree_base_of(fact->path);
+  bool other = false;
+  for (int i = 0; i < tree->sets; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
+    bool shared = eo_column_shared_words(key, eo_tree_base_of(leaf->path), "") > 0;
+    if (shared && leaf == series)
+      return false;
+    other = other || shared;
+  }
+  return other;
+}
+
+/* The nearest interval counts; of equally near ones a second that contradicts the first is kept beside it. */
+static void take_interval(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series,
+                          const struct eo_stated *stated, bool nearer, struct eo_clock *clock)
+{
+  if (nearer)
+    clock->interval = stated->value, clock->other = 0;
+  else if (eo_series_contradicts(clock->interval, stated->value) && !hints_at_other(tree, fact, series))
+    clock->other = stated->value;
+}
+
+/* What a fact of that depth states, for all channels of a series. */
+static void use_stated(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series,
+                       const struct eo_stated *stated, int depth)
+{
+  for (int c = series->first; c < series->first + series->channels; c++) {
+    struct eo_own *own = &tree->own[c];
+    if (depth < own->depth[stated->kind] || (depth == own->depth[stated->kind] && stated->kind != EO_STATED_INTERVAL))
+      continue;
+    bool direct = depth >= 50 || own->whole, nearer = depth > own->depth[stated->kind];
+    if (stated->kind == EO_STATED_INTERVAL)
+      take_interval(tree, fact, series, stated, nearer, &tree->series[c].clock);
+    else if (stated->kind == EO_STATED_SCALE && direct)
+      own->scale = stated->value;
+    else if (stated->kind == EO_STATED_OFFSET && direct)
+      own->offset = stated->value;
+    else if (!eo_series_state(&tree->series[c], stated))
+      continue;
+    own->depth[stated->kind] = depth;
+  }
+}
+
+/* A number that says nothing of its unit is one in s: of an interval, not of a rate, whose unit is no time. */
+static bool takes_seconds(const char *key)
+{
+  struct eo_stated stated = eo_stated_read(key, 2, "");
+  return (stated.kind == EO_STATED_INTERVAL || stated.kind == EO_STATED_START) && stated.value == 2;
+}
+
+/* unit: of the number itself, "" when it has none. */
+static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series, double number,
+                       const char *unit)
 {
   char key[64];
   size_t outer;
-  int depth = nearness(tree, fact, series, &outer);
+  int depth = claim(tree, fact, series, key, sizeof key, &outer);
   if (depth < 0)
     return;
-  bool mine = strip_name(eo_tree_base_of(fact->path), eo_tree_base_of(series->path), key, sizeof key);
-  if (!mine && names_other(tree, fact, series))
-    return;
-  if (!mine)
-    snprintf(key, sizeof key, "%s", eo_tree_base_of(fact->path));
-  depth += mine ? 50 : 0;
-  const char *unit = unit_named_after(tree, fact);
-  struct eo_stated stated = eo_stated_read(key, fact->number,
-                                           !*unit && about_abscissa(fact, outer) ? unit_beside(tree, fact) : unit);
+  if (!*unit)
+    unit = unit_named_after(tree, fact);
+  if (!*unit && about_abscissa(fact, outer))
+    unit = unit_beside(tree, fact);
+  if (!*unit && takes_seconds(key))
+    unit = unit_of_axis(tree, fact);
+  struct eo_stated stated = eo_stated_read(key, number, unit);
   int member = eo_stated_member(eo_tree_base_of(series->path));
-  if (!stated.kind || (stated.member >= 0 && member >= 0 && stated.member != member))
-    return;
-  for (int c = series->first; c < series->first + series->channels; c++) {
-    struct eo_own *own = &tree->own[c];
-    if (depth <= own->depth[stated.kind])
-      continue;
-    bool direct = depth >= 50 || own->whole;
-    if (stated.kind == EO_STATED_SCALE && direct)
-      own->scale = stated.value;
-    else if (stated.kind == EO_STATED_OFFSET && direct)
-      own->offset = stated.value;
-    else if (!eo_series_state(&tree->series[c], &stated))
-      continue;
-    own->depth[stated.kind] = depth;
-  }
+  if (stated.kind && (stated.member < 0 || member < 0 || stated.member == member))
+    use_stated(tree, fact, series, &stated, depth);
 }
 
 /* A name is that of the only channel, beside its times, that the fact speaks for. */
@@ -202,7 +275,8 @@ static void use_text(struct eo_tree *tree, const struct eo_leaf *fact, const str
   int depth = nearness(tree, fact, series, &outer);
   char rest[64];
   double factor;
-  if (depth < 0 || about_abscissa(fact, outer) ||
+  bool abscissa = depth >= 0 && about_abscissa(fact, outer), time = eo_tree_is_time(series);
+  if (depth < 0 || (abscissa && !time) ||
       (outer < eo_tree_group_size(fact->path) && depth == 0 && !strchr(key, '_') &&
        !prefix_of(fact->path, strcspn(fact->path, "/"))))
     return;
@@ -210,11 +284,11 @@ static void use_text(struct eo_tree *tree, const struct eo_leaf *fact, const str
   key = mine ? rest : key;
   if (!mine && names_other(tree, fact, series))
     return;
-  depth += mine ? 50 : 0;
+  depth += (mine ? 50 : 0) + abscissa; /* the unit of the times, before that of the values beside them */
   size_t length = strlen(key);
   bool quantity = strstr(fact->path, "quantity/") != NULL;
   bool unit = eo_tree_is_one_of(key, length, unit_keys) || (quantity && eo_tree_is_one_of(key, length, "label"));
-  bool name = !unit && eo_tree_is_one_of(key, length, name_keys) &&
+  bool name = !unit && !abscissa && eo_tree_is_one_of(key, length, name_keys) &&
               eo_unit_find(fact->text, &factor) == EO_QUANTITY_NONE;
   for (int c = series->first; c < series->first + series->channels; c++) {
     struct eo_own *own = &tree->own[c];
@@ -222,10 +296,59 @@ static void use_text(struct eo_tree *tree, const struct eo_leaf *fact, const str
       snprintf(tree->series[c].unit, sizeof tree->series[c].unit, "%.*s", EO_RECORDING_UNIT - 1, fact->text);
       own->unit_depth = depth;
     }
-    if (name && depth > own->name_depth && series->channels == 1 && (depth >= 50 || speaks_for_one(tree, fact))) {
+    if (name && depth > own->name_depth && series->channels == 1 &&
+        (depth >= 50 || (!time && speaks_for_one(tree, fact)))) {
       snprintf(tree->series[c].name, sizeof tree->series[c].name, "%.*s", EO_RECORDING_NAME - 1, fact->text);
       own->name_depth = depth;
     }
+  }
+}
+
+/* Day and time of day may stand under two keys. */
+static void use_moment(struct eo_tree *tree, const struct eo_leaf *series, const struct eo_moment *moment, int depth)
+{
+  for (int c = series->first; c < series->first + series->channels; c++) {
+    struct eo_own *own = &tree->own[c];
+    if (moment->has_day && depth > own->day_depth)
+      own->begin.day = moment->day, own->day_depth = depth;
+    if (moment->has_time && depth > own->hour_depth)
+      own->begin.seconds = moment->seconds, own->hour_depth = depth;
+    if (own->hour_depth >= 0)
+      tree->series[c].clock.epoch = eo_moment_epoch(&own->begin);
+  }
+}
+
+/* A factor in "deg/count" tells the unit of its product; with a unit that does not ("10 dB") it is none of the values.
+ */
+static bool settle_factor(struct eo_tree *tree, const struct eo_leaf *series, const char *unit)
+{
+  char product[EO_RECORDING_UNIT];
+  double factor;
+  snprintf(product, sizeof product, "%.*s", (int)strcspn(unit, "/ "), unit);
+  if (strlen(product) == strlen(unit) || eo_unit_find(product, &factor) == EO_QUANTITY_NONE)
+    return !*unit;
+  for (int c = series->first; c < series->first + series->channels; c++)
+    if (tree->own[c].unit_depth < 0)
+      snprintf(tree->series[c].unit, sizeof tree->series[c].unit, "%s", product);
+  return true;
+}
+
+/* Numbers and moments that are written as texts. */
+static void use_told(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  char key[64], unit[32];
+  size_t outer;
+  double number;
+  struct eo_moment moment;
+  int depth = claim(tree, fact, series, key, sizeof key, &outer);
+  if (depth < 0)
+    return;
+  if (eo_stated_moment(key, fact->text, &moment))
+    use_moment(tree, series, &moment, depth);
+  else if (eo_stated_read_number(fact->text, &number, unit, sizeof unit)) {
+    enum eo_stated_kind kind = eo_stated_read(key, number, unit).kind;
+    if ((kind != EO_STATED_SCALE && kind != EO_STATED_OFFSET) || settle_factor(tree, series, unit))
+      use_number(tree, fact, series, number, unit);
   }
 }
 
@@ -270,9 +393,10 @@ static void use_list(struct eo_tree *tree, const struct eo_leaf *fact, const str
 void eo_tree_use(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
 {
   if (fact->kind == EO_LEAF_NUMBER)
-    use_number(tree, fact, series);
-  else if (fact->kind == EO_LEAF_TEXT)
+    use_number(tree, fact, series, fact->number, "");
+  else if (fact->kind == EO_LEAF_TEXT) {
     use_text(tree, fact, series);
-  else if (fact->kind == EO_LEAF_LIST)
+    use_told(tree, fact, series);
+  } else if (fact->kind == EO_LEAF_LIST)
     use_list(tree, fact, series);
 }

@@ -10,7 +10,7 @@
 
 #define EO_TREE_TIME_NAMES "t|time|times|zeit|timestamp|timestamps|tout|axis1|elapsed"
 #define EO_TREE_GENERIC_NAMES "data|value|values|y|samples|signal|raw|yvalues|ydata|wave|waveform|x|dset|dataset"
-#define EO_TREE_X_NAMES "x|xvalues|xaxis|xdata|abscissa|time|t|timevector"
+#define EO_TREE_X_NAMES "x|xvalues|xaxis|xdata|abscissa|time|t|timevector|timeinfo|xinfo|timeaxis"
 
 enum eo_leaf_kind { EO_LEAF_SERIES, EO_LEAF_NUMBER, EO_LEAF_TEXT, EO_LEAF_LIST };
 
@@ -27,8 +27,10 @@ struct eo_own {
   const struct eo_leaf *leaf;
   bool whole;
   double scale, offset;
-  int depth[EO_STATED_OFFSET + 1]; /* of the fact that was taken, by kind; -1: none */
+  int depth[EO_STATED_KINDS]; /* of the fact that was taken, by kind; -1: none */
   int name_depth, unit_depth;
+  int day_depth, hour_depth; /* of what begin holds */
+  struct eo_moment begin;
 };
 
 struct eo_tree {

@@ -105,6 +105,116 @@ static void test_table(void)
   free(table);
 }
 
+/* Rates, starts and scales that are written as texts. */
+static void test_texts(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT;
+  hid_t file = open_file();
+  for (int c = 0; c < 2; c++) {
+    hid_t set = put(file, c ? "pinion" : "gear", 1, &count, H5T_STD_I32LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT);
+    put_text(set, "sample_rate", "4 kHz", c);
+    put_text(set, "t0", c ? "2024-03-05T08:59:59.250Z" : "2024-03-05T08:59:59.300Z", c);
+    put_text(set, "scale", "0.5 deg/count", c);
+    put_text(set, "gain", "10 dB", c);
+    H5Dclose(set);
+  }
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12, "a rate with its unit in a text%s",
+     r ? "" : error.text);
+  ok(r && eo_recording_clock(r, 0).epoch - eo_recording_clock(r, 1).epoch == 50000000,
+     "starts that are texts are 50 ms apart");
+  ok(r && !strcmp(eo_recording_unit(r, 0), "deg") && cell_of(r, 10, 0) == 0.5 * trunc(pinion[10]),
+     "a scale that is a text, with the unit of the product; one in dB is none");
+  eo_recording_free(r);
+}
+
+/* Times that are texts, of fixed and of variable length; in between one that is none. */
+static void test_moments(int variable)
+{
+  enum { ROWS = 5000, WIDTH = 32 };
+  static char fixed[ROWS][WIDTH];
+  static const char *pointers[ROWS];
+  struct eo_error error;
+  hsize_t count = ROWS;
+  for (int i = 0; i < ROWS; i++) {
+    snprintf(fixed[i], WIDTH, "2024-03-05T23:59:%06.3fZ", 58 + 1e-3 * i);
+    if (i >= 2000)
+      snprintf(fixed[i], WIDTH, "2024-03-06T00:00:%06.3fZ", 1e-3 * (i - 2000));
+    pointers[i] = fixed[i];
+  }
+  snprintf(fixed[7], WIDTH, "-");
+  hid_t type = H5Tcopy(H5T_C_S1), file = open_file();
+  H5Tset_size(type, variable ? H5T_VARIABLE : WIDTH);
+  H5Dclose(put(file, "timestamp", 1, &count, type, type, variable ? (const void *)pointers : fixed, H5P_DEFAULT));
+  H5Dclose(put(file, "value", 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Tclose(type);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && !strcmp(eo_recording_unit(r, 0), "s") &&
+         eo_recording_clock(r, 1).column == 0 && fabs(cell_of(r, 4999, 0) - 86402.999) < 1e-9 &&
+         isnan(cell_of(r, 7, 0)),
+     "times that are texts of %s length are seconds, over midnight as well%s", variable ? "variable" : "fixed",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+/* Dimensions of length 1 say nothing. */
+static void test_flat(void)
+{
+  struct eo_error error;
+  const hsize_t one[3] = {COUNT, 1, 1}, two[3] = {1, 2, 20};
+  hid_t file = open_file();
+  H5Dclose(put(file, "pinion", 3, one, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 4321, 0) == pinion[4321], "N x 1 x 1 values are a channel%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+  file = open_file();
+  H5Dclose(put(file, "both", 3, two, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Fclose(file);
+  r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 3, 1) == pinion[23], "1 x 2 x N values are two%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+/* Octave keeps each variable in a group; pandas pickles the name of an index that has none. */
+static void test_habits(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT;
+  const double rate = 4000;
+  hid_t file = open_file(), space = H5Screate(H5S_SCALAR), group[2];
+  for (int i = 0; i < 2; i++) {
+    group[i] = H5Gcreate2(file, i ? "pinion" : "fs", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    put_double(group[i], "OCTAVE_NEW_FORMAT", 1);
+  }
+  hid_t set = H5Dcreate2(group[0], "value", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &rate);
+  H5Dclose(set);
+  set = put(group[1], "value", 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT);
+  put_text(set, "name", "N.", 0);
+  H5Dclose(set);
+  hid_t frame = H5Gcreate2(file, "frame", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  set = put(frame, "axis1", 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, t, H5P_DEFAULT);
+  put_text(set, "name", "N.", 0);
+  H5Dclose(set);
+  H5Gclose(frame);
+  H5Sclose(space);
+  H5Gclose(group[0]);
+  H5Gclose(group[1]);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12,
+     "a variable of Octave is what its group is called%s", r ? "" : error.text);
+  ok(r && !strcmp(eo_recording_name(r, 1), "pinion") && !strcmp(eo_recording_name(r, 0), "index"),
+     "a pickled None is no name, but that of an index");
+  eo_recording_free(r);
+}
+
 /* Three channels of LONG rows, in chunks of so many. */
 enum { LONG = 400000 };
 
@@ -230,6 +340,11 @@ int main(void)
   }
   test_channels();
   test_table();
+  test_texts();
+  test_moments(0);
+  test_moments(1);
+  test_flat();
+  test_habits();
   test_one_chunk();
   test_packing();
   test_hostile();

@@ -413,9 +413,77 @@ static void test_every_byte(void)
   ok(read > 0 && failed > 0, "bytes set at random: %d files read, %d refused", read, failed);
 }
 
+/* Two channels of 100 values with up to three properties, the texts among them as texts. */
+struct fact {
+  const char *name, *text;
+  double number;
+};
+
+static struct eo_recording *read_facts(const struct fact pinion_facts[3], const struct fact gear_facts[3],
+                                       struct eo_notes *notes)
+{
+  const struct fact *facts[2] = {pinion_facts, gear_facts};
+  struct eo_error error;
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 2, 4);
+  for (int c = 0; c < 2; c++) {
+    unsigned count = 0;
+    while (count < 3 && facts[c][count].name)
+      count++;
+    put_string(&w, c ? "/'g'/'gear'" : "/'g'/'pinion'");
+    put_index(DOUBLE, 100);
+    put_number(&w, count, 4);
+    for (unsigned i = 0; i < count; i++)
+      if (facts[c][i].text)
+        put_string_property(facts[c][i].name, facts[c][i].text);
+      else
+        put_double_property(facts[c][i].name, facts[c][i].number);
+  }
+  end_metadata();
+  put_chunk(0, 100, 0);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  return read_fixture(NULL, notes, &error);
+}
+
+static void interval_of(struct fact first, struct fact second, double interval, double other, const char *words,
+                        const char *what)
+{
+  const struct fact facts[3] = {first, second};
+  struct eo_notes notes = {0};
+  struct eo_recording *r = read_facts(facts, facts, &notes);
+  struct eo_clock clock = r ? eo_recording_clock(r, 0) : (struct eo_clock){.interval = NAN};
+  ok(fabs(clock.interval - interval) < 1e-12 && fabs(clock.other - other) < 1e-12 && (!words || noted(&notes, words)),
+     "%s: %g and %g s", what, clock.interval, clock.other);
+  eo_recording_free(r);
+}
+
+static void test_facts(void)
+{
+  const struct fact step = {"wf_increment", NULL, 2.5e-4}, rate = {"SampleRate", NULL, 8000};
+  static const char said[] = "states a rate of 8000 Hz beside the step of its values (wf_increment), which is 4000 Hz";
+  interval_of(step, rate, 2.5e-4, 0, said, "the step of the values before a rate of the hardware");
+  interval_of(rate, step, 2.5e-4, 0, said, "in either order");
+  interval_of(step, (struct fact){"decimation", NULL, 10}, 2.5e-4, 0, NULL,
+              "the step of the values is that after a decimation");
+  interval_of((struct fact){"wf_increment", NULL, 1}, rate, 1, 1.25e-4, NULL, "a step that nobody set is no better");
+  interval_of((struct fact){"dt", NULL, 2.5e-4}, rate, 2.5e-4, 1.25e-4, NULL, "two rates that contradict each other");
+  interval_of((struct fact){"wf_increment", NULL, 0.25}, (struct fact){"wf_xunit_string", "ms", 0}, 2.5e-4, 0, NULL,
+              "a step in the unit of its axis");
+  interval_of((struct fact){"SampleRate", "4 kHz", 0}, (struct fact){0}, 2.5e-4, 0, NULL, "a rate that is a text");
+  const struct fact one[3] = {step, {"wf_start_time", "2024-03-05T08:59:59.250", 0}},
+                    two[3] = {step, {"wf_start_time", "2024-03-05T08:59:59.263", 0}};
+  struct eo_recording *r = read_facts(one, two, NULL);
+  ok(r && eo_recording_clock(r, 1).epoch - eo_recording_clock(r, 0).epoch == 13000000,
+     "starts that are texts are 13 ms apart");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
+  test_facts();
   test_kind(0, "contiguous, three segments");
   test_kind(INTERLEAVED, "interleaved, three segments");
   test_kind(BIG, "big-endian, contiguous");

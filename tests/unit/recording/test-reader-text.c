@@ -282,6 +282,46 @@ static void test_gzip(void)
   refused("grows more than 200 times", "a gzip file that grows too much");
 }
 
+/* What Octave saves as text: its own sizes before each variable. */
+static void test_octave(void)
+{
+  static const char first[] = "# Created by Octave 8.4.0, Tue Mar 05 08:59:59 2024 UTC <rig@lab>\n";
+  struct eo_error error;
+  char text[2000];
+  snprintf(text, sizeof text,
+           "%s# name: run\n# type: scalar struct\n# ndims: 2\n 1 1\n# length: 4\n"
+           "# name: fs\n# type: scalar\n4000\n\n\n"
+           "# name: unit\n# type: string\n# elements: 1\n# length: 3\ndeg\n\n\n"
+           "# name: pinion\n# type: matrix\n# rows: 1\n# columns: 4\n 1 2 NaN 4\n\n\n"
+           "# name: gear\n# type: cell\n# rows: 1\n# columns: 1\n"
+           "# name: <cell-element>\n# type: int32 matrix\n# ndims: 3\n 1 4 1\n  5\n  6\n  7\n  8\n\n\n\n\n\n\n"
+           "# name: t\n# type: range\n# base, limit, increment\n0 0.75 0.25\n\n\n"
+           "# name: z\n# type: complex matrix\n# rows: 1\n# columns: 2\n (1,2) (3,4)\n\n\n",
+           first);
+  write_text(text);
+  struct eo_notes notes = {0};
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && eo_recording_columns(r) == 3 && eo_recording_rows(r) == 4 && named(r, 0, "pinion", "deg") &&
+         named(r, 1, "gear 1", "deg") && cell_of(r, 3, 0) == 4 && isnan(cell_of(r, 2, 0)) && cell_of(r, 3, 1) == 8,
+     "the members of a struct of Octave, with their unit%s", r ? "" : error.text);
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12 && cell_of(r, 3, 2) == 0.75 &&
+         eo_recording_clock(r, 0).column == 2 && noted(&notes, "1 variable is no channel"),
+     "its rate, a range, and what was left out");
+  eo_recording_free(r);
+  snprintf(text, sizeof text, "%s# name: both\n# type: matrix\n# rows: 3\n# columns: 2\n 1 4\n 2 5\n 3 6\n\n\n", first);
+  write_text(text);
+  r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 2, 0) == 3 && cell_of(r, 0, 1) == 4, "a matrix of Octave%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+  text[strlen(text) - 7] = '\0';
+  write_text(text);
+  refused("\"both\" end early", "one that is cut off");
+  snprintf(text, sizeof text, "%s# name: t\n# type: range\n# base, limit, increment\n0 1e9 1e-9\n", first);
+  write_text(text);
+  refused("no channel", "a range without end");
+}
+
 int main(void)
 {
   fixture_open();
@@ -289,6 +329,7 @@ int main(void)
   test_one_column();
   test_faults();
   test_wide();
+  test_octave();
   test_refusals();
   test_progress();
   test_gzip();

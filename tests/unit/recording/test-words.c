@@ -22,6 +22,39 @@ static void no_moment(const char *text)
   ok(!eo_moment_read(text, strlen(text), &m), "%s is no moment", text);
 }
 
+static void number(const char *text, double value, const char *unit)
+{
+  double read = NAN;
+  char own[32];
+  bool good = eo_stated_read_number(text, &read, own, sizeof own);
+  ok(good == isfinite(value) && (!good || (fabs(read - value) < 1e-12 && !strcmp(own, unit))),
+     "\"%s\" as a number: %g %s", text, good ? read : NAN, good ? own : "");
+}
+
+static void test_numbers(void)
+{
+  number("4000.000000", 4000, "");
+  number(" 4 kHz", 4, "kHz");
+  number("0,25 ms", 0.25, "ms");
+  number("0,250", 0.25, "");
+  number("4 kHz, 16 bit", 4, "kHz");
+  number("1024 counts/rev", 1024, "counts/rev");
+  number("4,000 Hz", NAN, "");
+  number("2024-03-05", NAN, "");
+  number("05.03.2024", NAN, "");
+  number("08:59:59", NAN, "");
+  number("rig 3", NAN, "");
+  struct eo_moment m;
+  ok(eo_stated_moment("start_time", "2024-03-05 08:59:59.5", &m) && m.has_day && m.seconds == 32399.5,
+     "a text under \"start_time\" states when the recording began");
+  ok(!eo_stated_moment("created", "2024-03-05 08:59:59.5", &m), "one under \"created\" does not");
+  ok(fabs(eo_stated_read("resolution_deg_per_count", 0.25, "").value - 1440) < 1e-9 &&
+         fabs(eo_stated_read("resolution", 0.25, "deg/count").value - 1440) < 1e-9,
+     "the angle of a count states the counts per turn");
+  ok(eo_stated_read("scale", 0.25, "deg/count").kind == EO_STATED_SCALE, "a scale in degrees per count stays one");
+  ok(eo_stated_read("decimation_factor", 10, "").kind == EO_STATED_THINNED, "a decimation is stated");
+}
+
 static void test_moments(void)
 {
   const int64_t day = 19787; /* 2024-03-05, by `date -d 2024-03-05 +%s` / 86400 */
@@ -227,6 +260,7 @@ int main(void)
 {
   test_turns();
   test_moments();
+  test_numbers();
   test_units();
   test_stated();
   return tap_done();
