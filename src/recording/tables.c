@@ -96,14 +96,14 @@ enum eo_code eo_tables_beside(const struct eo_recording *const *side, const char
   return EO_OK;
 }
 
-/* What a table may hold of the encoders: columns that turn and are no times; time: its column of times. */
+/* What a table may hold of the encoders: columns that turn and are no times; time: its column of times, looked for
+   where it is -1. */
 static enum eo_code look_at(struct eo_guess *guess, int *time, int *turning, struct eo_error *error)
 {
-  *time = -1;
   *turning = 0;
   for (int c = 0; c < guess->columns; c++)
     EO_TRY(eo_column_look(guess->recording, c, &guess->look[c], error));
-  if (guess->columns > 1) {
+  if (guess->columns > 1 && *time < 0) {
     eo_layout_mark_times(guess);
     *time = eo_layout_pick_time(guess, guess->columns - 1);
     if (*time < 0 && !(eo_recording_clock(guess->recording, 0).interval > 0) && guess->look[0].spread < 1e-3 &&
@@ -135,15 +135,49 @@ static enum eo_code survey(const struct eo_recording *recording, int *time, int 
 enum eo_code eo_tables_find_time(const struct eo_recording *recording, int *column, struct eo_error *error)
 {
   int turning;
+  *column = -1;
   return survey(recording, column, &turning, error);
 }
 
+/* The last column that is not called a time: times may stand before the values or behind them. */
+static int value_column(const struct eo_recording *recording)
+{
+  double factor;
+  int last = eo_recording_columns(recording) - 1, c = last;
+  while (c >= 0 && (eo_column_named(eo_recording_name(recording, c), EO_CLOCK_WORDS) ||
+                    eo_unit_find(eo_recording_unit(recording, c), &factor) == EO_QUANTITY_TIME))
+    c--;
+  return c < 0 ? last : c;
+}
+
+/* Tables of two columns without names: where the second ones go on alike and the first ones do not, the values stand
+   before their times. *behind: there are such. */
+static enum eo_code find_times_behind(const struct eo_tables *tables, bool *behind, struct eo_error *error)
+{
+  static const double ALIKE = 1e-3; /* relative; the speeds of two encoders differ by more */
+  struct eo_column look[2][2];
+  *behind = false;
+  for (int i = 0; i < 2; i++) {
+    const struct eo_recording *recording = tables->table[i].recording;
+    if (tables->count != 2 || eo_recording_columns(recording) != 2 || *eo_recording_name(recording, 0) ||
+        *eo_recording_name(recording, 1))
+      return EO_OK;
+    for (int c = 0; c < 2; c++)
+      EO_TRY(eo_column_look(recording, c, &look[i][c], error));
+  }
+  bool alike[2];
+  for (int c = 0; c < 2; c++)
+    alike[c] = look[0][c].step > 0 && fabs(look[1][c].step / look[0][c].step - 1) < ALIKE && !look[0][c].resets;
+  *behind = alike[1] && !alike[0];
+  return EO_OK;
+}
+
 /* A unit that the table states for its values, beside them or in its own name. */
-static void set_unit(struct eo_table *table)
+static void set_unit(struct eo_table *table, bool time_behind)
 {
   char name[EO_RECORDING_NAME], unit[EO_RECORDING_UNIT];
   struct eo_recording *recording = table->recording;
-  int last = eo_recording_columns(recording) - 1;
+  int last = time_behind ? 0 : value_column(recording);
   eo_unit_split(table->label, name, (int)sizeof name, unit, (int)sizeof unit);
   if (*eo_recording_unit(recording, last))
     return;
@@ -214,11 +248,15 @@ static enum eo_code join(struct eo_tables *tables, const char *spool_directory, 
   int time[EO_TABLES], turning[EO_TABLES], pairs, chosen;
   const struct eo_recording *side[EO_TABLES];
   const char *label[EO_TABLES];
+  bool behind = false;
+  for (int i = 0; i < tables->count && tables->count > 1; i++)
+    EO_TRY(eo_compound_join(&tables->table[i].recording, spool_directory, i ? NULL : notes, error));
+  if (tables->count > 1)
+    EO_TRY(find_times_behind(tables, &behind, error));
   for (int i = 0; i < tables->count; i++) {
-    if (tables->count > 1) {
-      EO_TRY(eo_compound_join(&tables->table[i].recording, spool_directory, i ? NULL : notes, error));
-      set_unit(&tables->table[i]);
-    }
+    if (tables->count > 1)
+      set_unit(&tables->table[i], behind);
+    time[i] = behind ? 1 : -1;
     EO_TRY(survey(tables->table[i].recording, &time[i], &turning[i], error));
     side[i] = tables->table[i].recording;
     label[i] = tables->table[i].label;

@@ -80,8 +80,17 @@ static bool is_listed(const char *name, const char *names)
   return eo_letters_listed(plain, length, names);
 }
 
+/* No column but a time and a value, and none is called by an encoder. */
+static bool holds_one_value(const struct eo_text_format *format)
+{
+  for (int c = 0; c < format->cells; c++)
+    if (eo_text_is_column(format, c) && eo_column_named(format->name[c], EO_PINION_WORDS "|" EO_GEAR_WORDS))
+      return false;
+  return format->columns <= 2;
+}
+
 /* A cell that names the channel of its row: called so, with few different words or numbers; or words for both
-   encoders. */
+   encoders, the second of which may come when all rows of the first are over. */
 static bool names_channels(const struct eo_text_format *format, const char *head, size_t size, int place)
 {
   enum eo_text_content content = format->content[place];
@@ -92,7 +101,8 @@ static bool names_channels(const struct eo_text_format *format, const char *head
   struct words words = words_of(format, head, size, place);
   if (number)
     return words.whole && words.count <= FEW;
-  return (called && words.count <= FEW) || (words.pinion && words.gear);
+  return (called && words.count <= FEW) || (words.pinion && words.gear) ||
+         (words.count == 1 && (words.pinion || words.gear) && holds_one_value(format));
 }
 
 /* A row with the number of its channel among more numbers than a time and a value: the place of the value that all

@@ -184,6 +184,25 @@ static void test_channels_in_rows(void)
       fprintf(f, "%s;%.9f;%.12g\n", plain[m], t, degrees(m ? gear(t) : pinion(t)));
     }
   right(f, NULL, 2e-6, "times of their own", "one channel after the other, the gear's first");
+  static const char *const melted[] = {"variable,value,time\n", "value;time;channel\n", "", ""};
+  for (int way = 0; way < 4; way++) {
+    f = begin(melted[way]);
+    for (int i = 0; i < 2 * ROWS; i++) {
+      int m = way % 2 ? i % 2 : i / ROWS;
+      double t = (way % 2 ? i / 2 : i % ROWS) / RATE;
+      const char *name = way % 2 ? m ? "gear [rad]" : "pinion [rad]" : m ? "gear_rad" : "pinion_rad";
+      if (way == 1)
+        fprintf(f, "%.12g;%.5f;%s\n", m ? gear(t) : pinion(t), t, name);
+      else
+        fprintf(f, "%s%c%.12g%c%.5f\n", name, way ? ';' : ',', m ? gear(t) : pinion(t), way ? ';' : ',', t);
+    }
+    right(f, NULL, 1e-7, "side by side", way < 2 ? "values before their times" : "the same without a heading");
+  }
+  f = begin("");
+  for (int i = 0; i < 2 * ROWS; i++)
+    fprintf(f, "%s %.6f %.12g\n", plain[i / ROWS], i % ROWS / RATE,
+            degrees(i / ROWS ? gear(i % ROWS / RATE) : pinion(i % ROWS / RATE)));
+  right(f, NULL, 1e-3, "side by side", "one encoder's rows after all of the other's, without a heading");
   f = begin("t_s;status;pinion_deg;gear_deg;channel\n");
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%.9f;%s;%.12g;%.12g;%d\n", i / RATE, i % 50 ? "OK" : "WARN", degrees(pinion(i / RATE)),
