@@ -253,12 +253,36 @@ static bool take_compact(struct rest *rest, struct eo_moment *moment)
   return take_zone(rest, moment);
 }
 
+/* Nanoseconds since 1970, or tenths of a microsecond since 1601 or year 1, which are too long for a double. */
+static bool take_stamp(struct rest *rest, struct eo_moment *moment)
+{
+  static const struct {
+    uint64_t low, high, zero, unit; /* zero: 1970 in its unit; unit: ns */
+  } kinds[] = {{1000000000000000000, 2200000000000000000, 0, 1},
+               {120000000000000000, 150000000000000000, 116444736000000000, 100},
+               {620000000000000000, 660000000000000000, 621355968000000000, 100}};
+  const uint64_t day = 86400000000000; /* ns */
+  uint64_t number = 0;
+  const char *at = rest->at;
+  for (int digits = 0; at < rest->end && isdigit((unsigned char)*at) && digits < EO_MOMENT_STAMP; digits++)
+    number = number * 10 + (uint64_t)(*at++ - '0');
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds && at == rest->end; i++)
+    if (number > kinds[i].low && number < kinds[i].high) {
+      number = (number - kinds[i].zero) * kinds[i].unit;
+      rest->at = at;
+      *moment = (struct eo_moment){
+          .has_day = true, .has_time = true, .day = (int64_t)(number / day), .seconds = (double)(number % day) * 1e-9};
+      return true;
+    }
+  return false;
+}
+
 bool eo_moment_read(const char *text, size_t length, struct eo_moment *moment)
 {
   struct rest rest = {text, text + length};
   *moment = (struct eo_moment){0};
   skip_blanks(&rest);
-  if (take_compact(&rest, moment))
+  if (take_stamp(&rest, moment) || take_compact(&rest, moment))
     return rest.at == rest.end;
   take_days(&rest, moment);
   if (take_date(&rest, moment) || take_american(&rest, moment)) {

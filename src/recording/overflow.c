@@ -24,6 +24,16 @@ static bool is_time(const struct eo_recording *recording, int column, const stru
   return look->quantity == EO_QUANTITY_TIME || eo_column_named(name, EO_CLOCK_WORDS) || ticks;
 }
 
+/* Ticks of a stated clock, where nothing else tells when a row was taken: all columns are the times of pulses. */
+static bool holds_pulses(const struct eo_recording *recording, const struct eo_column *look)
+{
+  bool pulses = eo_recording_tick(recording) > 0;
+  for (int c = 0; c < eo_recording_columns(recording); c++)
+    pulses = pulses && !is_time(recording, c, &look[c]) && !(eo_recording_clock(recording, c).interval > 0) &&
+             (look[c].quantity == EO_QUANTITY_COUNT || look[c].quantity == EO_QUANTITY_NONE);
+  return pulses;
+}
+
 /* Its last value is not beyond those of the first rows, or these fall. */
 static enum eo_code may_fall(const struct eo_recording *recording, int column, const struct eo_column *look, bool *may,
                              struct eo_error *error)
@@ -99,11 +109,11 @@ enum eo_code eo_overflow_find(const struct eo_recording *recording, const struct
 {
   struct fall fall[EO_RECORDING_COLUMNS];
   int columns = eo_recording_columns(recording);
-  bool any = false;
+  bool any = false, pulses = holds_pulses(recording, look);
   for (int c = 0; c < columns; c++) {
     turn[c] = 0;
     fall[c] = (struct fall){.before = NAN};
-    if (look[c].count > 1 && look[c].step > 0 && is_time(recording, c, &look[c]))
+    if (look[c].count > 1 && look[c].step > 0 && (pulses || is_time(recording, c, &look[c])))
       EO_TRY(may_fall(recording, c, &look[c], &fall[c].looked_for, error));
     any = any || fall[c].looked_for;
   }

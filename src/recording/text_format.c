@@ -212,14 +212,15 @@ static enum eo_code no_table(const struct lines *lines, const char *head, struct
                       lines->count, start);
 }
 
-/* "20260304115959.7": a number, too, so that it is a moment only where all of its column are. */
+/* "20260304115959.7", "1700000000000042244": a number, too, so that it is a moment only where all of its column are. */
 static bool is_compact_moment(const struct eo_cell *cell)
 {
   struct eo_moment moment;
   size_t digits = 0;
   while (digits < cell->length && cell->text[digits] >= '0' && cell->text[digits] <= '9')
     digits++;
-  return digits == 14 && cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment);
+  return (digits == 14 || (digits == cell->length && digits >= EO_MOMENT_STAMP - 1)) && cell->length < 64 &&
+         eo_moment_read(cell->text, cell->length, &moment);
 }
 
 /* What each place holds, by the rows of the run: the first cell that is not empty decides, one hexadecimal number makes

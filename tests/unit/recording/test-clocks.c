@@ -236,6 +236,62 @@ static void test_squares(void)
   asked(f, &lines, "/kind", "rows per line", "square waves with few rows per line");
 }
 
+/* When pulse k of a member passes: lines at a speed that swings. */
+static double pulse_time(int member, int k)
+{
+  double step = member ? 1.26e-4 : 1.95e-4;
+  return 0.8 * step + step * k + 1e-5 * sin(0.01 * k);
+}
+
+/* The pulses come out at their times, but for one offset that both have. */
+static void pulses_are_right(FILE *f, double tolerance, const char *what)
+{
+  struct eo_layout_choice choice = {.kind = EO_LAYOUT_PULSES, .lines = {512, 2048}};
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  double most = 0, shift = 0;
+  struct eo_recording *r = find(f, &choice, &tracks, &notes, &error);
+  for (int k = 0; r && k < ROWS; k++)
+    for (int m = 0; m < 2; m++) {
+      double off = cell_of(r, k, tracks.channel[m].column[0]) * tracks.time_scale - pulse_time(m, k);
+      shift = k || m ? shift : off;
+      most = isnan(off) ? INFINITY : fmax(most, fabs(off - shift));
+    }
+  ok(r && most < tolerance, "%s: %.2g s off%s", what, most, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+/* Columns of ticks alone, of a counter that starts again. */
+static void test_pulse_counters(void)
+{
+  static const struct {
+    const char *header, *what;
+    double tick;
+    int bits;
+    int64_t start;
+  } counters[] = {
+      {"Timebase: 1 MHz\nPinion_ticks;Gear_ticks\n", "pulses of a counter of 16 bits", 1e-6, 16, 40000},
+      {"Timer clock: 40 MHz\nPinion capture;Gear capture\n", "of 24 bits", 2.5e-8, 24, 0},
+      {"Clock: 80 MHz\nPinion [ticks];Gear [ticks]\n", "of 32 bits", 1.25e-8, 32, (1LL << 32) - 100000},
+  };
+  for (size_t i = 0; i < sizeof counters / sizeof *counters; i++) {
+    FILE *f = begin(counters[i].header);
+    for (int k = 0; k < ROWS; k++)
+      for (int m = 0; m < 2; m++)
+        fprintf(
+            f, "%lld%c",
+            (long long)((counters[i].start + llround(pulse_time(m, k) / counters[i].tick)) % (1LL << counters[i].bits)),
+            m ? '\n' : ';');
+    pulses_are_right(f, 1.1 * counters[i].tick, counters[i].what);
+  }
+  FILE *f = begin("ts_pinion_ns\tts_gear_ns\n");
+  for (int k = 0; k < ROWS; k++)
+    fprintf(f, "1700000000%09lld\t1700000000%09lld\n", llround(pulse_time(0, k) * 1e9),
+            llround(pulse_time(1, k) * 1e9));
+  pulses_are_right(f, 2e-9, "pulses in nanoseconds since 1970, which doubles do not hold");
+}
+
 int main(void)
 {
   fixture_open();
@@ -248,5 +304,6 @@ int main(void)
   test_key_column();
   test_repeated_rows();
   test_squares();
+  test_pulse_counters();
   return fixture_close();
 }

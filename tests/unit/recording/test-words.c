@@ -80,6 +80,9 @@ static void test_moments(void)
   moment("Mar 05, 2024 08:59:59.5", day, time);
   moment("20240305T085959.5Z", day, time);
   moment("20240305085959.5", day, time);
+  moment("1709629199500000000", day, time);
+  moment("133541027995000000", day, time);
+  moment("638452259995000000", day, time);
   struct eo_moment m;
   ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000, "as an epoch");
   no_moment("12.5");
@@ -90,6 +93,7 @@ static void test_moments(void)
   no_moment("1-2");
   no_moment("3:4 parts");
   no_moment("20241305085959");
+  no_moment("9709629199500000000");
 }
 
 static void unit(const char *text, enum eo_quantity quantity, double expected)
