@@ -6,7 +6,7 @@
 
 #include "measurement/scan.h"
 
-enum { BLOCK = 4096, SIDE = 4, WINDOW = 2 * SIDE + 2, MOST_GAPS = 64 };
+enum { BLOCK = 4096, SIDE = 4, WINDOW = 2 * SIDE + 2, MOST_GAPS = 64, MOST_BACK = 3 };
 static const double DOUBLE = 0.4; /* of the usual distance: two pulses of the same line */
 static const double WHOLE = 0.25; /* a gap is a whole number of lines but for so much */
 
@@ -67,6 +67,11 @@ static enum eo_code take(struct maker *maker, const double *time, int ahead, int
   double distance = time[0] - maker->before, lines = 1;
   if (maker->seen > 0) {
     double usual = usual_distance(maker, time, ahead), share = distance / usual;
+    if (distance < 0) {
+      if (!train->back++)
+        train->back_at = row;
+      return EO_OK;
+    }
     if (share < DOUBLE) {
       if (!train->doubled++)
         train->doubled_at = row;
@@ -111,6 +116,33 @@ static void find_wheel(struct maker *maker, double stated)
   }
 }
 
+/* Programs fill the shorter column up with zeros or with its last value. *length: of what stands before that. */
+static enum eo_code find_end(const struct maker *maker, int64_t *length, struct eo_error *error)
+{
+  int columns = eo_recording_columns(maker->recording);
+  double before = NAN, last = NAN, *block = malloc(sizeof *block * BLOCK * (size_t)columns);
+  int64_t run = 0, began = 0; /* of equal values; row of the first */
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; first < *length && !code; first += BLOCK) {
+    int count = *length - first < BLOCK ? (int)(*length - first) : BLOCK;
+    code = eo_recording_read(maker->recording, first, count, block, error);
+    for (int i = 0; i < count && !code; i++) {
+      double value = block[(size_t)i * (size_t)columns + (size_t)maker->column];
+      if (isnan(value))
+        continue;
+      if (value != last)
+        before = last, run = 0, began = first + i;
+      last = value;
+      run++;
+    }
+  }
+  free(block);
+  bool falls = last < before;
+  if (falls || run > 2)
+    *length = maker->train->filled_at = falls ? began : began + 1;
+  return code;
+}
+
 static enum eo_code read_all(struct maker *maker, int64_t length, struct eo_error *error)
 {
   int columns = eo_recording_columns(maker->recording), ahead = 0;
@@ -147,14 +179,16 @@ enum eo_code eo_pulse_train_make(struct eo_pulse_train *train, const struct eo_r
                                  struct eo_error *error)
 {
   struct maker *maker = calloc(1, sizeof *maker);
-  *train = (struct eo_pulse_train){.missed_at = -1, .doubled_at = -1, .unclear_at = -1};
+  *train = (struct eo_pulse_train){.missed_at = -1, .doubled_at = -1, .unclear_at = -1, .back_at = -1, .filled_at = -1};
   enum eo_code code = maker ? eo_recording_new(&train->pulses, 2, spool_directory, error) : eo_error_memory(error);
   if (!code) {
     maker->recording = recording;
     maker->train = train;
     maker->column = tracks->channel[channel].column[0];
     maker->scale = tracks->time_scale;
-    code = read_all(maker, eo_recording_length(recording, maker->column), error);
+    int64_t length = eo_recording_length(recording, maker->column);
+    code = find_end(maker, &length, error);
+    code = code ? code : read_all(maker, length, error);
     find_wheel(maker, tracks->channel[channel].lines);
   }
   free(maker);
@@ -167,9 +201,32 @@ void eo_pulse_train_done(struct eo_pulse_train *train)
   train->pulses = NULL;
 }
 
+/* A few may be out of order; where many are, all that follows a late one would be left out. */
+static void judge_order(const struct eo_pulse_train *train, int channel, const char *name, struct eo_findings *findings)
+{
+  if (train->filled_at >= 0)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_NOTE, channel, (double)train->filled_at,
+                    "From row %lld on one value fills up the column of the %s; it was left out.",
+                    (long long)train->filled_at + 1, name)
+        ->row = train->filled_at;
+  if (train->back > MOST_BACK)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REFUSED, channel, (double)train->back,
+                    "%lld pulses of the %s are earlier than one before them, the first in row %lld: the rows are out "
+                    "of order, or the counter starts again after another number of ticks than 16, 24 or 32 bits have. "
+                    "Write times that go on.",
+                    (long long)train->back, name, (long long)train->back_at + 1)
+        ->row = train->back_at;
+  else if (train->back)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)train->back,
+                    "%lld pulses of the %s are earlier than the one before, the first in row %lld; they were left out.",
+                    (long long)train->back, name, (long long)train->back_at + 1)
+        ->row = train->back_at;
+}
+
 void eo_pulse_train_judge(const struct eo_pulse_train *train, int channel, struct eo_findings *findings)
 {
   const char *name = channel ? "gear" : "pinion";
+  judge_order(train, channel, name, findings);
   if (train->teeth_missing)
     eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_NOTE, channel, train->teeth_missing,
                     "The wheel of the %s has %.0f teeth less %d that are missing; their lines were counted.", name,

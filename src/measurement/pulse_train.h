@@ -15,6 +15,8 @@ struct eo_pulse_train {
   int teeth_missing;             /* in each turn; 0: the wheel is whole */
   int64_t missed, doubled;       /* single lines without a pulse, pulses left out */
   int64_t missed_at, doubled_at; /* first of them, row of the recording */
+  int64_t back, back_at;         /* earlier than the one before and left out */
+  int64_t filled_at;             /* row from which the column holds one value again and again; -1: to its end pulses */
   bool unclear;                  /* gaps that fit no whole number of lines */
   int64_t unclear_at;
 };

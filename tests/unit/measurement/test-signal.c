@@ -4,8 +4,10 @@
 #include "measurement/beside.h"
 #include "measurement/ellipse.h"
 #include "measurement/orientation.h"
+#include "measurement/pulse_train.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/random.h"
 #include "support/tap.h"
@@ -166,6 +168,47 @@ static void test_rms(void)
   ok(small_inside >= 940, "RMS below the noise: in %.1f %%", small_inside / 10.0);
 }
 
+static void check_train(const double *time, int count, int64_t kept, enum eo_severity worst, const char *words,
+                        const char *what)
+{
+  struct eo_recording *recording = NULL;
+  struct eo_pulse_train train = {0};
+  struct eo_findings findings = {0};
+  struct eo_error error;
+  const struct eo_tracks tracks = {.time_scale = 1, .channel = {{.lines = 100}}};
+  bool made = !eo_recording_new(&recording, 1, NULL, &error) && !eo_recording_append(recording, time, count, &error) &&
+              !eo_pulse_train_make(&train, recording, &tracks, 0, NULL, &error);
+  if (made)
+    eo_pulse_train_judge(&train, 0, &findings);
+  ok(made && train.count == kept && findings.count > 0 && findings.finding[0].severity == worst &&
+         strstr(findings.finding[0].text, words),
+     "%s: %lld pulses, %s", what, (long long)train.count, findings.count ? findings.finding[0].text : "");
+  eo_pulse_train_done(&train);
+  eo_recording_free(recording);
+}
+
+/* What stands behind the pulses of the shorter column is none of them; times that go back are not taken for doubles. */
+static void test_pulse_order(void)
+{
+  double time[400];
+  for (int way = 0; way < 4; way++) {
+    for (int i = 0; i < 400; i++)
+      time[i] = 1 + 0.01 * (i < 300 || way > 1 ? i : 299) - (way == 3 && i >= 100 ? 2.68 : 0);
+    for (int i = 300; i < 400 && way == 0; i++)
+      time[i] = 0;
+    if (way == 2)
+      time[100] = 1.96;
+    check_train(
+        time, 400, (int[]){300, 300, 399, 132}[way],
+        (enum eo_severity[]){EO_SEVERITY_NOTE, EO_SEVERITY_NOTE, EO_SEVERITY_REPAIRED, EO_SEVERITY_REFUSED}[way],
+        way < 2    ? "From row 301 on"
+        : way == 2 ? "1 pulses"
+                   : "16, 24 or 32 bits",
+        (const char *[]){"zeros behind the last pulse", "the last pulse again and again", "one pulse out of order",
+                         "a counter that starts again"}[way]);
+  }
+}
+
 int main(void)
 {
   test_ellipse();
@@ -174,5 +217,6 @@ int main(void)
   test_nearest();
   test_noise();
   test_rms();
+  test_pulse_order();
   return tap_done();
 }
