@@ -17,6 +17,7 @@ struct eo_tables {
   struct eo_table {
     struct eo_recording *recording; /* owned; may be NULL */
     char label[EO_RECORDING_NAME];  /* what the table is called; "" when nothing says so */
+    char edge[EO_RECORDING_UNIT];   /* of its first row, where the rows are edges; "": not said */
     char unit[EO_RECORDING_UNIT];   /* of its last column where that has none; "" : as it is */
   } table[EO_TABLES];
 };

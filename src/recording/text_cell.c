@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_cell.h"
 #include "recording/decimal.h"
+#include "recording/letters.h"
 #include "recording/moment.h"
 #include "recording/recording.h"
 #include "recording/recorded_unit.h"
@@ -167,6 +168,14 @@ bool eo_text_cell_hex(const struct eo_cell *cell, double *value)
     number = number << 4 | (uint64_t)(*at <= '9' ? *at - '0' : (*at | 0x20) - 'a' + 10);
   *value = (double)number;
   return at == end && digits > 0;
+}
+
+bool eo_text_cell_level(const struct eo_cell *cell, double *value)
+{
+  bool high = eo_letters_listed(cell->text, cell->length, "high|hi|h|true|on|ein|wahr|hoch|vrai|verdadero|vero"),
+       low = eo_letters_listed(cell->text, cell->length, "low|lo|l|false|off|aus|falsch|tief|niedrig|faux|falso");
+  *value = high;
+  return high || low;
 }
 
 /* Without a mark only digits with a letter among them are hexadecimal, and only when they begin with a digit or are

@@ -59,6 +59,9 @@ const char *eo_text_grouped(const char *at, const char *end, char point, int *gr
 /* A hexadecimal number with or without a mark ("0x3F", "3Fh", "$3F", "3F"); false when the cell is none. */
 bool eo_text_cell_hex(const struct eo_cell *cell, double *value);
 
+/* A word for one of the two levels of a square wave: high, true, on; 1 or 0. False when the cell is none. */
+bool eo_text_cell_level(const struct eo_cell *cell, double *value);
+
 /* Degrees, minutes and seconds of arc, in degrees: 12°34'56.7", 12d34m56.7s and, where it is known for an angle,
    12:34:56.7; seconds may be missing. False when the cell is none. */
 bool eo_text_cell_sexagesimal(const struct eo_cell *cell, char point, bool colons, double *value);

@@ -34,8 +34,13 @@ struct shape {
   uint64_t text, moment, unit, missing;
 };
 
+/* What counts as a number: what reads as one; words for the levels of a square wave, too; or the table may hold more
+   words than numbers, as lists of events do. */
+enum reading { PLAIN, LEVELS, WORDY, READINGS };
+
 /* A run of consecutive lines of one shape. */
 struct run {
+  enum reading reading;
   int first, lines; /* index of the first line; comments and blank lines do not count */
   struct shape shape;
   double score;
@@ -90,7 +95,7 @@ static bool has_name(const struct line *line)
   return memchr(line->start, '=', length) || memchr(line->start, ':', length);
 }
 
-static struct shape shape_of(const struct line *line, char separator, char point)
+static struct shape shape_of(const struct line *line, char separator, char point, enum reading reading)
 {
   struct shape shape = {0};
   struct eo_cell cell;
@@ -103,12 +108,16 @@ static struct shape shape_of(const struct line *line, char separator, char point
     enum eo_cell_kind kind = eo_text_cell_value(&cell, point, &value);
     if (kind == EO_CELL_NUMBER && separator == ',' && point == '.' && shape.cells > 0 && follows_comma(&cell))
       kind = EO_CELL_TEXT;
+    if (kind == EO_CELL_TEXT && reading == LEVELS && eo_text_cell_level(&cell, &value))
+      kind = EO_CELL_NUMBER;
     shape.open = !cell.length && !cell.quoted && shape.cells > 0;
     add_cell(&shape, kind);
     if (named)
       shape.names += eo_text_name_key(&cell); /* in whatever order */
   }
   shape.cells -= shape.open;
+  if (reading == WORDY)
+    shape.points += shape.texts;
   return !named || shape.names ? shape : (struct shape){0};
 }
 
@@ -136,9 +145,9 @@ static bool is_flawed_row(const struct shape *run, const struct shape *row)
          !(((run->moment ^ row->moment) | (run->unit ^ row->unit)) & both & ~row->text);
 }
 
-static bool is_row(const struct shape *shape)
+static bool is_row(const struct shape *shape, enum reading reading)
 {
-  return shape->numbers > 0 && 2 * shape->numbers > shape->texts;
+  return shape->numbers > 0 && (2 * shape->numbers > shape->texts || reading == WORDY);
 }
 
 static bool holds_cells(const struct line *line, char separator)
@@ -160,14 +169,14 @@ static void fill_shape(struct shape *run, const struct shape *row)
 
 /* The best run of rows; long ones with many numbers and little text win. A few odd lines do not end a run that is under
    way. */
-static struct run find_run(const struct lines *lines, char separator, char point)
+static struct run find_run(const struct lines *lines, char separator, char point, enum reading reading)
 {
   struct run best = {0}, run = {0};
   int odd = 0, first_odd = 0, flawed = 0;
   for (int i = 0; i < lines->count; i++) {
     if (!holds_cells(&lines->line[i], separator))
       continue;
-    struct shape shape = shape_of(&lines->line[i], separator, point);
+    struct shape shape = shape_of(&lines->line[i], separator, point, reading);
     if (run.lines && !same_shape(&run.shape, &shape)) {
       if (!odd)
         first_odd = i;
@@ -179,14 +188,14 @@ static struct run find_run(const struct lines *lines, char separator, char point
         continue;
       i = odd ? first_odd : i;
       odd = 0;
-      shape = shape_of(&lines->line[i], separator, point);
+      shape = shape_of(&lines->line[i], separator, point, reading);
       run.lines = 0;
     }
-    if (!is_row(&shape))
+    if (!is_row(&shape, reading))
       continue;
     odd = 0;
     if (!run.lines) {
-      run = (struct run){.first = i, .shape = shape};
+      run = (struct run){.reading = reading, .first = i, .shape = shape};
       flawed = 0;
     }
     fill_shape(&run.shape, &shape);
@@ -231,7 +240,7 @@ static void find_content(struct eo_text_format *format, const struct lines *line
   for (int c = 0; c < format->cells; c++)
     format->content[c] = EO_TEXT_NUMBER;
   for (int i = run->first; i < lines->count && i < run->first + run->lines; i++) {
-    struct shape shape = shape_of(&lines->line[i], format->separator, format->point);
+    struct shape shape = shape_of(&lines->line[i], format->separator, format->point, run->reading);
     struct eo_cell cell;
     double value;
     const char *at = lines->line[i].start;
@@ -239,12 +248,14 @@ static void find_content(struct eo_text_format *format, const struct lines *line
       continue;
     for (int c = 0; c < format->cells && eo_text_next_cell(&at, lines->line[i].end, format->separator, &cell); c++) {
       enum eo_cell_kind kind = eo_text_cell_value(&cell, format->point, &value);
+      bool level = run->reading == LEVELS && kind == EO_CELL_TEXT && eo_text_cell_level(&cell, &value);
+      enum eo_text_content words = level ? EO_TEXT_LEVEL : EO_TEXT_WORDS;
       if (kind == EO_CELL_HEX)
         format->content[c] = EO_TEXT_HEX;
       else if (kind == EO_CELL_ARC)
         format->content[c] = EO_TEXT_ARC;
       else if (!known[c] && kind != EO_CELL_MISSING)
-        format->content[c] = kind == EO_CELL_TEXT     ? EO_TEXT_WORDS
+        format->content[c] = kind == EO_CELL_TEXT     ? words
                              : kind == EO_CELL_MOMENT ? EO_TEXT_MOMENT
                              : kind == EO_CELL_UNIT   ? EO_TEXT_UNIT
                                                       : EO_TEXT_NUMBER;
@@ -320,7 +331,7 @@ static void settle_content(struct eo_text_format *format, const struct lines *li
 
 /* Tries every way of reading that the choice leaves; the earlier one wins when two are as good. */
 static struct run best_run(struct eo_text_format *format, const struct lines *lines,
-                           const struct eo_text_choice *choice)
+                           const struct eo_text_choice *choice, enum reading reading)
 {
   static const char ways[][2] = {{'\t', '.'}, {';', '.'},  {'|', '.'},           {',', '.'},
                                  {' ', '.'},  {'\t', ','}, {';', ','},           {'|', ','},
@@ -329,7 +340,7 @@ static struct run best_run(struct eo_text_format *format, const struct lines *li
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     if ((choice->separator && choice->separator != ways[i][0]) || (choice->point && choice->point != ways[i][1]))
       continue;
-    struct run run = find_run(lines, ways[i][0], ways[i][1]);
+    struct run run = find_run(lines, ways[i][0], ways[i][1], reading);
     if (run.score <= best.score)
       continue;
     best = run;
@@ -337,6 +348,23 @@ static struct run best_run(struct eo_text_format *format, const struct lines *li
     format->point = ways[i][1];
   }
   return best;
+}
+
+/* Words make a table only where numbers make none: a heading of keys and numbers is shorter than its rows. */
+static struct run find_table(struct eo_text_format *format, const struct lines *lines,
+                             const struct eo_text_choice *choice)
+{
+  struct run run = best_run(format, lines, choice, PLAIN);
+  for (enum reading reading = LEVELS; reading < READINGS && run.lines < TABLE_ROWS; reading++) {
+    struct eo_text_format other = *format;
+    struct run worded = best_run(&other, lines, choice, reading);
+    if (worded.lines < TABLE_ROWS || worded.lines <= TABLE_SHARE * run.lines)
+      continue;
+    run = worded;
+    format->separator = other.separator;
+    format->point = other.point;
+  }
+  return run;
 }
 
 static enum eo_code guess_from(struct eo_text_format *format, struct lines *lines, const char *head,
@@ -352,7 +380,7 @@ static enum eo_code guess_from(struct eo_text_format *format, struct lines *line
     lines->count -= skipped;
     memmove(lines->line, lines->line + skipped, (size_t)lines->count * sizeof *lines->line);
   }
-  struct run run = best_run(format, lines, choice);
+  struct run run = find_table(format, lines, choice);
   if (!run.lines || (eo_text_is_named(format->separator) && run.lines < STEADY_ROWS)) /* facts */
     return no_table(lines, head, error);
   format->cells = run.shape.cells;

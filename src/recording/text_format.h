@@ -17,6 +17,7 @@ enum eo_text_content {
   EO_TEXT_WORDS, /* left out */
   EO_TEXT_NUMBER,
   EO_TEXT_UNIT,   /* numbers with a unit behind them */
+  EO_TEXT_LEVEL,  /* words for the levels of a square wave */
   EO_TEXT_HEX,    /* hexadecimal numbers without a mark */
   EO_TEXT_ARC,    /* degrees, minutes and seconds between colons */
   EO_TEXT_MOMENT, /* dates and times */

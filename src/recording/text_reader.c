@@ -77,6 +77,8 @@ static enum eo_code keep_channel(struct text *text, struct eo_error *error)
   struct eo_table *table;
   EO_TRY(eo_text_channel_table(&text->tables, &text->format, &text->cell[text->channels.cell], unit,
                                text->spool_directory, &table, error));
+  if (text->channels.edge >= 0 && !eo_text_takes_edge(&text->channels, table, &text->cell[text->channels.edge]))
+    return EO_OK;
   eo_recording_set_line(table->recording, text->line);
   return eo_recording_append(table->recording, next_row(text), 1, error);
 }
@@ -329,7 +331,8 @@ static enum eo_code make_recording(struct text *text, struct eo_error *error)
 {
   const struct eo_text_format *format = &text->format;
   for (int c = 0; c < format->cells; c++)
-    if (format->content[c] == EO_TEXT_WORDS && c != text->channels.cell && c != text->channels.unit)
+    if (format->content[c] == EO_TEXT_WORDS && c != text->channels.cell && c != text->channels.unit &&
+        c != text->channels.edge)
       eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, format->name[c]);
     else if (format->content[c] == EO_TEXT_BESIDE)
       eo_notes_add(text->notes, "Column %d \"%s\" stands beside the values of the channels and was left out.", c + 1,
@@ -448,6 +451,9 @@ static void note_format(const struct text *text)
     eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
                  (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,
                  text->missing_cell + 1);
+  if (text->channels.other_edges)
+    eo_notes_add(text->notes, "%lld rows hold the other edges of pulses and were left out.",
+                 (long long)text->channels.other_edges);
   if (text->faults > FAULTS_NAMED)
     eo_notes_add(text->notes, "%lld rows are odd in all; the first %d are named above.", (long long)text->faults,
                  FAULTS_NAMED);

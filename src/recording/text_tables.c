@@ -25,24 +25,31 @@
   "value|val|values|wert|messwert|istwert|reading|measurement|measured value|data|result|amplitude|scaled|eng value|" \
   "angle|winkel|position|pos|valeur|mesure|valore|misura|valor|medida|_value|y"
 #define UNIT_NAMES "unit|units|einheit|einheiten|unite|unita|unidad"
+/* Of a column that says which edge of a pulse the time of a row is. */
+#define EDGE_NAMES \
+  "edge|edges|edge type|slope|polarity|transition|flanke|flankenart|flankentyp|front|fronte|flanc|flanco|fianco"
 
 /* The different texts of one place in the rows of the head. */
 struct words {
   int count;
   struct eo_cell word[FEW + 1];
   bool whole, pinion, gear; /* they are whole numbers; name an encoder */
+  bool counting;            /* they count the rows */
+  double before;            /* in the row before */
 };
 
 static void add_word(struct words *words, const struct eo_cell *cell, char point)
 {
   char text[EO_RECORDING_NAME];
   double value;
+  enum eo_cell_kind kind = eo_text_cell_value(cell, point, &value);
+  words->counting = words->counting && kind == EO_CELL_NUMBER && (!words->count || value == words->before + 1);
+  words->before = value;
   for (int i = 0; i < words->count; i++)
     if (words->word[i].length == cell->length && !memcmp(words->word[i].text, cell->text, cell->length))
       return;
   if (!cell->length || words->count > FEW)
     return;
-  enum eo_cell_kind kind = eo_text_cell_value(cell, point, &value);
   bool number = kind == EO_CELL_NUMBER || kind == EO_CELL_HEX;
   words->whole = words->whole && (kind == EO_CELL_HEX || (number && value == floor(value)));
   eo_text_cell_copy(text, sizeof text, cell);
@@ -53,7 +60,7 @@ static void add_word(struct words *words, const struct eo_cell *cell, char point
 
 static struct words words_of(const struct eo_text_format *format, const char *head, size_t size, int place)
 {
-  struct words words = {.whole = true};
+  struct words words = {.whole = true, .counting = true};
   const char *at = head + format->first_byte, *last = head + size;
   for (int row = 0; row < LOOKED && at < last; row++) {
     const char *end = memchr(at, format->line_end, (size_t)(last - at)), *next = at;
@@ -133,9 +140,35 @@ static void leave_out_beside(struct eo_text_format *format, int value)
     }
 }
 
+static void leave_out(struct eo_text_format *format, int place, enum eo_text_content content)
+{
+  format->columns -= eo_text_is_column(format, place);
+  format->content[place] = content;
+}
+
+/* Beside the name of its channel a row may tell the unit of its value, which edge of a pulse it is, and its number
+   among all rows. */
+static void look_beside(struct eo_text_format *format, const char *head, size_t size, struct eo_text_channels *channels)
+{
+  bool several = words_of(format, head, size, channels->cell).count > 1; /* whose values together count nothing */
+  for (int c = 0; c < format->cells; c++) {
+    bool column = eo_text_is_column(format, c) && format->columns > 1;
+    if (c == channels->cell)
+      continue;
+    if (format->content[c] == EO_TEXT_WORDS && is_listed(format->name[c], UNIT_NAMES))
+      channels->unit = c;
+    else if ((column || format->content[c] == EO_TEXT_WORDS) && is_listed(format->name[c], EDGE_NAMES) &&
+             words_of(format, head, size, c).count <= 2) {
+      leave_out(format, c, EO_TEXT_WORDS);
+      channels->edge = c;
+    } else if (several && column && !eo_text_is_called_time(format, c) && words_of(format, head, size, c).counting)
+      leave_out(format, c, EO_TEXT_BESIDE);
+  }
+}
+
 struct eo_text_channels eo_text_find_channels(struct eo_text_format *format, const char *head, size_t size)
 {
-  struct eo_text_channels channels = {-1, -1};
+  struct eo_text_channels channels = {.cell = -1, .unit = -1, .edge = -1}, none = channels;
   for (int c = 0; c < format->cells && channels.cell < 0; c++)
     if (names_channels(format, head, size, c))
       channels.cell = c;
@@ -144,16 +177,25 @@ struct eo_text_channels eo_text_find_channels(struct eo_text_format *format, con
   bool number = format->content[channels.cell] != EO_TEXT_WORDS, more = number && format->columns > 3;
   int value = more ? find_value(format) : -1;
   if (format->columns - number < 1 || (more && value < 0))
-    return (struct eo_text_channels){-1, -1};
+    return none;
   format->content[channels.cell] = EO_TEXT_WORDS;
   format->columns -= number;
   format->plain = false;
   if (more)
     leave_out_beside(format, value);
-  for (int c = 0; c < format->cells; c++)
-    if (format->content[c] == EO_TEXT_WORDS && c != channels.cell && is_listed(format->name[c], UNIT_NAMES))
-      channels.unit = c;
+  look_beside(format, head, size, &channels);
   return channels;
+}
+
+bool eo_text_takes_edge(struct eo_text_channels *channels, struct eo_table *table, const struct eo_cell *cell)
+{
+  char edge[EO_RECORDING_UNIT];
+  eo_text_cell_copy(edge, sizeof edge, cell);
+  if (!*table->edge)
+    memcpy(table->edge, edge, sizeof edge);
+  bool takes = !strcmp(table->edge, edge);
+  channels->other_edges += !takes;
+  return takes;
 }
 
 enum eo_code eo_text_channel_table(struct eo_tables *tables, const struct eo_text_format *format,

@@ -10,7 +10,8 @@
 
 /* Rows with the name or number of their channel in a cell. */
 struct eo_text_channels {
-  int cell, unit; /* places of the name and of a unit beside it; -1: there is none */
+  int cell, unit, edge; /* places of the name, of a unit beside it and of the kind of edge; -1: there is none */
+  int64_t other_edges;  /* rows left out */
 };
 
 /* Finds them by the heading, or by names that tell encoders apart; such a cell then is none of the columns. head:
@@ -22,6 +23,9 @@ struct eo_text_channels eo_text_find_channels(struct eo_text_format *format, con
 enum eo_code eo_text_channel_table(struct eo_tables *tables, const struct eo_text_format *format,
                                    const struct eo_cell *channel, const struct eo_cell *unit,
                                    const char *spool_directory, struct eo_table **table, struct eo_error *error);
+
+/* Where rows are edges, those of the kind of its channel's first one are its pulses. cell: the kind of this row's. */
+bool eo_text_takes_edge(struct eo_text_channels *channels, struct eo_table *table, const struct eo_cell *cell);
 
 /* What the heading calls the table; "" when it says nothing. A single column that has a fact of the heading for its
    name then has none. head: beginning of the heading. */

@@ -62,6 +62,8 @@ enum eo_cell_kind eo_text_value(struct eo_text_format *format, struct eo_text_mo
     return unit_value(format, &cells[c], c, value);
   if (format->content[c] == EO_TEXT_ARC && eo_text_cell_sexagesimal(&cells[c], format->point, true, value))
     return EO_CELL_NUMBER;
+  if (format->content[c] == EO_TEXT_LEVEL && eo_text_cell_level(&cells[c], value))
+    return EO_CELL_NUMBER;
   if (format->content[c] == EO_TEXT_HEX && eo_text_cell_hex(&cells[c], value))
     return EO_CELL_NUMBER;
   enum eo_cell_kind kind = eo_text_cell_value(&cells[c], format->point, value);

@@ -121,7 +121,7 @@ static void test_counters(void)
   asked(f, NULL, "/lines", "counts per turn", "counts without it");
 }
 
-static void squares(FILE *f, double rate, int tracks)
+static void squares_of(FILE *f, double rate, int tracks, const char *low, const char *high)
 {
   for (int i = 0; i < 20000; i++) {
     double t = i / rate, phase[2] = {pinion(t) * 60 / (2 * M_PI), gear(t) * 60 / (2 * M_PI)};
@@ -129,10 +129,15 @@ static void squares(FILE *f, double rate, int tracks)
     for (int m = 0; m < 2; m++)
       for (int k = 0; k < tracks; k++) {
         double p = phase[m] - 0.25 * k;
-        fprintf(f, ";%.1f", p - floor(p) < 0.5 ? 4.9 : 0.1);
+        fprintf(f, ";%s", p - floor(p) < 0.5 ? high : low);
       }
     fputc('\n', f);
   }
+}
+
+static void squares(FILE *f, double rate, int tracks)
+{
+  squares_of(f, rate, tracks, "0.1", "4.9");
 }
 
 static void test_headings(void)
@@ -216,15 +221,22 @@ static void test_squares(void)
   struct eo_tracks tracks;
   struct eo_notes notes;
   struct eo_error error = {0};
-  for (int k = 1; k <= 2; k++) {
-    FILE *f = begin(k == 1 ? "t_s;Pinion_TTL [V];Gear_TTL [V]\n"
-                           : "t;Pinion_A [V];Pinion_B [V];Gear_A [V];Gear_B [V]\n");
-    squares(f, 40000, k);
+  for (int i = 0; i < 4; i++) {
+    int k = i % 2 + 1;
+    FILE *f = begin(i == 0   ? "t_s;Pinion_TTL [V];Gear_TTL [V]\n"
+                    : i == 1 ? "t;Pinion_A [V];Pinion_B [V];Gear_A [V];Gear_B [V]\n"
+                    : i == 2 ? "t_s;Pinion_TTL;Gear_TTL\n"
+                             : "t;Pinion_A;Pinion_B;Gear_A;Gear_B\n");
+    if (i < 2)
+      squares(f, 40000, k);
+    else
+      squares_of(f, 40000, k, i == 2 ? "LOW" : "False", i == 2 ? "HIGH" : "True");
     struct eo_recording *r = find(f, &lines, &tracks, &notes, &error);
     double turns = r ? (double)eo_recording_length(r, 0) / tracks.channel[0].lines : NAN;
     ok(r && tracks.channel[0].track == EO_TRACK_PULSES && tracks.channel[0].lines == (k == 1 ? 60 : 240) &&
            fabs(turns - SPEED * 0.5 / (2 * M_PI)) < 0.05,
-       "square waves of %d track%s: %.4g turns%s", k, k == 1 ? "" : "s", turns, r ? "" : error.text);
+       "square waves of %d track%s, in %s: %.4g turns%s", k, k == 1 ? "" : "s", i < 2 ? "volts" : "words", turns,
+       r ? "" : error.text);
     eo_recording_free(r);
   }
   check_changes();
@@ -244,7 +256,7 @@ static double pulse_time(int member, int k)
 }
 
 /* The pulses come out at their times, but for one offset that both have. */
-static void pulses_are_right(FILE *f, double tolerance, const char *what)
+static void pulses_are_right_until(FILE *f, int count, double tolerance, const char *what)
 {
   struct eo_layout_choice choice = {.kind = EO_LAYOUT_PULSES, .lines = {512, 2048}};
   struct eo_tracks tracks;
@@ -252,7 +264,7 @@ static void pulses_are_right(FILE *f, double tolerance, const char *what)
   struct eo_error error = {0};
   double most = 0, shift = 0;
   struct eo_recording *r = find(f, &choice, &tracks, &notes, &error);
-  for (int k = 0; r && k < ROWS; k++)
+  for (int k = 0; r && k < count; k++)
     for (int m = 0; m < 2; m++) {
       double off = cell_of(r, k, tracks.channel[m].column[0]) * tracks.time_scale - pulse_time(m, k);
       shift = k || m ? shift : off;
@@ -260,6 +272,11 @@ static void pulses_are_right(FILE *f, double tolerance, const char *what)
     }
   ok(r && most < tolerance, "%s: %.2g s off%s", what, most, r ? "" : error.text);
   eo_recording_free(r);
+}
+
+static void pulses_are_right(FILE *f, double tolerance, const char *what)
+{
+  pulses_are_right_until(f, ROWS, tolerance, what);
 }
 
 /* Columns of ticks alone, of a counter that starts again. */
@@ -292,6 +309,38 @@ static void test_pulse_counters(void)
   pulses_are_right(f, 2e-9, "pulses in nanoseconds since 1970, which doubles do not hold");
 }
 
+/* One row for each pulse of either encoder, with the edge it is; both: the other edges stand between them. */
+static void events(const char *header, bool numbered, bool both)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  FILE *f = begin(header);
+  int next[2] = {0}, number = 0;
+  while (next[0] < ROWS || next[1] < ROWS) {
+    double at[2];
+    for (int m = 0; m < 2; m++)
+      at[m] = pulse_time(m, next[m] / 2) + (next[m] % 2 ? 3e-5 : 0);
+    int m = at[1] < at[0];
+    bool falling = next[m]++ % 2;
+    if (falling && !both)
+      continue;
+    if (numbered)
+      fprintf(f, "%d,%s,%.9f\n", number++, name[m], at[m]);
+    else
+      fprintf(f, "%.9f,%s,%s\n", at[m], name[m], falling ? "falling" : "rising");
+  }
+  pulses_are_right_until(f, ROWS / 2, 1e-8,
+                         numbered ? "pulses that are numbered"
+                         : both   ? "both edges of each pulse"
+                                  : "pulses in rows that name their channel and edge");
+}
+
+static void test_events(void)
+{
+  events("time_s,channel,edge\n", false, false);
+  events("time_s,Kanal,Flanke\n", false, true);
+  events("pulse_no,shaft,time_s\n", true, false);
+}
+
 int main(void)
 {
   fixture_open();
@@ -305,5 +354,6 @@ int main(void)
   test_repeated_rows();
   test_squares();
   test_pulse_counters();
+  test_events();
   return fixture_close();
 }
