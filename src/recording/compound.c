@@ -18,6 +18,7 @@
 #define FRACTION_WORDS "fraction|frac|fractional|fractions|subsec|subsecond|subseconds|bruchteil"
 #define STEP_WORDS "dt|δt|Δt|∆t"
 #define DIFFERENCE_WORDS "delta|diff|difference|differenz|step|increment|interval|intervall|schritt|Δ|∆|since"
+#define PERIOD_WORDS "period|periods|periode|periodendauer|periodo|abstand"
 #define TIME_WORDS "t|time|times|zeit|temps|tiempo|tempo"
 
 /* One column of the new recording. */
@@ -156,6 +157,27 @@ static struct group group_at(const struct compound *compound, int column)
   return group;
 }
 
+/* Values that neither fall below 0 nor go on. */
+static bool may_be_steps(const struct eo_column *look)
+{
+  return look->count > 1 && look->low >= 0 && look->high > 0 && look->rises < look->count * 3 / 4;
+}
+
+/* Columns of periods or intervals and of nothing else: of the pulses of both encoders, each the time since the one
+   before, in a unit of time or in ticks of a stated clock. */
+static bool holds_periods(const struct compound *compound)
+{
+  bool periods = compound->columns == 2, ticks = eo_recording_tick(compound->recording) > 0;
+  for (int c = 0; c < compound->columns && periods; c++) {
+    enum eo_quantity quantity = compound->look[c].quantity;
+    periods = eo_column_named(eo_recording_name(compound->recording, c), DIFFERENCE_WORDS "|" PERIOD_WORDS) &&
+              (quantity == EO_QUANTITY_TIME ||
+               (ticks && (quantity == EO_QUANTITY_COUNT || quantity == EO_QUANTITY_NONE))) &&
+              may_be_steps(&compound->look[c]);
+  }
+  return periods;
+}
+
 /* Times below each other, of which each is one step after the last. */
 static bool holds_steps(const struct compound *compound, int column)
 {
@@ -163,8 +185,7 @@ static bool holds_steps(const struct compound *compound, int column)
   const char *name = eo_recording_name(compound->recording, column);
   bool time = look->quantity == EO_QUANTITY_TIME || eo_column_named(name, TIME_WORDS);
   bool named = eo_column_named(name, STEP_WORDS) || (time && eo_column_named(name, DIFFERENCE_WORDS));
-  return named && (look->quantity == EO_QUANTITY_TIME || look->quantity == EO_QUANTITY_NONE) && look->count > 1 &&
-         look->low >= 0 && look->high > 0 && look->rises < look->count * 3 / 4;
+  return named && (look->quantity == EO_QUANTITY_TIME || look->quantity == EO_QUANTITY_NONE) && may_be_steps(look);
 }
 
 /* Steps of time count where they are all that the file tells of it. */
@@ -342,9 +363,11 @@ static enum eo_code find_groups(struct compound *compound, bool *any, struct eo_
     EO_TRY(check_groups(compound, error));
   settle_groups(compound);
   *any = compound->groups < compound->columns;
-  int steps = *any ? -1 : find_steps(compound);
-  if (steps >= 0)
-    *any = compound->group[steps].steps = true, compound->group[steps].scale[0] = 1;
+  bool periods = !*any && holds_periods(compound);
+  int steps = *any || periods ? -1 : find_steps(compound);
+  for (int g = 0; g < compound->groups; g++)
+    if (periods || g == steps)
+      *any = compound->group[g].steps = true, compound->group[g].scale[0] = 1;
   return find_overflows(compound, any, error);
 }
 
@@ -404,9 +427,11 @@ static void describe(const struct compound *compound, struct eo_recording *out)
 
 static void note_groups(const struct compound *compound, struct eo_notes *notes)
 {
+  int steps = 0;
   for (int g = 0; g < compound->groups; g++) {
     const struct group *group = &compound->group[g];
     const char *name = eo_recording_name(compound->recording, group->column[0]);
+    steps += group->steps;
     if (group->steps)
       eo_notes_add(notes, "Column %d \"%s\" holds steps of time: their sums are the times.", group->column[0] + 1,
                    name);
@@ -421,6 +446,8 @@ static void note_groups(const struct compound *compound, struct eo_notes *notes)
                    eo_recording_name(compound->recording, group->column[group->parts - 1]),
                    group->angle ? "angle" : "time");
   }
+  if (steps > 1)
+    eo_notes_add(notes, "The first steps of both columns are taken to begin at one time, which steps do not tell.");
 }
 
 static enum eo_code rewrite(struct compound *compound, const char *spool_directory, struct eo_recording **made,

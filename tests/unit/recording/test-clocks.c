@@ -309,6 +309,24 @@ static void test_pulse_counters(void)
   pulses_are_right(f, 2e-9, "pulses in nanoseconds since 1970, which doubles do not hold");
 }
 
+static void test_periods(void)
+{
+  static const char *const headers[] = {"Pinion period [us];Gear period [us]\n",
+                                        "Clock: 80 MHz\nPinion pulse interval [ticks];Gear pulse interval [ticks]\n"};
+  for (int way = 0; way < 2; way++) {
+    FILE *f = begin(headers[way]);
+    double unit = way ? 1.25e-8 : 1e-6, before[2] = {0, 0};
+    for (int k = 0; k < ROWS; k++)
+      for (int m = 0; m < 2; m++) {
+        double now = way ? unit * round(pulse_time(m, k) / unit) : pulse_time(m, k);
+        fprintf(f, way ? "%.0f%c" : "%.7f%c", (now - before[m]) / unit, m ? '\n' : ';');
+        before[m] = now;
+      }
+    pulses_are_right(f, way ? 1.1 * unit : 1e-9,
+                     way ? "periods in ticks add up" : "periods add up to the times of pulses");
+  }
+}
+
 /* One row for each pulse of either encoder, with the edge it is; both: the other edges stand between them. */
 static void events(const char *header, bool numbered, bool both)
 {
@@ -354,6 +372,7 @@ int main(void)
   test_repeated_rows();
   test_squares();
   test_pulse_counters();
+  test_periods();
   test_events();
   return fixture_close();
 }
