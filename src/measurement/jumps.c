@@ -206,6 +206,33 @@ static void note_lost_counts(struct eo_angles_maker *maker, const struct eo_usua
   maker->losses++;
 }
 
+static void leave_out(struct eo_angles_maker *maker, int64_t row, int count)
+{
+  if (!maker->spikes)
+    maker->spike_row = row;
+  maker->spikes += count;
+}
+
+/* How many samples from here on are far off; few at the end of all are, whatever might have followed. */
+static int count_spikes(const struct eo_angles_maker *maker, const struct eo_usual *usual,
+                        const struct eo_sample *sample, int left, bool final)
+{
+  int length = spike_length(usual, usual->limit, &maker->last, sample, left);
+  return !length && final && left < EO_AHEAD ? left : length;
+}
+
+/* The sample that was kept first of all is what is far off, when those behind it go on alike; it has not left `out`. */
+static bool begins_wrong(struct eo_angles_maker *maker, int *written)
+{
+  if (maker->kept > 1 || maker->spikes >= EO_AHEAD)
+    return false;
+  leave_out(maker, maker->last.row, 1);
+  maker->kept = 0;
+  maker->begun = false;
+  *written = 0;
+  return true;
+}
+
 enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *angles, bool final, double (*out)[3],
                               int *written, struct eo_error *error)
 {
@@ -225,18 +252,18 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
     bool judge = maker->known && maker->begun;
     if (judge && (usual->uneven || odd_step(usual, usual->limit, &maker->last, sample, excess)) &&
         odd_beside(maker, usual, sample, maker->held - i, &here, excess)) {
-      int skip = spike_length(&here, here.limit, &maker->last, sample, maker->held - i);
+      int skip = count_spikes(maker, &here, sample, maker->held - i, final);
       if (skip) {
-        if (!maker->spikes)
-          maker->spike_row = sample->row;
-        maker->spikes += skip;
+        leave_out(maker, sample->row, skip);
         i += skip - 1;
         continue;
       }
-      judge_jump(maker, angles, &here, excess, sample);
+      if (!begins_wrong(maker, written))
+        judge_jump(maker, angles, &here, excess, sample);
     } else if (judge && !usual->uneven && odd_step(usual, usual->fine, &maker->last, sample, excess)) {
       note_lost_counts(maker, usual, excess, sample, maker->held - i);
-    } else if (judge && sample->time - maker->last.time > usual->gap && sample->row - maker->last.row == 1) {
+    } else if (judge && !maker->sampler.pulses && sample->time - maker->last.time > usual->gap &&
+               sample->row - maker->last.row == 1) { /* of pulses their lines say it */
       angles->dropped += llround((sample->time - maker->last.time) / usual->interval) - 1;
       if (!maker->gaps++)
         maker->gap_row = sample->row;

@@ -236,7 +236,9 @@ double eo_scan_period(const struct eo_scan_column *column, double turn)
     alike += fabs(sorted[i] / period - 1) < 0.1;
   bool first_differs = kept > 1 && alike == wide - 1 && fabs(column->jump[0] / period - 1) >= 0.1;
   free(sorted);
-  return wide && (alike >= 0.8 * wide || first_differs) && range < 1.05 * period ? period : NAN;
+  /* What was zeroed in between reaches over more than a turn, but not over two. */
+  double widest = turn > 0 && fabs(period / turn - 1) < 0.05 ? 2 : 1.05;
+  return wide && (alike >= 0.8 * wide || first_differs) && range < widest * period ? period : NAN;
 }
 
 /* Values that come back after so many rows were wrong ones. */

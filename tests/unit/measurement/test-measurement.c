@@ -263,7 +263,12 @@ static void check_faults(void)
   check_fault(pulses, EO_FAULT_DOUBLE_PULSE, 9000, 1, EO_FINDING_PULSE, false, 9001, "a pulse that is there twice");
   pulses.missing[EO_GEAR] = 2;
   check_clean(&pulses, "a wheel with two teeth missing");
+  pulses.missing[EO_PINION] = 1;
+  check_clean(&pulses, "both wheels with teeth missing");
   check_fault(s, EO_FAULT_SPIKE, 9000, 1, EO_FINDING_SPIKE, false, 9000, "a value far off");
+  const int64_t last = eo_synthetic_rows(&s) - 1;
+  check_fault(s, EO_FAULT_SPIKE, 0, 1, EO_FINDING_SPIKE, false, 0, "the first value far off");
+  check_fault(s, EO_FAULT_SPIKE, last, 1, EO_FINDING_SPIKE, false, last, "the last value far off");
 }
 
 static void check_limits(void)

@@ -209,6 +209,26 @@ static void test_pulse_order(void)
   }
 }
 
+/* An angle that starts again after a turn and is zeroed in between has one turn all the same. */
+static void test_zeroed_turns(void)
+{
+  const struct eo_tracks tracks = {
+      .time_column = -1, .time_scale = 1, .interval = 1e-3, .channel = {{.column = {0}}, {.column = {1}}}};
+  struct eo_recording *recording = NULL;
+  struct eo_scan *scan = calloc(1, sizeof *scan);
+  struct eo_error error;
+  bool made = scan && !eo_recording_new(&recording, 2, NULL, &error);
+  for (int i = 0; i < 5000 && made; i++) {
+    double row[2] = {fmod(100 + 1.5 * i, 360) - (i < 2500 ? 0 : 123.4), 0.6 * i};
+    made = !eo_recording_append(recording, row, 1, &error);
+  }
+  made = made && !eo_scan_run(scan, recording, &tracks, NULL, &error);
+  close_to(made ? eo_scan_period(&scan->column[0][0], 360) : NAN, 360, 1e-9, "the turn of an angle that was zeroed");
+  ok(made && isnan(eo_scan_period(&scan->column[1][0], 360)), "an angle that goes on has none");
+  eo_recording_free(recording);
+  free(scan);
+}
+
 int main(void)
 {
   test_ellipse();
@@ -218,5 +238,6 @@ int main(void)
   test_noise();
   test_rms();
   test_pulse_order();
+  test_zeroed_turns();
   return tap_done();
 }
