@@ -2,6 +2,7 @@
 #include "recording/compound.h"
 #include "recording/column.h"
 #include "recording/overflow.h"
+#include "recording/steps.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -16,10 +17,6 @@
 #define FAULTY 100          /* one row in so many may go the wrong way */
 
 #define FRACTION_WORDS "fraction|frac|fractional|fractions|subsec|subsecond|subseconds|bruchteil"
-#define STEP_WORDS "dt|δt|Δt|∆t"
-#define DIFFERENCE_WORDS "delta|diff|difference|differenz|step|increment|interval|intervall|schritt|Δ|∆|since"
-#define PERIOD_WORDS "period|periods|periode|periodendauer|periodo|abstand"
-#define TIME_WORDS "t|time|times|zeit|temps|tiempo|tempo"
 
 /* One column of the new recording. */
 struct group {
@@ -155,56 +152,6 @@ static struct group group_at(const struct compound *compound, int column)
     group.turn = turn_of(look, scale);
   }
   return group;
-}
-
-/* Values that neither fall below 0 nor go on. */
-static bool may_be_steps(const struct eo_column *look)
-{
-  return look->count > 1 && look->low >= 0 && look->high > 0 && look->rises < look->count * 3 / 4;
-}
-
-/* Columns of periods or intervals and of nothing else: of the pulses of both encoders, each the time since the one
-   before, in a unit of time or in ticks of a stated clock. */
-static bool holds_periods(const struct compound *compound)
-{
-  bool periods = compound->columns == 2, ticks = eo_recording_tick(compound->recording) > 0;
-  for (int c = 0; c < compound->columns && periods; c++) {
-    enum eo_quantity quantity = compound->look[c].quantity;
-    periods = eo_column_named(eo_recording_name(compound->recording, c), DIFFERENCE_WORDS "|" PERIOD_WORDS) &&
-              (quantity == EO_QUANTITY_TIME ||
-               (ticks && (quantity == EO_QUANTITY_COUNT || quantity == EO_QUANTITY_NONE))) &&
-              may_be_steps(&compound->look[c]);
-  }
-  return periods;
-}
-
-/* Times below each other, of which each is one step after the last. */
-static bool holds_steps(const struct compound *compound, int column)
-{
-  const struct eo_column *look = &compound->look[column];
-  const char *name = eo_recording_name(compound->recording, column);
-  bool time = look->quantity == EO_QUANTITY_TIME || eo_column_named(name, TIME_WORDS);
-  bool named = eo_column_named(name, STEP_WORDS) || (time && eo_column_named(name, DIFFERENCE_WORDS));
-  return named && (look->quantity == EO_QUANTITY_TIME || look->quantity == EO_QUANTITY_NONE) && may_be_steps(look);
-}
-
-/* Steps of time count where they are all that the file tells of it. */
-static int find_steps(const struct compound *compound)
-{
-  int steps = -1, found = 0;
-  for (int c = 0; c < compound->columns; c++) {
-    const struct eo_column *look = &compound->look[c];
-    bool called = look->quantity == EO_QUANTITY_TIME ||
-                  eo_column_named(eo_recording_name(compound->recording, c), TIME_WORDS "|timestamp");
-    if (eo_recording_clock(compound->recording, c).interval > 0 ||
-        eo_recording_clock(compound->recording, c).column >= 0)
-      return -1;
-    if (holds_steps(compound, c))
-      steps = c, found++;
-    else if (called && look->step > 0 && look->falls <= look->rises / 10)
-      return -1;
-  }
-  return found == 1 ? steps : -1;
 }
 
 /* Value of the group in a row, NaN where a part is missing. */
@@ -363,10 +310,11 @@ static enum eo_code find_groups(struct compound *compound, bool *any, struct eo_
     EO_TRY(check_groups(compound, error));
   settle_groups(compound);
   *any = compound->groups < compound->columns;
-  bool periods = !*any && holds_periods(compound);
-  int steps = *any || periods ? -1 : find_steps(compound);
+  bool steps[EO_RECORDING_COLUMNS] = {false}; /* of columns that all stand alone */
+  if (!*any)
+    eo_steps_find(compound->recording, compound->look, steps);
   for (int g = 0; g < compound->groups; g++)
-    if (periods || g == steps)
+    if (steps[g])
       *any = compound->group[g].steps = true, compound->group[g].scale[0] = 1;
   return find_overflows(compound, any, error);
 }
