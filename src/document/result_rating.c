@@ -37,6 +37,7 @@ static const char *const standards_2019[] = {
 /* What no published report has confirmed and the standard's own text was not at hand for. */
 static const char *const unchecked_2006[] = {
     "K_V at and above the main resonance (N above 0.85)",
+    "the stiffness of the teeth below a specific load of 100 N/mm",
     "f_sh of method C and its constants K'; running-in of through hardened and nitrided teeth",
     "Z_W with R_zH above 3 um and of two through hardened members; fading of Z_L, Z_v, Z_R, Z_W towards the static end",
     "Y_drelT and Y_RrelT of other than case hardened teeth; Y_DT",
@@ -47,6 +48,7 @@ static const char *const unchecked_2006[] = {
     NULL};
 static const char *const unchecked_2019[] = {
     "K_V at and above the main resonance (N above 0.85)",
+    "the stiffness of the teeth below a specific load of 100 N/mm",
     "f_sh of method C and its constants K'; running-in of through hardened and nitrided teeth",
     "f_ZCa, f_eps and Y_beta of 2019 on helical pairs",
     "F_pT, F_alphaT, F_betaT and their parts of ISO 1328-1:2013 (one source)",
@@ -205,14 +207,16 @@ static const struct eo_outline_row basis_rows[] = {
     EO_KEY("eps_alpha", "number", "transverse contact ratio", OF_BASIS(geometry.transverse_contact_ratio)),
     EO_KEY("eps_beta", "number", "overlap ratio of one end", OF_BASIS(geometry.overlap_ratio)),
     EO_KEY("eps_gamma", "number", "total contact ratio", .write = write_total_ratio),
-    EO_KEY("c_single_N_per_mm_um", "number", "c', solid discs, C_M = 0.8, z_n = z/(cos^2 beta_b cos beta)",
+    EO_KEY("c_single_N_per_mm_um", "number",
+           "c' from 100 N/mm of specific load on, solid discs, C_M = 0.8, z_n = z/(cos^2 beta_b cos beta)",
            .unit = &eo_unit_N_per_mm_um, OF_BASIS(stiffness.single)),
-    EO_KEY("c_gamma_alpha_N_per_mm_um", "number", "mesh stiffness of K_V and K_Halpha", .unit = &eo_unit_N_per_mm_um,
-           OF_BASIS(stiffness.mesh_alpha)),
-    EO_KEY("c_gamma_beta_N_per_mm_um", "number", "mesh stiffness of K_Hbeta", .unit = &eo_unit_N_per_mm_um,
+    EO_KEY("c_gamma_alpha_N_per_mm_um", "number", "mesh stiffness of K_V and K_Halpha, likewise",
+           .unit = &eo_unit_N_per_mm_um, OF_BASIS(stiffness.mesh_alpha)),
+    EO_KEY("c_gamma_beta_N_per_mm_um", "number", "mesh stiffness of K_Hbeta, likewise", .unit = &eo_unit_N_per_mm_um,
            OF_BASIS(stiffness.mesh_beta)),
     EO_KEY("m_red_kg_per_m", "number", "reduced mass per face width, rims down to the bores", OF_BASIS(reduced_mass)),
-    EO_KEY("n_E1_rpm", "number", "resonance speed of the pinion", .unit = &eo_unit_rpm, .write = write_resonance),
+    EO_KEY("n_E1_rpm", "number", "resonance speed of the pinion, likewise", .unit = &eo_unit_rpm,
+           .write = write_resonance),
     EO_KEY("f_ma_um", "number", "mesh misalignment: root of the sum of squares of both helix slope tolerances",
            .unit = &eo_unit_um, OF_BASIS(mesh_deviation)),
     EO_KEY("rho_red_mm", "number", "relative curvature radius of Z_R and Z_W", .unit = &eo_unit_mm,

@@ -29,11 +29,11 @@ struct eo_rating_basis {
   struct eo_rating_input input;
   struct eo_rating_pair pair;
   struct eo_rating_geometry geometry;
-  struct eo_iso_stiffness stiffness;
+  struct eo_iso_stiffness stiffness;      /* from 100 N/mm on; a load case has what a light load leaves of it */
   struct eo_flank_tolerance tolerance[2]; /* [member] */
   double base_pitch_tolerance[2];         /* f_pb */
   double reduced_mass;                    /* kg/m */
-  double resonance_speed;                 /* n_E1, 1/s */
+  double resonance_speed;                 /* n_E1, 1/s, of that stiffness */
   double mesh_deviation;                  /* f_ma */
   struct eo_strength strength[2];
   double hardness[2];                    /* HV, as stated or assumed */
@@ -73,6 +73,8 @@ struct eo_rated_case {
   double tangential_force; /* F_t */
   double velocity;         /* at the reference cylinder, m/s */
   struct eo_dynamic_factor dynamic;
+  double line_load;                                          /* w = F_t K_A K_gamma/b */
+  double light_load;                                         /* of c', c_gamma: below 1 where w is small */
   double resonance_ratio;                                    /* N */
   double shaft_deviation, helix_deviation, helix_running_in; /* f_sh, F_beta_x, y_beta */
   struct eo_rated_factors method_c;                          /* K_V method B, K_Hbeta method C, K_Halpha method B */

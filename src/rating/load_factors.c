@@ -28,6 +28,15 @@ double eo_resonance_speed(int pinion_teeth, double mesh_stiffness, double reduce
   return sqrt(mesh_stiffness / reduced_mass) / (2 * M_PI * pinion_teeth);
 }
 
+/* Specific load below which both N_S and the stiffness of the teeth fall, N/mm. */
+static const double light_load = 100;
+
+/* ISO 6336-1 9.3.2.5. */
+double eo_light_load_factor(double line_load)
+{
+  return fmin(1, pow(per_mm(line_load) / light_load, 0.25));
+}
+
 /* Table 8: C_v1 .. C_v7. */
 struct influences {
   double pitch, profile, relief;         /* C_v1 .. C_v3, subcritical */
@@ -54,8 +63,8 @@ static const double resonance_end = 1.15, fast_begin = 1.5;
 
 static double subcritical_end(double line_load)
 {
-  const double light = 100, normal = 0.85; /* N/mm, N_S */
-  return line_load < light ? 0.5 + 0.35 * sqrt(line_load / light) : normal;
+  const double normal = 0.85; /* N_S */
+  return line_load < light_load ? 0.5 + 0.35 * sqrt(line_load / light_load) : normal;
 }
 
 /* 6.5.4 to 6.5.7. */

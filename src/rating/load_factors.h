@@ -22,6 +22,10 @@ double eo_reduced_mass(const struct eo_wheel_blank blank[2], double gear_ratio);
 /* n_E1, 1/s, from c_gamma_alpha, Pa (6.5.3 (6)). */
 double eo_resonance_speed(int pinion_teeth, double mesh_stiffness, double reduced_mass);
 
+/* Teeth under a light load are softer: what c' and c_gamma are multiplied with below w = 100 N/mm (9.3.2.5),
+   (w/100)^0.25; 1 from there on. line_load: w = F_t K_A K_gamma/b, N/m. */
+double eo_light_load_factor(double line_load);
+
 struct eo_dynamic_input {
   double resonance_ratio;     /* N = n_1/n_E1 */
   double total_contact_ratio; /* eps_gamma > 1 */

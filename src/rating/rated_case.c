@@ -23,11 +23,12 @@ static double running_in(const struct eo_rating_basis *basis, double velocity, d
   return sum / 2;
 }
 
-/* F_t K_A K_gamma/b. */
-static double line_load(const struct eo_rating_basis *basis, const struct eo_rated_case *rated_case)
+/* F_t K_A K_gamma/b, and what it leaves of the stiffness. */
+static void find_line_load(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis)
 {
-  return rated_case->tangential_force * basis->input.rating->application_factor * rated_case->load.sharing /
-         basis->pair.face_width;
+  rated_case->line_load = rated_case->tangential_force * basis->input.rating->application_factor *
+                          rated_case->load.sharing / basis->pair.face_width;
+  rated_case->light_load = eo_light_load_factor(rated_case->line_load);
 }
 
 static double profile_deviation(const struct eo_rating_basis *basis)
@@ -42,12 +43,13 @@ static enum eo_code find_dynamic(struct eo_rated_case *rated_case, const struct 
   double relief = basis->input.tip_relief, pitch = larger(basis->base_pitch_tolerance);
   if (!(relief > 0))
     relief = (eo_running_in_relief(basis->strength[0].flank) + eo_running_in_relief(basis->strength[1].flank)) / 2;
-  rated_case->resonance_ratio = rated_case->load.speed / (2 * M_PI) / basis->resonance_speed;
+  rated_case->resonance_ratio = rated_case->load.speed / (2 * M_PI) /
+                                (basis->resonance_speed * sqrt(rated_case->light_load)); /* (6) */
   const struct eo_dynamic_input in = {
       .resonance_ratio = rated_case->resonance_ratio,
       .total_contact_ratio = basis->geometry.transverse_contact_ratio + basis->geometry.overlap_ratio,
-      .single_stiffness = basis->stiffness.single,
-      .line_load = line_load(basis, rated_case),
+      .single_stiffness = basis->stiffness.single * rated_case->light_load,
+      .line_load = rated_case->line_load,
       .pitch_deviation = pitch,
       .profile_deviation = profile_deviation(basis),
       .pitch_running_in = running_in(basis, rated_case->velocity, pitch),
@@ -84,7 +86,7 @@ static enum eo_code find_face(struct eo_rated_case *rated_case, const struct eo_
                               struct eo_error *error)
 {
   const struct eo_rating_settings *settings = basis->input.rating;
-  double b1, b2, load = line_load(basis, rated_case) * rated_case->method_c.dynamic, running = 0;
+  double b1, b2, load = rated_case->line_load * rated_case->method_c.dynamic, running = 0;
   EO_TRY(find_shaft_deviation(rated_case, basis, load, error));
   eo_helix_measure_factors(settings->helix_measure, &b1, &b2);
   double least = eo_least_deviation(load, fmax(basis->tolerance[0].helix_slope, basis->tolerance[1].helix_slope));
@@ -94,7 +96,7 @@ static enum eo_code find_face(struct eo_rated_case *rated_case, const struct eo_
                                    rated_case->helix_deviation);
   rated_case->helix_running_in = running / 2;
   rated_case->method_c.face = eo_face_load_factor(rated_case->helix_deviation - rated_case->helix_running_in,
-                                                  basis->stiffness.mesh_beta, load);
+                                                  basis->stiffness.mesh_beta * rated_case->light_load, load);
   return EO_OK;
 }
 
@@ -108,11 +110,11 @@ static void complete_factors(struct eo_rated_factors *factors, const struct eo_r
       .transverse_contact_ratio = geometry->transverse_contact_ratio,
       .total_contact_ratio = geometry->transverse_contact_ratio + geometry->overlap_ratio,
       .contact_ratio_factor = eo_contact_ratio_factor(geometry->transverse_contact_ratio, geometry->overlap_ratio),
-      .mesh_stiffness = basis->stiffness.mesh_alpha,
+      .mesh_stiffness = basis->stiffness.mesh_alpha * rated_case->light_load,
       .pitch_deviation = pitch,
       .profile_deviation = profile_deviation(basis),
       .running_in = running_in(basis, rated_case->velocity, pitch),
-      .line_load = line_load(basis, rated_case) * factors->dynamic * factors->face};
+      .line_load = rated_case->line_load * factors->dynamic * factors->face};
   struct eo_transverse_factor share = eo_transverse_factor(&in);
   factors->share = share.flank;
   factors->root_share = share.root;
@@ -140,6 +142,7 @@ static void choose_factors(struct eo_rated_case *rated_case, const struct eo_rat
 static enum eo_code find_factors(struct eo_rated_case *rated_case, const struct eo_rating_basis *basis,
                                  struct eo_error *error)
 {
+  find_line_load(rated_case, basis);
   EO_TRY(find_dynamic(rated_case, basis, error));
   enum eo_code code = find_face(rated_case, basis, error);
   if (code && (basis->input.rating->load_factors == EO_FACTORS_STANDARD || isnan(rated_case->load.face)))

@@ -153,6 +153,34 @@ static void check_helical(void)
   ok(c.used.face == c.method_c.face && c.used.share == c.method_c.share, "the standard's factors alone, when chosen");
 }
 
+/* ISO 6336-1 9.3.2.5, by hand: 6.25 N/mm is a sixteenth of 100, whose fourth root halves c' and all that goes with it.
+ */
+static void check_light_load(void)
+{
+  struct eo_error error = {0};
+  struct eo_geometry g;
+  struct eo_rating_settings settings;
+  const struct eo_material steel = {.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7800};
+  struct eo_rating_basis basis = helical_basis(&g, &settings, &steel);
+  struct eo_rated_case light, full;
+  settings.load_factors = EO_FACTORS_STANDARD;
+  double force = 100e3 * g.face_width / settings.application_factor; /* F_t at 100 N/mm, N */
+  struct eo_rating_load load = {
+      .torque = force * g.reference_radius[0], .speed = 30, .time = 3e7, .sharing = 1, .dynamic = NAN, .share = NAN};
+  eo_rated_case_find(&full, &basis, &load, &error);
+  load.torque /= 16;
+  ok(!eo_rated_case_find(&light, &basis, &load, &error), "a light load is rated: %s", error.text);
+  near(full.resonance_ratio, load.speed / (2 * M_PI * basis.resonance_speed), 1e-12, "from 100 N/mm on N is n/n_E1");
+  near(light.resonance_ratio, M_SQRT2 * full.resonance_ratio, 1e-12, "half the stiffness: n_E1 over the root of 2");
+  double span = light.helix_deviation - light.helix_running_in, mean = 6.25e3 * light.method_c.dynamic;
+  near(light.method_c.face, eo_face_load_factor(span, basis.stiffness.mesh_beta / 2, mean), 1e-12,
+       "K_Hbeta of half the stiffness");
+  double pitch = fmax(basis.base_pitch_tolerance[0], basis.base_pitch_tolerance[1]);
+  near(light.dynamic.pitch_share, basis.stiffness.single / 2 * (pitch - fmin(0.075 * pitch, 3e-6)) / 6.25e3, 1e-12,
+       "B_p of half of c'");
+  near(full.dynamic.pitch_share, light.dynamic.pitch_share / 8, 1e-12, "and of all of it at 100 N/mm");
+}
+
 /* One class is its own spectrum; a class cut into two equal ones changes nothing; half the time, half the damage. */
 static void check_spectrum(void)
 {
@@ -252,6 +280,7 @@ int main(void)
 {
   check_spur();
   check_helical();
+  check_light_load();
   check_spectrum();
   check_refusals();
   check_tribology();
