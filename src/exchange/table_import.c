@@ -23,6 +23,7 @@ struct reader {
   bool wide;     /* one design per row */
   int row, ends; /* of what is being read, from 0 */
   json_t *design;
+  json_t *given; /* path -> [line or column from 1, value] of the cells that were read */
 };
 
 /* A block of rows below its header. */
@@ -182,16 +183,52 @@ static json_t *read_value(struct reader *reader, const struct eo_design_key *key
   return whole ? eo_json_whole(value) : json_real(value);
 }
 
+/* The earlier cell that another value at the path would overrule, of it or of a key within it: its line, in a wide
+   table its column, from 1; 0: none, or the same value. */
+static int overruled(const struct reader *reader, const char *path, const json_t *value)
+{
+  const char *other;
+  json_t *earlier;
+  size_t length = strlen(path);
+  json_object_foreach(reader->given, other, earlier)
+  {
+    if (strncmp(other, path, length) == 0 && (other[length] == '.' || !other[length]) &&
+        !json_equal(json_array_get(earlier, 1), value))
+      return (int)json_integer_value(json_array_get(earlier, 0));
+  }
+  return 0;
+}
+
+/* A value at a path, borrowed; none twice. */
+static void put_at(struct reader *reader, const char *path, int column, json_t *value)
+{
+  int here = reader->wide ? column + 1 : reader->row + 1, earlier = overruled(reader, path, value);
+  if (earlier) {
+    char places[80];
+    snprintf(places, sizeof places, reader->wide ? "columns %d and %d" : "lines %d and %d", earlier, here);
+    fault(reader, column, "given_twice", "%.150s has different values in %s; keep one of them.", path, places);
+    return;
+  }
+  enum eo_code code = eo_design_key_set(reader->design, path, json_incref(value));
+  if (code == EO_ERROR_INPUT)
+    fault(reader, column, "contradiction", "%.150s lies within a key that another cell gives a value as a whole.%s",
+          path, "");
+  if (code == EO_ERROR_MEMORY || json_object_set_new(reader->given, path, json_pack("[i, O]", here, value)) != 0)
+    reader->out->failed = true;
+}
+
 static void put(struct reader *reader, const struct eo_design_key *key, int column, json_t *value)
 {
-  for (int i = 0; i < key->paths && value; i++) {
-    enum eo_code code = eo_design_key_set(reader->design, key->path[i], json_incref(value));
-    if (code == EO_ERROR_INPUT)
-      fault(reader, column, "contradiction", "%.150s lies within a key that another cell gives a value as a whole.%s",
-            key->path[i], "");
-    reader->out->failed = code == EO_ERROR_MEMORY || reader->out->failed;
-  }
+  for (int i = 0; i < key->paths && value; i++)
+    put_at(reader, key->path[i], column, value);
   json_decref(value);
+}
+
+static void put_name(struct reader *reader, int column)
+{
+  json_t *name = json_string(eo_cells_at(reader->cells, reader->row, column));
+  put_at(reader, "name", column, name);
+  json_decref(name);
 }
 
 /* "C_a [um]": the unit in the name. */
@@ -218,7 +255,7 @@ static void read_row(struct reader *reader, const struct block *block)
   if (!*name || *name == '#' || (!*cell[0] && !*cell[1]))
     return;
   if (strcmp(name, "name") == 0) {
-    json_object_set_new(reader->design, "name", json_string(cell[0]));
+    put_name(reader, block->value[0]);
     return;
   }
   if (eo_design_key_is_derived(name)) {
@@ -329,7 +366,7 @@ static void read_wide_row(struct reader *reader)
     if (!*cell || !*name)
       continue;
     if (strcmp(name, "name") == 0)
-      json_object_set_new(reader->design, "name", json_string(cell));
+      put_name(reader, column);
     else if (!eo_design_key_find(&key, name, 0, reader->ends))
       fault(reader, column, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s",
             name, "");
@@ -388,15 +425,16 @@ void eo_import_table(struct eo_import *out, const char *bytes, size_t size, bool
   struct eo_error error;
   enum eo_code code = workbook ? eo_cells_read_workbook(&cells, bytes, size, &error)
                                : eo_cells_read(&cells, bytes, size, &error);
-  struct reader reader = {.out = out, .cells = &cells, .ends = 2, .design = json_object()};
+  struct reader reader = {.out = out, .cells = &cells, .ends = 2, .design = json_object(), .given = json_object()};
   snprintf(out->format, sizeof out->format, workbook ? "workbook" : "table");
-  if (code == EO_ERROR_MEMORY || !reader.design)
+  if (code == EO_ERROR_MEMORY || !reader.design || !reader.given)
     out->failed = true;
   else if (code)
     eo_import_fault(out, "not_readable", "%s", error.text);
   else if (find_decimal_sign(&reader))
     read_designs(&reader, options);
   eo_cells_done(&cells);
+  json_decref(reader.given);
   if (out->taken)
     out->design = reader.design;
   else

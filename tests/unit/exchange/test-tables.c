@@ -118,6 +118,14 @@ static void check_questions(void)
      "a point for thousands");
   ok(is_faulty(HEAD "zz;17;;\n", "unknown_key", 2), "a symbol that is none");
   ok(is_faulty(HEAD "m_n;6;5;mm\n", "one_value", 2), "two modules");
+  ok(is_faulty(HEAD "z;21;86;\nm_n;4;;\nz;22;86;\n", "given_twice", 4),
+     "a row that stands twice with different values");
+  ok(is_faulty(HEAD "a;200;;\na_w;201;;\n", "given_twice", 3), "one key by two symbols");
+  ok(is_faulty(HEAD "load_cases.1.torque_Nm;5;;\nload_cases;\"[]\";;\n", "given_twice", 3),
+     "a list that would overrule what an earlier row put into it");
+  ok(is_faulty(HEAD "name;one;;\nz;17;44;\nname;two;;\n", "given_twice", 4), "two names");
+  ok(is_faulty("m_n,m_n [mm]\n4,5\n", "given_twice", 2), "a column that stands twice with different values");
+  close_to(number_in(HEAD "z;21;86;\nz;21;86;\n", "gear_pair/gear_teeth"), 86, 0, "the same row twice is one");
   ok(is_faulty("key;pinion;wheel\nz;1;2\n", "unknown_column", 1), "a column that is none");
   ok(is_faulty("m_n,C_a\n4,3\n", "member_needed", 2), "a row that does not say whose relief it is");
   ok(is_faulty(HEAD "gear_pair.ends;two;;\n", "not_a_number", 2), "a number in words");
