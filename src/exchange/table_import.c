@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of designs. Either blocks, each with a header "key;pinion;gear;unit", one design per block; or a header of
-   keys and one design per row. What could mean two things is asked for, not guessed. */
-#include <ctype.h>
+/* Tables of designs. Either blocks, each with a header "key;pinion;gear;unit" (the first word is free), one design per
+   block; or a header of keys and one design per row. What could mean two things is asked for, not guessed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "exchange/cell_number.h"
 #include "exchange/cells.h"
 #include "exchange/design_keys.h"
 #include "exchange/import.h"
@@ -19,9 +19,10 @@ enum { DESIGNS = 2000 };
 struct reader {
   struct eo_import *out;
   const struct eo_cells *cells;
-  bool comma;    /* is the decimal sign */
-  bool wide;     /* one design per row */
-  int row, ends; /* of what is being read, from 0 */
+  bool comma;       /* is the decimal sign */
+  bool wide;        /* one design per row */
+  int row, ends;    /* of what is being read, from 0 */
+  const char *head; /* first cell of the header of each block: "key", or what the table has in its place */
   json_t *design;
   json_t *given; /* path -> [line or column from 1, value] of the cells that were read */
 };
@@ -45,17 +46,6 @@ static void fault(struct reader *reader, int column, const char *kind, const cha
 
 /* Numbers: */
 
-/* Digits on both sides of a sign somewhere in the cell, and nothing that makes it a text. */
-static bool has_decimal(const char *cell, char sign)
-{
-  if (strspn(cell, "+-0123456789.,eE") != strlen(cell))
-    return false;
-  for (const char *at = cell; (at = strchr(at, sign)); at++)
-    if (at > cell && isdigit((unsigned char)at[-1]) && isdigit((unsigned char)at[1]))
-      return true;
-  return false;
-}
-
 /* One decimal sign for the whole table; false: both stand in it. */
 static bool find_decimal_sign(struct reader *reader)
 {
@@ -63,8 +53,8 @@ static bool find_decimal_sign(struct reader *reader)
   for (int row = 0; row < reader->cells->rows; row++)
     for (int column = 0; column < reader->cells->columns; column++) {
       const char *cell = eo_cells_at(reader->cells, row, column);
-      reader->comma = reader->comma || has_decimal(cell, ',');
-      point_row = has_decimal(cell, '.') ? row : point_row;
+      reader->comma = reader->comma || eo_cell_has_decimal(cell, ',');
+      point_row = eo_cell_has_decimal(cell, '.') ? row : point_row;
     }
   if (!reader->comma || point_row < 0)
     return true;
@@ -75,49 +65,14 @@ static bool find_decimal_sign(struct reader *reader)
   return false;
 }
 
-/* 24°30'36" or 24 30 36: degrees, minutes, seconds. */
-static double read_sexagesimal(const char *cell)
-{
-  double part[3] = {0}, value;
-  int count = 0;
-  const char *at = cell + (*cell == '-');
-  while (*at && count < 3) {
-    char *end;
-    if (!isdigit((unsigned char)*at))
-      return NAN;
-    part[count++] = strtod(at, &end);
-    at = end;
-    while (*at && !isdigit((unsigned char)*at)) {
-      if (!strchr(" '\"", *at) && strncmp(at, "°", 2) != 0 && (unsigned char)*at != 0xB0)
-        return NAN;
-      at++;
-    }
-  }
-  value = part[0] + part[1] / 60 + part[2] / 3600;
-  return count < 2 || *at || part[1] >= 60 || part[2] >= 60 ? NAN : *cell == '-' ? -value : value;
-}
-
-static double read_number(const struct reader *reader, const char *cell)
-{
-  char text[80], *end;
-  size_t length = strlen(cell);
-  if (length >= sizeof text || strspn(cell, "+-.,0123456789eE") != length || !length)
-    return NAN;
-  snprintf(text, sizeof text, "%s", cell);
-  for (char *c = text; *c && reader->comma; c++)
-    *c = *c == ',' ? '.' : *c;
-  double value = strtod(text, &end);
-  return *end || !isfinite(value) ? NAN : value;
-}
-
 /* A number in the unit that the row states, or that its name is usually in. NaN: a fault is told. */
 static double read_quantity(struct reader *reader, const struct eo_design_key *key, const char *name, const char *cell,
                             const char *unit, int column)
 {
-  double value = read_number(reader, cell);
+  double value = eo_cell_number(cell, reader->comma);
   bool angle = key->field->unit && strcmp(key->field->unit->suffix, "deg") == 0;
   if (isnan(value) && angle)
-    value = read_sexagesimal(cell);
+    value = eo_cell_sexagesimal(cell);
   if (isnan(value)) {
     fault(reader, column, "not_a_number", "%s is \"%.60s\"; a number is needed.", name, cell);
     return NAN;
@@ -244,6 +199,15 @@ static void split_unit(const char *cell, char name[EO_KEY_PATH], char unit[40])
     snprintf(unit, 40, "%.*s", (int)(close - cell - (long)length - 1), cell + length + 1);
 }
 
+static void unknown_key(struct reader *reader, int row, int column, const char *name)
+{
+  int reading = reader->row;
+  reader->row = row;
+  fault(reader, column, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s",
+        name, "");
+  reader->row = reading;
+}
+
 /* One row: for each member its own value, or one for both. */
 static void read_row(struct reader *reader, const struct block *block)
 {
@@ -265,8 +229,7 @@ static void read_row(struct reader *reader, const struct block *block)
   }
   struct eo_design_key key[2];
   if (!eo_design_key_find(&key[0], name, 0, reader->ends) || !eo_design_key_find(&key[1], name, 1, reader->ends)) {
-    fault(reader, 0, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s", name,
-          "");
+    unknown_key(reader, reader->row, 0, name);
     return;
   }
   if (!key[0].of_member && *cell[0] && *cell[1] && strcmp(cell[0], cell[1]) != 0) {
@@ -281,9 +244,54 @@ static void read_row(struct reader *reader, const struct block *block)
 
 /* Designs: */
 
-static bool is_header(const struct eo_cells *cells, int row)
+static bool is_values(const char *cell)
 {
-  return strcasecmp(eo_cells_at(cells, row, 0), "key") == 0;
+  return strcasecmp(cell, "pinion") == 0 || strcasecmp(cell, "value") == 0;
+}
+
+/* A column of values is named in the row. */
+static bool names_values(const struct eo_cells *cells, int row)
+{
+  for (int column = 1; column < cells->columns; column++)
+    if (is_values(eo_cells_at(cells, row, column)))
+      return true;
+  return false;
+}
+
+static bool is_key(const char *head)
+{
+  return strcasecmp(head, "key") == 0;
+}
+
+static bool is_header(const struct reader *reader, int row)
+{
+  return strcasecmp(eo_cells_at(reader->cells, row, 0), reader->head) == 0 &&
+         (is_key(reader->head) || names_values(reader->cells, row));
+}
+
+/* The first row names keys of a design. */
+static bool is_wide(const struct reader *reader)
+{
+  char name[EO_KEY_PATH], unit[40];
+  struct eo_design_key key;
+  for (int column = 0; column < reader->cells->columns; column++) {
+    split_unit(eo_cells_at(reader->cells, 0, column), name, unit);
+    if (strcmp(name, "name") == 0 || eo_design_key_find(&key, name, 0, reader->ends))
+      return true;
+  }
+  return false;
+}
+
+/* The word that heads the first column of blocks; NULL: there are none. */
+static const char *find_head(const struct reader *reader)
+{
+  for (int row = 0; row < reader->cells->rows; row++)
+    if (is_key(eo_cells_at(reader->cells, row, 0)))
+      return "key";
+  for (int row = 0; row < reader->cells->rows && !is_wide(reader); row++)
+    if (names_values(reader->cells, row))
+      return eo_cells_at(reader->cells, row, 0);
+  return NULL;
 }
 
 static bool read_header(struct reader *reader, int row, struct block *block)
@@ -291,7 +299,7 @@ static bool read_header(struct reader *reader, int row, struct block *block)
   *block = (struct block){.first = row + 1, .value = {-1, -1}, .unit = -1};
   for (int column = 1; column < reader->cells->columns; column++) {
     const char *cell = eo_cells_at(reader->cells, row, column);
-    if (strcasecmp(cell, "pinion") == 0 || strcasecmp(cell, "value") == 0)
+    if (is_values(cell))
       block->value[0] = column;
     else if (strcasecmp(cell, "gear") == 0)
       block->value[1] = column;
@@ -305,7 +313,7 @@ static bool read_header(struct reader *reader, int row, struct block *block)
   reader->row = row;
   if (block->value[0] < 0)
     fault(reader, 0, "no_values", "The header has no column \"pinion\"%s%s.", "", "");
-  for (block->last = block->first; block->last < reader->cells->rows && !is_header(reader->cells, block->last);)
+  for (block->last = block->first; block->last < reader->cells->rows && !is_header(reader, block->last);)
     block->last++;
   return block->value[0] >= 0;
 }
@@ -342,7 +350,7 @@ static int read_blocks(struct reader *reader, int wanted)
   int designs = 0;
   struct block block, chosen = {0};
   for (int row = 0; row < reader->cells->rows && designs < DESIGNS; row++) {
-    if (!is_header(reader->cells, row) || !read_header(reader, row, &block))
+    if (!is_header(reader, row) || !read_header(reader, row, &block))
       continue;
     list_design(reader->out, name_in(reader->cells, &block));
     if (++designs == (wanted ? wanted : 1))
@@ -368,8 +376,7 @@ static void read_wide_row(struct reader *reader)
     if (strcmp(name, "name") == 0)
       put_name(reader, column);
     else if (!eo_design_key_find(&key, name, 0, reader->ends))
-      fault(reader, column, "unknown_key", "\"%.100s\" is neither a key of a design nor a symbol that is known here.%s",
-            name, "");
+      unknown_key(reader, 0, column, name);
     else if (key.of_member)
       fault(reader, column, "member_needed",
             "\"%.100s\" could be the pinion's or the gear's; write the whole key, as %.150s.", name, key.path[0]);
@@ -401,13 +408,18 @@ static int read_rows(struct reader *reader, int wanted)
 
 static void read_designs(struct reader *reader, const struct eo_import_options *options)
 {
-  reader->wide = true;
-  for (int row = 0; row < reader->cells->rows; row++)
-    reader->wide = reader->wide && !is_header(reader->cells, row);
-  int designs = reader->wide ? read_rows(reader, options->pair) : read_blocks(reader, options->pair);
+  int designs = 0;
+  reader->head = find_head(reader);
+  reader->wide = !reader->head && is_wide(reader);
+  if (reader->head)
+    designs = read_blocks(reader, options->pair);
+  else if (reader->wide)
+    designs = read_rows(reader, options->pair);
   if (!designs)
-    eo_import_fault(reader->out, "no_design",
-                    "The table holds no design: it begins neither with key;pinion;gear;unit nor with a row of keys.");
+    eo_import_fault(
+        reader->out, "no_design",
+        "The table holds no design: it begins neither with key;pinion;gear;unit nor with a row of keys. Head "
+        "its columns so.");
   else if (!options->pair && designs > 1)
     eo_import_fault(reader->out, "choice_needed", "The table has %d designs; choose one by its number (--pair N).",
                     designs);

@@ -95,6 +95,13 @@ static void check_symbols(void)
   static const char spelt[] = HEAD "beta;24°30'36\";;\nC_a [um];14;;\nmodification.left.root_relief_um;0.5;;\n";
   close_to(number_in(spelt, "gear_pair/helix_angle_deg"), 24.51, 1e-12, "degrees, minutes and seconds");
   close_to(number_in(spelt, "modification/pinion/left/root_relief_um"), 0.5, 0, "a key says its own unit");
+  close_to(number_in("quantity;pinion;gear;unit\nz;21;86;\n", "gear_pair/gear_teeth"), 86, 0,
+           "the column of names has a head of its own");
+  close_to(number_in("Sheet 7\nParameter;Value\nm_n [mm];4\n", "gear_pair/normal_module_mm"), 4, 0,
+           "a head below a title, one column of values");
+  close_to(number_in(";pinion;gear;unit\n\nz;21;86;\n", "gear_pair/gear_teeth"), 86, 0, "or none");
+  close_to(number_in("name;load_cases.1.driver;m_n [mm]\nvalue;pinion;4\n", "gear_pair/normal_module_mm"), 4, 0,
+           "a word of a head among the values of a design");
   static const char tabs[] = "key\tpinion\tunit\nz\t17\t\n";
   close_to(number_in(tabs, "gear_pair/pinion_teeth"), 17, 0, "tabs");
   static const char wide[] = "name,gear_pair.pinion_teeth,m_n [mm],C_a\n\"a, b\",19,4,\n";
@@ -127,6 +134,10 @@ static void check_questions(void)
   ok(is_faulty("m_n,m_n [mm]\n4,5\n", "given_twice", 2), "a column that stands twice with different values");
   close_to(number_in(HEAD "z;21;86;\nz;21;86;\n", "gear_pair/gear_teeth"), 86, 0, "the same row twice is one");
   ok(is_faulty("key;pinion;wheel\nz;1;2\n", "unknown_column", 1), "a column that is none");
+  ok(is_faulty("Parameter;pinion;gear\nz;1;2\nHelix angle;28;\n", "unknown_key", 3),
+     "a name that is no key, at its line");
+  ok(is_faulty("m_n [mm];Helix angle\n4;28\n", "unknown_key", 1), "a head that is no key, at the line of heads");
+  ok(is_faulty("Teeth;21;86\nModule;4;4\n", "no_design", 0), "a table without heads has no design, not one per row");
   ok(is_faulty("m_n,C_a\n4,3\n", "member_needed", 2), "a row that does not say whose relief it is");
   ok(is_faulty(HEAD "gear_pair.ends;two;;\n", "not_a_number", 2), "a number in words");
 }
