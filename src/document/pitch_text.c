@@ -40,6 +40,7 @@ struct reading {
   double *value;                   /* [FLANKS][HEADINGS][MOST_TEETH + 1], owned; NaN: not stated */
   int least[FLANKS], most[FLANKS]; /* tooth numbers seen */
   int line_of[FLANKS];             /* of the last row of a flank; 0: none */
+  int decimals[FLANKS];            /* of its finest single pitch deviation */
 };
 
 static double *value_of(const struct reading *reading, int flank, int heading, int tooth)
@@ -145,17 +146,28 @@ static enum eo_code read_word(const struct reading *reading, const char *cell, c
   return *index || strcmp(cell, word[0]) == 0 ? EO_OK : refuse(reading, error, what, cell);
 }
 
+/* Decimals that are not 0 of a number with a point. */
+static int decimals_of(const char *cell)
+{
+  const char *point = strchr(cell, '.'), *exponent = strpbrk(cell, "eE");
+  int decimals = 0;
+  for (int i = 1; point && isdigit((unsigned char)point[i]); i++)
+    decimals = point[i] == '0' ? decimals : i;
+  return decimals - (exponent ? (int)strtol(exponent + 1, NULL, 10) : 0);
+}
+
 /* One row: its numbers, the tooth and the flank they belong to. */
 static enum eo_code read_row(struct reading *reading, struct eo_error *error)
 {
   static const char *const *const words[3] = {member_name, end_name, side_name};
   char cell[MOST_CELL];
   double number[HEADINGS] = {0};
-  int place[3] = {0}, i = 0;
+  int place[3] = {0}, i = 0, decimals = 0;
   for (; i < reading->columns && next_cell(reading, cell); i++) {
     enum heading heading = reading->heading[i];
     EO_TRY(heading >= MEMBER ? read_word(reading, cell, words[heading - MEMBER], &place[heading - MEMBER], error)
                              : read_number(reading, cell, &number[heading], error));
+    decimals = heading == SINGLE ? decimals_of(cell) : decimals;
   }
   if (i < reading->columns || next_cell(reading, cell))
     return eo_error_set(error, EO_ERROR_INPUT, NULL, "Line %d of the table does not have %d cells as the headings do.",
@@ -172,6 +184,7 @@ static enum eo_code read_row(struct reading *reading, struct eo_error *error)
   reading->least[flank] = reading->line_of[flank] == 0 || tooth < reading->least[flank] ? tooth : reading->least[flank];
   reading->most[flank] = tooth > reading->most[flank] ? tooth : reading->most[flank];
   reading->line_of[flank] = reading->line;
+  reading->decimals[flank] = decimals > reading->decimals[flank] ? decimals : reading->decimals[flank];
   next_line(reading);
   return EO_OK;
 }
@@ -184,8 +197,37 @@ static json_t *reach(json_t *object, const char *key)
   return json_object_get(object, key);
 }
 
+/* f_i = F_i - F_i-1 adds up to 0 round a gear, but for the rounding of the numbers: of each evenly within half of its
+   last place, four times the spread of their sum at most; and of numbers that were computed on, a five-hundredth of
+   what unrelated ones add up to.
+ */
+static enum eo_code check_closed(const struct reading *reading, bool whole, int flank, struct eo_error *error)
+{
+  static const double SPREADS = 4, CLOSED = 0.002;
+  char whose[60] = "";
+  double sum = 0, squares = 0, teeth = reading->most[flank] - reading->least[flank] + 1;
+  for (int tooth = reading->least[flank]; tooth <= reading->most[flank]; tooth++) {
+    double single = *value_of(reading, flank, SINGLE, tooth);
+    sum += single;
+    squares += single * single;
+  }
+  double rounding = pow(10, -reading->decimals[flank]) * fmin(SPREADS * sqrt(teeth / 12), teeth / 2);
+  if (fabs(sum) <= fmax(rounding, CLOSED * sqrt(squares)))
+    return EO_OK;
+  if (whole)
+    snprintf(whose, sizeof whose, " of the %s, %s end, %s flank,", member_name[flank / 4], end_name[flank / 2 % 2],
+             side_name[flank % 2]);
+  return eo_error_set(
+      error, EO_ERROR_INPUT, NULL,
+      "The single pitch deviations (single_um)%s add up to %.4g um over %g teeth; round a gear they add "
+      "up to 0, that of the first tooth against the last included. If they are index deviations, name "
+      "the column index_um.",
+      whose, sum, teeth);
+}
+
 /* The arrays of one flank; single pitch deviations add up to index deviations, tooth 0 having 0. */
-static enum eo_code put_flank(const struct reading *reading, int flank, json_t *object, struct eo_error *error)
+static enum eo_code put_flank(const struct reading *reading, bool whole, int flank, json_t *object,
+                              struct eo_error *error)
 {
   int first = reading->least[flank];
   for (int tooth = first; tooth <= reading->most[flank]; tooth++)
@@ -195,6 +237,8 @@ static enum eo_code put_flank(const struct reading *reading, int flank, json_t *
   if (first > 1)
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
                         "The table begins with tooth %d: teeth are counted from 0 or from 1.", first);
+  if (reading->has[SINGLE])
+    EO_TRY(check_closed(reading, whole, flank, error));
   for (int heading = INDEX; heading <= LEAD_CROWNING; heading++) {
     json_t *row = reading->has[heading] ? json_array() : NULL;
     double sum = 0;
@@ -219,7 +263,7 @@ static enum eo_code put_all(const struct reading *reading, bool whole, json_t *o
       place = reach(reach(object, member_name[flank / 4]), end_name[flank / 2 % 2]);
       place = flank % 2 ? reach(place, "coast") : place;
     }
-    EO_TRY(put_flank(reading, flank, place, error));
+    EO_TRY(put_flank(reading, whole, flank, place, error));
   }
   return EO_OK;
 }
@@ -228,7 +272,10 @@ static enum eo_code read_all(struct reading *reading, bool whole, json_t *object
 {
   skip_remarks(reading);
   EO_TRY(read_headings(reading, whole, error));
-  for (skip_remarks(reading); *reading->at; skip_remarks(reading))
+  skip_remarks(reading);
+  if (!*reading->at)
+    return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table has headings and not one tooth below them.");
+  for (; *reading->at; skip_remarks(reading))
     EO_TRY(read_row(reading, error));
   return put_all(reading, whole, object, error);
 }

@@ -314,7 +314,7 @@ static void test_document(void)
   static struct eo_pitch read, again;
   struct eo_faults *faults = calloc(1, sizeof *faults);
   json_t *object = json_pack("{s:{s:i,s:{s:s}},s:{s:f,s:{s:{s:[f,f]}}}}", "pinion", "tolerance_class", 5, "left", "csv",
-                             "# teeth\ntooth;single_um;helix_slope_um\n1;0;1\n2;1,5;1\n3;-0,5;1\n4;2;1\n5;0;1\n",
+                             "# teeth\ntooth;single_um;helix_slope_um\n1;-3;1\n2;1,5;1\n3;-0,5;1\n4;2;1\n5;0;1\n",
                              "gear", "eccentricity_um", 3.5, "right", "coast", "index_um", 1.0, -1.0);
   struct eo_gear_pair teeth = pair->gear_pair;
   teeth.teeth[EO_PINION] = 5;
@@ -346,6 +346,20 @@ static void test_document(void)
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,index_um\\n0,1\\n0,2\\n\"}}}", "/pitch/gear/left/csv", "already"),
      "a tooth that is there twice");
   ok(faulty("{\"csv\":\"tooth,index_um\\n0,1\\n\"}", "/pitch/csv", "member"), "a table of the pair says whose teeth");
+  ok(faulty("{\"csv\":\"member,end,flank,tooth,single_um\\ngear,left,coast,1,0\\ngear,left,coast,2,1.5\\n"
+            "gear,left,coast,3,1.5\\n\"}",
+            "/pitch/csv", "of the gear, left end, coast flank, add up to 3 um over 3 teeth"),
+     "single pitch deviations that do not come back to the first tooth name whose they are and their sum");
+  ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.4\\n3,-0.1\\n\"}}}", "/pitch/gear/left/csv",
+            "index_um"),
+     "... and ask whether they are index deviations");
+  ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.3\\n3,-0.8\\n\"}}}",
+            "/pitch/gear/left/single_um", "") ||
+         faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.3\\n3,-0.8\\n\"}}}",
+                "/pitch/gear/left/index_um", "3"),
+     "a sum that rounding to tenths leaves is none: the next fault is that of three teeth");
+  ok(faulty("{\"csv\":\"member,end,flank,tooth,index_um\\n\"}", "/pitch/csv", "not one tooth"),
+     "headings without teeth");
   ok(faulty("{\"pinion\":{\"eccentricity\":1}}", "/pitch/pinion/eccentricity", ""), "an unknown key");
 }
 
