@@ -199,8 +199,7 @@ static json_t *reach(json_t *object, const char *key)
 
 /* f_i = F_i - F_i-1 adds up to 0 round a gear, but for the rounding of the numbers: of each evenly within half of its
    last place, four times the spread of their sum at most; and of numbers that were computed on, a five-hundredth of
-   what unrelated ones add up to.
- */
+   what unrelated ones add up to. */
 static enum eo_code check_closed(const struct reading *reading, bool whole, int flank, struct eo_error *error)
 {
   static const double SPREADS = 4, CLOSED = 0.002;

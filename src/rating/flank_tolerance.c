@@ -44,28 +44,30 @@ struct eo_axis_tolerance eo_axis_tolerance(double helix_total, double span_over_
   return (struct eo_axis_tolerance){.in_plane = 2 * out_of_plane, .out_of_plane = out_of_plane};
 }
 
-static enum eo_code check_range(double value, double low, double high, const char *key, const char *unit,
-                                struct eo_error *error)
+static enum eo_code check_range(const char *name, double value, double low, double high, const char *key,
+                                const char *unit, struct eo_error *error)
 {
   const double slack = 1e-9; /* 5 mm in m and back */
   if (value >= low * (1 - slack) && value <= high * (1 + slack))
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, key,
-                      "%.9g%s is outside the range of ISO 1328-1, %.9g .. %.9g%s: state the tolerances yourself.",
-                      value, unit, low, high, unit);
+  return eo_error_set(
+      error, EO_ERROR_INPUT, key,
+      "The %s, %.9g%s, is outside the range of ISO 1328-1, %.9g .. %.9g%s: state the tolerances yourself.", name, value,
+      unit, low, high, unit);
 }
 
 static enum eo_code check_input(enum eo_tolerance_edition edition, const struct eo_tolerance_input *in,
                                 struct eo_error *error)
 {
   bool new = edition == EO_ISO1328_2013;
-  EO_TRY(check_range(1e3 * in->reference_diameter, 5, new ? 15000 : 10000, "/reference_diameter_mm", " mm", error));
-  EO_TRY(check_range(1e3 * in->normal_module, 0.5, 70, "/normal_module_mm", " mm", error));
-  EO_TRY(check_range(1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error));
-  EO_TRY(new ? check_range(in->grade, 1, 11, "/tolerance_class", "", error)
-             : check_range(in->grade, 0, 12, "/grade", "", error));
+  EO_TRY(check_range("reference diameter", 1e3 * in->reference_diameter, 5, new ? 15000 : 10000,
+                     "/reference_diameter_mm", " mm", error));
+  EO_TRY(check_range("normal module", 1e3 * in->normal_module, 0.5, 70, "/normal_module_mm", " mm", error));
+  EO_TRY(check_range("face width", 1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error));
+  EO_TRY(new ? check_range("tolerance class", in->grade, 1, 11, "/tolerance_class", "", error)
+             : check_range("grade", in->grade, 0, 12, "/grade", "", error));
   if (in->teeth)
-    EO_TRY(check_range(in->teeth, 5, new ? 1000 : INFINITY, "/teeth", "", error));
+    EO_TRY(check_range("number of teeth", in->teeth, 5, new ? 1000 : INFINITY, "/teeth", "", error));
   return EO_OK;
 }
 
