@@ -20,6 +20,8 @@
 #define WANTED_WORDS                                                                                                \
   "soll|set|setpoint|setpos|cmd|command|commanded|target|demand|demanded|desired|expected|vorgabe|consigne|wanted|" \
   "simulated|simulation|theoretical|ideal|computed|calculated|predicted|nominal|nenn|rated"
+/* What took the mesh orders out of an angle; a load it leaves as it is. */
+#define FILTERED_WORDS "filtered|filt|smooth|smoothed|lowpass|avg|averaged|average|gefiltert|geglattet|filtre|filtrado"
 /* What is no load or speed of the pair's shafts, or a part of it alone. */
 #define ASIDE_WORDS                                                                                                  \
   "friction|reib|reibung|loss|losses|verlust|bending|biege|limit|grenz|max|maximum|min|minimum|ripple|error|fehler|" \
@@ -95,7 +97,8 @@ static int points_of(const struct eo_guess *guess, int column)
           : q == EO_QUANTITY_COUNT ? 3
                                    : 0) +
          2 * eo_column_named(name, "phi|angle|winkel|encoder|enc|pos|position|theta|angulo|angolo") +
-         4 * eo_column_named(name, MEASURED_WORDS) - 8 * eo_column_named(name, WANTED_WORDS);
+         4 * eo_column_named(name, MEASURED_WORDS) -
+         8 * (eo_column_named(name, WANTED_WORDS) || eo_column_named(name, FILTERED_WORDS));
 }
 
 /* Names that tell two columns apart as those of pinion and gear. */

@@ -213,6 +213,9 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
     text++, length--;
   if (length >= 2 && opens(text[0]) && closes(text[length - 1]))
     text++, length -= 2;
+  const char *since = strstr(text, " since ");
+  if (since) /* "seconds since 2024-03-05", as climate data have it */
+    length = (size_t)(since - text);
   if (length > 2 && text[length - 1] == '.') /* an abbreviation */
     length--;
   if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))

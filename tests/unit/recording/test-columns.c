@@ -61,7 +61,8 @@ static void test_pairs(void)
 {
   static const char *const wanted[] = {"Winkel_Ritzel_Soll;Winkel_Rad_Soll;Winkel_Ritzel_Ist;Winkel_Rad_Ist",
                                        "Axis1.SetPos;Axis2.SetPos;Axis1.ActPos;Axis2.ActPos",
-                                       "cmd_pinion;cmd_gear;pinion;gear"};
+                                       "cmd_pinion;cmd_gear;pinion;gear",
+                                       "pinion_filtered;gear_filtered;pinion_raw;gear_raw"};
   char header[200];
   for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
     snprintf(header, sizeof header, "t [s];%s\n", wanted[i]);

@@ -137,6 +137,7 @@ static void test_units(void)
   unit("kN-m", EO_QUANTITY_TORQUE, 1e3);
   unit("N mm", EO_QUANTITY_TORQUE, 1e-3);
   unit("kgf\xc2\xb7m", EO_QUANTITY_TORQUE, 9.80665);
+  unit("microseconds since 2024-03-05", EO_QUANTITY_TIME, 1e-6);
   unit("krpm", EO_QUANTITY_SPEED, 100 * M_PI / 3);
   unit("nm", EO_QUANTITY_OTHER, 1);
   unit("S", EO_QUANTITY_NONE, 1);
