@@ -80,7 +80,7 @@ bool eo_sheet_text_next(struct eo_sheet_text *text, const char *name)
     return false;
   text->writing = text->pass == EO_SHEET_FACTS ? text->sheet[sheet].facts : is_table(text, sheet);
   if (text->pass == EO_SHEET_TABLES && text->writing && text->tables > 1)
-    fprintf(text->file, "Sheet: %s\n", text->sheet[sheet].name);
+    fputs("Sheet: ", text->file), fputs(text->sheet[sheet].name, text->file), putc('\n', text->file);
   return text->writing;
 }
 
