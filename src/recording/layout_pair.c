@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define CLOSE 3e-3       /* of a ratio: teeth pass with errors of micrometres, other ratios are further away */
+#define TIES 64          /* pairs that are compared; more are a question */
 #define COMPARED 2000    /* rows */
 #define SAME_SIGNAL 1e-4 /* of a step: rounding of one signal; shafts that are coupled differ by more */
 
@@ -149,7 +150,7 @@ static bool are_one_signal(const struct eo_guess *guess, int a, int b)
 
 bool eo_layout_find_pair(struct eo_guess *guess)
 {
-  int best = -1000, pair[2] = {-1, -1}, rival[2] = {-1, -1};
+  int best = -1000, ties = 0, pair[2] = {-1, -1}, rival[2] = {-1, -1};
   if (!guess->pair || guess->pair->teeth[0] < 1 || guess->pair->teeth[0] == guess->pair->teeth[1])
     return false;
   for (int i = 0; i < guess->candidates; i++)
@@ -157,7 +158,8 @@ bool eo_layout_find_pair(struct eo_guess *guess)
       int a = guess->candidate[i], b = guess->candidate[k], points = pair_points(guess, a, b);
       if (points < best || !may_turn(guess, a) || !may_turn(guess, b) || !fits_teeth(guess, a, b))
         continue;
-      bool other = points == best && !(are_one_signal(guess, a, pair[0]) && are_one_signal(guess, b, pair[1]));
+      bool other = points == best && rival[0] < 0 &&
+                   (++ties > TIES || !(are_one_signal(guess, a, pair[0]) && are_one_signal(guess, b, pair[1])));
       if (points == best && !other)
         continue;
       int *to = other ? rival : pair;

@@ -54,7 +54,7 @@ static const struct {
     {"mrev", EO_QUANTITY_ANGLE, TURN * 1e-3},
     {"count counts cnt cnts cts ct inc incs increment increments inkr ink inkrement inkremente tick ticks pulse pulses "
      "puls pulse(s) impuls impulse imp lsb adc digit digits step steps schritt schritte strich striche edges flanken "
-     "quadcounts",
+     "quadcounts cuenta cuentas impulso impulsos impulsi conteggio conteggi coups",
      EO_QUANTITY_COUNT, 1},
     {"v volt volts", EO_QUANTITY_VOLTAGE, 1},
     {"mv", EO_QUANTITY_VOLTAGE, 1e-3},

@@ -130,11 +130,10 @@ static void settle_unit(char name[EO_RECORDING_NAME], char unit[EO_RECORDING_UNI
   if (!*unit || eo_unit_find(unit, &factor) != EO_QUANTITY_NONE)
     return;
   snprintf(first, sizeof first, "%.*s", (int)strcspn(unit, ",;"), unit);
+  snprintf(shorter, sizeof shorter, "%s", name);
   if (eo_unit_find(first, &factor) == EO_QUANTITY_NONE)
     eo_unit_split(name, shorter, (int)sizeof shorter, first, (int)sizeof first);
-  else
-    snprintf(shorter, sizeof shorter, "%s", name);
-  if (eo_unit_find(first, &factor) == EO_QUANTITY_NONE)
+  if (eo_unit_find(first, &factor) != EO_QUANTITY_COUNT) /* "[V] (36 deg/V)" is for its reader to judge */
     return;
   memcpy(name, shorter, sizeof shorter);
   memcpy(unit, first, sizeof first);
