@@ -218,6 +218,9 @@ static void find_times(struct eo_tree *tree, const struct eo_leaf *series)
     for (int c = series->first; c < series->first + series->channels; c++)
       tree->series[c].clock.column = time->first;
   }
+  struct eo_clock *times = best >= 0 ? &tree->series[tree->series[series->first].clock.column].clock : NULL;
+  if (times && times->epoch == EO_CLOCK_NO_EPOCH) /* what is said of the values holds for their times */
+    times->epoch = tree->series[series->first].clock.epoch;
 }
 
 /* MATLAB counts days since the year 0 ("t0 = 739316.375"). Starts that lie between 1971 and 2108 in such days and

@@ -130,6 +130,28 @@ static void test_texts(void)
   eo_recording_free(r);
 }
 
+/* The start of a channel that has its own times may stand at its values. */
+static void test_start_at_values(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT;
+  hid_t file = open_file();
+  for (int i = 0; i < 2; i++) {
+    hid_t group = H5Gcreate2(file, i ? "pinion" : "gear", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t set = put(group, "data", 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT);
+    put_text(set, "start_time", i ? "2024-03-05T08:59:59.250Z" : "2024-03-05T08:59:59.300Z", 0);
+    H5Dclose(set);
+    H5Dclose(put(group, "time", 1, &count, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, t, H5P_DEFAULT));
+    H5Gclose(group);
+  }
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  int first = r ? eo_recording_clock(r, 0).column : -1, second = r ? eo_recording_clock(r, 2).column : -1;
+  ok(first >= 0 && second >= 0 && eo_recording_clock(r, first).epoch - eo_recording_clock(r, second).epoch == 50000000,
+     "the start that is stated at the values of a channel is that of its times%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 /* Times that are texts, of fixed and of variable length; in between one that is none. */
 static void test_moments(int variable)
 {
@@ -341,6 +363,7 @@ int main(void)
   test_channels();
   test_table();
   test_texts();
+  test_start_at_values();
   test_moments(0);
   test_moments(1);
   test_flat();
