@@ -124,7 +124,8 @@ static enum eo_code helix_tolerance(const struct eo_design *design, double *larg
                                           .face_width = pair->face_width + eo_gear_pair_extra_width(pair, i),
                                           .teeth = pair->teeth[i],
                                           .grade = design->alignment.error_grade,
-                                          .total_contact_ratio = NAN};
+                                          .total_contact_ratio = NAN,
+                                          .helix_angle = pair->helix_angle};
     if (eo_flank_tolerance(&tolerance, eo_rating_tolerance_edition(&design->rating), &in, &found))
       return eo_error_set(error, EO_ERROR_INPUT, "/alignment/shaft_error_grade",
                           "%.300s State the errors themselves instead.", found.text);

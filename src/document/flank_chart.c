@@ -106,7 +106,8 @@ void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geome
                                         .teeth = geometry->teeth[member],
                                         .grade = settings->accuracy_grade,
                                         .total_contact_ratio = geometry->transverse_contact_ratio +
-                                                               geometry->overlap_ratio};
+                                                               geometry->overlap_ratio,
+                                        .helix_angle = geometry->helix_angle};
   *tolerance = (struct eo_flank_tolerance){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   eo_flank_tolerance(tolerance, eo_rating_tolerance_edition(settings), &in, &error);
   snprintf(note, size, "%s", error.text);

@@ -265,7 +265,8 @@ static enum eo_code tolerance_of(const struct eo_design *design, int member, int
                                   .face_width = eo_gear_pair_face_width(pair, end),
                                   .teeth = pair->teeth[member],
                                   .grade = tolerance_settings->grade,
-                                  .total_contact_ratio = NAN};
+                                  .total_contact_ratio = NAN,
+                                  .helix_angle = pair->helix_angle};
   if (eo_flank_tolerance(tolerance, (enum eo_tolerance_edition)tolerance_settings->edition, &in, &found))
     return eo_error_set(error, EO_ERROR_INPUT, "/tolerance/class", "%.380s", found.text);
   return EO_OK;

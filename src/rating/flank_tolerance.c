@@ -64,6 +64,8 @@ static enum eo_code check_input(enum eo_tolerance_edition edition, const struct 
                      "/reference_diameter_mm", " mm", error));
   EO_TRY(check_range("normal module", 1e3 * in->normal_module, 0.5, 70, "/normal_module_mm", " mm", error));
   EO_TRY(check_range("face width", 1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error));
+  if (new)
+    EO_TRY(check_range("helix angle", fabs(in->helix_angle) * 180 / M_PI, 0, 45, "/helix_angle_deg", " deg", error));
   EO_TRY(new ? check_range("tolerance class", in->grade, 1, 11, "/tolerance_class", "", error)
              : check_range("grade", in->grade, 0, 12, "/grade", "", error));
   if (in->teeth)

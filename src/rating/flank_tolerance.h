@@ -20,6 +20,7 @@ struct eo_tolerance_input {
   int teeth;                  /* z, from 5; 0: not known, then F_pk is NaN */
   int grade;                  /* 1995: 0 .. 12; 2013: class 1 .. 11 */
   double total_contact_ratio; /* eps_gamma of the pair; NaN: not known, then f_i', F_i' are NaN */
+  double helix_angle;         /* beta, rad; 2013: up to 45 degrees */
 };
 
 /* Rounded as the standard prints them. What an edition does not state (or an input it lacks) is NaN. */

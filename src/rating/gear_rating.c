@@ -75,7 +75,8 @@ static enum eo_code set_tolerances(struct eo_rating_basis *basis, struct eo_erro
                                     .teeth = basis->pair.teeth[i],
                                     .grade = settings->accuracy_grade,
                                     .total_contact_ratio = basis->geometry.transverse_contact_ratio +
-                                                           basis->geometry.overlap_ratio};
+                                                           basis->geometry.overlap_ratio,
+                                    .helix_angle = basis->pair.helix_angle};
     EO_TRY(eo_flank_tolerance(&basis->tolerance[i], edition, &in, error));
     basis->base_pitch_tolerance[i] = eo_base_pitch_tolerance(basis->tolerance[i].single_pitch,
                                                              basis->geometry.transverse_pressure_angle);

@@ -102,7 +102,8 @@ static enum eo_code class_tolerance(struct eo_flank_tolerance *tolerance, const 
                                            .face_width = geometry->face_width,
                                            .teeth = geometry->teeth[of],
                                            .grade = grade,
-                                           .total_contact_ratio = NAN};
+                                           .total_contact_ratio = NAN,
+                                           .helix_angle = geometry->helix_angle};
   enum eo_code code = eo_flank_tolerance(tolerance, member->edition, &input, error);
   if (code == EO_ERROR_INPUT && error)
     snprintf(error->pointer, sizeof error->pointer, "/pitch/%s/%s", of == EO_PINION ? "pinion" : "gear", key);

@@ -23,7 +23,7 @@ static void test_tolerances(void)
 {
   struct eo_error error = {0};
   struct eo_flank_tolerance t;
-  struct eo_tolerance_input in = {341.183e-3, 14e-3, 360e-3, 24, 6, 2.8841};
+  struct eo_tolerance_input in = {341.183e-3, 14e-3, 360e-3, 24, 6, 2.8841, 0};
   ok(eo_flank_tolerance(&t, EO_ISO1328_1995, &in, &error) == EO_OK, "a report's pinion");
   same_um(t.single_pitch, 14, "f_pt");
   same_um(t.cumulative_pitch, 26, "F_pk over z/8");
@@ -37,7 +37,7 @@ static void test_tolerances(void)
   struct eo_flank_tolerance coarse;
   eo_flank_tolerance(&coarse, EO_ISO1328_1995, &in, &error);
   ok(fabs(coarse.profile_total - 2 * t.profile_total) <= 1.01e-6, "two grades double a tolerance, but for rounding");
-  struct eo_tolerance_input new = {141.34e-3, 8e-3, 100e-3, 17, 5, NAN};
+  struct eo_tolerance_input new = {141.34e-3, 8e-3, 100e-3, 17, 5, NAN, 0};
   ok(eo_flank_tolerance(&t, EO_ISO1328_2013, &new, &error) == EO_OK, "2013");
   same_um(t.single_pitch, 8.5, "f_pT of class 5: 0.14 + 3.2 + 5, rounded to a half");
   ok(isnan(t.tooth_composite) && isnan(t.runout), "what the edition does not state is no number");
@@ -48,7 +48,7 @@ static void test_ranges(void)
 {
   struct eo_error error = {0};
   struct eo_flank_tolerance at, below, above;
-  struct eo_tolerance_input in = {125e-3, 5e-3, 50e-3, 25, 9, NAN};
+  struct eo_tolerance_input in = {125e-3, 5e-3, 50e-3, 25, 9, NAN, 0};
   eo_flank_tolerance(&at, EO_ISO1328_1995, &in, &error);
   in.reference_diameter = 124e-3;
   eo_flank_tolerance(&below, EO_ISO1328_1995, &in, &error);
@@ -65,6 +65,13 @@ static void test_ranges(void)
   ok(eo_flank_tolerance(&at, EO_ISO1328_2013, &in, &error) == EO_ERROR_INPUT &&
          !strcmp(error.pointer, "/tolerance_class"),
      "2013 ends at class 11: %s", error.text);
+  in.grade = 5;
+  in.helix_angle = 45 * degree;
+  ok(eo_flank_tolerance(&at, EO_ISO1328_2013, &in, &error) == EO_OK, "2013 holds up to 45 degrees of helix");
+  in.helix_angle = -46 * degree;
+  ok(eo_flank_tolerance(&at, EO_ISO1328_2013, &in, &error) == EO_ERROR_INPUT &&
+         !strcmp(error.pointer, "/helix_angle_deg"),
+     "and not beyond, on either hand: %s", error.text);
   close_to(1e6 * eo_tolerance_round(9.74e-6), 9.5, 1e-9, "below 10 um halves");
   close_to(1e6 * eo_tolerance_round(10.5e-6), 11, 1e-9, "from 10 um on whole");
   close_to(1e6 * eo_tolerance_round(4.96e-6), 5, 1e-9, "below 5 um tenths");
