@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "design/design.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,19 +37,32 @@ static void resolve_rack(struct eo_gear_pair *pair)
   fill(&pair->fillet_radius_coefficient, rack.fillet_radius_coefficient);
 }
 
-/* "cd25": the letters, then the tolerance. */
+/* "cd25", or "25cd" as other drawings have it, with blanks and capitals: letters and tolerance. What is neither is left
+   to the letters as a whole, to be refused. */
+static int split_series(const struct eo_gear_pair *pair, char letters[sizeof pair->thickness_series])
+{
+  const char *text = pair->thickness_series;
+  int tolerance = 0, end = 0;
+  if (sscanf(text, " %7[a-zA-Z] %2d %n", letters, &tolerance, &end) < 2)
+    sscanf(text, " %2d %7[a-zA-Z] %n", &tolerance, letters, &end);
+  if (text[end])
+    snprintf(letters, sizeof pair->thickness_series, "%s", text);
+  for (char *c = letters; *c; c++)
+    *c = (char)tolower((unsigned char)*c);
+  return tolerance;
+}
+
 static enum eo_code settle_series(struct eo_gear_pair *pair, struct eo_error *error)
 {
   char letters[sizeof pair->thickness_series] = "";
-  size_t length = strcspn(pair->thickness_series, "0123456789");
   if (!*pair->thickness_series)
     return EO_OK;
-  memcpy(letters, pair->thickness_series, length);
+  int tolerance = split_series(pair, letters);
   for (int i = 0; i < 2; i++) {
     struct eo_thickness_allowance of;
     struct eo_error found;
     double diameter = pair->normal_module / cos(pair->helix_angle) * pair->teeth[i];
-    if (eo_thickness_allowance(&of, letters, atoi(pair->thickness_series + length), diameter, &found))
+    if (eo_thickness_allowance(&of, letters, tolerance, diameter, &found))
       return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/thickness_series", "%.380s", found.text);
     fill(&pair->thickness_allowance[i][0], of.upper);
     fill(&pair->thickness_allowance[i][1], of.lower);

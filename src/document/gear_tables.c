@@ -212,8 +212,9 @@ static const struct eo_field gear_pair[] = {
     EO_NUMBER_BASED(struct eo_gear_pair, tip_chamfer[EO_GEAR], "gear_tip_chamfer_mm", &eo_unit_mm, 0, 100, 0,
                     "a sharp tip",
                     "radial height of a tip chamfer or rounding of the gear: its flank ends that much below the tip"),
-    EO_TEXT_DERIVED(struct eo_gear_pair, thickness_series, "thickness_series", 3, "none: allowances or backlash",
-                    "tooth thickness allowances of both members by DIN 3967: series and tolerance, as \"cd25\""),
+    EO_TEXT_DERIVED(
+        struct eo_gear_pair, thickness_series, "thickness_series", 3, "none: allowances or backlash",
+        "tooth thickness allowances of both members by DIN 3967: series and tolerance, as \"cd25\" or \"25cd\""),
     EO_NUMBERS(struct eo_gear_pair, thickness_allowance[EO_PINION], "pinion_thickness_allowance_um", 2, &eo_unit_um,
                -20000, 0, EO_FIELD_NULLABLE, NULL, "of the series, else half of what makes the backlash",
                "[A_sne, A_sni] of the pinion: upper and lower allowance of the normal thickness"),

@@ -199,6 +199,8 @@ static void test_contradictions(void)
       {"\"normal_module_mm\":3,\"profile_shift_sum\":-9", "/gear_pair/pinion_profile_shift", "-9"},
       {"\"normal_module_mm\":3,\"fillet_radius_coefficient\":0.7", "/gear_pair/fillet_radius_coefficient", "at most"},
       {"\"normal_module_mm\":3,\"thickness_series\":\"zz25\"", "/gear_pair/thickness_series", "DIN 3967"},
+      {"\"normal_module_mm\":3,\"thickness_series\":\"cd-25\"", "/gear_pair/thickness_series", "\"cd-25\" is not"},
+      {"\"normal_module_mm\":3,\"thickness_series\":\"25cd5\"", "/gear_pair/thickness_series", "\"25cd5\" is not"},
       {"\"normal_module_mm\":3,\"pinion_thickness_allowance_um\":[-90,-60]", "/gear_pair/pinion_thickness_allowance_um",
        "[upper, lower]"},
       {"\"normal_diametral_pitch_per_inch\":0.1", "/gear_pair/normal_diametral_pitch_per_inch", "outside"},
@@ -210,6 +212,19 @@ static void test_contradictions(void)
     snprintf(pair, sizeof pair, TEETH "%s", row[i].pair);
     ok(!complete(with_pair(pair)) && strcmp(error.pointer, row[i].key) == 0 && strstr(error.text, row[i].text),
        "%s: %s: %s", row[i].pair, error.pointer, error.text);
+  }
+}
+
+/* DIN 3967 writes the letters first, many drawings the number. */
+static void test_series(void)
+{
+  static const char *const spelt[] = {"cd25", "25cd", "cd 25", "CD25", " 25 Cd "};
+  for (size_t i = 0; i < sizeof spelt / sizeof *spelt; i++) {
+    char pair[300];
+    snprintf(pair, sizeof pair, TEETH "\"normal_module_mm\":3,\"thickness_series\":\"%s\"", spelt[i]);
+    ok(complete(with_pair(pair)), "\"%s\" is a series %s", spelt[i], error.text);
+    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][0], -70, 1e-6, "its A_sne at 73 mm, um");
+    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][1], -110, 1e-6, "its A_sni, um");
   }
 }
 
@@ -655,6 +670,7 @@ int main(void)
   test_widths();
   test_error_grade();
   test_signs();
+  test_series();
   test_drawn();
   test_first_edit();
   test_migration();
