@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "exchange/rexs_schema.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,40 +83,80 @@ bool eo_rexs_type_known(const char *type)
   return false;
 }
 
-/* Spellings that mean the same: first what 1.7 has, then the others. */
-static const char *const spellings[][3] = {
-    {"deg", "°", "degree"},      {"none", "", NULL},  {"MPa", "N / mm^2", NULL},
-    {"1 / min", "1/min", "rpm"}, {"N m", "Nm", NULL},
+/* Names that mean the same, as fold() leaves them: first what stands for all. */
+static const char *const synonyms[][4] = {
+    {"deg", "°", "degree", "degrees"}, {"none", "", "-", "1"}, {"MPa", "N/mm2"},
+    {"1/min", "rpm", "U/min"},         {"kg/dm3", "g/cm3"},    {"%", "percent"},
 };
-enum { SPELLINGS = sizeof spellings / sizeof spellings[0] };
+enum { SYNONYMS = sizeof synonyms / sizeof synonyms[0], UNIT = 40 };
 
-static const char *plain_unit(const char *unit)
+/* What is written in more than one way: a product with a sign, a blank or neither, a power with ^ or raised. */
+static const struct {
+  const char *written, *plain;
+} signs[] = {{" ", ""}, {"*", ""}, {"·", ""}, {"^", ""}, {"²", "2"}, {"³", "3"}, {"⁻", "-"}, {"¹", "1"}};
+enum { SIGNS = sizeof signs / sizeof signs[0] };
+
+/* A unit in one spelling: "N*m" and "N m" are "Nm", "min^-1" and "1 / min" are "1/min". */
+static void fold(const char *unit, char folded[UNIT])
 {
-  for (int i = 0; i < SPELLINGS; i++)
-    for (int k = 0; k < 3 && spellings[i][k]; k++)
-      if (strcmp(spellings[i][k], unit) == 0)
-        return spellings[i][0];
-  return unit;
+  static const char inverse[] = "-1";
+  char text[UNIT];
+  size_t used = 0;
+  for (const char *at = unit; *at && used + 1 < UNIT;) {
+    int i = 0;
+    while (i < SIGNS && strncmp(at, signs[i].written, strlen(signs[i].written)) != 0)
+      i++;
+    if (i == SIGNS)
+      text[used++] = *at++;
+    else {
+      at += strlen(signs[i].written);
+      if (*signs[i].plain)
+        text[used++] = *signs[i].plain;
+    }
+  }
+  text[used] = '\0';
+  bool inverted = used > strlen(inverse) && strcmp(text + used - strlen(inverse), inverse) == 0 && !strchr(text, '/');
+  if (inverted)
+    text[used - strlen(inverse)] = '\0';
+  snprintf(folded, UNIT, "%s%.*s", inverted ? "1/" : "", UNIT - 3, text);
+  for (int i = 0; i < SYNONYMS; i++)
+    for (int k = 0; k < 4 && synonyms[i][k]; k++)
+      if (strcmp(synonyms[i][k], folded) == 0)
+        snprintf(folded, UNIT, "%s", synonyms[i][0]);
+}
+
+static bool is_same_unit(const char *a, const char *b)
+{
+  char folded[2][UNIT];
+  fold(a, folded[0]);
+  fold(b, folded[1]);
+  return strcmp(folded[0], folded[1]) == 0;
 }
 
 const char *eo_rexs_unit_in(const char *unit, int version)
 {
-  const char *plain = plain_unit(unit);
-  if (strcmp(plain, "deg") == 0 && version < 104)
-    return "°";
-  if (strcmp(plain, "MPa") == 0 && version < 200)
-    return "N / mm^2";
-  return plain;
+  char folded[UNIT];
+  fold(unit, folded);
+  if (strcmp(folded, "deg") == 0)
+    return version < 104 ? "°" : "deg";
+  if (strcmp(folded, "MPa") == 0)
+    return version < 200 ? "N / mm^2" : "MPa";
+  return *unit ? unit : "none";
+}
+
+/* The unit of stress is written in its old and its new way in files of every version. */
+static bool is_usual(const char *unit, const char *given, int version)
+{
+  return !*given || strcmp(eo_rexs_unit_in(unit, version), given) == 0 || strcmp(given, "MPa") == 0 ||
+         strcmp(given, "N / mm^2") == 0;
 }
 
 enum eo_rexs_unit_verdict eo_rexs_unit_judge(const char *unit, const char *given, int version)
 {
-  if (strcmp(plain_unit(unit), plain_unit(given)) == 0) {
-    bool free = !*given || strcmp(plain_unit(unit), "MPa") == 0;
-    return free || strcmp(eo_rexs_unit_in(unit, version), given) == 0 ? EO_REXS_UNIT_RIGHT : EO_REXS_UNIT_SPELT;
-  }
+  if (is_same_unit(unit, given))
+    return is_usual(unit, given, version) ? EO_REXS_UNIT_RIGHT : EO_REXS_UNIT_SPELT;
   for (int i = 0; eo_rexs_units[i]; i++)
-    if (strcmp(eo_rexs_units[i], given) == 0 || !*given)
+    if (is_same_unit(eo_rexs_units[i], given) || !*given)
       return EO_REXS_UNIT_WRONG;
   return EO_REXS_UNIT_UNKNOWN;
 }

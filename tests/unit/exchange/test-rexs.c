@@ -326,6 +326,45 @@ static void check_impossible(void)
   eo_text_done(&text);
 }
 
+/* The right unit in another spelling is taken and said, another unit is a fault. */
+static void check_units(void)
+{
+  static const struct {
+    const char *written, *given;
+    const char *fault; /* NULL: taken */
+  } rows[] = {
+      {"N m", "N*m", NULL},
+      {"N m", "N·m", NULL},
+      {"N m", "N mm", "unknown_unit"},
+      {"1 / min", "1 /min", NULL},
+      {"1 / min", "min^-1", NULL},
+      {"1 / min", "min⁻¹", NULL},
+      {"1 / min", "1 / s", "wrong_unit"},
+      {"kg / dm^3", "kg/dm^3", NULL},
+      {"kg / dm^3", "kg/dm³", NULL},
+      {"kg / dm^3", "kg / m^3", "unknown_unit"},
+      {"N / mm^2", "N/mm^2", NULL},
+      {"N / mm^2", "N/mm²", NULL},
+      {"N / mm^2", "GPa", "wrong_unit"},
+  };
+  build("single");
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char old[60], new[60];
+    struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+    snprintf(old, sizeof old, "unit=\"%s\"", rows[i].written);
+    snprintf(new, sizeof new, "unit=\"%s\"", rows[i].given);
+    if (replace(&text, old, new)) {
+      struct eo_import import = read_file(&text);
+      ok(rows[i].fault ? import.faults && strcmp(import.fault[0].kind, rows[i].fault) == 0
+                       : import.design && says(import.notes, "It was taken as that"),
+         "%s for %s is %s %s", rows[i].given, rows[i].written, rows[i].fault ? "a fault," : "taken and said",
+         import.faults ? import.fault[0].kind : "");
+      eo_import_done(&import);
+    }
+    eo_text_done(&text);
+  }
+}
+
 /* Both of one shape or none: a circular relief with a crowning has no words, so the whole flank goes as a topography.
  */
 static void check_topography(void)
@@ -436,6 +475,7 @@ int main(void)
   check_empty();
   check_name();
   check_impossible();
+  check_units();
   check_hands();
   check_edited();
   check_topography();
