@@ -331,6 +331,9 @@ static void write_tools(struct writer *writer)
     eo_rexs_build(&writer->builder, SETTINGS + member, "cylindrical_gear_manufacturing_settings", "");
     eo_rexs_build_number(&writer->builder, "machining_allowance",
                          number_of(writer->gear_pair, member, "grinding_stock_um") / 1000);
+    if (writer->geometry->generating_shift[member] != writer->geometry->profile_shift[member])
+      eo_rexs_build_number(&writer->builder, "generated_addendum_modification_coefficient",
+                           writer->geometry->generating_shift[member]);
   }
 }
 

@@ -105,99 +105,9 @@ static void find_face(struct eo_rexs_import *import)
                         : (import->left[EO_LEFT] + import->right[EO_LEFT]) / 2;
 }
 
-/* The finished flank of a member: the tool and settings of the step of highest order; lowest: of the lowest. */
-static const struct eo_rexs_component *step_of(const struct eo_rexs_import *import, int member, const char *role,
-                                               bool lowest)
-{
-  const struct eo_rexs_wheel *wheel = &import->wheel[member][EO_LEFT];
-  const struct eo_rexs_component *flank = wheel->flank[eo_rexs_loaded_side(import, member, EO_LEFT)], *found = NULL;
-  int order = 0;
-  for (int i = 0; i < import->model->relations && flank; i++) {
-    const struct eo_rexs_relation *relation = &import->model->relation[i];
-    const struct eo_rexs_component *part = eo_rexs_find(import->model, eo_rexs_role(relation, role));
-    if (strcmp(relation->type, "manufacturing_step") != 0 || eo_rexs_role(relation, "workpiece") != flank->id || !part)
-      continue;
-    if (!found || (lowest ? relation->order < order : relation->order > order)) {
-      found = part;
-      order = relation->order;
-    }
-  }
-  return found;
-}
-
 static double first_number(double a, double b)
 {
   return isnan(a) ? b : a;
-}
-
-/* Of one member: what its rack is. The tool of the first step makes the root. */
-struct rack {
-  double addendum, dedendum, fillet;
-  bool by_root_diameter;
-};
-
-static struct rack rack_of(struct eo_rexs_import *import, int member)
-{
-  const struct eo_rexs_wheel *wheel = &import->wheel[member][EO_LEFT];
-  const struct eo_rexs_component *tool = step_of(import, member, "tool", true),
-                                 *settings = step_of(import, member, "manufacturing_settings", true);
-  const struct eo_rexs_component *flank = wheel->flank[eo_rexs_loaded_side(import, member, EO_LEFT)];
-  double module = wheel->module;
-  struct rack rack = {eo_rexs_value(flank, "addendum_coefficient_basic_profile"), NAN, NAN, false};
-  rack.dedendum = first_number(eo_rexs_value(tool, "addendum_coefficient_reference_profile"),
-                               eo_rexs_value(tool, "addendum_reference_profile") / module);
-  rack.fillet = first_number(eo_rexs_value(tool, "tip_corner_radius_factor_reference_profile"),
-                             eo_rexs_value(tool, "tip_corner_radius_reference_profile") / module);
-  const struct eo_rexs_component *last = step_of(import, member, "tool", false);
-  double generated = eo_rexs_value(settings, "generated_addendum_modification_coefficient");
-  if (!isnan(rack.dedendum) && last != tool && !isnan(generated) && fabs(generated - wheel->shift) > same) {
-    rack.dedendum -= generated - wheel->shift; /* the roughing tool stands further out by so much */
-    eo_import_say(import->out, import->out->notes,
-                  "The %s's root is made by a tool before the finishing one, further out by %.6g of the module: the "
-                  "dedendum is less by that.",
-                  member == EO_PINION ? "pinion" : "gear", generated - wheel->shift);
-  }
-  double root = eo_rexs_value(wheel->gear, "root_diameter");
-  if (isnan(rack.dedendum) && root > 0) {
-    double reference = wheel->teeth * module / cos(wheel->helix * degree);
-    rack.dedendum = wheel->shift + (reference - root) / (2 * module);
-    rack.by_root_diameter = true;
-  }
-  return rack;
-}
-
-/* One common rack, or one per member where the design has keys for it. */
-static void put_rack(struct eo_rexs_import *import, json_t *gear_pair)
-{
-  static const struct {
-    const char *key, *own[2], *what;
-  } keys[] = {
-      {"addendum_coefficient", {"pinion_addendum_coefficient", "gear_addendum_coefficient"}, "addendum"},
-      {"dedendum_coefficient", {"pinion_dedendum_coefficient", "gear_dedendum_coefficient"}, "dedendum"},
-      {"fillet_radius_coefficient", {"pinion_fillet_radius_coefficient", "gear_fillet_radius_coefficient"}, "fillet"},
-  };
-  const struct rack rack[2] = {rack_of(import, EO_PINION), rack_of(import, EO_GEAR)};
-  for (int i = 0; i < 3; i++) {
-    const double value[2] = {
-        i == 0   ? rack[0].addendum
-        : i == 1 ? rack[0].dedendum
-                 : rack[0].fillet,
-        i == 0   ? rack[1].addendum
-        : i == 1 ? rack[1].dedendum
-                 : rack[1].fillet,
-    };
-    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, keys[i].key, first_number(value[0], value[1]));
-    if (alike(value[0], value[1]))
-      continue;
-    if (!eo_rexs_put(import, &eo_gear_pair_table, gear_pair, keys[i].own[1], value[1]))
-      eo_import_say(import->out, import->out->not_used,
-                    "%s of cylindrical_gear %d: %.6g of the module; a design has one rack, the pinion's with %.6g",
-                    keys[i].what, import->wheel[EO_GEAR][EO_LEFT].gear->id, value[1], value[0]);
-  }
-  for (int member = 0; member < 2; member++)
-    if (rack[member].by_root_diameter)
-      eo_import_say(import->out, import->out->assumed, "the dedendum of the %s follows from its root diameter",
-                    member == EO_PINION ? "pinion" : "gear");
 }
 
 static void put_member(struct eo_rexs_import *import, json_t *gear_pair, int member)
@@ -261,7 +171,7 @@ static void demand_match(struct eo_rexs_import *import)
 
 /* Reads gear_pair as the program will, with some backlash: what the centre distance adds to it does not depend on it.
  */
-static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair, struct eo_error *error)
+bool eo_rexs_make_geometry(struct eo_rexs_import *import, const json_t *gear_pair, struct eo_error *error)
 {
   const double some_backlash = 1e-4; /* m */
   struct eo_faults *faults = calloc(1, sizeof *faults);
@@ -289,11 +199,8 @@ static double backlash_of(const struct eo_rexs_import *import)
   double mean = (first_number(least, most) + first_number(most, least)) / 2, sum = 0;
   if (!isnan(mean))
     return mean - 1e3 * (import->geometry.normal_backlash - import->geometry.stated_backlash);
-  for (int member = 0; member < 2; member++) {
-    const struct eo_rexs_component *settings = step_of(import, member, "manufacturing_settings", false);
-    sum += eo_rexs_value(settings, "generated_addendum_modification_coefficient") -
-           import->wheel[member][EO_LEFT].shift;
-  }
+  for (int member = 0; member < 2; member++)
+    sum += eo_rexs_generated(import, member, false) - import->wheel[member][EO_LEFT].shift;
   return sum < 0 ? -2 * 1e3 * import->geometry.normal_module * sin(import->geometry.normal_pressure_angle) * sum : NAN;
 }
 
@@ -392,7 +299,7 @@ static void put_finish(struct eo_rexs_import *import, json_t *gear_pair)
   char name[80];
   for (int member = 0; member < 2; member++) {
     const struct eo_rexs_component *of[3] = {
-        step_of(import, member, "tool", true), step_of(import, member, "manufacturing_settings", true),
+        eo_rexs_step(import, member, "tool", true), eo_rexs_step(import, member, "manufacturing_settings", true),
         import->wheel[member][EO_LEFT].flank[eo_rexs_loaded_side(import, member, EO_LEFT)]};
     json_t *before = json_copy(gear_pair);
     bool any = false;
@@ -400,7 +307,7 @@ static void put_finish(struct eo_rexs_import *import, json_t *gear_pair)
       double value = eo_rexs_value(of[i], rows[i].attribute) * (i < 2 ? 1e3 : 1);
       any = (value > 0 && eo_rexs_put(import, &eo_gear_pair_table, gear_pair, rows[i].key[member], value)) || any;
     }
-    if (any && !make_geometry(import, gear_pair, &error)) {
+    if (any && !eo_rexs_make_geometry(import, gear_pair, &error)) {
       json_object_clear(gear_pair);
       json_object_update(gear_pair, before);
       for (int i = 0; i < 3; i++)
@@ -446,18 +353,20 @@ bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
   if (mesh->from_positions)
     eo_import_say(out, out->notes, "The centre distance, %.9g mm, is the distance of the axes of both shafts.",
                   mesh->centre_distance);
-  put_rack(import, gear_pair);
+  eo_rexs_put_rack(import, gear_pair);
   name_width(import);
-  if (!make_geometry(import, gear_pair, &error)) {
+  if (!eo_rexs_make_geometry(import, gear_pair, &error)) {
     struct eo_import_fault *fault = eo_import_fault(out, "not_a_pair",
                                                     "The pair cannot be made as the file states it: %s", error.text);
     if (fault)
       fault->key = eo_import_text(out, error.pointer);
     return false;
   }
+  eo_rexs_put_generated(import, gear_pair);
   put_finish(import, gear_pair);
-  if (!make_geometry(import, gear_pair, &error))
+  if (!eo_rexs_make_geometry(import, gear_pair, &error))
     return false;
+  eo_rexs_name_root(import);
   put_backlash(import, gear_pair);
   return true;
 }

@@ -39,6 +39,19 @@ bool eo_rexs_find_rotation(struct eo_rexs_import *import);
 /* 0 left, 1 right: the flank of a wheel that carries load, seen along its own u axis. */
 int eo_rexs_loaded_side(const struct eo_rexs_import *import, int member, int end);
 
+/* A member's tool ("tool") or settings ("manufacturing_settings") of the step of highest order, which finishes the
+   flank; lowest: of the lowest, which makes the root. NULL: none. */
+const struct eo_rexs_component *eo_rexs_step(const struct eo_rexs_import *import, int member, const char *role,
+                                             bool lowest);
+/* The shift x_E with which a step cuts; NaN: not stated. */
+double eo_rexs_generated(const struct eo_rexs_import *import, int member, bool lowest);
+/* The rack or racks, x_E of the root, and what a stated root circle contradicts. */
+void eo_rexs_put_rack(struct eo_rexs_import *import, json_t *gear_pair);
+void eo_rexs_put_generated(struct eo_rexs_import *import, json_t *gear_pair);
+void eo_rexs_name_root(struct eo_rexs_import *import);
+/* Fills import->geometry from gear_pair; false: it is no pair, and error says why. */
+bool eo_rexs_make_geometry(struct eo_rexs_import *import, const json_t *gear_pair, struct eo_error *error);
+
 /* gear_pair and the common face; false: a fault is told. */
 bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design);
 /* gear_pair.hand and alignment.apex, when the rotation is found. */

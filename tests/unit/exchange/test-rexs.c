@@ -326,6 +326,30 @@ static void check_impossible(void)
   eo_text_done(&text);
 }
 
+/* The shift that cuts the root goes out and in; a root circle that is none of the tool's is named. */
+static void check_generated(void)
+{
+  struct eo_error error;
+  build("single");
+  const double shift[2] = {design.gear_pair.profile_shift[0] - 0.05, design.gear_pair.profile_shift[1] + 0.03};
+  design.gear_pair.generating_offset[0] = -0.05;
+  design.gear_pair.generating_offset[1] = 0.03;
+  ok(!eo_design_complete(&design, &geometry, &error), "roots of their own shift");
+  struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
+  struct eo_import import = read_file(&text);
+  close_to(eo_json_find_number(import.design, "gear_pair/pinion_generating_shift"), shift[0], 1e-9,
+           "x_E of the pinion");
+  close_to(eo_json_find_number(import.design, "gear_pair/gear_generating_shift"), shift[1], 1e-9, "x_E of the gear");
+  ok(!says(import.not_used, "root_diameter"), "their root circles are those of the file");
+  eo_import_done(&import);
+  if (replace(&text, "\"root_diameter\" unit=\"mm\">", "\"root_diameter\" unit=\"mm\">1")) {
+    import = read_file(&text);
+    ok(import.design && says(import.not_used, "root_diameter of cylindrical_gear"), "a root circle that contradicts");
+    eo_import_done(&import);
+  }
+  eo_text_done(&text);
+}
+
 /* The right unit in another spelling is taken and said, another unit is a fault. */
 static void check_units(void)
 {
@@ -475,6 +499,7 @@ int main(void)
   check_empty();
   check_name();
   check_impossible();
+  check_generated();
   check_units();
   check_hands();
   check_edited();
