@@ -248,12 +248,15 @@ static void refuse_own_width(struct eo_rexs_import *import, int member)
   for (int end = 0; end < import->pair->ends; end++) {
     const struct eo_rexs_wheel *wheel = &import->wheel[member][end], *mate = &import->wheel[1 - member][end];
     double from = fmax(wheel->left, mate->left), to = fmin(wheel->right, mate->right);
+    double left = fmax(0, from - wheel->left), right = fmax(0, wheel->right - to);
+    if (fmax(left, right) <= same * (to - from))
+      continue;
     eo_import_say(
         import->out, import->out->refused,
         "own width of cylindrical_gear %d, %.6g mm: it stands out %.6g mm to the left and %.6g mm to the right "
         "of the common %.6g mm, its mid face %.6g mm from its mate's, and a design has members centred on each "
         "other. The common width alone is read: the tooth is supported and rated without what stands out.",
-        wheel->gear->id, wheel->face_width, fmax(0, from - wheel->left), fmax(0, wheel->right - to), to - from,
+        wheel->gear->id, wheel->face_width, left, right, to - from,
         fabs(wheel->left + wheel->right - mate->left - mate->right) / 2);
   }
 }

@@ -163,6 +163,16 @@ sed 's/\(u_coordinate_on_shaft" unit="mm">\)61/\160.5/; s/60\.5\.0/60.5/' "$file
 run 0 "a member off its mate's middle" "$EASEOFF" import "$folder/beside.rexs"
 says "cylindrical_gear 11, 44 mm: it stands out 0.5 mm to the left and 1.5 mm to the right of the common 42 mm"
 
+# Where only one end of a pair is off, the other has nothing that stands out.
+"$EASEOFF" example paper >"$folder/paper.json"
+"$EASEOFF" export "$folder/paper.json" --format rexs | awk '/<component id="12"/ { on = 1 } on && /u_coordinate_on_shaft/ { match($0, />[0-9.]+/)
+  $0 = substr($0, 1, RSTART) (substr($0, RSTART + 1, RLENGTH - 1) + 0.05) substr($0, RSTART + RLENGTH); on = 0 } { print }' |
+  sed '/custom_easeoff_design/d' >"$folder/gap.rexs"
+run 0 "a groove that is wider on one shaft" "$EASEOFF" import "$folder/gap.rexs"
+says "it stands out 0 mm to the left and 0.05 mm to the right"
+! grep -q "0 mm to the left and 0 mm to the right" "$folder/err"
+result $? "a gear that does not stand out is not refused"
+
 # Hostile files: a sentence, at once.
 deep=$(printf '<model version="1.7">'; seq 1 200 | sed 's/.*/<a>/' | tr -d '\n')
 printf '%s' "$deep" >"$folder/deep.rexs"
