@@ -127,6 +127,7 @@ run 1 "two designs in one model" "$EASEOFF" export "$folder/design.json" "$folde
 says "takes one design"
 run 0 "what exists in place of GDE" "$EASEOFF" export --help
 prints "GDE"
+prints "(-x, all mirrored, where the pinion turns clockwise"
 run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-gear
 prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
 test ! -s "$folder/err"
