@@ -273,8 +273,8 @@ class ToleranceView {
   }
 
   /**
-   * The newest job, when this page has drawn nothing yet: its pairs, or how far it is. An older one would take the place
-   * of how the last one ended.
+   * The newest job, when this page has drawn nothing yet: its pairs, or how far it is. An older one would take the
+   * place of how the last one ended.
    */
   #recall() {
     const [newest] = [...this.app.jobs.all.values()]
