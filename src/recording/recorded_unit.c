@@ -64,7 +64,7 @@ static const struct {
     {"ua", EO_QUANTITY_CURRENT, 1e-6},
     {"hz hertz 1/s s-1 s/s sa/s samples/s samples/sec sps spers s/sec samplespersecond", EO_QUANTITY_FREQUENCY, 1},
     {"samples/min sa/min samplesperminute", EO_QUANTITY_FREQUENCY, 1. / 60},
-    {"khz ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
+    {"khz 1/ms ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
     {"mhz ms/s msa/s msps megahertz", EO_QUANTITY_FREQUENCY, 1e6},
     {"ghz gs/s gsa/s", EO_QUANTITY_FREQUENCY, 1e9},
     {"krpm 1000rpm x1000rpm rpmx1000 1000/min x1000/min tsd/min", EO_QUANTITY_SPEED, 1e3 * TURN / 60},

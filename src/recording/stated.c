@@ -63,7 +63,7 @@ bool eo_stated_holds(const char *key, const char *words)
 #define NOT_SAMPLING                                                                                                \
   "numberof numof noof nof nrof anzahl nombre numero cantidad samplecount numsampl nsampl wfsamples samplesize "    \
   "points length filter cutoff corte coupure grenz lowpass tiefpass antialias max nyquist original duration dauer " \
-  "divid teiler message calibrat accura generat"
+  "divid teiler message calibrat accura generat aggregate"
 
 static bool is_about(const char *key, const char *what, const char *measure)
 {
@@ -77,7 +77,7 @@ static bool is_rate(const char *key)
          eo_stated_holds(key,
                          "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
                          "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate "
-                         "framerate") ||
+                         "framerate storerate storagerate recordrate recordingrate loggingrate") ||
          is_about(key, SAMPLING, RATES " clk clock velocid") || is_about(key, TAKING, RATES);
 }
 
@@ -88,8 +88,9 @@ static bool is_interval(const char *key)
                   "tsample tsamp tsampling period timestep delta intervall xdelta xin step ta abtastung stepsize "
                   "xstep tinc tincr tincrement tinterval hresolution") ||
          eo_stated_holds(
-             key, "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
-                  "samplingresolution wfincrement xincrement xinterval") ||
+             key,
+             "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
+             "samplingresolution wfincrement xincrement xinterval storageinterval recordinginterval logginginterval") ||
          is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
 
@@ -303,7 +304,9 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   stated.lines = eo_stated_are_lines(key, unit);
   if (!is_scale(folded) && eo_stated_read_turn(key, name, own, number, unit, &stated))
     return stated;
-  enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
+  enum eo_quantity quantity = eo_unit_find_multiple(*unit ? unit : own, &factor);
+  if (!strcmp(*unit ? unit : own, "1/min")) /* of a rate; of a shaft it is rpm */
+    quantity = EO_QUANTITY_FREQUENCY, factor = 1. / 60;
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
   eo_stated_fold(key, folded);
   bool word = quantity == EO_QUANTITY_TIME && is_rate(folded) && (strchr(key, '/') || strstr(folded, "per"));

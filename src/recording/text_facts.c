@@ -176,6 +176,18 @@ static bool begins_number(const char *start, const char *p, const char *before)
   return digit && (p == start || strchr(MARKS, p[-1]) || (p - 1 == before && *before == '/'));
 }
 
+/* Behind "[10 us]" where that is the unit in a key, "Sampling interval [10 us]: 25"; else p. */
+static const char *pass_unit(const char *p, const char *end)
+{
+  const char *close = *p == '['   ? memchr(p, ']', (size_t)(end - p))
+                      : *p == '(' ? memchr(p, ')', (size_t)(end - p))
+                                  : NULL;
+  const char *mark = close ? close + 1 : p;
+  while (close && mark < end && *mark == ' ')
+    mark++;
+  return close && mark < end && (*mark == ':' || *mark == '=') ? close : p;
+}
+
 /* Every number of a line with the words before and behind it. */
 static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct begin *begin)
 {
@@ -184,6 +196,7 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
   for (const char *p = line->start; p < line->end; p++) {
     struct eo_moment moment;
     const char *after;
+    p = pass_unit(p, line->end);
     if (!begins_number(line->start, p, number.after))
       continue;
     if (moment_at(p, line->end, &moment, &after)) {

@@ -134,9 +134,14 @@ static void test_sentences(void)
                                           "Es wurde mit 4 kHz abgetastet, Filter 1 kHz.",
                                           "recording: 2.2 s at 4 kHz",
                                           "Data acquired at a rate of 4 kHz by rig 3, 2 channels.",
-                                          "Sample interval 250 us (4 kHz)"},
+                                          "Sample interval 250 us (4 kHz)",
+                                          "Sampling interval [10 us]: 25",
+                                          "Messrate [1/s]: 4000",
+                                          "Sampling rate (1/ms): 4"},
                            *const open[][2] = {{"Sampled at 40 kHz, then decimated to 4 kHz", "40000 and 4000 Hz"},
                                                {"Sampled at 40 kHz, decimated by 10", "40000 and 4000 Hz"},
+                                               {"Store rate: 4 kHz, sampling 16 kHz", "4000 and 16000 Hz"},
+                                               {"Aggregate sample rate: 8 kHz", "states no sampling rate"},
                                                {"Sampled with 1 kHz filter at 4 kHz", "states no sampling rate"}};
   for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++)
     right(told(sentences[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", sentences[i]);

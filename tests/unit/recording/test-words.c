@@ -165,6 +165,11 @@ static void test_stated(void)
 {
   stated("Sampling rate [kHz]", 4, "", EO_STATED_INTERVAL, 2.5e-4);
   stated("Sample Interval", 0.25, "ms", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Sampling interval [10 us]", 25, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Messrate [1/min]", 240000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Store rate", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Drehzahl [1/min]", 600, "", EO_STATED_NOTHING, 1);
+  stated("Aggregate sample rate", 8, "kHz", EO_STATED_NOTHING, 1);
   stated("Sampling interval [us]", 250, "", EO_STATED_INTERVAL, 2.5e-4);
   stated("Samples/s", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
   stated("Samples per second", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
