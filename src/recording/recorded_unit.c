@@ -220,7 +220,7 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
     length--;
   if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))
     return EO_QUANTITY_NONE;
-  if (strchr(unit, '\xc3')) /* "degrés" */
+  if (strstr(unit, "\xc3")) /* "degrés" */
     eo_letters_plain(text, strlen(text), unit, sizeof unit);
   enum eo_quantity quantity = look_up(unit, factor);
   if (quantity == EO_QUANTITY_NONE && find_product(unit, factor))
