@@ -31,8 +31,8 @@ static bool digit_at(const char *p, const char *end)
   return p < end && isdigit((unsigned char)*p);
 }
 
-/* Marks of thousands that cannot be anything else where the number stands: two of them or more, or such as part no
-   numbers. NULL: there are none. */
+/* Marks of thousands that cannot be anything else where the number stands: two of them or more, one before the other
+   mark ("4.000,0"), or such as part no numbers. NULL: there are none. */
 static const char *grouped_at(const struct eo_text_format *format, const char *p, const char *end, bool in_one_cell,
                               double *value)
 {
@@ -40,7 +40,9 @@ static const char *grouped_at(const struct eo_text_format *format, const char *p
   int groups;
   for (const char *point = points; *point; point++) {
     const char *after = eo_text_grouped(p, end, *point, &groups, value), *mark = skip_digits(p + (*p == '-'), end);
-    bool several = groups > 1, cell = *mark != format->separator || in_one_cell;
+    bool both = after && format->separator != ',' && memchr(p, '.', (size_t)(after - p)) &&
+                memchr(p, ',', (size_t)(after - p));
+    bool several = groups > 1 || both, cell = *mark != format->separator || in_one_cell;
     bool sure = *mark == ',' || *mark == '.' ? several && cell
                 : *mark == ' '               ? (several && cell) || (in_one_cell && format->separator != ' ')
                                              : true;

@@ -145,6 +145,13 @@ static void test_sentences(void)
                                                {"Sampled with 1 kHz filter at 4 kHz", "states no sampling rate"}};
   for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++)
     right(told(sentences[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", sentences[i]);
+  FILE *f = begin("Abtastrate;4.000,0;Hz\npinion [deg];gear [deg]\n");
+  for (int i = 0; i < ROWS; i++) {
+    double angle[2] = {degrees(pinion(i / RATE)), degrees(gear(i / RATE))};
+    fprintf(f, "%d,%08d;%d,%08d\n", (int)angle[0], (int)(fmod(angle[0], 1) * 1e8), (int)angle[1],
+            (int)(fmod(angle[1], 1) * 1e8));
+  }
+  right(f, NULL, 1e-6, "a sampling rate of 4000 Hz", "thousands before a decimal comma");
   for (size_t i = 0; i < sizeof open / sizeof *open; i++)
     asked(told(open[i][0]), NULL, "/sample_rate_Hz", open[i][1], open[i][0]);
 }
