@@ -117,12 +117,16 @@ static enum eo_code take_teeth(struct request *request, struct eo_text *text, js
   EO_TRY(eo_text_read(text, request->pitch, MOST_TABLE, error));
   if (json_object_set_new(table, "csv", json_string(text->data)) != 0)
     return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table is not text in UTF-8.");
+  int positions = request->design.pitch.positions, gear_tooth = request->design.pitch.gear_tooth;
   eo_pitch_decode(table, &request->design.gear_pair, &request->design.pitch, faults);
   EO_TRY(eo_faults_first(faults, error));
+  request->design.pitch.positions = positions;
+  request->design.pitch.gear_tooth = gear_tooth;
   return eo_design_complete(&request->design, &request->geometry, error);
 }
 
-/* The deviations of a measured pair's teeth in place of those of the design. */
+/* The deviations of a measured pair's teeth in place of those of the design, which says how the pair is put together
+   and looked at. */
 static bool read_teeth(struct request *request, int *status)
 {
   struct eo_text text = {0};
@@ -168,7 +172,7 @@ const struct eo_command eo_command_analyze = {
     "as files into DIR, which is made when missing. --pitch takes the "
     "deviations of single teeth from FILE, a table of a measuring\n"
     "machine with headings member, end, flank, tooth and index_um or "
-    "single_um, in place of the design's. --units inch shows lengths in\n"
+    "single_um, in place of the design's; its gear_tooth and positions stay. --units inch shows lengths in\n"
     "inches and thousandths of an inch, in documents by keys and in CSV by "
     "heads that end in _in and _thou.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

@@ -120,7 +120,8 @@ static enum eo_code add_number(struct search *search, const char *key, const str
                                    .unit = eo_unit_in(unit, 1),
                                    .nominal = eo_unit_out(unit, si),
                                    .least = field->low,
-                                   .most = field->high};
+                                   .most = field->high,
+                                   .cyclic = offset == offsetof(struct eo_design, alignment.stagger)};
   return add_input(search, key, &input);
 }
 

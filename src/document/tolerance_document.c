@@ -373,14 +373,30 @@ static json_t *encode_worst(const struct eo_tolerance_report *report)
 static const char assumed_text[] =
     "Nothing is stated about the gears as made: class 5 of ISO 1328-1:2013 is taken, the tolerance as 2 sigma.";
 
+enum { MOST_NOTES = 3 };
+
+/* What is to be said of the run itself; returns how many notes. */
+static int write_notes(const struct eo_tolerance_report *report, char note[MOST_NOTES][EO_COMPLETION_NOTE])
+{
+  int notes = 0;
+  if (report->assumed)
+    snprintf(note[notes++], sizeof *note, "%s", assumed_text);
+  notes += eo_tolerance_completion_note(report, note[notes]);
+  if (report->worst_compliance != 1)
+    snprintf(note[notes++], sizeof *note,
+             "The worst pair has the compliance_factor %.6g, which no design states: analysed as a design it has the "
+             "nominal compliance, and other numbers than here.",
+             report->worst_compliance);
+  return notes;
+}
+
 static json_t *encode_warnings(const struct eo_tolerance_report *report, const struct eo_warnings *warnings)
 {
   struct eo_object list = eo_list_open();
-  char note[EO_COMPLETION_NOTE];
-  if (report->assumed)
-    eo_list_add(&list, json_string(assumed_text));
-  if (eo_tolerance_completion_note(report, note))
-    eo_list_add(&list, json_string(note));
+  char note[MOST_NOTES][EO_COMPLETION_NOTE];
+  int notes = write_notes(report, note);
+  for (int i = 0; i < notes; i++)
+    eo_list_add(&list, json_string(note[i]));
   for (int i = 0; warnings && i < warnings->count; i++)
     eo_list_add(&list, json_string(warnings->text[i]));
   return eo_object_close(&list);
@@ -482,7 +498,8 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
                                         "90 %",   "95 %", "99 %",    "95 % lies in", "R2",  "Q2",  "decides most"};
   enum { COLUMNS = sizeof heading / sizeof *heading };
   struct eo_text_table sheet;
-  char note[EO_COMPLETION_NOTE];
+  char note[MOST_NOTES][EO_COMPLETION_NOTE];
+  int notes = write_notes(report, note);
   print_inputs(report, text);
   eo_text_add(text, "\n");
   eo_text_table_init(&sheet, COLUMNS, heading);
@@ -496,10 +513,8 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
     eo_text_print(text, "%d pairs have no converged contact; they count as bad.\n", report->failed);
   if (report->run->bounded)
     eo_text_print(text, "%d drawn values met a bound of their key and were put there.\n", report->run->bounded);
-  if (report->assumed)
-    eo_text_print(text, "note: %s\n", assumed_text);
-  if (eo_tolerance_completion_note(report, note))
-    eo_text_print(text, "note: %s\n", note);
+  for (int i = 0; i < notes; i++)
+    eo_text_print(text, "note: %s\n", note[i]);
   for (int i = 0; warnings && i < warnings->count; i++)
     eo_text_print(text, "note: %s\n", warnings->text[i]);
 }

@@ -38,6 +38,7 @@ struct eo_tolerance_report {
   int failed;                     /* pairs without a transmission error: contact did not converge */
   int worst;                      /* pair: the farthest beyond its limits, without limits the largest swing */
   char worst_of[EO_SCATTER_NAME]; /* by which number */
+  double worst_compliance;        /* its factor, which no design states */
   struct eo_design worst_design;  /* it, as a complete design; the compliance stays nominal */
 };
 

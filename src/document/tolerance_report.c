@@ -45,6 +45,12 @@ static enum eo_code check_limit(const struct eo_tolerance_limit *limit, const st
     return eo_error_set(error, EO_ERROR_INPUT, pointer,
                         "%s is a number of the hunting period, which is computed with \"single_teeth\": true.",
                         limit->output);
+  if (eo_scalar_at(scalar)->needs & EO_SCALAR_ROOT && !design->tolerance.root_stress)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer,
+                        "%s is a root stress, which is computed with \"root_stress\": true.", limit->output);
+  if (eo_scalar_at(scalar)->needs & EO_SCALAR_VIBRATION && !design->tolerance.vibration)
+    return eo_error_set(error, EO_ERROR_INPUT, pointer,
+                        "%s is a number of the vibration, which is computed with \"vibration\": true.", limit->output);
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/load_case", index);
   if (limit->load_case > cases)
     return eo_error_set(error, EO_ERROR_INPUT, pointer, "There is no load case %d of %d.", limit->load_case, cases);
@@ -165,7 +171,7 @@ static double badness(const struct eo_tolerance_report *report, int pair, int *l
 
 static void find_worst(struct eo_tolerance_report *report)
 {
-  double worst = -INFINITY, unused[2];
+  double worst = -INFINITY, speed;
   int limit, swing = eo_scalar_find("peak_to_peak_um");
   const char *name = swing_of(report);
   for (int pair = 0; pair < report->run->pairs; pair++) {
@@ -181,9 +187,9 @@ static void find_worst(struct eo_tolerance_report *report)
   report->worst_design = *report->design;
   eo_design_state_teeth(&report->worst_design);
   eo_scatter_apply(report->scatter, report->run->input + (size_t)report->worst * (size_t)report->run->inputs,
-                   &report->worst_design, &unused[0], &unused[1]);
+                   &report->worst_design, &report->worst_compliance, &speed);
   for (int k = 0; k < report->design->load_cases; k++)
-    report->worst_design.load_case[k].speed *= unused[1];
+    report->worst_design.load_case[k].speed *= speed;
   eo_table_round_to_document(&eo_design_table, &report->worst_design);
   memset(&report->worst_design.tolerance, 0, sizeof report->worst_design.tolerance);
   eo_table_defaults(&eo_tolerance_table, &report->worst_design.tolerance);

@@ -40,34 +40,39 @@ static double product(int n, const double *a, const double *b)
   return sum;
 }
 
-/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: theory (A7). */
+/* Eigenvalues of R below belong to inputs that depend on each other, as those of a fixed sum do. */
+static const double DEPENDENT = 1e-10;
+
+/* R b = r with the correlations R of the inputs and r of inputs and output; R2 = b' r: theory (A7). Of dependent inputs
+   the shortest b: what they do together is shared, and what they never do apart is not made up. */
 static enum eo_code solve(struct eo_regression *regression, int n, int varying, const double *column, const int *of,
                           struct eo_error *error)
 {
-  size_t m = (size_t)varying, rows = (size_t)n;
-  double *matrix = malloc(sizeof *matrix * (m * m + 2 * m));
-  int *pivot = malloc(sizeof *pivot * (m + 1));
-  enum eo_code code = matrix && pivot ? EO_OK : eo_error_memory(error);
-  if (!code) {
-    double *right = matrix + m * m, *with = right + m;
-    for (size_t i = 0; i < m; i++) {
-      with[i] = right[i] = product(n, column + i * rows, column + m * rows);
-      for (size_t j = 0; j < m; j++)
-        matrix[i * m + j] = product(n, column + i * rows, column + j * rows);
-    }
-    if (varying && eo_dense_solve(varying, matrix, pivot, 1, right))
-      code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The inputs depend on each other: no regression.");
-    double r2 = 0;
-    for (size_t i = 0; i < m && !code; i++) {
-      regression->coefficient[of[i]] = right[i];
-      r2 += right[i] * with[i];
-    }
-    bool constant = !(product(n, column + m * rows, column + m * rows) > 0);
-    regression->r2 = constant ? NAN : r2;
-    regression->r2_adjusted = constant ? NAN : 1 - (1 - r2) * (n - 1) / (n - 1 - varying);
+  size_t m = varying > 0 ? (size_t)varying : 0, rows = (size_t)n;
+  double *vector = calloc(m * (m + 3) + 1, sizeof *vector), *value = vector + m * m, *with = value + m, *b = with + m;
+  if (!vector)
+    return eo_error_memory(error);
+  for (size_t i = 0; i < m; i++) {
+    with[i] = product(n, column + i * rows, column + m * rows);
+    for (size_t j = 0; j < m; j++)
+      vector[i * m + j] = product(n, column + i * rows, column + j * rows);
   }
-  free(matrix);
-  free(pivot);
+  enum eo_code code = varying && eo_dense_symmetric_eigen(varying, vector, value) ? eo_error_memory(error) : EO_OK;
+  int rank = 0;
+  for (size_t i = 0; i < m && !code; i++)
+    if (value[i] > DEPENDENT) {
+      double part = eo_dot(varying, vector + i * m, with) / value[i];
+      for (size_t j = 0; j < m; j++)
+        b[j] += part * vector[i * m + j];
+      rank++;
+    }
+  for (size_t i = 0; i < m; i++)
+    regression->coefficient[of[i]] = b[i];
+  bool constant = !(product(n, column + m * rows, column + m * rows) > 0);
+  double r2 = eo_dot(varying, b, with);
+  regression->r2 = constant ? NAN : r2;
+  regression->r2_adjusted = constant ? NAN : 1 - (1 - r2) * (n - 1) / (n - 1 - rank);
+  free(vector);
   return code;
 }
 

@@ -8,8 +8,8 @@
 #include "base/error.h"
 
 /* Least squares with intercept of output[n] on input[n][k], all over their standard deviations. coefficient[k]: NaN for
-   an input that does not vary. Errors: EO_ERROR_NUMERIC (inputs depend on each other, or fewer rows than inputs + 2),
-   memory. */
+   an input that does not vary; of inputs that depend on each other the smallest ones. Errors: EO_ERROR_NUMERIC (fewer
+   rows than inputs + 2), memory. */
 struct eo_regression {
   double r2, r2_adjusted; /* share of the variance that is explained; NaN when the output is constant */
   double *coefficient;    /* [k], caller's */

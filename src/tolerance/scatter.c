@@ -90,7 +90,7 @@ int eo_scatter_draw(const struct eo_scatter *scatter, const struct eo_sampler *s
     double drawn = input->nominal + value[i];
     if (input->target == EO_TARGET_SEED)
       drawn = floor(drawn);
-    value[i] = fmin(fmax(drawn, input->least), input->most);
+    value[i] = input->cyclic ? drawn : fmin(fmax(drawn, input->least), input->most);
     bounded += value[i] != drawn;
   }
   return bounded;
@@ -110,8 +110,10 @@ void eo_scatter_apply(const struct eo_scatter *scatter, const double *value, voi
     else if (input->target == EO_TARGET_SEED) {
       uint64_t seed = (uint64_t)value[i];
       memcpy((char *)target + input->offset, &seed, sizeof seed);
-    } else
+    } else {
+      si = input->cyclic ? si - floor(si) : si;
       memcpy((char *)target + input->offset, &si, sizeof si);
+    }
   }
 }
 

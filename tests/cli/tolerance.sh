@@ -239,6 +239,22 @@ result $? "the worst pair is a design"
 "$numbers" "$folder/one.json" /outputs/0/histogram/largest >"$folder/expected"
 near "with the largest swing" /load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
 
+write_design '{"vibration": false, "inputs": [{"key": "compliance_factor", "sigma": 0.1}]}'
+tolerance --pairs 8
+grep -q "note: The worst pair has the compliance_factor [01][.0-9]*, which no design states" "$folder/out"
+result $? "a compliance that the worst pair's design does not have is told"
+
+# ---- measured teeth in place of the design's ----
+
+write_design '{}, "pitch": {"positions_per_cycle": 8, "gear_tooth": 5, "pinion": {"tolerance_class": 5}}'
+awk 'BEGIN { print "member,end,flank,tooth,index_um"; for (i = 0; i < 17; i++) printf "pinion,left,drive,%d,%d\n", i, i * 3 % 7 }' >"$folder/teeth.csv"
+"$EASEOFF" analyze "$folder/design.json" --pitch "$folder/teeth.csv" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
+result $? "a table of measured teeth is taken"
+grep -q '"gear_tooth": 5\b' "$folder/out" && grep -q '"positions_per_cycle": 8\b' "$folder/out" && ! grep -q '"tolerance_class": 5' "$folder/out"
+result $? "the pair is put together and looked at as its design says"
+grep -q "With 8 positions of a mesh cycle the vibration of single teeth has 3 harmonics" "$folder/out"
+result $? "positions that are too few for the vibration are told"
+
 # ---- people and tables ----
 
 write_design '{}'
@@ -252,6 +268,8 @@ refuses "there is no such number" '{"inputs": [{"key": "modification.pinion.left
 refuses "another gear pair is prepared anew" '{"inputs": [{"key": "gear_pair.normal_module_mm", "sigma": 1}]}'
 refuses "single_teeth" '{"inputs": [{"key": "pitch.gear.eccentricity_um", "sigma": 1}]}'
 refuses "number of the hunting period" '{"limits": [{"output": "tooth_load_N", "at_most": 1}]}'
+refuses '"root_stress": true' '{"limits": [{"output": "root_stress_MPa", "at_most": 1e6}]}'
+refuses '"vibration": true' '{"vibration": false, "limits": [{"output": "rms_m_per_s2", "at_most": 1e6}]}'
 refuses "not stated" '{"inputs": [{"key": "modification.pinion.left.tip_relief_diameter_mm", "sigma": 1}]}'
 refuses "no output \"peak\"" '{"pairs": 1, "limits": [{"output": "peak", "at_most": 1}]}'
 refuses "no load case 2" '{"pairs": 1, "limits": [{"output": "peak_to_peak_um", "load_case": 2, "at_most": 1}]}'

@@ -219,6 +219,30 @@ static void test_surface(void)
   eo_surface_done(&surface);
 }
 
+/* y = 2 x + (u - v)/sqrt 2 where v is -u: of all coefficients that say so, those that share it. */
+static void test_dependent_inputs(void)
+{
+  enum { ROWS = 64 };
+  static double input[ROWS][3], output[ROWS];
+  double coefficient[3];
+  struct eo_regression regression = {.coefficient = coefficient};
+  struct eo_error error;
+  for (int i = 0; i < ROWS; i++) {
+    double x = cos(2 * M_PI * i / ROWS), u = sin(2 * M_PI * i / ROWS);
+    input[i][0] = 7 + x;
+    input[i][1] = 3 * u;
+    input[i][2] = -5 * u;
+    output[i] = 2 * x + u;
+  }
+  ok(eo_regression_run(&regression, ROWS, 3, input[0], output, &error) == EO_OK,
+     "a regression takes inputs of a fixed sum");
+  close_to(coefficient[0], 2 / sqrt(5), 1e-12, "what depends on none has its own coefficient");
+  close_to(coefficient[1], 0.5 / sqrt(5), 1e-12, "two that depend on each other share theirs");
+  close_to(coefficient[2], -0.5 / sqrt(5), 1e-12, "with the sign of each");
+  close_to(regression.r2, 1, 1e-12, "they explain what they make");
+  close_to(regression.r2_adjusted, 1, 1e-12, "as two inputs would");
+}
+
 /* Sigma 3 and 4 under a fixed sum: what is left of 3 is 3 sqrt(1 - 9/25) = 2.4, and of 4 the same. */
 static void test_scatter(void)
 {
@@ -261,9 +285,35 @@ static void test_scatter(void)
   ok(member[2] == 7 && speed == 1 && compliance >= 0.1 && bounded > 500, "a factor has its bound: %d times", bounded);
 }
 
+/* A phase about 0 lies on both sides of it: -0.1 of a cycle is 0.9. */
+static void test_phase(void)
+{
+  static struct eo_scatter scatter;
+  struct eo_error error;
+  struct eo_sampler *sampler;
+  double value, phase, compliance, speed, lowest = 1, below = 0;
+  int bounded = 0;
+  scatter.inputs = 1;
+  scatter.input[0] = (struct eo_scatter_input){
+      .unit = 1, .least = 0, .most = 1, .cyclic = true, .deviation = {.sigma = 0.02, .cut = INFINITY}};
+  eo_scatter_settle(&scatter, &error);
+  eo_sampler_new(&sampler, EO_SAMPLING_SOBOL, 1, 64, 1, &error);
+  for (int i = 0; i < 64; i++) {
+    bounded += eo_scatter_draw(&scatter, sampler, i, &value);
+    eo_scatter_apply(&scatter, &value, &phase, &compliance, &speed);
+    lowest = fmin(lowest, phase);
+    below += value < 0 && fabs(phase - 1 - value) < 1e-15;
+  }
+  eo_sampler_free(sampler);
+  ok(bounded == 0, "a phase meets no bound");
+  ok(below == 32 && lowest >= 0, "what lies before 0 is the end of the cycle before");
+}
+
 int main(void)
 {
+  test_dependent_inputs();
   test_scatter();
+  test_phase();
   test_normal();
   test_distributions();
   test_half_normal();
