@@ -8,9 +8,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
-static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                              1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+#include "recording/decimal.h"
+
+typedef unsigned __int128 wide;
+
+/* Powers of five, and by a power of two of ten, with 64 bits. */
+#define UP(power) ((uint64_t)(power) << __builtin_clzll(power))
+#define FOUR(power) UP(power), UP(power * 5ull), UP(power * 25ull), UP(power * 125ull)
+static const uint64_t power_of_five[] = {FOUR(1),
+                                         FOUR(625),
+                                         FOUR(390625),
+                                         FOUR(244140625),
+                                         FOUR(152587890625),
+                                         FOUR(95367431640625),
+                                         FOUR(59604644775390625)};
+enum { MOST_DECIMALS = sizeof power_of_five / sizeof *power_of_five - 1 };
+
+/* floor(log2(10^n)) of what follows. */
+static int log2_of_power(int n)
+{
+  return n * 13607 >> 12;
+}
 
 /* 00, 01, .. 99 */
 static const char pair_of_digits[] =
@@ -24,24 +42,42 @@ static uint64_t bits_of(double value)
   return bits;
 }
 
-/* floor(log10(value)) for 1 <= value < 1e22: from the binary exponent, log10(2) = 1233/4096. */
-static int find_exponent(double value)
+/* A decimal beside a value: number / 10^decimals. */
+struct decimal {
+  uint64_t number;
+  int decimals;
+  bool same; /* it is read back as the value */
+};
+
+/* |value| * 10^decimals is here in full, an integer of 127 bits of which 64 and `behind` are behind the point. Of two
+   numbers as near the even one, as printf does it. False: it has more bits. */
+static bool scale(double value, int decimals, struct decimal *decimal)
 {
-  int exponent = ((int)(bits_of(value) >> 52) - 1023) * 1233 >> 12;
-  return exponent + (value >= power[exponent + 1]);
+  static const uint64_t least = (uint64_t)1 << 62;
+  uint64_t bits = bits_of(value), significand = (bits << 11 >> 1) | least;
+  int behind = 1084 - (int)(bits << 1 >> 53) - log2_of_power(decimals);
+  if (decimals < 0 || decimals > MOST_DECIMALS || behind < 1 || behind > 63)
+    return false;
+  wide scaled = (wide)significand * power_of_five[decimals], half = (wide)1 << behind << 63;
+  uint64_t odd = (uint64_t)(scaled >> 64) >> behind & 1, number = (uint64_t)((scaled + half - 1 + odd) >> 64) >> behind;
+  wide back = (wide)(number << behind) << 64;
+  /* half of the way to the next doubles; below a power of two it is a quarter */
+  wide above = (wide)power_of_five[decimals] << 9, below = above >> (significand == least);
+  *decimal = (struct decimal){number, decimals, back + below - scaled < above + below};
+  return true;
 }
 
-/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what
-   follows can be done exactly. */
-static int find_decimals(double value, int digits)
+/* The value of so many significant digits; false: text has to tell. */
+static bool find_decimal(double value, int digits, struct decimal *decimal)
 {
-  if (!(value >= 1e-13 && value < 1e15))
-    return -1;
-  int decimals = digits - 1 - (value >= 1 ? find_exponent(value) : find_exponent(value * 1e13) - 13);
-  return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
+  int power_of_two = (int)(bits_of(value) << 1 >> 53) - 1023, exponent = power_of_two * 1233 >> 12; /* log10(2) */
+  if (!(fabs(value) < 1e15) || !scale(value, digits - 1 - exponent, decimal))
+    return false;
+  return decimal->number < power_of_five[digits] >> (63 - log2_of_power(digits)) ||
+         scale(value, digits - 2 - exponent, decimal);
 }
 
-enum { MOST_DIGITS = 24 }; /* of a number of 64 bits, in whole words for copies of a fixed size */
+enum { MOST_DIGITS = 18 }; /* of what is written here, whole pairs, for copies of a fixed size */
 
 /* The digits of a number above 0, at the end of `digits`; returns how many. Two at a time, and in 32 bits as soon as
    that is enough: divisions take longer than all else here. */
@@ -57,26 +93,25 @@ static int write_digits(char digits[MOST_DIGITS], uint64_t number)
   return (int)(digits + MOST_DIGITS - to) - (rest < 10);
 }
 
-/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Writes within 32
-   characters; returns the length. */
+/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns the
+   length. */
 static int write_decimal(char *text, bool negative, uint64_t number, int decimals)
 {
   char room[2 * MOST_DIGITS], *to = text;
-  for (; decimals > 0 && number % 10 == 0; decimals--)
-    number /= 10;
   int length = write_digits(room, number), exponent = length - 1 - decimals;
   const char *digits = room + MOST_DIGITS - length;
+  for (; decimals > 0 && digits[length - 1] == '0'; decimals--)
+    length--;
   *to = '-';
   to += negative;
   if (exponent < 0 && exponent >= -4) { /* 0.000 and the digits */
     memcpy(to, "0.000", 5);
     memcpy(to += 1 - exponent, digits, MOST_DIGITS);
     to += length;
-  } else { /* the digits, those before the point moved to make room for it */
+  } else {
     int whole = exponent < 0 ? 1 : exponent + 1;
-    memcpy(to + 1, digits, MOST_DIGITS);
-    for (int i = 0; i < whole; i++)
-      to[i] = to[i + 1];
+    memcpy(to, digits, MOST_DIGITS);
+    memcpy(to + whole + 1, digits + whole, MOST_DIGITS);
     to[whole] = '.';
     to += length + (length > whole);
   }
@@ -84,29 +119,14 @@ static int write_decimal(char *text, bool negative, uint64_t number, int decimal
     *to++ = 'e';
     *to++ = '-';
     if (exponent <= -10)
-      *to++ = '1';
+      *to++ = (char)('0' + -exponent / 10);
     *to++ = (char)('0' + -exponent % 10);
   }
   *to = '\0';
   return (int)(to - text);
 }
 
-/* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of
-   its digits over a power of ten, as long as both are exact. Returns its length; 0: not so short, or too large or
-   small. */
-static int write_short(char *text, double value)
-{
-  double size = fabs(value);
-  for (int digits = 9; digits <= 15; digits += 3) {
-    int decimals = find_decimals(size, digits);
-    double number = decimals < 0 ? 0 : nearbyint(size * power[decimals]);
-    if (decimals < 0 || number >= 1e15 || number / power[decimals] != size)
-      continue;
-    return write_decimal(text, value < 0, (uint64_t)number, decimals);
-  }
-  return 0;
-}
-
+/* What is far from 1. */
 static int write_long(char *text, int size, double value)
 {
   for (int digits = 15; digits <= 17; digits++) {
@@ -128,46 +148,34 @@ static int write_long(char *text, int size, double value)
 
 int eo_digits_write(char *text, int size, double value)
 {
-  uint64_t bits =
-      bits_of(value); /* for the sign of a zero: where it compares values, the compiler may take all zeros for one */
-  int length = bits << 1 ? write_short(text, value) : write_decimal(text, bits >> 63, 0, 0);
-  return length ? length : write_long(text, size, value);
-}
-
-/* number / 10^decimals is |value| of so many digits: through integers where that is exact and no tie is near. False:
-   text has to tell. */
-static bool round_exactly(double value, int digits, uint64_t *number, int *decimals)
-{
-  double size = fabs(value);
-  *decimals = find_decimals(size, digits);
-  if (*decimals < 0)
-    return false;
-  double scaled = size * power[*decimals];
-  int64_t whole = (int64_t)scaled; /* below 1e18; a processor has an instruction for signed ones */
-  double past = scaled - (double)whole - 0.5;
-  whole += past > 0;
-  *number = (uint64_t)whole;
-  return scaled >= power[digits - 1] * (1 + 1e-12) && (double)whole < power[digits] && fabs(past) > 1e-15 * scaled;
+  struct decimal decimal;
+  bool negative = bits_of(value) >> 63; /* of a zero, too, whose sign the compiler may not tell */
+  if (value == 0)
+    return write_decimal(text, negative, 0, 0);
+  for (int digits = 9; digits <= 17; digits += digits < 15 ? 3 : 1)
+    if (find_decimal(value, digits, &decimal) && decimal.same)
+      return write_decimal(text, negative, decimal.number, decimal.decimals);
+  return write_long(text, size, value);
 }
 
 double eo_digits_round(double value, int digits)
 {
+  static const uint64_t exact = (uint64_t)1 << 53; /* as are powers of ten up to 22 */
   char text[EO_DIGITS_ROOM];
-  uint64_t number;
-  int decimals;
-  if (value == 0)
+  struct decimal decimal;
+  bool found = value != 0 && find_decimal(value, digits, &decimal);
+  if (value == 0 || (found && decimal.same))
     return value;
-  if (round_exactly(value, digits, &number, &decimals))
-    return copysign((double)number / power[decimals], value);
+  if (found && decimal.number < exact && decimal.decimals <= 22)
+    return copysign((double)decimal.number / eo_decimal_power[decimal.decimals], value);
   snprintf(text, sizeof text, "%.*g", digits, value);
   return strtod(text, NULL);
 }
 
 int eo_digits_write_rounded(char *text, int size, double value, int digits)
 {
-  uint64_t number;
-  int decimals;
-  if (value != 0 && round_exactly(value, digits, &number, &decimals))
-    return write_decimal(text, value < 0, number, decimals);
+  struct decimal decimal;
+  if (value != 0 && find_decimal(value, digits, &decimal))
+    return write_decimal(text, value < 0, decimal.number, decimal.decimals);
   return eo_digits_write(text, size, eo_digits_round(value, digits));
 }

@@ -9,11 +9,11 @@ enum { EO_DIGITS_ROOM = 40 }; /* of any of the texts below, with its NUL */
 /* The double nearest to a finite value of so many significant digits. */
 double eo_digits_round(double value, int digits);
 
-/* The text of a finite value: the shortest of 15, 16 or 17 digits that reads back equal. size >= 32. Returns its
-   length. */
+/* The text of a finite value: the shortest of 15, 16 or 17 digits that reads back equal. size >= EO_DIGITS_ROOM.
+   Returns its length. */
 int eo_digits_write(char *text, int size, double value);
 
-/* The text of the value rounded to so many digits. */
+/* The text of the value rounded to so many digits, 15 at most. */
 int eo_digits_write_rounded(char *text, int size, double value, int digits);
 
 #endif
