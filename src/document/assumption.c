@@ -125,9 +125,10 @@ static void add_group(json_t *list, const struct eo_design *design, const struct
     const struct eo_field *field = &table->field[i];
     char key[128];
     json_t *value = json_object_get(encoded, field->key);
+    if (!is_listed(field, value) || bit_of(design, bit + i))
+      continue;
     snprintf(key, sizeof key, "/%.40s/%.80s", group->key, field->key);
-    if (is_listed(field, value) && !bit_of(design, bit + i))
-      add(list, key, json_incref(value), rule_of(field), failed);
+    add(list, key, json_incref(value), rule_of(field), failed);
   }
   json_decref(encoded);
 }

@@ -45,7 +45,8 @@ const json_t *eo_json_find(const json_t *value, const char *path);
 /* The number there; NaN when there is none. */
 double eo_json_find_number(const json_t *value, const char *path);
 
-/* Sets object[key] and takes the value over; a NULL value or a failed insertion sets *failed (may be set before). */
+/* Sets object[key], a key of the program's own in UTF-8, and takes the value over; a NULL value or a failed insertion
+   sets *failed (may be set before). */
 void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed);
 /* Appends a new value to the array, which it returns; NULL, and both let go, when either is NULL or there is no memory.
  */

@@ -248,6 +248,7 @@ static int write_ready(char *to, double value, int digits)
 static json_t *ready_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits)
 {
   struct eo_text text = {0};
+  eo_text_room(&text, (size_t)(digits + 3) * (size_t)count + ROOM_AT_ONCE * (EO_DIGITS_ROOM + 1));
   eo_text_add_bytes(&text, "\0[", 2);
   for (int first = 0; first < count; first += ROOM_AT_ONCE) {
     int last = count - first < ROOM_AT_ONCE ? count : first + ROOM_AT_ONCE;
@@ -293,6 +294,6 @@ void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed)
   if (*failed || !value) {
     json_decref(value);
     *failed = true;
-  } else if (json_object_set_new(object, key, value) != 0)
+  } else if (json_object_set_new_nocheck(object, key, value) != 0)
     *failed = true;
 }

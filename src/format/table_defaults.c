@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a struct holds before its document is read. */
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "format/table.h"
@@ -46,7 +45,7 @@ static void default_field(const struct eo_field *field, void *target)
     break;
   case EO_FIELD_TEXT:
     memset(place, 0, (size_t)field->count);
-    snprintf(place, (size_t)field->count, "%s", field->fallback_text ? field->fallback_text : "");
+    strncpy(place, field->fallback_text ? field->fallback_text : "", (size_t)field->count - 1);
     break;
   case EO_FIELD_NUMBERS:
     default_numbers(field, place);

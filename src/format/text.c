@@ -80,14 +80,16 @@ void eo_text_add_escaped(struct eo_text *text, const char *string)
 
 void eo_text_print(struct eo_text *text, const char *format, ...)
 {
+  enum { USUAL = 100 };
   va_list arguments, again;
   va_start(arguments, format);
   va_copy(again, arguments);
-  int length = vsnprintf(NULL, 0, format, arguments);
-  if (length >= 0 && reserve(text, (size_t)length)) {
+  bool usual = reserve(text, USUAL);
+  int length = usual ? vsnprintf(text->data + text->size, USUAL + 1, format, arguments) : 0;
+  if (length > USUAL && reserve(text, (size_t)length))
     vsnprintf(text->data + text->size, (size_t)length + 1, format, again);
+  if (length > 0 && !text->failed)
     text->size += (size_t)length;
-  }
   va_end(again);
   va_end(arguments);
 }
