@@ -267,6 +267,9 @@ static void decode_matrix(const struct eo_field *field, const json_t *value, con
   *matrix = (struct eo_matrix){(int)rows, (int)columns, number};
 }
 
+static void decode_keys(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
+                        struct eo_faults *faults);
+
 static void decode_list(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
                         struct eo_faults *faults)
 {
@@ -353,7 +356,7 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
     break;
   case EO_FIELD_OBJECT:
     set_present(field, target, true);
-    eo_table_decode(field->table, value, path, place, faults);
+    decode_keys(field->table, value, path, place, faults);
     break;
   case EO_FIELD_LIST:
     decode_list(field, value, path, target, faults);
@@ -398,7 +401,7 @@ static void decode_absent(const struct eo_field *field, const json_t *object, co
 {
   if (field->kind == EO_FIELD_OBJECT && !may_be_null(field)) {
     json_t *empty = json_object();
-    eo_table_decode(field->table, empty, path, member(target, field), faults);
+    decode_keys(field->table, empty, path, member(target, field), faults);
     json_decref(empty);
   } else if (field->flags & EO_FIELD_REQUIRED && !is_replaced(field, object))
     eo_key_missing(field, path, faults);
@@ -432,10 +435,10 @@ static void decode_scaled(const struct eo_field *field, const json_t *value, con
   json_decref(scaled);
 }
 
-void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
-                     struct eo_faults *faults)
+/* The keys that are there; the others keep the default that they have already. */
+static void decode_keys(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
+                        struct eo_faults *faults)
 {
-  eo_table_defaults(table, target);
   if (!json_is_object(object)) {
     eo_faults_at(faults, path, "Must be an object, not %s.", object ? type_name(object) : "missing");
     return;
@@ -462,4 +465,11 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
     struct eo_path place = {path, key, 0};
     eo_key_unknown(table, key, &place, faults);
   }
+}
+
+void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
+                     struct eo_faults *faults)
+{
+  eo_table_defaults(table, target);
+  decode_keys(table, object, path, target, faults);
 }
