@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The structure of an MDF file: header -> lists of data -> groups of records -> channels. */
 #include "recording/mdf.h"
+#include "recording/namesakes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -239,28 +240,13 @@ static enum eo_code read_data_group(struct eo_mdf *mdf, const struct eo_mdf_bloc
   return eo_mdf_find_records(mdf, data->link[2], number, first, mdf->groups - first, error);
 }
 
-static bool has_namesake(const struct eo_mdf *mdf, int c)
+/* Groups are told apart by their names, where they have some. */
+static void tell_group(const void *context, int series, int namesake, char *group, size_t size)
 {
-  for (int i = 0; i < mdf->channels; i++)
-    if (mdf->channel[i].group != mdf->channel[c].group && !strcmp(mdf->series[i].name, mdf->series[c].name))
-      return true;
-  return false;
-}
-
-/* Channels of one name in several groups are told apart by the groups, where these have names. */
-static void name_by_group(struct eo_mdf *mdf)
-{
-  bool doubled[EO_SERIES];
-  char name[EO_RECORDING_NAME];
-  for (int c = 0; c < mdf->channels; c++)
-    doubled[c] = has_namesake(mdf, c);
-  for (int c = 0; c < mdf->channels; c++) {
-    const char *group = mdf->group[mdf->channel[c].group].name;
-    if (!doubled[c] || !*group)
-      continue;
-    snprintf(name, sizeof name, "%.30s %.30s", group, mdf->series[c].name);
-    memcpy(mdf->series[c].name, name, sizeof name);
-  }
+  const struct eo_mdf *mdf = context;
+  int own = mdf->channel[series].group;
+  if (own != mdf->channel[namesake].group)
+    snprintf(group, size, "%s", mdf->group[own].name);
 }
 
 /* The group that has the times of a group: itself, or (MDF 4.2, column by column) another one with as many records. */
@@ -288,7 +274,7 @@ static void settle(struct eo_mdf *mdf)
       series->clock.start = times->start;
     }
   }
-  name_by_group(mdf);
+  eo_namesakes_part(mdf->series, mdf->channels, tell_group, mdf);
 }
 
 static void say_what_stays_out(const struct eo_mdf *mdf)

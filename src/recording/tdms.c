@@ -2,6 +2,7 @@
 /* The values of NI TDMS files. */
 #include "recording/tdms.h"
 #include "recording/bytes.h"
+#include "recording/namesakes.h"
 #include "recording/readers.h"
 
 #include <stdio.h>
@@ -10,8 +11,7 @@
 
 #define PIECE ((size_t)64 << 10) /* bytes read at once */
 
-static double value_at(struct eo_tdms_channel *channel, const struct eo_tdms_part *part, const unsigned char *p,
-                       bool big)
+static double value_at(struct eo_tdms *tdms, const struct eo_tdms_part *part, const unsigned char *p, bool big)
 {
   if (part->bit >= 0)
     return p[0] >> part->bit & 1;
@@ -19,14 +19,15 @@ static double value_at(struct eo_tdms_channel *channel, const struct eo_tdms_par
     return p[0];
   if (part->type != EO_TDMS_TIMESTAMP)
     return eo_tdms_number(part->type, p, big);
-  /* Seconds since 1904 and fractions of 2^-64 s; only the distance from the first one fits a double without loss. */
+  /* Seconds since 1904 and fractions of 2^-64 s; only the distance from the first one of the file fits a double without
+   * loss. */
   uint64_t seconds = eo_bytes_64(big ? p : p + 8, big);
   double fraction = (double)eo_bytes_64(big ? p + 8 : p, big) * 0x1p-64;
-  if (!channel->base_known) {
-    channel->base_known = true;
-    channel->base = (int64_t)seconds;
+  if (!tdms->base_known) {
+    tdms->base_known = true;
+    tdms->base = (int64_t)seconds;
   }
-  return (double)(int64_t)(seconds - (uint64_t)channel->base) + fraction;
+  return (double)(int64_t)(seconds - (uint64_t)tdms->base) + fraction;
 }
 
 /* Values of one chunk follow each other, lie between those of other channels, or stand in rows of a buffer. */
@@ -54,7 +55,7 @@ struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int ch
 }
 
 /* Reads up to count values of a chunk from the n-th of the segment on, as many as one piece and the chunk hold. */
-static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channel *channel,
+static enum eo_code read_piece(struct eo_tdms *tdms, const struct eo_tdms_channel *channel,
                                const struct eo_tdms_segment *segment, const struct eo_tdms_place *place, int64_t n,
                                int64_t *count, double *values, unsigned char *bytes, struct eo_error *error)
 {
@@ -68,7 +69,7 @@ static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channe
   int64_t at = segment->at + chunk * segment->layout->chunk + place->offset + in_chunk * place->stride;
   enum eo_code code = eo_bytes_read(tdms->file, at, bytes, (size_t)((*count - 1) * place->stride + size), error);
   for (int64_t i = 0; !code && i < *count; i++)
-    values[i] = eo_tdms_scaled(channel, value_at(channel, place->part, bytes + i * place->stride, segment->big));
+    values[i] = eo_tdms_scaled(channel, value_at(tdms, place->part, bytes + i * place->stride, segment->big));
   return code;
 }
 
@@ -156,19 +157,12 @@ static void settle_waveforms(struct eo_tdms *tdms, struct eo_notes *notes)
   }
 }
 
-/* Channels of one name in several groups are told apart by the group. */
-static void name_by_group(struct eo_tdms *tdms, int c)
+static void tell_group(const void *context, int series, int namesake, char *group, size_t size)
 {
-  char group[EO_RECORDING_NAME] = "", name[EO_RECORDING_NAME];
-  for (int i = 0; i < tdms->channels; i++) {
-    const char *end = strstr(tdms->channel[c].path, "'/'");
-    if (i == c || strcmp(tdms->series[i].name, tdms->series[c].name) || !end)
-      continue;
-    snprintf(group, sizeof group, "%.*s", (int)(end - tdms->channel[c].path - 2), tdms->channel[c].path + 2);
-    snprintf(name, sizeof name, "%.30s %.30s", group, tdms->series[c].name);
-    memcpy(tdms->series[c].name, name, sizeof name);
-    return;
-  }
+  const char *path = ((const struct eo_tdms *)context)->channel[series].path, *end = strstr(path, "'/'");
+  (void)namesake;
+  if (end)
+    snprintf(group, size, "%.*s", (int)(end - path - 2), path + 2);
 }
 
 /* Channels of text and of complex numbers have no values for us, nor have raw values without a scale we know. */
@@ -198,8 +192,7 @@ static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
     inherit(tdms, c);
   }
   settle_waveforms(tdms, notes);
-  for (int c = tdms->channels; c-- > 0;)
-    name_by_group(tdms, c);
+  eo_namesakes_part(tdms->series, tdms->channels, tell_group, tdms);
   if (tdms->cut)
     eo_notes_add(notes, "The TDMS file was not closed or is cut off; what is there of its last chunk was read.");
 }

@@ -82,9 +82,7 @@ struct eo_tdms_channel {
   struct eo_tdms_scale *scale; /* owned, [EO_TDMS_SCALES]; NULL: none */
   bool scaled;
   double increment, start, abscissa; /* waveform: step, first place, s per unit of both; 0: not stated */
-  int64_t base;                      /* s, whole seconds of the first timestamp */
-  bool base_known;
-  int64_t segment, passed; /* where reading has come to: segment, values before it */
+  int64_t segment, passed;           /* where reading has come to: segment, values before it */
 };
 
 /* What the properties of the file or of a group say of the channels in it. */
@@ -100,6 +98,8 @@ struct eo_tdms {
   int groups;
   struct eo_tdms_group group[EO_TDMS_GROUPS];
   int64_t size;
+  int64_t base; /* s, whole seconds of the first time stamp that was read: all count from it */
+  bool base_known;
   bool cut; /* the last segment is not complete */
   int channels;
   struct eo_tdms_channel channel[EO_SERIES];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/tree_private.h"
+#include "recording/namesakes.h"
 #include "recording/recorded_unit.h"
 
 #include <ctype.h>
@@ -62,8 +63,13 @@ int eo_tree_add_series(struct eo_tree *tree, const char *path, int channels, int
   leaf->channels = channels;
   for (int c = 0; c < channels; c++) {
     struct eo_own *own = &tree->own[tree->count];
-    *own = (struct eo_own){
-        .whole = whole, .scale = 1, .name_depth = -1, .unit_depth = -1, .day_depth = -1, .hour_depth = -1};
+    *own = (struct eo_own){.whole = whole,
+                           .scale = 1,
+                           .missing = NAN,
+                           .name_depth = -1,
+                           .unit_depth = -1,
+                           .day_depth = -1,
+                           .hour_depth = -1};
     for (int k = 0; k < EO_STATED_KINDS; k++)
       own->depth[k] = -1;
     eo_series_init(&tree->series[tree->count++], "", length);
@@ -262,20 +268,62 @@ enum eo_code eo_tree_check_begins(struct eo_tree *tree, const struct eo_series_f
   return EO_OK;
 }
 
+static const struct eo_leaf *leaf_of(const struct eo_tree *tree, int series)
+{
+  int s = tree->sets - 1;
+  while (s > 0 && tree->leaf[tree->set[s]].first > series)
+    s--;
+  return &tree->leaf[tree->set[s]];
+}
+
+/* The part of the path of its group in which a series differs from its namesake first. */
+static void tell_group(const void *context, int series, int namesake, char *group, size_t size)
+{
+  const char *own = leaf_of(context, series)->path, *other = leaf_of(context, namesake)->path, *part = own;
+  for (; *own && *own == *other; own++, other++)
+    if (*own == '/')
+      part = own + 1;
+  if (strchr(part, '/'))
+    snprintf(group, size, "%.*s", (int)strcspn(part, "/"), part);
+}
+
+/* What stands in the place of a value that is missing, stated at the series itself (netCDF: _FillValue). */
+static void take_missing(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  const char *base = eo_tree_base_of(fact->path);
+  size_t group = eo_tree_group_size(fact->path);
+  if (fact->kind != EO_LEAF_NUMBER || group != strlen(series->path) || strncmp(fact->path, series->path, group) != 0 ||
+      !eo_tree_is_one_of(base, strlen(base), "fillvalue|missingvalue|missing|nodata|nodatavalue|invalidvalue"))
+    return;
+  for (int c = series->first; c < series->first + series->channels; c++)
+    tree->own[c].missing = fact->number;
+}
+
+static void note_scales(const struct eo_tree *tree, struct eo_notes *notes)
+{
+  for (int s = 0; s < tree->sets; s++) {
+    int first = tree->leaf[tree->set[s]].first;
+    const struct eo_own *own = &tree->own[first];
+    if (own->scale != 1 || own->offset != 0)
+      eo_notes_add(notes, "The values of \"%s\" were multiplied by %.9g and %.9g was added, as the file states.",
+                   tree->series[first].name, own->scale, own->offset);
+  }
+}
+
 void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes)
 {
   for (int s = 0; s < tree->sets; s++) {
     const struct eo_leaf *series = &tree->leaf[tree->set[s]];
-    for (int i = 0; i < tree->leaves; i++)
+    for (int i = 0; i < tree->leaves; i++) {
       eo_tree_use(tree, &tree->leaf[i], series);
+      take_missing(tree, &tree->leaf[i], series);
+    }
     name_series(tree, series);
     if (!eo_tree_is_time(series))
       find_times(tree, series);
-    const struct eo_own *own = &tree->own[series->first];
-    if (own->scale != 1 || own->offset != 0)
-      eo_notes_add(notes, "The values of \"%s\" were multiplied by %.9g and %.9g was added, as the file states.",
-                   tree->series[series->first].name, own->scale, own->offset);
   }
+  eo_namesakes_part(tree->series, tree->count, tell_group, tree);
+  note_scales(tree, notes);
   read_day_numbers(tree, notes);
 }
 
@@ -291,5 +339,6 @@ struct eo_series *eo_tree_series(struct eo_tree *tree)
 
 double eo_tree_value(const struct eo_tree *tree, int series, double stored)
 {
-  return stored * tree->own[series].scale + tree->own[series].offset;
+  const struct eo_own *own = &tree->own[series];
+  return stored == own->missing ? NAN : stored * own->scale + own->offset;
 }

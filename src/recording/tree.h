@@ -36,7 +36,8 @@ enum eo_code eo_tree_check_begins(struct eo_tree *tree, const struct eo_series_f
 int eo_tree_count(const struct eo_tree *tree);
 struct eo_series *eo_tree_series(struct eo_tree *tree); /* [eo_tree_count()] */
 
-/* A stored value of a series as it was measured: by the scale and offset that the file states. */
+/* A stored value of a series as it was measured: by the scale and offset that the file states; NaN where it is what the
+   file has in the place of missing ones. */
 double eo_tree_value(const struct eo_tree *tree, int series, double stored);
 
 #endif

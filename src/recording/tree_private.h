@@ -24,9 +24,9 @@ struct eo_leaf {
 
 /* What one channel has got, and from how near. */
 struct eo_own {
-  const struct eo_leaf *leaf;
   bool whole;
   double scale, offset;
+  double missing; /* stored where there is no value; NaN: not stated */
   int depth[EO_STATED_KINDS]; /* of the fact that was taken, by kind; -1: none */
   int name_depth, unit_depth;
   int day_depth, hour_depth; /* of what begin holds */

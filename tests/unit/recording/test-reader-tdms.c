@@ -480,6 +480,43 @@ static void test_facts(void)
   eo_recording_free(r);
 }
 
+/* Two groups with time stamps and values of their own, which begin on either side of a full second. */
+static void test_time_stamps(void)
+{
+  enum { COUNT = 40 };
+  const double begin[2] = {0.9, 1.1};
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 4, 4);
+  for (int g = 0; g < 2; g++) {
+    put_string(&w, g ? "/'gear'/'time'" : "/'pinion'/'time'");
+    put_index(TIMESTAMP, COUNT);
+    put_number(&w, 0, 4);
+    put_string(&w, g ? "/'gear'/'angle'" : "/'pinion'/'angle'");
+    put_index(DOUBLE, COUNT);
+    put_number(&w, 0, 4);
+  }
+  end_metadata();
+  for (int g = 0; g < 2; g++) {
+    for (int i = 0; i < COUNT; i++) {
+      double at = begin[g] + 0.001 * i;
+      put_number(&w, (uint64_t)((at - floor(at)) * 0x1p64), 8);
+      put_number(&w, 3792474000 + (uint64_t)at, 8);
+    }
+    for (int i = 0; i < COUNT; i++)
+      put_double(&w, i);
+  }
+  end_segment();
+  struct eo_error error;
+  write_bytes(w.bytes, w.size);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && fabs(cell_of(r, 0, 2) - cell_of(r, 0, 0) - 0.2) < 1e-9, "time stamps of all channels count from one moment%s",
+     r ? "" : error.text);
+  ok(r && !strcmp(eo_recording_name(r, 1), "pinion angle") && !strcmp(eo_recording_name(r, 3), "gear angle"),
+     "every channel of one name gets that of its group");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -492,6 +529,7 @@ int main(void)
   test_texts(28);
   test_texts(20);
   test_scaled();
+  test_time_stamps();
   test_slow(2e-3, 1);
   test_slow(5e-5, 0);
   test_damage();
