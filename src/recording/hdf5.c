@@ -11,11 +11,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define WIDE 64                   /* a data set with more columns is no table of channels */
-#define TEXT 64                   /* bytes of a text that may be a date */
-#define FIELDS 64                 /* fields of a record that are looked at */
-#define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
-#define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
+#define WIDE 64         /* a data set with more columns is no table of channels */
+#define TEXT 64         /* bytes of a text that may be a date */
+#define DEPTH 64        /* groups in each other; paths end before */
+#define REFERENCES 4096 /* elements of an array of structs or a cell that are looked at */
 #define PATH EO_TREE_PATH
 
 struct attributes {
@@ -28,9 +27,9 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
   const struct attributes *attributes = context;
   char path[PATH], list[4096];
   double value = 0;
-  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   (void)info;
-  if (attribute < 0 || !eo_hdf5_join(path, attributes->path, name))
+  hid_t attribute = eo_hdf5_join(path, attributes->path, name) ? H5Aopen(object, name, H5P_DEFAULT) : -1;
+  if (attribute < 0)
     return 0;
   hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
   H5T_class_t class = H5Tget_class(type);
@@ -59,6 +58,31 @@ static bool reads_other_files(hid_t set)
   bool other = list < 0 || H5Pget_external_count(list) != 0 || H5Pget_layout(list) == H5D_VIRTUAL;
   H5Pclose(list);
   return other;
+}
+
+static void note_elsewhere(const struct eo_hdf5 *hdf5, const char *path)
+{
+  eo_notes_add(hdf5->notes,
+               "\"%.60s\" keeps its values in another file, and other files are not read: save all channels in one "
+               "file (h5py: new[name] = old[name][...]).",
+               path);
+}
+
+/* Links may lead in circles, and references to what refers back: what was visited once is not visited again. */
+static bool was_visited(struct eo_hdf5 *hdf5, hid_t object)
+{
+  H5O_info_t info;
+  if (H5Oget_info2(object, &info, H5O_INFO_BASIC) < 0)
+    return true;
+  for (int i = 0; i < hdf5->visits; i++)
+    if (hdf5->visited[i] == info.addr)
+      return true;
+  if (hdf5->visits == EO_HDF5_VISITS) {
+    hdf5->left_out++;
+    return true;
+  }
+  hdf5->visited[hdf5->visits++] = info.addr;
+  return false;
 }
 
 static void matlab_class(hid_t set, char *class, size_t size)
@@ -228,7 +252,7 @@ static bool add_records(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const struc
 {
   bool any = false;
   int fields = H5Tget_nmembers(type);
-  for (int i = 0; i < fields && i < FIELDS; i++) {
+  for (int i = 0; i < fields && i < EO_HDF5_CHANNELS; i++) {
     char *name = H5Tget_member_name(type, (unsigned)i), below[PATH];
     hid_t field = H5Tget_member_type(type, (unsigned)i);
     struct nest nest = {outer, name};
@@ -263,32 +287,6 @@ static void add_references(struct eo_hdf5 *hdf5, hid_t set, hsize_t count, bool 
   free(reference);
 }
 
-/* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
-   unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
-   cache it has. */
-static hid_t open_cached(struct eo_hdf5 *hdf5, hid_t set)
-{
-  hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set);
-  hsize_t chunk[8];
-  char name[1024];
-  size_t bytes = H5Tget_size(type);
-  int rank = H5Pget_layout(list) == H5D_CHUNKED ? H5Pget_chunk(list, 8, chunk) : 0;
-  for (int i = 0; i < rank && i < 8; i++)
-    bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
-  H5Tclose(type);
-  H5Pclose(list);
-  hdf5->large = rank > 0 && bytes > (1 << 20) && bytes >= CACHE - hdf5->cache;
-  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || hdf5->large || H5Iget_name(set, name, sizeof name) <= 0)
-    return set;
-  hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
-  H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
-  H5Dclose(set);
-  set = H5Dopen2(hdf5->file, name, access);
-  hdf5->cache += set >= 0 ? bytes : 0;
-  H5Pclose(access);
-  return set;
-}
-
 static bool keep_set(struct eo_hdf5 *hdf5, hid_t set)
 {
   if (hdf5->sets < EO_HDF5_CHANNELS)
@@ -301,22 +299,24 @@ static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth
 {
   struct sides sides;
   char class_name[32], list[4096];
-  if ((set = open_cached(hdf5, set)) < 0)
+  if ((set = eo_hdf5_open_cached(hdf5, set)) < 0)
     return;
   hid_t type = H5Dget_type(set), space = H5Dget_space(set);
   H5T_class_t class = H5Tget_class(type);
   int rank = H5Sget_simple_extent_ndims(space);
   hssize_t count = H5Sget_simple_extent_npoints(space);
-  bool plain = find_sides(space, &sides) && !reads_other_files(set) && count > 0;
+  bool elsewhere = reads_other_files(set), plain = find_sides(space, &sides) && !elsewhere && count > 0;
   bool number = class == H5T_INTEGER || class == H5T_FLOAT, kept = false;
   matlab_class(set, class_name, sizeof class_name);
   bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
   add_attributes(hdf5, set, path);
-  if (!plain || object)
+  if (elsewhere)
+    note_elsewhere(hdf5, path);
+  else if (!plain || object)
     hdf5->left_out++;
   else if (!strcmp(class_name, "char"))
     add_characters(hdf5, set, (hsize_t)count, path);
-  else if (class == H5T_REFERENCE && depth < 8)
+  else if (class == H5T_REFERENCE && depth < DEPTH && !was_visited(hdf5, set))
     add_references(hdf5, set, (hsize_t)count, !strcmp(class_name, "cell"), path, depth);
   else if (eo_hdf5_texts(set, true, type, space, list, sizeof list))
     eo_hdf5_add_texts(hdf5, path, list);
@@ -352,9 +352,16 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
   char path[PATH];
   bool index = !strncmp(name, "_i_", 3);                   /* PyTables keeps the sorted index of a table there */
   bool octave = H5Aexists(group, "OCTAVE_NEW_FORMAT") > 0; /* its variables are groups of "type" and "value" */
-  if (info->type == H5L_TYPE_EXTERNAL || index || (octave && !strcmp(name, "type")) ||
-      !eo_hdf5_join(path, this_group->path, name))
+  if (index || (octave && !strcmp(name, "type")))
     return 0;
+  if (!eo_hdf5_join(path, this_group->path, name)) {
+    this_group->h->left_out++;
+    return 0;
+  }
+  if (info->type == H5L_TYPE_EXTERNAL) {
+    note_elsewhere(this_group->h, path);
+    return 0;
+  }
   if (octave && !strcmp(name, "value"))
     snprintf(path, sizeof path, "%s", this_group->path);
   hid_t object = H5Oopen(group, name, H5P_DEFAULT);
@@ -371,7 +378,7 @@ static void add_object(struct eo_hdf5 *hdf5, hid_t object, const char *path, int
     add_set(hdf5, object, path, depth);
     return;
   }
-  if (kind == H5I_GROUP && depth < 16) {
+  if (kind == H5I_GROUP && depth < DEPTH && !was_visited(hdf5, object)) {
     struct group group = {hdf5, path, depth};
     add_attributes(hdf5, object, path);
     H5Literate(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_link, &group);

@@ -9,7 +9,8 @@
 #include <stdbool.h>
 
 #define EO_HDF5_CHANNELS EO_TREE_CHANNELS
-#define EO_HDF5_RANK 8 /* dimensions of a data set at most */
+#define EO_HDF5_RANK 8      /* dimensions of a data set at most */
+#define EO_HDF5_VISITS 4096 /* groups and lists of references that are looked into */
 
 struct eo_hdf5_channel {
   hid_t set, type;  /* borrowed from sets; of a value in memory: a double, or a record with one field */
@@ -29,6 +30,8 @@ struct eo_hdf5 {
   size_t cache; /* bytes promised so far */
   bool large;   /* the chunks of the set that is looked at are too large for it */
   int larges;   /* channels in such sets */
+  int visits;
+  haddr_t visited[EO_HDF5_VISITS]; /* where they stand in the file */
   hid_t file, set[EO_HDF5_CHANNELS];
   struct eo_hdf5_channel channel[EO_HDF5_CHANNELS];
   struct eo_tree *tree; /* owned */
@@ -51,6 +54,11 @@ void eo_hdf5_add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list)
 /* Tables of pandas say at the records what their fields hold: the names of the columns in "values_block_0_kind", and in
    "index_kind" whether the index counts the rows or is the time. text: of an attribute of the records. */
 void eo_hdf5_add_frame(struct eo_hdf5 *hdf5, const char *records, const char *name, const char *text);
+
+/* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
+   unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
+   cache it has. */
+hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set);
 
 /* Values first .. first + count - 1 of a channel, as the file's scale has them; context: struct eo_hdf5. Errors:
    EO_ERROR_INPUT, also without memory. */

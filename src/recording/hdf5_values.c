@@ -5,7 +5,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
 #define AHEAD ((size_t)192 << 20) /* bytes of values that are read at once where chunks are too large to be kept */
+
+hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set)
+{
+  hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set);
+  hsize_t chunk[8];
+  char name[1024];
+  size_t bytes = H5Tget_size(type);
+  int rank = H5Pget_layout(list) == H5D_CHUNKED ? H5Pget_chunk(list, 8, chunk) : 0;
+  for (int i = 0; i < rank && i < 8; i++)
+    bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
+  H5Tclose(type);
+  H5Pclose(list);
+  hdf5->large = rank > 0 && bytes > (1 << 20) && bytes >= CACHE - hdf5->cache;
+  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || hdf5->large || H5Iget_name(set, name, sizeof name) <= 0)
+    return set;
+  hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+  H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
+  H5Dclose(set);
+  set = H5Dopen2(hdf5->file, name, access);
+  hdf5->cache += set >= 0 ? bytes : 0;
+  H5Pclose(access);
+  return set;
+}
 
 /* Stored values from the file; false: they cannot be read, or there is no memory. */
 static bool read_stored(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)

@@ -4,6 +4,7 @@
 #include "support/reader-fixture.h"
 
 #include <hdf5.h>
+#include <math.h>
 #include <sys/resource.h>
 
 #define COUNT 5000
@@ -319,7 +320,11 @@ static void test_hostile(void)
   H5Lcreate_external("/etc/other.h5", "/set", file, "elsewhere", H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(file);
   H5Pclose(list);
-  refused("no channel with numbers", "data in other files");
+  struct eo_notes notes = {0};
+  ok(!read_fixture(NULL, &notes, &error) && strstr(error.text, "no channel with numbers"), "data in other files");
+  ok(noted(&notes, "\"stolen\" keeps its values in another file") &&
+         noted(&notes, "\"elsewhere\" keeps its values in another file"),
+     "it is said which values stand in other files");
   list = H5Pcreate(H5P_DATASET_CREATE);
   file = open_file();
   H5Pset_chunk(list, 1, &chunk);
@@ -352,6 +357,90 @@ static void test_hostile(void)
   ok(answers == 100, "damaged in 100 places: a recording or an error each time");
 }
 
+/* Every group holds every other one, and a list of references refers to itself. */
+static void test_circles(void)
+{
+  enum { GROUPS = 8 };
+  struct eo_error error;
+  hsize_t count = COUNT, two = 2;
+  hid_t group[GROUPS], file = open_file();
+  char name[16];
+  for (int g = 0; g < GROUPS; g++) {
+    snprintf(name, sizeof name, "g%d", g);
+    group[g] = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  }
+  for (int g = 0; g < GROUPS * GROUPS; g++) {
+    snprintf(name, sizeof name, "l%d", g % GROUPS);
+    H5Lcreate_hard(group[g % GROUPS], ".", group[g / GROUPS], name, H5P_DEFAULT, H5P_DEFAULT);
+  }
+  H5Dclose(put(group[3], "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  hobj_ref_t self[2];
+  hid_t references = put(file, "refers", 1, &two, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, NULL, H5P_DEFAULT);
+  H5Rcreate(&self[0], file, "refers", H5R_OBJECT, -1);
+  H5Rcreate(&self[1], file, "refers", H5R_OBJECT, -1);
+  H5Dwrite(references, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, self);
+  H5Dclose(references);
+  for (int g = 0; g < GROUPS; g++)
+    H5Gclose(group[g]);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 7, 0) == pinion[7], "groups in circles: each is read once%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+/* A record with more fields than most: the encoders stand last. */
+static void test_wide_records(void)
+{
+  enum { FIELDS = 100 };
+  struct eo_error error;
+  hsize_t count = 50;
+  static double rows[50][FIELDS];
+  char name[16];
+  hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *rows), file = open_file();
+  for (int i = 0; i < FIELDS; i++) {
+    snprintf(name, sizeof name, "field %d", i);
+    H5Tinsert(type, name, (size_t)i * sizeof **rows, H5T_NATIVE_DOUBLE);
+  }
+  for (int k = 0; k < 50; k++)
+    rows[k][FIELDS - 1] = pinion[k];
+  H5Dclose(put(file, "log", 1, &count, type, type, rows, H5P_DEFAULT));
+  H5Tclose(type);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == FIELDS && cell_of(r, 9, FIELDS - 1) == pinion[9],
+     "all of a hundred fields of a record are read%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void put_side(hid_t file, const char *name, const double *values)
+{
+  hsize_t count = COUNT;
+  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t set = put(group, "angle", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, H5P_DEFAULT);
+  put_double(set, "_FillValue", values[11]);
+  H5Dclose(set);
+  H5Dclose(put(group, "time", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, t, H5P_DEFAULT));
+  H5Gclose(group);
+}
+
+/* Channels of one name are told apart by their groups; what a data set calls missing is no value. */
+static void test_namesakes(void)
+{
+  struct eo_error error;
+  hid_t file = open_file();
+  put_side(file, "wheel", pinion);
+  put_side(file, "shaft", t);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && !strcmp(eo_recording_name(r, 0), "shaft angle") && !strcmp(eo_recording_name(r, 2), "wheel angle") &&
+         !strcmp(eo_recording_name(r, 3), "wheel time"),
+     "channels of one name: \"%s\", \"%s\"", r ? eo_recording_name(r, 0) : error.text,
+     r ? eo_recording_name(r, 2) : "");
+  ok(r && isnan(cell_of(r, 11, 2)) && cell_of(r, 12, 2) == pinion[12], "a value that is stated to be missing");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -370,6 +459,9 @@ int main(void)
   test_habits();
   test_one_chunk();
   test_packing();
+  test_circles();
+  test_wide_records();
+  test_namesakes();
   test_hostile();
   return fixture_close();
 }
