@@ -16,12 +16,13 @@
 #define WIDE 64 /* a matrix with more columns is no table of channels */
 #define DEPTH 8 /* of structs and cells in each other */
 #define ELEMENTS 4096
+#define RANGES 8 /* values of all ranges, for each byte of the file: they cost none */
 #define LINE 256
 #define BUFFER 65536
 
 struct octave {
   struct eo_source *source;
-  int64_t bytes;
+  int64_t bytes, ranged; /* of the file; values of ranges so far */
   size_t at, size;
   bool again; /* the line was given back */
   int left_out;
@@ -185,7 +186,9 @@ static enum eo_code add_range(struct octave *octave, const char *path, struct eo
   EO_TRY(next_number(octave, path, &last, error));
   EO_TRY(next_number(octave, path, &step, error));
   double count = floor((last - first) / step * (1 + 1e-15) + 1e-10) + 1;
-  int base = count >= 2 && count <= (double)octave->bytes /* no channel beside it can be longer */
+  bool fits = count >= 2 && count <= (double)octave->bytes; /* no channel beside it can be longer */
+  octave->ranged += fits ? (int64_t)count : 0;
+  int base = fits && octave->ranged <= RANGES * octave->bytes
                  ? eo_tree_add_series(octave->columns.tree, path, 1, (int64_t)count, false)
                  : -1;
   octave->left_out += base < 0;

@@ -21,7 +21,7 @@ struct wide {
   bool on, big;
   uint32_t high; /* first half of a pair; 0: none */
   size_t at, filled;
-  char text[6 * 1024]; /* of at most 4096 bytes */
+  char text[6 * 1024 + 1]; /* of 4096 bytes at most, whose first two may end a pair that makes four */
 };
 
 struct eo_source {

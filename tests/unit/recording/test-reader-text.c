@@ -193,6 +193,31 @@ static void test_wide(void)
   }
 }
 
+/* A pair of UTF-16 whose halves stand on both sides of the 4096 bytes that are taken at once, then the widest letters
+   that there are. */
+static void test_wide_pair(void)
+{
+  static const char table[] = "\nt\ta\n0\t1.5\n1\t2.5\n2\t-3.5\n";
+  static unsigned char wide[3 * 4096];
+  struct eo_error error;
+  size_t n = 0, units = 4096;
+  for (size_t i = 0; i < units; i++) {
+    unsigned letter = i == 0 ? 0xfeff : i == 1 ? '#' : i < units / 2 - 1 ? ' ' : i == units / 2 - 1 ? 0xd83d : 0x20ac;
+    letter = i == units / 2 ? 0xde00 : letter;
+    wide[n++] = (unsigned char)letter;
+    wide[n++] = (unsigned char)(letter >> 8);
+  }
+  for (size_t i = 0; i + 1 < sizeof table; i++) {
+    wide[n++] = (unsigned char)table[i];
+    wide[n++] = 0;
+  }
+  write_bytes(wide, n);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == -3.5, "UTF-16 with a pair between two blocks%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 static void test_refusals(void)
 {
   write_text("");
@@ -320,6 +345,16 @@ static void test_octave(void)
   snprintf(text, sizeof text, "%s# name: t\n# type: range\n# base, limit, increment\n0 1e9 1e-9\n", first);
   write_text(text);
   refused("no channel", "a range without end");
+  static char many[20000];
+  size_t n = (size_t)sprintf(many, "%s", first);
+  for (int i = 0; i < 200; i++)
+    n += (size_t)sprintf(many + n, "# name: t%d\n# type: range\n# base, limit, increment\n0 9000 1\n", i);
+  write_text(many);
+  struct eo_notes left_out = {0};
+  r = read_fixture(NULL, &left_out, &error);
+  ok(r && eo_recording_columns(r) < 20 && noted(&left_out, "variables are no channel"),
+     "ranges that are far longer than the file together%s", r ? "" : error.text);
+  eo_recording_free(r);
 }
 
 int main(void)
@@ -329,6 +364,7 @@ int main(void)
   test_one_column();
   test_faults();
   test_wide();
+  test_wide_pair();
   test_octave();
   test_refusals();
   test_progress();
