@@ -9,14 +9,15 @@
 #include "recording/series.h"
 
 enum {
-  EO_MDF_LINKS = 16,         /* of a block that are looked at here */
-  EO_MDF_DATA = 136,         /* bytes behind them that are looked at here */
-  EO_MDF_GROUPS = 4096,      /* groups of records of a file */
-  EO_MDF_BLOCKS = 1 << 20,   /* blocks that are visited at most: lists may lead in a circle */
-  EO_MDF_RECORD = 1 << 20,   /* bytes of a record */
-  EO_MDF_TERMS = 1 << 16,    /* numbers of a conversion */
-  EO_MDF_NESTED = 4,         /* conversions in conversions */
-  EO_MDF_INFLATED = 64 << 20 /* bytes of one compressed block; 4 MB are usual */
+  EO_MDF_LINKS = 16,          /* of a block that are looked at here */
+  EO_MDF_DATA = 136,          /* bytes behind them that are looked at here */
+  EO_MDF_GROUPS = 4096,       /* groups of records of a file */
+  EO_MDF_BLOCKS = 1 << 20,    /* blocks that are visited at most: lists may lead in a circle */
+  EO_MDF_RECORD = 1 << 20,    /* bytes of a record */
+  EO_MDF_TERMS = 1 << 16,     /* numbers of a conversion */
+  EO_MDF_ALL_TERMS = 1 << 22, /* of all conversions */
+  EO_MDF_NESTED = 4,          /* conversions in conversions */
+  EO_MDF_INFLATED = 64 << 20  /* bytes of one compressed block; 4 MB are usual */
 };
 
 /* A block: its links (places of other blocks, 0: none) and the beginning of its data, zeros where it is shorter. */
@@ -89,6 +90,8 @@ struct eo_mdf {
   int file, spool; /* spool: temporary file without a name, -1: not made */
   const char *spool_directory;
   int64_t size, limit, spooled, visited, epoch;
+  int64_t stored;  /* bytes of all data blocks so far: no two lists share one */
+  int64_t terms;   /* numbers and branches of all conversions so far */
   int64_t comment; /* place of a text about the file; 0: none */
   bool unfinished; /* the file was not closed: numbers of records and the last length are not stated */
   bool cut;        /* fewer records than stated */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Blocks of MDF files: "##", two letters, 4 bytes, length, number of links, the links, then data. */
+#define _GNU_SOURCE /* memmem */
 #include "recording/mdf.h"
 #include "recording/decimal.h"
 
@@ -100,13 +101,13 @@ void eo_mdf_text(struct eo_mdf *mdf, int64_t at, char *text, size_t size)
 /* The value of an attribute of the element that begins at `element` and ends at `end`; "" when it has none. */
 static void read_attribute(const char *element, const char *end, const char *name, char *value, size_t size)
 {
-  const char *at = strstr(element, name), *last;
+  const char *at = memmem(element, (size_t)(end - element), name, strlen(name));
   *value = '\0';
-  if (!at || at >= end)
+  if (!at)
     return;
   at += strlen(name);
-  last = strchr(at, '"');
-  if (last && last < end)
+  const char *last = memchr(at, '"', (size_t)(end - at));
+  if (last)
     copy_text(at, last, value, size);
 }
 
@@ -118,8 +119,9 @@ void eo_mdf_facts(struct eo_mdf *mdf, int64_t at, struct eo_series *series)
   const struct eo_clock outer = series->clock;
   series->clock.interval = series->clock.other =
       0; /* this text is nearer; only what it says twice contradicts itself */
-  for (const char *e = all && xml ? strstr(all, "<e ") : NULL; e; e = strstr(e + 1, "<e ")) {
-    const char *content = strchr(e, '>');
+  const char *content = NULL;
+  for (const char *e = all && xml ? strstr(all, "<e ") : NULL; e; e = strstr(content, "<e ")) {
+    content = strchr(e, '>');
     if (!content)
       break;
     double number;

@@ -23,10 +23,15 @@ static enum eo_code read_terms(struct eo_mdf *mdf, const struct eo_mdf_block *bl
 {
   enum { TERMS_AT = 24 }; /* kind, precision, flags, counts, range of values */
   int count = eo_bytes_16(block->data + 6, false);
+  mdf->terms += count;
   if (count > EO_MDF_TERMS || TERMS_AT + 8 * (int64_t)count > block->size)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "MDF: the conversion at byte %lld states %d numbers, more than its block holds.",
                         (long long)block->at, count);
+  if (mdf->terms > EO_MDF_ALL_TERMS)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "MDF: the conversions up to byte %lld hold more than %d numbers together.",
+                        (long long)block->at, EO_MDF_ALL_TERMS);
   unsigned char *bytes = malloc(8 * (size_t)count + 1);
   conversion->term = calloc((size_t)count + 1, sizeof *conversion->term);
   enum eo_code code = bytes && conversion->term ? EO_OK : eo_error_memory(error);
@@ -49,6 +54,7 @@ static enum eo_code read_branches(struct eo_mdf *mdf, const struct eo_mdf_block 
   int64_t count = block->links - CONVERSION_LINKS;
   if (count < 1 || count > EO_MDF_TERMS)
     return EO_OK;
+  mdf->terms += count;
   unsigned char *links = malloc(8 * (size_t)count);
   conversion->branch = calloc((size_t)count, sizeof(struct eo_mdf_conversion *));
   conversion->branches = conversion->branch ? (int)count : 0;

@@ -33,7 +33,8 @@ struct blocks {
   bool apart; /* values (DV) without the invalidation bits, which stand in blocks of their own (DI) */
 };
 
-static enum eo_code add_block(struct blocks *blocks, const struct block *block, struct eo_error *error)
+static enum eo_code add_block(struct eo_mdf *mdf, struct blocks *blocks, const struct block *block,
+                              struct eo_error *error)
 {
   if (blocks->count == ENTRIES)
     return eo_error_set(error, EO_ERROR_INPUT, "", "MDF: a list of data has more than %d blocks.", ENTRIES);
@@ -45,13 +46,19 @@ static enum eo_code add_block(struct blocks *blocks, const struct block *block, 
     blocks->block = grown;
     blocks->room = room;
   }
+  mdf->stored += block->size;
+  if (mdf->stored > mdf->size)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "MDF: the lists of data lead to the block at byte %lld once more; the file is damaged.",
+                        (long long)block->at);
   blocks->block[blocks->count++] = *block;
   blocks->length += block->length;
   return EO_OK;
 }
 
 /* A compressed block: kind of what it holds, way of packing, width of rows, length, packed length. */
-static enum eo_code add_packed(struct blocks *blocks, const struct eo_mdf_block *found, struct eo_error *error)
+static enum eo_code add_packed(struct eo_mdf *mdf, struct blocks *blocks, const struct eo_mdf_block *found,
+                               struct eo_error *error)
 {
   enum { PACKED_AT = 24, GROWTH = 1100 }; /* deflate packs 1032 bytes into one at most */
   int64_t length = (int64_t)eo_bytes_64(found->data + 8, false), size = (int64_t)eo_bytes_64(found->data + 16, false);
@@ -66,7 +73,7 @@ static enum eo_code add_packed(struct blocks *blocks, const struct eo_mdf_block 
                         (long long)found->at, (long long)length, (long long)size);
   struct block block = {found->data[2] ? TRANSPOSED : DEFLATED, found->data_at + PACKED_AT, size, length,
                         eo_bytes_32(found->data + 4, false)};
-  return add_block(blocks, &block, error);
+  return add_block(mdf, blocks, &block, error);
 }
 
 static enum eo_code add_blocks(struct eo_mdf *mdf, int64_t at, int depth, struct blocks *blocks,
@@ -126,11 +133,11 @@ static enum eo_code add_blocks(struct eo_mdf *mdf, int64_t at, int depth, struct
   if (!strcmp(found.id, "DT") || !strcmp(found.id, "DV")) {
     blocks->apart = blocks->apart || found.id[1] == 'V';
     struct block block = {PLAIN, found.data_at, found.size, found.size, 0};
-    return add_block(blocks, &block, error);
+    return add_block(mdf, blocks, &block, error);
   }
   if (!strcmp(found.id, "DZ")) {
     blocks->apart = blocks->apart || !memcmp(found.data, "DV", 2);
-    return add_packed(blocks, &found, error);
+    return add_packed(mdf, blocks, &found, error);
   }
   if (!strcmp(found.id, "HL") && !depth) {
     if (!found.link[0])
@@ -170,7 +177,7 @@ static bool make_room(unsigned char **bytes, size_t *room, size_t size)
 static void turn_back(const unsigned char *from, size_t length, size_t width, unsigned char *to)
 {
   size_t rows = width ? length / width : 0;
-  for (size_t column = 0; column < width; column++)
+  for (size_t column = 0; rows && column < width; column++)
     for (size_t row = 0; row < rows; row++)
       to[row * width + column] = from[column * rows + row];
   memcpy(to + rows * width, from + rows * width, length - rows * width);
@@ -280,6 +287,18 @@ static enum eo_code put_record(const struct sorter *sorter, struct region *regio
   return code;
 }
 
+static int compare_regions(const void *a, const void *b)
+{
+  uint64_t one = ((const struct region *)a)->group->number, other = ((const struct region *)b)->group->number;
+  return (one > other) - (one < other);
+}
+
+static int compare_number(const void *number, const void *region)
+{
+  uint64_t one = *(const uint64_t *)number, other = ((const struct region *)region)->group->number;
+  return (one > other) - (one < other);
+}
+
 /* The kind of the next record; NULL at the end. */
 static enum eo_code next_kind(struct sorter *sorter, struct region **region, struct eo_error *error)
 {
@@ -292,9 +311,8 @@ static enum eo_code next_kind(struct sorter *sorter, struct region **region, str
   }
   enum eo_code code = take(&sorter->stream, bytes, (size_t)sorter->number, &got, error);
   uint64_t number = eo_bytes_64(bytes, false);
-  for (int i = 0; !code && got == (size_t)sorter->number && i < sorter->count && !*region; i++)
-    if (sorter->region[i].group->number == number)
-      *region = &sorter->region[i];
+  if (!code && got == (size_t)sorter->number)
+    *region = bsearch(&number, sorter->region, (size_t)sorter->count, sizeof **region, compare_number);
   if (!code && got == (size_t)sorter->number && !*region)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "MDF: a record has the number %llu, which no group has: the data are damaged.",
@@ -384,6 +402,8 @@ static enum eo_code sort_records(struct eo_mdf *mdf, const struct blocks *blocks
   enum eo_code code = sorter.region && sorter.record ? EO_OK : eo_error_memory(error);
   for (int i = 0; !code && i < count; i++)
     sorter.region[i].group = &mdf->group[first + i];
+  if (!code)
+    qsort(sorter.region, (size_t)count, sizeof *sorter.region, compare_regions);
   if (!code)
     code = sort(&sorter, blocks, error);
   free(sorter.region);

@@ -6,6 +6,7 @@
 #include "support/reader-fixture.h"
 
 #include <math.h>
+#include <time.h>
 #include <zlib.h>
 
 enum { UNSIGNED, SIGNED = 2, FLOATING = 4, BIG = 1, TEXT = 7 };
@@ -605,6 +606,46 @@ static void test_circle(void)
   refused("in a circle", "a list that leads in a circle ends");
 }
 
+/* What may cost a reader far more than its bytes: one block in many lists, rows wider than their block, texts of
+   properties without an end. */
+static void test_costly(void)
+{
+  enum { MANY = 1000 };
+  static char xml[60000];
+  static uint64_t data[2];
+  clock_t begin = clock();
+  struct eo_error error;
+  begin_file("MDF     ", "4.10    ", 0);
+  data[0] = data[1] = put_data(records, ROWS * RECORD, 0, 0);
+  uint64_t at = put_list(2, data, 0);
+  end_file(put_data_group(0, put_group(0, put_plain_channels(), NULL, 0, ROWS, 0, RECORD, 0), at, 0));
+  refused("once more", "one block twice in the lists of data");
+  begin_file("MDF     ", "4.10    ", 0);
+  at = 0;
+  for (int i = 0; i < 6; i++) {
+    data[0] = put_data(records, 20 * RECORD, 2, RECORD);
+    set_at(data[0] + 24 + 4, UINT32_MAX, 4);
+    at = put_data_group(at, put_group(0, put_plain_channels(), NULL, 0, 20, 0, RECORD, 0), data[0], 0);
+  }
+  end_file(at);
+  struct eo_recording *r = read_fixture(&spooled, NULL, &error);
+  ok(r && eo_recording_rows(r) == 20, "rows that are wider than their block stand as they are%s", r ? "" : error.text);
+  eo_recording_free(r);
+  for (size_t i = 0; i + 3 < sizeof xml; i += 3)
+    memcpy(xml + i, "<e ", 3);
+  xml[sizeof xml - 3] = '>';
+  begin_file("MDF     ", "4.10    ", 0);
+  uint64_t comment = put_text("MD", xml), channels = 0;
+  for (int i = 0; i < MANY; i++)
+    channels = put_channel(&(struct channel){"c", NULL, VALUE, UNSIGNED, 0, 0, 8, 0, comment, 0, 0}, channels);
+  end_file(put_data_group(0, put_group(0, channels, NULL, 0, 20, 0, 1, 0), put_data(records, 20, 0, 0), 0));
+  r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_rows(r) == 20, "texts of properties without an end%s", r ? "" : error.text);
+  eo_recording_free(r);
+  double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+  ok(seconds < 10, "and that takes no longer than files of this size do: %.3g s", seconds);
+}
+
 /* Each encoder with its own group and times: the layout brings them together. */
 static void test_layout(void)
 {
@@ -676,6 +717,7 @@ int main(void)
   test_unfinished();
   test_damage();
   test_circle();
+  test_costly();
   test_layout();
   test_every_byte();
   return fixture_close();
