@@ -31,27 +31,33 @@ static double value_at(struct eo_tdms *tdms, const struct eo_tdms_part *part, co
 }
 
 /* Values of one chunk follow each other, lie between those of other channels, or stand in rows of a buffer. */
-struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int channel)
+struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, const struct eo_tdms_part *part)
 {
-  struct eo_tdms_place place = {0};
-  const struct eo_tdms_layout *layout = segment->layout;
-  for (int i = 0; i < layout->parts; i++) {
-    const struct eo_tdms_part *part = &layout->part[i];
-    int64_t size = eo_tdms_type_size(part->type);
-    if (part->channel != channel || !part->count) {
-      place.offset += segment->interleaved ? size : part->size;
-      continue;
-    }
-    place.part = part;
-    place.offset = part->width ? part->offset : place.offset;
-    place.stride = part->width ? part->width : segment->interleaved ? layout->chunk / part->count : size;
-    int64_t left = segment->rest - place.offset - size, rest = left < 0 || !place.stride ? 0 : left / place.stride + 1;
-    if (segment->interleaved) /* whole rows only */
-      rest = segment->rest / place.stride;
-    place.values = part->count * segment->chunks + (rest < part->count ? rest : part->count);
+  struct eo_tdms_place place = {.part = part};
+  if (!part || !part->count)
     return place;
-  }
+  int64_t size = eo_tdms_type_size(part->type);
+  place.offset = part->width ? part->offset : segment->interleaved ? part->row : part->before;
+  place.stride = part->width ? part->width : segment->interleaved ? segment->layout->chunk / part->count : size;
+  int64_t left = segment->rest - place.offset - size, rest = left < 0 || !place.stride ? 0 : left / place.stride + 1;
+  if (segment->interleaved) /* whole rows only */
+    rest = segment->rest / place.stride;
+  place.values = part->count * segment->chunks + (rest < part->count ? rest : part->count);
   return place;
+}
+
+/* The part of a layout that is this channel's, mostly the one it was before; NULL: it has none there. */
+static const struct eo_tdms_part *part_of(const struct eo_tdms_layout *layout, int number,
+                                          struct eo_tdms_channel *channel)
+{
+  if (channel->part < layout->parts && layout->part[channel->part].channel == number)
+    return &layout->part[channel->part];
+  for (int i = 0; i < layout->parts; i++)
+    if (layout->part[i].channel == number) {
+      channel->part = i;
+      return &layout->part[i];
+    }
+  return NULL;
 }
 
 /* Reads up to count values of a chunk from the n-th of the segment on, as many as one piece and the chunk hold. */
@@ -82,7 +88,7 @@ static enum eo_code read_values(void *context, int number, int64_t first, int64_
   unsigned char bytes[PIECE];
   while (count > 0 && channel->segment < tdms->segments) {
     const struct eo_tdms_segment *segment = &tdms->segment[channel->segment];
-    struct eo_tdms_place place = eo_tdms_place(segment, number);
+    struct eo_tdms_place place = eo_tdms_place(segment, part_of(segment->layout, number, channel));
     int64_t n = first - channel->passed, got = count < place.values - n ? count : place.values - n;
     if (got <= 0) {
       channel->passed += place.values;

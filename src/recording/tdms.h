@@ -37,7 +37,9 @@ struct eo_tdms_part {
   int64_t size;   /* bytes of them; of raw data of DAQmx those of all channels */
   int64_t width;  /* of raw data of DAQmx: bytes of a row of the channel's buffer; else 0 */
   int64_t offset; /* of raw data of DAQmx: byte of the first value in the chunk */
-  int bit;        /* of a digital line: its place in the byte; -1: no digital line */
+  int64_t before; /* bytes of the chunk before this part; of a row before its value where parts are interleaved: */
+  int64_t row;
+  int bit; /* of a digital line: its place in the byte; -1: no digital line */
 };
 
 /* How a raw value becomes one with a unit. */
@@ -83,6 +85,7 @@ struct eo_tdms_channel {
   bool scaled;
   double increment, start, abscissa; /* waveform: step, first place, s per unit of both; 0: not stated */
   int64_t segment, passed;           /* where reading has come to: segment, values before it */
+  int part;                          /* of the layout that was looked at last */
 };
 
 /* What the properties of the file or of a group say of the channels in it. */
@@ -123,7 +126,7 @@ struct eo_tdms_place {
   int64_t stride;                  /* from value to value, bytes */
   int64_t values;                  /* in the segment, with those of a chunk that is cut off */
 };
-struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int channel);
+struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, const struct eo_tdms_part *part);
 
 /* A raw value through the channel's scales. */
 double eo_tdms_scaled(const struct eo_tdms_channel *channel, double raw);

@@ -142,7 +142,7 @@ static bool take_index(struct eo_tdms_reader *reader, struct eo_tdms_channel *ch
                  (long long)at);
     return false;
   }
-  channel->index = (struct eo_tdms_part){number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size, 0, 0, -1};
+  channel->index = (struct eo_tdms_part){number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size, .bit = -1};
   channel->index_known = true;
   return true;
 }

@@ -25,20 +25,19 @@ static double polynomial_value(const struct eo_tdms_scale *scale, double x)
   return value;
 }
 
-/* depth: scales that may still follow each other, so that one that leads to itself ends. */
-static double value_of(const struct eo_tdms_channel *channel, int64_t number, double raw, int depth)
+static double value_of(const struct eo_tdms_channel *channel, int64_t number, double raw)
 {
-  if (number < 0 || number >= EO_TDMS_SCALES || channel->scale[number].kind == EO_TDMS_NO_SCALE || !depth)
+  if (number < 0 || number >= EO_TDMS_SCALES || channel->scale[number].kind == EO_TDMS_NO_SCALE)
     return raw;
   const struct eo_tdms_scale *scale = &channel->scale[number];
-  double x = value_of(channel, scale->source[0], raw, depth - 1);
+  double x = value_of(channel, scale->source[0], raw);
   switch (scale->kind) {
   case EO_TDMS_TABLE:
     return table_value(scale, x);
   case EO_TDMS_ADD:
-    return x + value_of(channel, scale->source[1], raw, depth - 1);
+    return x + value_of(channel, scale->source[1], raw);
   case EO_TDMS_SUBTRACT: /* the left one from the right one, as the drivers do */
-    return value_of(channel, scale->source[1], raw, depth - 1) - x;
+    return value_of(channel, scale->source[1], raw) - x;
   default:
     return polynomial_value(scale, x);
   }
@@ -53,24 +52,26 @@ static int64_t last_scale(const struct eo_tdms_channel *channel)
 
 double eo_tdms_scaled(const struct eo_tdms_channel *channel, double raw)
 {
-  return channel->scale ? value_of(channel, last_scale(channel), raw, EO_TDMS_SCALES) : raw;
+  return channel->scale ? value_of(channel, last_scale(channel), raw) : raw;
 }
 
-static bool can_use(const struct eo_tdms_channel *channel, int64_t number, int depth)
+/* left: scales that one value may still pass; of one that leads to itself, or of sums of sums, there are more. */
+static bool can_use(const struct eo_tdms_channel *channel, int64_t number, int *left)
 {
   if (number < 0 || number >= EO_TDMS_SCALES || channel->scale[number].kind == EO_TDMS_NO_SCALE)
     return true;
   const struct eo_tdms_scale *scale = &channel->scale[number];
   bool two = scale->kind == EO_TDMS_ADD || scale->kind == EO_TDMS_SUBTRACT;
   bool terms = two || (scale->kind == EO_TDMS_TABLE ? scale->terms[0] > 1 && scale->terms[1] > 1 : scale->terms[0] > 0);
-  return depth && scale->kind != EO_TDMS_OTHER_SCALE && terms && can_use(channel, scale->source[0], depth - 1) &&
-         (!two || can_use(channel, scale->source[1], depth - 1));
+  return --*left >= 0 && scale->kind != EO_TDMS_OTHER_SCALE && terms && can_use(channel, scale->source[0], left) &&
+         (!two || can_use(channel, scale->source[1], left));
 }
 
 bool eo_tdms_can_scale(const struct eo_tdms_channel *channel)
 {
+  int left = 4 * EO_TDMS_SCALES;
   if (channel->scales > EO_TDMS_SCALES)
     return false;
-  return !channel->scale || (can_use(channel, last_scale(channel), EO_TDMS_SCALES) &&
-                             channel->scale[last_scale(channel)].kind != EO_TDMS_NO_SCALE);
+  return !channel->scale ||
+         (can_use(channel, last_scale(channel), &left) && channel->scale[last_scale(channel)].kind != EO_TDMS_NO_SCALE);
 }

@@ -109,10 +109,14 @@ static const struct eo_tdms_layout *current_layout(struct eo_tdms *tdms, int64_t
     eo_error_memory(error);
     return NULL;
   }
+  int64_t row = 0;
   for (int i = 0; i < tdms->listed; i++)
     if (tdms->list[i].data) {
-      const struct eo_tdms_part *part = &tdms->channel[tdms->list[i].channel].index;
-      layout->part[layout->parts++] = *part;
+      struct eo_tdms_part *part = &layout->part[layout->parts++];
+      *part = tdms->channel[tdms->list[i].channel].index;
+      part->before = layout->chunk;
+      part->row = row;
+      row += eo_tdms_type_size(part->type);
       if (part->width) /* all channels share the rows */
         layout->chunk = part->size > layout->chunk ? part->size : layout->chunk;
       else
@@ -165,7 +169,7 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
   tdms->cut = tdms->cut || tdms_segment.rest;
   for (int i = 0; i < layout->parts; i++)
     if (layout->part[i].type != EO_TDMS_STRING)
-      tdms->series[layout->part[i].channel].length += eo_tdms_place(&tdms_segment, layout->part[i].channel).values;
+      tdms->series[layout->part[i].channel].length += eo_tdms_place(&tdms_segment, &layout->part[i]).values;
   tdms->segment[tdms->segments++] = tdms_segment;
   return EO_OK;
 }

@@ -517,6 +517,42 @@ static void test_time_stamps(void)
   eo_recording_free(r);
 }
 
+/* Sums whose parts are sums again: each scale doubles what one value costs, and it is said that they are not applied.
+ */
+static void test_sums_of_sums(void)
+{
+  struct eo_error error;
+  char name[64];
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 1, 4);
+  put_string(&w, "/'g'/'sine'");
+  put_index(UINT8, 60000);
+  put_number(&w, 2 + 3 * 16, 4);
+  put_string_property("NI_Scaling_Status", "unscaled");
+  put_string(&w, "NI_Number_Of_Scales");
+  put_number(&w, 7, 4);
+  put_number(&w, 16, 4);
+  for (int i = 0; i < 16; i++) {
+    snprintf(name, sizeof name, "NI_Scale[%d]_Scale_Type", i);
+    put_string_property(name, "Add");
+    snprintf(name, sizeof name, "NI_Scale[%d]_Add_Left_Operand_Input_Source", i);
+    put_double_property(name, i - 1);
+    snprintf(name, sizeof name, "NI_Scale[%d]_Add_Right_Operand_Input_Source", i);
+    put_double_property(name, i - 1);
+  }
+  end_metadata();
+  for (int i = 0; i < 60000; i++)
+    put_number(&w, 1, 1);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  struct eo_notes notes = {0};
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(!r && noted(&notes, "a scale that is not known here"), "scales that lead to each other again and again%s",
+     r ? " were applied" : "");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -530,6 +566,7 @@ int main(void)
   test_texts(20);
   test_scaled();
   test_time_stamps();
+  test_sums_of_sums();
   test_slow(2e-3, 1);
   test_slow(5e-5, 0);
   test_damage();
