@@ -17,6 +17,7 @@ struct document {
   struct eo_sheet_text out;
   bool taken; /* the cells of the current table */
   bool failed, in_cell, in_paragraph, filled, formula;
+  bool in_annotation; /* what somebody noted at the cell is none of its text */
   int column, repeat;
   long rows; /* like the current one, with it */
   char type[16], value[VALUE];
@@ -40,6 +41,13 @@ static void XMLCALL take_characters(void *context, const char *text, int length)
   memcpy(document->value + document->length, text, n);
   document->length += n;
   document->value[document->length] = '\0';
+}
+
+/* A new paragraph or line, or a blank that is an element: a blank, unless nothing stands before it. */
+static void take_gap(struct document *document)
+{
+  if (document->length && !document->filled && !document->in_annotation)
+    take_characters(document, " ", 1);
 }
 
 static void set_value(struct document *document, const char *text)
@@ -100,8 +108,13 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
     document->rows = repeat ? strtol(repeat, NULL, 10) : 1;
   } else if (document->taken && (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))) {
     begin_cell(document, attributes);
+  } else if (!strcmp(name, "office:annotation")) {
+    document->in_annotation = true;
   } else if (!strcmp(name, "text:p")) {
-    document->in_paragraph = !document->filled;
+    document->in_paragraph = !document->filled && !document->in_annotation;
+    take_gap(document);
+  } else if (!strcmp(name, "text:line-break") || !strcmp(name, "text:tab") || !strcmp(name, "text:s")) {
+    take_gap(document);
   }
 }
 
@@ -125,6 +138,8 @@ static void XMLCALL end(void *context, const char *name)
     end_cell(document);
   else if (!strcmp(name, "table:table-row"))
     eo_sheet_text_row(&document->out, document->rows);
+  else if (!strcmp(name, "office:annotation"))
+    document->in_annotation = false;
   else if (!strcmp(name, "text:p"))
     document->in_paragraph = false;
 }

@@ -191,6 +191,26 @@ static void test_workbook(void)
   eo_recording_free(r);
 }
 
+/* A cell's text is its paragraphs, not what somebody noted at it. */
+static void test_noted_cells(void)
+{
+  struct eo_error error;
+  add("content.xml",
+      "<office:document-content xmlns:office=\"o\" xmlns:table=\"t\" xmlns:text=\"x\"><table:table table:name=\"one\">"
+      "<table:table-row><table:table-cell office:value-type=\"string\"><text:p>time</text:p><text:p>[s]</text:p>"
+      "</table:table-cell><table:table-cell office:value-type=\"string\"><office:annotation><text:p>of the "
+      "gear?</text:p>"
+      "</office:annotation><text:p>pinion<text:line-break/>angle</text:p></table:table-cell></table:table-row>"
+      "<table:table-row><table:table-cell table:number-columns-repeated=\"2\" office:value-type=\"float\" "
+      "office:value=\"2.5\"/></table:table-row></table:table></office:document-content>");
+  finish();
+  struct eo_recording *r = take(NULL, &error);
+  ok(r && !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_name(r, 1), "pinion angle"),
+     "headings with a note and of two lines: \"%s\", \"%s\"", r ? eo_recording_name(r, 0) : error.text,
+     r ? eo_recording_name(r, 1) : "");
+  eo_recording_free(r);
+}
+
 static void test_opendocument(void)
 {
   struct eo_error error;
@@ -291,6 +311,7 @@ int main(void)
   fixture_open();
   test_workbook();
   test_opendocument();
+  test_noted_cells();
   test_repeated_rows();
   test_sheets(true);
   test_sheets(false);
