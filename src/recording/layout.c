@@ -36,6 +36,24 @@ const char *eo_layout_label(const struct eo_guess *guess, int column, char *text
   return text;
 }
 
+/* What may be chosen: the names with their units, numbers where there are no names. */
+static void list_columns(const struct eo_guess *guess, char *list, size_t size)
+{
+  size_t used = 0;
+  *list = '\0';
+  for (int c = 0; c < guess->columns; c++) {
+    char column[EO_RECORDING_NAME + EO_RECORDING_UNIT + 8];
+    const char *name = eo_recording_name(guess->recording, c), *unit = eo_recording_unit(guess->recording, c);
+    int n = *name ? snprintf(column, sizeof column, "%s", name) : snprintf(column, sizeof column, "%d", c + 1);
+    if (*unit)
+      n += snprintf(column + n, sizeof column - (size_t)n, " (%s)", unit);
+    bool last = used + (size_t)n + sizeof ", ..." > size;
+    used += (size_t)snprintf(list + used, size - used, "%s%s", c ? ", " : "", last ? "..." : column);
+    if (last)
+      return;
+  }
+}
+
 enum eo_code eo_layout_chosen(const struct eo_guess *guess, const char *chosen, const char *pointer, int *column,
                               struct eo_error *error)
 {
@@ -44,11 +62,13 @@ enum eo_code eo_layout_chosen(const struct eo_guess *guess, const char *chosen, 
       *column = c;
       return EO_OK;
     }
-  char *end;
+  char *end, list[240];
   long number = strtol(chosen, &end, 10);
+  list_columns(guess, list, sizeof list);
   if (end == chosen || *end || number < 1 || number > guess->columns)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The recording has no column \"%.60s\"; it has %d columns.",
-                        chosen, guess->columns);
+    return eo_error_set(error, EO_ERROR_INPUT, pointer,
+                        "The recording has no column \"%.60s\"; it has %d column%s: %s.", chosen, guess->columns,
+                        guess->columns == 1 ? "" : "s", list);
   *column = (int)number - 1;
   return EO_OK;
 }
@@ -205,10 +225,13 @@ static enum eo_code assign(struct eo_guess *guess, struct eo_error *error)
         best = guess->candidate[i];
       }
     }
-    if (*column < 0 && best < 0)
+    if (*column < 0 && best < 0) {
+      char list[240];
+      list_columns(guess, list, sizeof list);
       return eo_error_set(error, EO_ERROR_INPUT, "/columns",
-                          "The recording has %d column%s that may hold an encoder's values; %d are needed.",
-                          guess->candidates, guess->candidates == 1 ? "" : "s", 2 * tracks);
+                          "The recording has %d column%s that may hold an encoder's values; %d are needed. It has: %s.",
+                          guess->candidates, guess->candidates == 1 ? "" : "s", 2 * tracks, list);
+    }
     if (*column < 0)
       *column = best;
     taken[*column] = true;

@@ -269,6 +269,24 @@ static void test_two_files(void)
   eo_recording_free(both);
 }
 
+/* Who is asked for columns is told which there are. */
+static void test_list_of_columns(void)
+{
+  struct eo_error error;
+  struct eo_tracks found;
+  struct eo_layout_choice choice = {.column = {{"pinon"}}};
+  struct eo_recording *r = make("t [s],angle 1 [deg],angle 2 [deg]\n", degrees, RATE, 0, ROWS);
+  enum eo_code code = eo_layout_find(&r, &choice, NULL, NULL, &found, NULL, &error);
+  ok(code && strstr(error.text, "no column \"pinon\"; it has 3 columns: t (s), angle 1 (deg), angle 2 (deg)."), "%s",
+     error.text);
+  eo_recording_free(r);
+  write_text("t [s],torque [Nm]\n0,1.5\n1e-4,1.25\n2e-4,1\n3e-4,1.5\n");
+  r = read_fixture(NULL, NULL, &error);
+  code = r ? eo_layout_find(&r, NULL, NULL, NULL, &found, NULL, &error) : error.code;
+  ok(code && strstr(error.text, "It has: t (s), torque (Nm)."), "%s", error.text);
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -278,5 +296,6 @@ int main(void)
   test_time();
   test_pulses();
   test_two_files();
+  test_list_of_columns();
   return fixture_close();
 }
