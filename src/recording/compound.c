@@ -13,7 +13,8 @@
 #define BLOCK 2048
 #define PARTS 6             /* of one number at most: days to microseconds */
 #define DEGREE 0.0174532925 /* rad, as near as units are told apart */
-#define EPOCH 1e8           /* s: more are counted from a date, and too many for a double beside nanoseconds */
+#define EPOCH 1e8           /* s: more are counted from a date, and too many for a double beside nanoseconds, */
+#define EPOCH_END 9e9       /* up to what nanoseconds in 64 bits hold */
 #define FAULTY 100          /* one row in so many may go the wrong way */
 
 #define FRACTION_WORDS "fraction|frac|fractional|fractions|subsec|subsecond|subseconds|bruchteil"
@@ -75,7 +76,7 @@ static double nameless_scale(const struct compound *compound, int column)
   static const double mosts[] = {1e3, 1e6, 1e9};
   const struct eo_column *first = &compound->look[column], *look = &compound->look[column + 1];
   if (first->quantity != EO_QUANTITY_NONE || look->quantity != EO_QUANTITY_NONE || first->low < EPOCH ||
-      first->high > 100 * EPOCH || !first->rises || !look->whole || !look->resets)
+      first->high > EPOCH_END || !first->rises || !look->whole || !look->resets)
     return 0;
   for (size_t i = 0; i < sizeof mosts / sizeof *mosts; i++)
     if (look->high < mosts[i])
@@ -148,7 +149,7 @@ static struct group group_at(const struct compound *compound, int column)
       break;
   group.signs = group.angle && look->low < 0;
   if (!group.angle) {
-    group.base = look->low * scale > EPOCH ? look->low : 0;
+    group.base = look->low * scale > EPOCH && look->low * scale < EPOCH_END ? look->low : 0;
     group.turn = turn_of(look, scale);
   }
   return group;
@@ -361,7 +362,7 @@ static void describe(const struct compound *compound, struct eo_recording *out)
     const char *unit = eo_recording_unit(old, first);
     clock.column = clock.column < 0 ? -1 : moved[clock.column];
     if (group->base > 0)
-      clock.epoch = (int64_t)group->base * (int64_t)(group->scale[0] * 1e9);
+      clock.epoch = (int64_t)group->base * llround(group->scale[0] * 1e9);
     eo_recording_set_column(out, g, eo_recording_name(old, first),
                             group->parts == 1 ? unit
                             : group->angle    ? "deg"

@@ -18,11 +18,13 @@
 #define VARIABLES 1024 /* of a file that are looked at */
 #define DEPTH 8        /* of structs and cells in each other */
 #define ELEMENTS 4096  /* of an array of structs or a cell that are looked at */
+#define BATCH 4096     /* values of a channel that are kept at once */
 #define PIECE 65536    /* values read at once from variables that are not compressed */
 
 struct matlab {
   mat_t *file;
-  int64_t bytes;
+  int64_t bytes;  /* of the file */
+  int64_t values; /* of all variables so far */
   int left_out;
   struct eo_notes *notes;
   struct eo_tree_columns columns;
@@ -119,20 +121,20 @@ static enum eo_code read_values(struct matlab *matlab, matvar_t *this_t, int64_t
 /* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here
    when along > 1. */
 static enum eo_code keep_values(struct matlab *matlab, const struct table *table, int base, int64_t first,
-                                int64_t count, const void *data, enum matio_classes class, double *values,
-                                struct eo_error *error)
+                                int64_t count, const void *data, enum matio_classes class, struct eo_error *error)
 {
+  double values[BATCH];
   for (int64_t c = 0; c < table->channels; c++) {
-    int64_t from = table->along == 1 ? c * table->length : c, n = 0;
+    int64_t from = table->along == 1 ? c * table->length - first : c, end = count, n = 0;
     if (table->along == 1)
-      for (int64_t i = first > from ? first : from; i < first + count && i < from + table->length; i++)
-        values[n++] = value_at(data, class, i - first);
-    else
-      for (int64_t i = 0; i + c < count; i += table->along)
-        values[n++] = value_at(data, class, i + c);
-    enum eo_code code = eo_recording_append(matlab->columns.column[base + c], values, n, error);
-    if (code)
-      return code;
+      end = from + table->length < count ? from + table->length : count;
+    for (int64_t i = from > 0 ? from : 0; i < end; i += table->along) {
+      values[n++] = value_at(data, class, i);
+      if (n < BATCH && i + table->along < end)
+        continue;
+      EO_TRY(eo_recording_append(matlab->columns.column[base + c], values, n, error));
+      n = 0;
+    }
   }
   return EO_OK;
 }
@@ -145,20 +147,19 @@ static enum eo_code copy_values(struct matlab *matlab, matvar_t *this_t, const s
   int64_t piece = this_t->compression == MAT_COMPRESSION_NONE ? PIECE / table->channels * table->channels : total;
   if (piece > total)
     piece = total;
-  if (total * size > EO_SOURCE_FREE && total * size / EO_SOURCE_EXPANSION > matlab->bytes)
+  matlab->values += total;
+  if (matlab->values > EO_SOURCE_FREE / 8 && matlab->values / EO_SOURCE_EXPANSION > matlab->bytes / 8)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", this_t->name,
                         (long long)total, (long long)matlab->bytes);
   void *data = calloc((size_t)piece, (size_t)size);
-  double *values = malloc((size_t)piece * sizeof *values);
-  enum eo_code code = data && values ? EO_OK : eo_error_memory(error);
+  enum eo_code code = data ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < total; first += piece) {
     int64_t n = total - first < piece ? total - first : piece;
     code = read_values(matlab, this_t, first, n, data, error);
     if (!code)
-      code = keep_values(matlab, table, base, first, n, data, this_t->class_type, values, error);
+      code = keep_values(matlab, table, base, first, n, data, this_t->class_type, error);
   }
-  free(values);
   free(data);
   return code;
 }
@@ -302,6 +303,8 @@ static enum eo_code add_variable(struct matlab *matlab, matvar_t *this_t, const 
                                  struct eo_error *error)
 {
   char text[256];
+  if (this_t && depth > DEPTH)
+    matlab->left_out++;
   if (!this_t || depth > DEPTH)
     return EO_OK;
   switch (this_t->class_type) {
@@ -338,6 +341,8 @@ static enum eo_code read_variables(struct matlab *matlab, struct eo_error *error
     return eo_error_memory(error);
   while (count < VARIABLES && (list[count] = Mat_VarReadNextInfo(matlab->file)))
     count++;
+  for (matvar_t *more; count == VARIABLES && (more = Mat_VarReadNextInfo(matlab->file)); matlab->left_out++)
+    Mat_VarFree(more);
   for (int i = 0; !code && i < count; i++)
     if (list[i]->name)
       code = add_variable(matlab, list[i], list[i]->name, 0, error);

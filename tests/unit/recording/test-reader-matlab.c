@@ -388,6 +388,36 @@ static void test_big_endian(void)
   eo_recording_free(r);
 }
 
+/* What lies too deep, and variables beyond those that are looked at, are counted. */
+static void test_left_out(void)
+{
+  enum { DEPTH = 12, MANY = 1030 };
+  static const char *const field[] = {"f"};
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  size_t one[] = {1, 1}, rows[] = {COUNT, 1};
+  mat_t *file = open_file(MAT_FT_MAT5);
+  matvar_t *inner = Mat_VarCreate("f", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, rows, gear, 0);
+  for (int i = 0; i < DEPTH; i++) {
+    matvar_t *outer = Mat_VarCreateStruct(i + 1 < DEPTH ? "f" : "deep", 2, one, (const char **)field, 1);
+    Mat_VarSetStructFieldByName(outer, "f", 0, inner);
+    inner = outer;
+  }
+  Mat_VarWrite(file, inner, MAT_COMPRESSION_NONE);
+  Mat_VarFree(inner);
+  put_doubles(file, "pinion", pinion, COUNT, 1, MAT_COMPRESSION_NONE);
+  for (int i = 0; i < MANY; i++) {
+    char name[16];
+    snprintf(name, sizeof name, "x%d", i);
+    put_doubles(file, name, pinion, 1, 1, MAT_COMPRESSION_NONE);
+  }
+  Mat_Close(file);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && eo_recording_columns(r) == 1 && noted(&notes, "9 variables are no channel"), "what is left out is counted%s",
+     r ? notes.count ? notes.text[0] : "" : error.text);
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -407,6 +437,7 @@ int main(void)
   test_starts();
   test_time_info();
   test_big_endian();
+  test_left_out();
   test_flat(MAT_COMPRESSION_NONE);
   test_flat(MAT_COMPRESSION_ZLIB);
   test_gzip();

@@ -357,6 +357,26 @@ static void test_octave(void)
   eo_recording_free(r);
 }
 
+/* Seconds and nanoseconds count from the date that the seconds begin with, where 64 bits hold it in nanoseconds. */
+static void test_dates_in_parts(void)
+{
+  static const double begins[] = {1.7e9, 9.5e9, 1e15};
+  for (int k = 0; k < 3; k++) {
+    char text[400];
+    size_t n = (size_t)sprintf(text, "secs,nsecs,a\n");
+    for (int i = 0; i < 8; i++)
+      n += (size_t)sprintf(text + n, "%.0f,%d,%d\n", begins[k], 100000000 * i + 150000000, i);
+    struct eo_error error;
+    write_text(text);
+    struct eo_recording *r = read_fixture(NULL, NULL, &error);
+    int64_t epoch = r ? eo_recording_clock(r, 0).epoch : 0;
+    ok(r && eo_recording_columns(r) == 2 && epoch == (k ? EO_CLOCK_NO_EPOCH : 1700000000000000000) &&
+           fabs(cell_of(r, 7, 0) - (k ? begins[k] : 0) - 0.85) < 0.1,
+       "seconds from %.3g on beside nanoseconds%s", begins[k], r ? "" : error.text);
+    eo_recording_free(r);
+  }
+}
+
 int main(void)
 {
   fixture_open();
@@ -366,6 +386,7 @@ int main(void)
   test_wide();
   test_wide_pair();
   test_octave();
+  test_dates_in_parts();
   test_refusals();
   test_progress();
   test_gzip();
