@@ -126,6 +126,20 @@ static void keep_channel(struct eo_hdf5 *hdf5, int number, struct eo_hdf5_channe
   hdf5->channel[number] = channel;
 }
 
+/* What the data set itself has in the place of values that were never written, where somebody chose it: as if it were
+   an attribute. */
+static void add_fill_value(struct eo_hdf5 *hdf5, hid_t set, const char *path)
+{
+  char below[PATH];
+  double value = 0;
+  H5D_fill_value_t state;
+  hid_t list = H5Dget_create_plist(set);
+  if (H5Pfill_value_defined(list, &state) >= 0 && state == H5D_FILL_VALUE_USER_DEFINED &&
+      H5Pget_fill_value(list, H5T_NATIVE_DOUBLE, &value) >= 0 && value != 0 && eo_hdf5_join(below, path, "_FillValue"))
+    eo_tree_add_number(hdf5->tree, below, value);
+  H5Pclose(list);
+}
+
 /* The dimensions of a data set that are longer than 1 (of "1 x 2 x N" the last two), two at most. */
 struct sides {
   int count, place[2];
@@ -168,7 +182,7 @@ static bool add_moments(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const char 
 {
   struct eo_hdf5_channel channel = {.set = set, .text = true, .along = sides->place[0], .other = -1};
   if (sides->count != 1 || H5Tget_class(type) != H5T_STRING || H5Tget_size(type) > TEXT ||
-      sides->length[0] > INT64_MAX / 16 || !eo_hdf5_find_moments(&channel))
+      sides->length[0] > INT64_MAX / 16 || !eo_hdf5_find_moments(hdf5, &channel))
     return false;
   int number = eo_tree_add_series(hdf5->tree, path, 1, (int64_t)sides->length[0], false);
   if (number < 0)
@@ -309,6 +323,8 @@ static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth
   bool number = class == H5T_INTEGER || class == H5T_FLOAT, kept = false;
   matlab_class(set, class_name, sizeof class_name);
   bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
+  if (number)
+    add_fill_value(hdf5, set, path);
   add_attributes(hdf5, set, path);
   if (elsewhere)
     note_elsewhere(hdf5, path);

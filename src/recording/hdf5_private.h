@@ -18,7 +18,6 @@ struct eo_hdf5_channel {
   int along;        /* dimension along which values follow each other */
   int other;        /* the other one that is longer than 1, -1: none */
   hsize_t across;   /* place in the other one */
-  int64_t day;      /* of texts with dates: since 1970, that their times count from */
   bool text;        /* its values are such texts, in s */
   bool large;       /* its chunks are too large to be kept */
   double *ahead;    /* owned: values that were read ahead, NULL: none */
@@ -30,6 +29,8 @@ struct eo_hdf5 {
   size_t cache; /* bytes promised so far */
   bool large;   /* the chunks of the set that is looked at are too large for it */
   int larges;   /* channels in such sets */
+  int64_t day;  /* since 1970, of the first text with a date: all times of such texts count from it */
+  bool day_known;
   int visits;
   haddr_t visited[EO_HDF5_VISITS]; /* where they stand in the file */
   hid_t file, set[EO_HDF5_CHANNELS];
@@ -44,10 +45,11 @@ bool eo_hdf5_join(char *path, const char *group, const char *name);
 /* Reads texts of an attribute (set: data set) into one list, one a line; false when they are none. */
 bool eo_hdf5_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, size_t size);
 
-/* Dates and times of day that are texts, as seconds since the midnight before the first; NaN where one is none.
-   eo_hdf5_find_moments() tells whether the data set begins with one, and its day. False: they cannot be read. */
-bool eo_hdf5_find_moments(struct eo_hdf5_channel *channel);
-bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values);
+/* Dates and times of day that are texts, as seconds since the midnight before the first of the file; NaN where one is
+   none. eo_hdf5_find_moments() tells whether the data set begins with one. False: they cannot be read. */
+bool eo_hdf5_find_moments(struct eo_hdf5 *hdf5, const struct eo_hdf5_channel *channel);
+bool eo_hdf5_moments(const struct eo_hdf5 *hdf5, const struct eo_hdf5_channel *channel, int64_t first, int64_t count,
+                     double *values);
 
 void eo_hdf5_add_texts(struct eo_hdf5 *hdf5, const char *path, const char *list);
 

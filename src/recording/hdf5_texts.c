@@ -78,7 +78,8 @@ static double seconds_of(const char *text, size_t length, int64_t day)
   return (moment.has_day ? (double)(moment.day - day) * EO_MOMENT_DAY : 0) + moment.seconds;
 }
 
-bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)
+bool eo_hdf5_moments(const struct eo_hdf5 *hdf5, const struct eo_hdf5_channel *channel, int64_t first, int64_t count,
+                     double *values)
 {
   hsize_t length = (hsize_t)count;
   hid_t type = H5Dget_type(channel->set), memory = H5Screate_simple(1, &length, NULL);
@@ -90,7 +91,7 @@ bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64
     const char *text = bytes + (size_t)i * width;
     if (variable)
       memcpy(&text, bytes + (size_t)i * width, sizeof text);
-    values[i] = text ? seconds_of(text, variable ? strlen(text) : strnlen(text, width), channel->day) : NAN;
+    values[i] = text ? seconds_of(text, variable ? strlen(text) : strnlen(text, width), hdf5->day) : NAN;
   }
   if (good && variable)
     H5Dvlen_reclaim(type, memory, H5P_DEFAULT, bytes);
@@ -100,13 +101,15 @@ bool eo_hdf5_moments(const struct eo_hdf5_channel *channel, int64_t first, int64
   return good;
 }
 
-bool eo_hdf5_find_moments(struct eo_hdf5_channel *channel)
+bool eo_hdf5_find_moments(struct eo_hdf5 *hdf5, const struct eo_hdf5_channel *channel)
 {
   double first;
-  channel->day = 0;
-  if (!eo_hdf5_moments(channel, 0, 1, &first) || !isfinite(first))
+  if (!eo_hdf5_moments(hdf5, channel, 0, 1, &first) || !isfinite(first))
     return false;
-  channel->day = (int64_t)floor(first / EO_MOMENT_DAY);
+  if (!hdf5->day_known && first >= EO_MOMENT_DAY) {
+    hdf5->day = (int64_t)floor(first / EO_MOMENT_DAY);
+    hdf5->day_known = true;
+  }
   return true;
 }
 

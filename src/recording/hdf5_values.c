@@ -115,7 +115,7 @@ enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t co
 {
   struct eo_hdf5 *hdf5 = context;
   struct eo_hdf5_channel *channel = &hdf5->channel[series];
-  bool good = channel->text ? eo_hdf5_moments(channel, first, count, values)
+  bool good = channel->text ? eo_hdf5_moments(hdf5, channel, first, count, values)
               : channel->large
                   ? read_ahead(hdf5, channel, first, count, eo_tree_series(hdf5->tree)[series].length, values)
                   : read_stored(channel, first, count, values);

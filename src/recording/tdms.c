@@ -203,6 +203,21 @@ static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
     eo_notes_add(notes, "The TDMS file was not closed or is cut off; what is there of its last chunk was read.");
 }
 
+/* Time stamps count from the second of the first one of the file, a moment that other files can be compared with. */
+static enum eo_code settle_stamps(struct eo_tdms *tdms, struct eo_error *error)
+{
+  for (int c = 0; c < tdms->channels; c++) {
+    struct eo_series *series = &tdms->series[c];
+    double first;
+    if (tdms->channel[c].index.type != EO_TDMS_TIMESTAMP || series->length < 1)
+      continue;
+    if (!tdms->base_known)
+      EO_TRY(read_values(tdms, c, 0, 1, &first, error));
+    series->clock.epoch = eo_tdms_epoch(tdms->base, 0);
+  }
+  return EO_OK;
+}
+
 enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
                           struct eo_notes *notes, struct eo_error *error)
 {
@@ -217,6 +232,9 @@ enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *opti
   code = eo_tdms_scan(tdms, error);
   if (!code) {
     settle_channels(tdms, notes);
+    code = settle_stamps(tdms, error);
+  }
+  if (!code) {
     struct eo_series_file file = {tdms->series, tdms->channels, tdms->size, options->max_bytes, read_values, tdms};
     code = eo_series_copy(&file, sink, notes, error);
   }

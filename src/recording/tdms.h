@@ -133,6 +133,9 @@ double eo_tdms_scaled(const struct eo_tdms_channel *channel, double raw);
 /* False when one of the scales is of a kind that is not known. */
 bool eo_tdms_can_scale(const struct eo_tdms_channel *channel);
 
+/* Seconds since 1904-01-01 and a part of one as ns since 1970; EO_CLOCK_NO_EPOCH where that is no date. */
+int64_t eo_tdms_epoch(int64_t seconds, double fraction);
+
 /* A number of this type; NaN for other types. */
 double eo_tdms_number(uint32_t type, const unsigned char *p, bool big);
 int64_t eo_tdms_type_size(uint32_t type); /* bytes of a value, 0 when it has no fixed size or is not read */

@@ -78,13 +78,16 @@ double eo_tdms_number(uint32_t type, const unsigned char *p, bool big)
   }
 }
 
+int64_t eo_tdms_epoch(int64_t seconds, double fraction)
+{
+  return seconds > -1900000000 && seconds < 10000000000 ? (seconds - 2082844800) * 1000000000 + llround(fraction * 1e9)
+                                                        : EO_CLOCK_NO_EPOCH;
+}
+
 /* Time stamps are seconds since 1904-01-01 and fractions of 2^-64 s. */
 static int64_t epoch_of(const unsigned char *p, bool big)
 {
-  int64_t seconds = (int64_t)eo_bytes_64(big ? p : p + 8, big) - 2082844800;
-  double fraction = (double)eo_bytes_64(big ? p + 8 : p, big) * 0x1p-64;
-  return seconds > -4000000000 && seconds < 8000000000 ? seconds * 1000000000 + llround(fraction * 1e9)
-                                                       : EO_CLOCK_NO_EPOCH;
+  return eo_tdms_epoch((int64_t)eo_bytes_64(big ? p : p + 8, big), (double)eo_bytes_64(big ? p + 8 : p, big) * 0x1p-64);
 }
 
 static bool take_value(struct eo_tdms_reader *reader, struct property *value)

@@ -441,6 +441,34 @@ static void test_namesakes(void)
   eo_recording_free(r);
 }
 
+/* Two lists of dates, one from before midnight and one from after it; a fill value that is no attribute. */
+static void test_two_days(void)
+{
+  enum { STAMPS = 100 };
+  static char stamps[2][STAMPS][24];
+  struct eo_error error;
+  hsize_t count = STAMPS;
+  double fill = -999;
+  for (int i = 0; i < STAMPS; i++) {
+    snprintf(stamps[0][i], sizeof stamps[0][i], "2024-03-05T23:59:59.5%02d", i);
+    snprintf(stamps[1][i], sizeof stamps[1][i], "2024-03-06T00:00:00.1%02d", i);
+  }
+  hid_t text = H5Tcopy(H5T_C_S1), list = H5Pcreate(H5P_DATASET_CREATE), file = open_file();
+  H5Tset_size(text, 24);
+  H5Dclose(put(file, "first", 1, &count, text, text, stamps[0], H5P_DEFAULT));
+  H5Dclose(put(file, "second", 1, &count, text, text, stamps[1], H5P_DEFAULT));
+  H5Pset_fill_value(list, H5T_NATIVE_DOUBLE, &fill);
+  H5Dclose(put(file, "unwritten", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, NULL, list));
+  H5Tclose(text);
+  H5Pclose(list);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && fabs(cell_of(r, 1, 1) - cell_of(r, 1, 0) - 0.6) < 1e-6, "dates of two lists count from one midnight%s",
+     r ? "" : error.text);
+  ok(r && isnan(cell_of(r, 0, 2)), "what was never written is no value");
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -462,6 +490,7 @@ int main(void)
   test_circles();
   test_wide_records();
   test_namesakes();
+  test_two_days();
   test_hostile();
   return fixture_close();
 }

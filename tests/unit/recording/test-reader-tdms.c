@@ -512,6 +512,8 @@ static void test_time_stamps(void)
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && fabs(cell_of(r, 0, 2) - cell_of(r, 0, 0) - 0.2) < 1e-9, "time stamps of all channels count from one moment%s",
      r ? "" : error.text);
+  ok(r && eo_recording_clock(r, 2).epoch == (3792474000 - 2082844800) * (int64_t)1000000000,
+     "which is known, for other files to be compared with");
   ok(r && !strcmp(eo_recording_name(r, 1), "pinion angle") && !strcmp(eo_recording_name(r, 3), "gear angle"),
      "every channel of one name gets that of its group");
   eo_recording_free(r);
