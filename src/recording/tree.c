@@ -10,7 +10,8 @@
 #include <string.h>
 #include <strings.h>
 
-#define LEAVES 4000      /* series and facts that are kept */
+#define FACTS 2048 /* that are kept; what they cost goes with their square */
+#define LEAVES (FACTS + EO_TREE_CHANNELS)
 #define SINCE_START 1000 /* s: times that begin later do not count from the start of the recording */
 
 enum eo_code eo_tree_new(struct eo_tree **tree, struct eo_error *error)
@@ -32,9 +33,14 @@ void eo_tree_free(struct eo_tree *tree)
 
 static struct eo_leaf *add_leaf(struct eo_tree *tree, enum eo_leaf_kind kind, const char *path, const char *text)
 {
+  if (kind != EO_LEAF_SERIES &&
+      tree->leaves - tree->sets == FACTS) { /* series find room however many facts there are */
+    tree->dropped++;
+    return NULL;
+  }
   if (tree->leaves == tree->room) {
-    int room = tree->room ? 2 * tree->room : 64;
-    struct eo_leaf *leaf = room <= LEAVES ? realloc(tree->leaf, (size_t)room * sizeof *leaf) : NULL;
+    int room = !tree->room ? 64 : tree->room < LEAVES / 2 ? 2 * tree->room : LEAVES;
+    struct eo_leaf *leaf = realloc(tree->leaf, (size_t)room * sizeof *leaf);
     if (!leaf)
       return NULL;
     tree->leaf = leaf;
@@ -324,6 +330,9 @@ void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes)
   }
   eo_namesakes_part(tree->series, tree->count, tell_group, tree);
   note_scales(tree, notes);
+  if (tree->dropped)
+    eo_notes_add(notes, "The file states more than %d things beside its channels; %d of them were not looked at.",
+                 FACTS, tree->dropped);
   read_day_numbers(tree, notes);
 }
 

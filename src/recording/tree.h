@@ -19,8 +19,8 @@ void eo_tree_free(struct eo_tree *tree); /* NULL is fine */
    number of the first, -1 when there are too many. */
 int eo_tree_add_series(struct eo_tree *tree, const char *path, int channels, int64_t length, bool whole);
 
-/* Facts: a single number, a text, a list of texts (separated by line ends). Those beyond memory or 20000 are dropped.
- */
+/* Facts: a single number, a text, a list of texts (separated by line ends). Those beyond memory or 2048 are dropped,
+   with a word when the tree is settled. */
 void eo_tree_add_number(struct eo_tree *tree, const char *path, double number);
 void eo_tree_add_text(struct eo_tree *tree, const char *path, const char *text);
 void eo_tree_add_list(struct eo_tree *tree, const char *path, const char *texts);

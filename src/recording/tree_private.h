@@ -26,7 +26,7 @@ struct eo_leaf {
 struct eo_own {
   bool whole;
   double scale, offset;
-  double missing; /* stored where there is no value; NaN: not stated */
+  double missing;             /* stored where there is no value; NaN: not stated */
   int depth[EO_STATED_KINDS]; /* of the fact that was taken, by kind; -1: none */
   int name_depth, unit_depth;
   int day_depth, hour_depth; /* of what begin holds */
@@ -35,6 +35,7 @@ struct eo_own {
 
 struct eo_tree {
   int leaves, room, count;
+  int dropped; /* facts beyond those that are kept */
   struct eo_leaf *leaf;
   int sets, set[EO_TREE_CHANNELS]; /* leaves that are series */
   struct eo_series series[EO_TREE_CHANNELS];

@@ -469,6 +469,28 @@ static void test_two_days(void)
   eo_recording_free(r);
 }
 
+/* Facts may be too many, channels are not lost for that: the attributes of the file come before its data sets. */
+static void test_many_facts(void)
+{
+  enum { FACTS = 2100 };
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  hsize_t count = COUNT;
+  char name[16];
+  hid_t file = open_file(), group = H5Gcreate2(file, "about", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  for (int i = 0; i < FACTS; i++) {
+    snprintf(name, sizeof name, "x%d", i);
+    put_double(group, name, i);
+  }
+  H5Gclose(group);
+  H5Dclose(put(file, "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && cell_of(r, 7, 0) == pinion[7] && noted(&notes, "52 of them were not looked at"),
+     "a channel behind more facts than are kept%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -491,6 +513,7 @@ int main(void)
   test_wide_records();
   test_namesakes();
   test_two_days();
+  test_many_facts();
   test_hostile();
   return fixture_close();
 }
