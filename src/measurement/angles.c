@@ -39,6 +39,11 @@ static void judge_time(struct eo_angles_maker *maker)
   maker->sampler.count_rows = maker->tracks->time_column < 0;
   if (scan->backward + scan->standing == 0)
     return;
+  bool even = (double)scan->steady >= 0.9 * (double)wrong;
+  if (wrong && !even && scan->returns == wrong && scan->returns <= EO_RUNS) {
+    maker->sampler.goes_on = true; /* runs, of which each has a clock that begins anew */
+    return;
+  }
   if (wrong == 0) {
     eo_angles_at_row(maker,
                      eo_findings_add(maker->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1,
@@ -46,7 +51,7 @@ static void judge_time(struct eo_angles_maker *maker)
                                      "%lld rows repeat the row before them, the first is row %lld; they were left out.",
                                      (long long)scan->duplicate, (long long)scan->time_row + 1),
                      scan->time_row);
-  } else if ((double)scan->steady >= 0.9 * (double)wrong) {
+  } else if (even) {
     maker->sampler.interval = interval_of(scan);
     maker->sampler.count_rows = true;
     eo_angles_at_row(
@@ -117,6 +122,16 @@ static double exact_overflow(const struct eo_scan_column *column, double period)
   return fabs(period - width) <= 2 * column->typical && width > 8 * column->typical ? width : period;
 }
 
+/* All that jumps are the beginnings of runs: no turns are counted there. */
+static bool restarts_only(const struct eo_angles_maker *maker, const struct eo_scan_column *column)
+{
+  int found = 0;
+  for (int i = 0; i < column->jumps && i < EO_SCAN_JUMPS; i++)
+    for (int k = 0; k < maker->restarts; k++)
+      found += llabs(column->jump_row[i]) == maker->restart[k];
+  return found == column->jumps;
+}
+
 /* Where an angle starts again and what that says about its unit. */
 static void judge_turns(struct eo_angles_maker *maker, int channel)
 {
@@ -127,7 +142,7 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
   if (fabs(scale - 1) < 1e-9)
     eo_findings_add(maker->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale,
                     "The %s angle is read as radians.", eo_channel_name(channel));
-  if (isnan(period))
+  if (isnan(period) || restarts_only(maker, column))
     return;
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
   bool may = fabs(scale - 1) < 1e-9 || fabs(scale * DEGREES - 1) < 1e-9; /* counts and gon are none of both */
@@ -166,37 +181,24 @@ static void judge_turns(struct eo_angles_maker *maker, int channel)
                   turn / maker->sampler.scale[channel], column->jumps);
 }
 
-/* s after the first row; NaN where it cannot be read. */
-static double time_at(const struct eo_angles_maker *maker, int64_t row)
+static int compare_rows(const void *a, const void *b)
 {
-  double values[EO_RECORDING_COLUMNS];
-  struct eo_error error;
-  if (maker->tracks->time_column < 0)
-    return maker->tracks->interval * (double)row - maker->scan->time_first;
-  return eo_recording_read(maker->recording, row, 1, values, &error)
-             ? NAN
-             : values[maker->tracks->time_column] * maker->tracks->time_scale - maker->scan->time_first;
+  int64_t one = *(const int64_t *)a, two = *(const int64_t *)b;
+  return (one > two) - (one < two);
 }
 
-/* The angles of two runs have nothing to do with each other. */
-static void judge_restarts(struct eo_angles_maker *maker)
+/* Rows in which both angles or the clock start anew: the angles of two runs have nothing to do with each other. */
+static void find_restarts(struct eo_angles_maker *maker)
 {
-  int64_t row[EO_SCAN_JUMPS];
-  int all = maker->tracks->channel[0].track == EO_TRACK_ANGLE ? eo_scan_restarts(maker->scan, row) : 0, inside = 0;
-  for (int i = 0; i < all; i++) {
-    double time = time_at(maker, row[i]);
-    if (time > maker->asked->from && !(maker->asked->to > 0 && time > maker->asked->to))
-      row[inside++] = row[i];
-  }
-  if (inside)
-    eo_angles_at_row(
-        maker,
-        eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, inside,
-                        "Both angles start anew in the same row, %d time%s, first in row %lld after %.6g s: "
-                        "runs follow each other, whose angles do not belong together. State the times of "
-                        "one of them (from, to).",
-                        inside, inside == 1 ? "" : "s", (long long)row[0] + 1, time_at(maker, row[0])),
-        row[0]);
+  const struct eo_scan *scan = maker->scan;
+  int64_t row[EO_SCAN_JUMPS + EO_RUNS];
+  int n = maker->tracks->channel[0].track == EO_TRACK_ANGLE ? eo_scan_restarts(scan, row) : 0;
+  for (int64_t i = 0; i < scan->returns && maker->sampler.goes_on; i++)
+    row[n++] = scan->return_row[i];
+  qsort(row, (size_t)n, sizeof *row, compare_rows);
+  for (int i = 0; i < n; i++)
+    if (maker->restarts < EO_RUNS + 1 && (i == 0 || row[i] != row[i - 1]))
+      maker->restart[maker->restarts++] = row[i];
 }
 
 static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
@@ -344,14 +346,16 @@ static double usual_rate(double *rate, int blocks)
 static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
 {
   const struct eo_track_channel *pinion = &maker->tracks->channel[0];
-  double advance = maker->high.angle[0] - maker->low.angle[0];
+  eo_gaps_widen(maker);
+  const struct eo_sample *low = &maker->widest[0], *high = &maker->widest[1];
+  double advance = high->angle[0] - low->angle[0];
   angles->rows = eo_recording_rows(angles->series);
   angles->interval = maker->usual.interval;
   angles->from[0] = 0;
   angles->from[1] = 1;
   angles->factor[0] = angles->factor[1] = 1;
   bool even = angles->slips == 0 && advance > 0;
-  angles->ratio = even ? (maker->high.angle[1] - maker->low.angle[1]) / advance
+  angles->ratio = even ? (high->angle[1] - low->angle[1]) / advance
                        : eo_scan_quantile(maker->proportion, maker->blocks, 0.5);
   for (int c = 0; c < 2; c++) {
     angles->rate[c] = usual_rate(maker->rate[c], maker->blocks);
@@ -379,7 +383,7 @@ static enum eo_code prepare(struct eo_angles_maker *maker, struct eo_angles *ang
   EO_TRY(eo_scan_run(maker->scan, maker->recording, maker->tracks, maker->progress, error));
   judge_time(maker);
   judge_gaps(maker);
-  judge_restarts(maker);
+  find_restarts(maker);
   return prepare_tracks(maker, angles, error);
 }
 
@@ -398,8 +402,9 @@ static enum eo_code make(struct eo_angles_maker *maker, struct eo_angles *angles
 }
 
 enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
-                            const struct eo_tracks *tracks, const struct eo_times *asked, const char *spool_directory,
-                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error)
+                            const struct eo_tracks *tracks, const struct eo_times *asked, const int teeth[2],
+                            const char *spool_directory, struct eo_findings *findings,
+                            const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles_maker *maker = calloc(1, sizeof *maker);
   memset(angles, 0, sizeof *angles);
@@ -413,6 +418,8 @@ enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording 
   maker->recording = recording;
   maker->tracks = tracks;
   maker->asked = asked;
+  maker->teeth[0] = teeth[0];
+  maker->teeth[1] = teeth[1];
   maker->findings = findings;
   maker->progress = progress;
   enum eo_code code = make(maker, angles, spool_directory, error);

@@ -12,6 +12,9 @@ struct eo_times {
   double from, to;
 };
 
+/* Runs that follow each other in one recording: what the angles of one say of those of another is not known. */
+enum { EO_RUNS = 16 };
+
 struct eo_angles {
   struct eo_recording
       *series; /* owned, [rows][3]: t in s, angles in rad as the channels gave them; NULL after a refusal */
@@ -28,15 +31,19 @@ struct eo_angles {
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   bool raw[2], wrapped[2];
   struct eo_interpolation interpolated; /* of the second channel, whose values were brought to the first one's times */
+  int breaks;                           /* runs that begin behind the first one */
+  int64_t run[EO_RUNS];                 /* [breaks]: row with which each of them begins */
   bool units_in_doubt;                  /* one channel is in degrees, the other in radians, and it is open which */
 };
 
-/* asked: what lies outside is not judged either. spool_directory: see eo_recording_new(). Findings are added; a refusal
+/* asked: what lies outside is not judged either. teeth: of pinion and gear, by whose ratio gaps are told from slips.
+   spool_directory: see eo_recording_new(). Findings are added; a refusal
    leaves angles->series NULL and is no error. Errors: memory, files, cancelled. eo_angles_done() also after an error.
  */
 enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
-                            const struct eo_tracks *tracks, const struct eo_times *asked, const char *spool_directory,
-                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error);
+                            const struct eo_tracks *tracks, const struct eo_times *asked, const int teeth[2],
+                            const char *spool_directory, struct eo_findings *findings,
+                            const struct eo_progress *progress, struct eo_error *error);
 void eo_angles_done(struct eo_angles *angles);
 
 /* rows[count][3]: t in s, pinion and gear angle in rad as from[] and factor[] say, with the zero of each encoder. */

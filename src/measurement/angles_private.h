@@ -23,6 +23,7 @@ struct eo_angles_maker {
   struct eo_findings *findings;
   const struct eo_progress *progress;
   const struct eo_times *asked;
+  int teeth[2];
   struct eo_scan *scan; /* owned */
   struct eo_sampler sampler;
   struct eo_sample sample[EO_HELD];
@@ -30,7 +31,8 @@ struct eo_angles_maker {
   struct eo_sample last;             /* good one before them */
   struct eo_sample recent[EO_AHEAD]; /* the ones before that, the oldest at kept % EO_AHEAD */
   int64_t kept;
-  struct eo_sample low, high; /* of all good ones: those with the extreme pinion angles */
+  struct eo_sample low, high; /* of all good ones of this run: those with the extreme pinion angles */
+  struct eo_sample widest[2]; /* the two of the run that goes the farthest */
   bool begun;
   struct eo_usual usual; /* of the last block that is long enough to tell */
   bool known;
@@ -53,6 +55,12 @@ struct eo_angles_maker {
     int blocks, straight; /* of samples: looked at, and with many rows on straight lines */
   } raster[2];            /* [channel] */
   bool wrapped[2];
+  int restarts, next_restart;
+  int64_t restart[EO_RUNS + 1]; /* rows with which a new run begins, in their order */
+  const char *run_why;          /* of the second run */
+  int64_t run_row;
+  double run_time; /* s after the first row */
+  bool more_runs;  /* than EO_RUNS */
 };
 
 /* Sets row and line of a finding. */
@@ -64,6 +72,27 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
 
 /* Findings about gaps, single values and lost counts, at the end. */
 void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles);
+
+/* Both channels went on by the same time beyond the usual: excess is that way, rad, with the turns that angles which
+   start again leave open, by which the samples from here on are moved. False: they did not. */
+bool eo_gaps_settle(struct eo_angles_maker *maker, const struct eo_usual *usual, struct eo_sample *sample, int left,
+                    double excess[2]);
+
+/* Time leaps and the angles go on from where they were, as sums of increments do: what lies between is lost. */
+bool eo_gaps_stops(const struct eo_angles_maker *maker, const struct eo_usual *usual, const struct eo_sample *sample,
+                   int left, const double excess[2]);
+
+/* Time leaps, and each channel goes on from a value of its own, as counters do that were set meanwhile. */
+bool eo_gaps_pauses(const struct eo_angles_maker *maker, const struct eo_usual *usual, const struct eo_sample *sample,
+                    const double excess[2]);
+
+/* A run begins with this sample, the next row that is written. why: with a small letter, no full stop; not copied. */
+void eo_gaps_begin_run(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_sample *sample,
+                       int written, const char *why);
+/* One of the restarts lies at or before this row and behind those asked about before. */
+bool eo_gaps_starts_anew(struct eo_angles_maker *maker, int64_t row);
+void eo_gaps_widen(struct eo_angles_maker *maker);
+void eo_gaps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles);
 
 /* Looks at samples of one block for rows that another program made up between recorded ones; at the end, the finding.
  */

@@ -49,8 +49,7 @@ static bool odd_step(const struct eo_usual *usual, const double limit[2], const 
                      const struct eo_sample *to, double excess[2])
 {
   bool odd = false;
-  double time = to->time - from->time,
-         slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * usual->interval); /* of a gap in time */
+  double time = to->time - from->time, slack = fmax(0, time - 1.5 * usual->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
     excess[c] = step_of(from, to, c) - usual->rate[c] * time;
     odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(usual->rate[c]) * slack;
@@ -106,27 +105,27 @@ static bool odd_beside(const struct eo_angles_maker *maker, const struct eo_usua
   return odd_step(here, here->limit, &maker->last, sample, excess);
 }
 
-/* Both channels went on by the same time: rows are missing, and time was written on as if they were not. Else one
-   slipped. */
-static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_usual *usual,
-                       const double excess[2], struct eo_sample *sample)
+/* Rows are missing from both channels, and time was written on as if they were not. */
+static void note_hidden_gap(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_usual *usual,
+                            double excess, const struct eo_sample *sample)
 {
-  double ratio = usual->rate[1] / usual->rate[0], rows = excess[0] / (usual->rate[0] * usual->interval);
-  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(usual->limit[1], fabs(ratio) * usual->limit[0]);
-  if (both) {
-    maker->delay += excess[0] / usual->rate[0];
-    angles->dropped += llround(fabs(rows));
-    if (maker->hidden++ && maker->hidden <= EO_MOST_DISTANCES)
-      maker->distance[maker->hidden - 2] = (double)(sample->row - maker->hidden_row);
-    maker->hidden_row = sample->row;
-    if (!maker->gaps++)
-      maker->gap_row = sample->row;
-    return;
-  }
+  maker->delay += excess / usual->rate[0];
+  angles->dropped += llround(fabs(excess / (usual->rate[0] * usual->interval)));
+  if (maker->hidden++ && maker->hidden <= EO_MOST_DISTANCES)
+    maker->distance[maker->hidden - 2] = (double)(sample->row - maker->hidden_row);
+  maker->hidden_row = sample->row;
+  if (!maker->gaps++)
+    maker->gap_row = sample->row;
+}
+
+/* One channel slipped. */
+static void refuse_slip(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_usual *usual,
+                        const double excess[2], const struct eo_sample *sample)
+{
   int channel = fabs(excess[0]) / usual->limit[0] > fabs(excess[1]) / usual->limit[1] ? 0 : 1;
   if (angles->slips++ < 4) {
     char size[32] = ""; /* in rows, unless the channel stood still before */
-    rows = excess[channel] / (usual->rate[channel] * usual->interval);
+    double rows = excess[channel] / (usual->rate[channel] * usual->interval);
     if (isfinite(rows))
       snprintf(size, sizeof size, " (%.3g rows)", rows);
     eo_angles_at_row(
@@ -138,6 +137,21 @@ static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, 
                         sample->time - angles->origin),
         sample->row);
   }
+}
+
+/* left: samples from this one on. */
+static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_usual *usual,
+                       double excess[2], struct eo_sample *sample, int left, int written)
+{
+  bool settled = eo_gaps_settle(maker, usual, sample, left, excess);
+  if (!settled && eo_gaps_pauses(maker, usual, sample, excess))
+    eo_gaps_begin_run(maker, angles, sample, written, "time leaps there, and both angles go on from other values");
+  else if (!settled)
+    refuse_slip(maker, angles, usual, excess, sample);
+  else if (eo_gaps_stops(maker, usual, sample, left, excess))
+    eo_gaps_begin_run(maker, angles, sample, written, "time leaps there, and the angles go on from where they were");
+  else
+    note_hidden_gap(maker, angles, usual, excess[0], sample);
 }
 
 static enum eo_code keep(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_sample *sample,
@@ -250,8 +264,10 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
     struct eo_sample *sample = &maker->sample[i];
     struct eo_usual here = *usual;
     bool judge = maker->known && maker->begun;
-    if (judge && (usual->uneven || odd_step(usual, usual->limit, &maker->last, sample, excess)) &&
-        odd_beside(maker, usual, sample, maker->held - i, &here, excess)) {
+    if (eo_gaps_starts_anew(maker, sample->row))
+      eo_gaps_begin_run(maker, angles, sample, *written, "angles or clock start anew there");
+    else if (judge && (usual->uneven || odd_step(usual, usual->limit, &maker->last, sample, excess)) &&
+             odd_beside(maker, usual, sample, maker->held - i, &here, excess)) {
       int skip = count_spikes(maker, &here, sample, maker->held - i, final);
       if (skip) {
         leave_out(maker, sample->row, skip);
@@ -259,7 +275,7 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
         continue;
       }
       if (!begins_wrong(maker, written))
-        judge_jump(maker, angles, &here, excess, sample);
+        judge_jump(maker, angles, &here, excess, sample, maker->held - i, *written);
     } else if (judge && !usual->uneven && odd_step(usual, usual->fine, &maker->last, sample, excess)) {
       note_lost_counts(maker, usual, excess, sample, maker->held - i);
     } else if (judge && !maker->sampler.pulses && sample->time - maker->last.time > usual->gap &&
@@ -324,6 +340,7 @@ void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angle
                         (long long)maker->loss[i].row + 1),
         maker->loss[i].row);
   judge_gaps(maker, angles);
+  eo_gaps_judge(maker, angles);
   if (maker->spikes)
     eo_angles_at_row(maker,
                      eo_findings_add(maker->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)maker->spikes,

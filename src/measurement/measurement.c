@@ -79,8 +79,8 @@ enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct
   measurement->load.pinion_torque = NAN;
   measurement->rows = eo_recording_rows(recording);
   measurement->ratio = NAN;
-  enum eo_code code = eo_angles_make(&angles, recording, tracks, &asked, settings->spool_directory,
-                                     &measurement->findings, progress, error);
+  enum eo_code code = eo_angles_make(&angles, recording, tracks, &asked, settings->transmission.teeth,
+                                     settings->spool_directory, &measurement->findings, progress, error);
   measurement->interval = angles.interval;
   for (int channel = 0; channel < 2; channel++) {
     measurement->raw[channel] = angles.raw[channel];

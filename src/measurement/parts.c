@@ -7,7 +7,7 @@
 
 #include "measurement/scan.h"
 
-enum { BLOCK = 4096, MOST_STRETCHES = 4096, MOST_TURNS = 1 << 16 };
+enum { BLOCK = 4096, MOST_STRETCHES = 4096, STRETCHES = MOST_STRETCHES + 2 * EO_RUNS, MOST_TURNS = 1 << 16 };
 static const double STANDING = 0.02; /* of the fast tenth of all speeds: slower is no measurement, and creeps there */
 static const double LEAST_TURNS = 3; /* of the pinion in a part; the shaft orders need them */
 static const double STEADY = 0.02;   /* relative: turns this near to their median are one steady state */
@@ -64,9 +64,19 @@ static int64_t rows_each(const struct finder *finder)
   return each > least ? each : least > 1 ? least : 1;
 }
 
+/* A run begins with this row. */
+static bool begins_run(const struct finder *finder, int64_t row)
+{
+  for (int i = 0; i < finder->angles->breaks; i++)
+    if (finder->angles->run[i] == row)
+      return true;
+  return false;
+}
+
 static void add_stretch(struct finder *finder, int64_t index, const double row[3])
 {
-  if (index % rows_each(finder) == 0 && finder->stretches < MOST_STRETCHES)
+  bool ends = begins_run(finder, index) || begins_run(finder, index + 1);
+  if ((ends || index % rows_each(finder) == 0) && finder->stretches < STRETCHES)
     finder->stretch[finder->stretches++] = (struct stretch){index, row[0], row[1]};
 }
 
@@ -76,7 +86,8 @@ static double find_speeds(struct finder *finder)
   int n = --finder->stretches;
   for (int i = 0; i < n; i++) {
     double time = finder->stretch[i + 1].time - finder->stretch[i].time;
-    finder->speed[i] = time > 0 ? (finder->stretch[i + 1].angle - finder->stretch[i].angle) / time : 0;
+    bool across = begins_run(finder, finder->stretch[i + 1].row);
+    finder->speed[i] = time > 0 && !across ? (finder->stretch[i + 1].angle - finder->stretch[i].angle) / time : 0;
     finder->scratch[i] = fabs(finder->speed[i]);
   }
   return eo_scan_quantile(finder->scratch, n, 0.9);
@@ -207,7 +218,12 @@ static void say_parts(const struct finder *finder)
   int kept = parts->count < EO_PARTS ? parts->count : EO_PARTS;
   if (finder->choice->part || (parts->count == 1 && used->first == 0 && used->last == finder->angles->rows - 1))
     return;
-  if (kept == 1)
+  if (kept == 1 && finder->angles->breaks)
+    eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
+                    "One run alone has turns enough: what is measured goes from %.4g s to %.4g s of %.4g s.",
+                    used->from, used->to, all)
+        ->row = used->first;
+  else if (kept == 1)
     eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
                     "The shafts stand still or turn back in %.3g s of %.4g s; what is measured goes from %.4g s to "
                     "%.4g s.",
@@ -215,8 +231,10 @@ static void say_parts(const struct finder *finder)
         ->row = used->first;
   else
     eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_WARNING, -1, parts->count,
-                    "The shafts stop or turn back between %d parts; part %d with the most turns, %.4g s to %.4g s, is "
+                    "%s between %d parts; part %d with the most turns, %.4g s to %.4g s, is "
                     "measured. Choose another one by its number.",
+                    finder->angles->breaks ? "The recording starts anew, or the shafts stop or turn back,"
+                                           : "The shafts stop or turn back",
                     parts->count, parts->used + 1, used->from, used->to)
         ->row = used->first;
 }
@@ -302,10 +320,10 @@ enum eo_code eo_parts_find(struct eo_parts *parts, const struct eo_angles *angle
   struct finder finder = {
       .angles = angles, .choice = choice, .findings = findings, .progress = progress, .parts = parts};
   *parts = (struct eo_parts){.used = -1};
-  finder.stretch = malloc(sizeof *finder.stretch * MOST_STRETCHES);
-  finder.speed = malloc(sizeof *finder.speed * MOST_STRETCHES);
+  finder.stretch = malloc(sizeof *finder.stretch * STRETCHES);
+  finder.speed = malloc(sizeof *finder.speed * STRETCHES);
   finder.turn = malloc(sizeof *finder.turn * (MOST_TURNS + 1));
-  finder.scratch = malloc(sizeof *finder.scratch * (MOST_STRETCHES + MOST_TURNS));
+  finder.scratch = malloc(sizeof *finder.scratch * (STRETCHES + MOST_TURNS));
   enum eo_code code = finder.stretch && finder.speed && finder.turn && finder.scratch ? find(&finder, error)
                                                                                       : eo_error_memory(error);
   free(finder.stretch);

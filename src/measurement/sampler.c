@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double LATE = 1.5;    /* intervals: rows are missing where more time passes from one to the next */
+static const double DRIFT = 0.005; /* relative: how far the speed may have changed behind a gap */
+
 enum eo_code eo_sampler_init(struct eo_sampler *sampler, const struct eo_recording *recording,
                              const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error)
 {
@@ -31,15 +34,23 @@ static double raw_angle(const struct eo_sampler *sampler, int channel, const dou
   return row[track_channel->column[0]] * sampler->scale[channel];
 }
 
+/* Rows that fit into the time since the last one, where the angle after so many is known well enough. */
+static double rows_passed(const struct eo_sampler *sampler, int channel, double time)
+{
+  double rows = sampler->interval > 0 ? (time - sampler->time) / sampler->interval : 1;
+  return rows > LATE && rows * fabs(sampler->step[channel]) * DRIFT < sampler->period[channel] / 4 ? rows : 1;
+}
+
 /* The step is the one nearest to the usual one; whole turns are counted so that rounding does not grow. */
-static double unwrap(struct eo_sampler *sampler, int channel, double angle)
+static double unwrap(struct eo_sampler *sampler, int channel, double angle, double time)
 {
   double period = sampler->period[channel];
   if (sampler->started && period > 0) {
-    double step = angle - sampler->raw[channel], turns = round((sampler->step[channel] - step) / period);
+    double rows = rows_passed(sampler, channel, time), step = angle - sampler->raw[channel],
+           turns = round((rows * sampler->step[channel] - step) / period);
     sampler->turns[channel] += (int64_t)turns;
     step += turns * period;
-    if (fabs(step) < 0.45 * period)
+    if (rows == 1 && fabs(step) < 0.45 * period)
       sampler->step[channel] += 0.02 * (step - sampler->step[channel]);
   }
   sampler->raw[channel] = angle;
@@ -63,14 +74,17 @@ enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sampl
       const double *row = sampler->rows + (size_t)i * (size_t)columns;
       double time = sampler->count_rows ? sampler->interval * (double)(sampler->next + i)
                                         : row[tracks->time_column] * tracks->time_scale;
+      if (sampler->goes_on && sampler->started && time + sampler->shift < sampler->time)
+        sampler->shift = sampler->time + sampler->interval - time;
+      time += sampler->shift;
       double angle[2] = {raw_angle(sampler, 0, row), raw_angle(sampler, 1, row)};
       bool usable = isfinite(time) && isfinite(angle[0]) && isfinite(angle[1]);
       bool repeated = sampler->started && time == sampler->time && angle[0] == sampler->raw[0] &&
                       angle[1] == sampler->raw[1];
       if (!usable || repeated || sampler->next + i < sampler->begin)
         continue;
-      sample[*count] =
-          (struct eo_sample){time, {unwrap(sampler, 0, angle[0]), unwrap(sampler, 1, angle[1])}, sampler->next + i};
+      sample[*count] = (struct eo_sample){
+          time, {unwrap(sampler, 0, angle[0], time), unwrap(sampler, 1, angle[1], time)}, sampler->next + i};
       sampler->time = time;
       sampler->started = true;
       ++*count;

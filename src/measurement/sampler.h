@@ -18,7 +18,8 @@ struct eo_sampler {
   const struct eo_tracks *tracks;
   const struct eo_ellipse *ellipse; /* [channel] of raw tracks */
   bool count_rows;                  /* time is the number of the row times the interval */
-  double interval;                  /* s */
+  bool goes_on;                     /* where the clock begins anew it goes on by an interval */
+  double interval, shift;           /* s; put into the time by then */
   double scale[2], period[2]; /* [channel] rad per unit of an angle; rad after which it starts again, 0: it does not */
   int64_t begin;              /* rows before it are left out */
   int64_t next;               /* row */

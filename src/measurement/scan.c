@@ -147,6 +147,8 @@ static void add_row(struct eo_scan *scan, const struct eo_tracks *tracks, const 
     if (scan->backward + scan->standing == 0)
       scan->time_row = at;
     scan->backward += time < scan->time_last;
+    if (scan->time_last - time > LEAP * scan->interval && scan->returns++ < EO_SCAN_RETURNS)
+      scan->return_row[scan->returns - 1] = at;
     scan->standing += time == scan->time_last;
     scan->duplicate += time == scan->time_last && same;
     scan->steady += pace > 0.5 * usual && pace < 1.5 * usual;

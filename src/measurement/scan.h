@@ -9,7 +9,7 @@
 #include "recording/recording.h"
 #include "recording/tracks.h"
 
-enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5 };
+enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5, EO_SCAN_RETURNS = 16 };
 
 /* One column of values, in its own unit. */
 struct eo_scan_column {
@@ -36,10 +36,11 @@ struct eo_scan {
   int64_t backward, standing, duplicate,
       time_row;   /* rows whose time lies before, at that of the row before; with the same values too */
   int64_t steady; /* of the first two, those at which the first angle goes on as usual */
-  double time_first, time_last, interval; /* s; typical step of time */
-  double risen;                           /* s: the sum of the steps up, but for leaps, */
-  int64_t leaps;                          /* steps of so many intervals that they are none of the clock */
-  struct eo_scan_column column[2][2];     /* [member][track] */
+  int64_t returns, return_row[EO_SCAN_RETURNS]; /* of those before: by so much that the clock began anew; the first */
+  double time_first, time_last, interval;       /* s; typical step of time */
+  double risen;                                 /* s: the sum of the steps up, but for leaps, */
+  int64_t leaps;                                /* steps of so many intervals that they are none of the clock */
+  struct eo_scan_column column[2][2];           /* [member][track] */
 };
 
 /* Scans angles and raw tracks; progress from 0 to 1. Errors: reading, memory, cancelled. */

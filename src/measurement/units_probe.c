@@ -110,11 +110,25 @@ static int open_units(const struct eo_unit_doubt *doubt, struct unit unit[UNITS]
   return n;
 }
 
+/* The rows of the run with the most of them. */
+static int64_t longest_run(const struct eo_angles *angles, int64_t *first)
+{
+  int64_t most = 0;
+  for (int i = 0; i <= angles->breaks; i++) {
+    int64_t begin = i ? angles->run[i - 1] : 0, end = i < angles->breaks ? angles->run[i] : angles->rows;
+    if (end - begin > most) {
+      most = end - begin;
+      *first = begin;
+    }
+  }
+  return most;
+}
+
 /* Reads the rows: what is left of the path difference in column 2, without its slow part. */
-static enum eo_code fill_probe(struct probe *probe, const struct eo_angles *angles,
+static enum eo_code fill_probe(struct probe *probe, const struct eo_angles *angles, int64_t first,
                                const struct eo_transmission_settings *settings, struct eo_error *error)
 {
-  EO_TRY(eo_angles_read(angles, 0, probe->rows, probe->row[0], error));
+  EO_TRY(eo_angles_read(angles, first, probe->rows, probe->row[0], error));
   for (int i = 0; i < probe->rows; i++)
     probe->row[i][2] = settings->base_radius[EO_GEAR] * probe->row[i][2] -
                        settings->base_radius[EO_PINION] * probe->row[i][1];
@@ -138,9 +152,10 @@ static double most_seen(const struct probe *probe, const struct eo_transmission_
 enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
                             const struct eo_unit_doubt *doubt, double *factor, struct eo_error *error)
 {
-  struct probe probe = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
+  int64_t first = 0, rows = longest_run(angles, &first);
+  struct probe probe = {.rows = rows < MOST_ROWS ? (int)rows : MOST_ROWS};
   probe.row = malloc(sizeof *probe.row * (size_t)probe.rows);
-  enum eo_code code = probe.row ? fill_probe(&probe, angles, settings, error) : eo_error_memory(error);
+  enum eo_code code = probe.row ? fill_probe(&probe, angles, first, settings, error) : eo_error_memory(error);
   if (!code)
     *factor = most_seen(&probe, settings, doubt);
   free(probe.row);
