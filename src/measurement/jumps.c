@@ -276,7 +276,8 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
       }
       if (!begins_wrong(maker, written))
         judge_jump(maker, angles, &here, excess, sample, maker->held - i, *written);
-    } else if (judge && !usual->uneven && odd_step(usual, usual->fine, &maker->last, sample, excess)) {
+    } else if (judge && !usual->uneven && sample->row == maker->last.row + 1 &&
+               odd_step(usual, usual->fine, &maker->last, sample, excess)) {
       note_lost_counts(maker, usual, excess, sample, maker->held - i);
     } else if (judge && !maker->sampler.pulses && sample->time - maker->last.time > usual->gap &&
                sample->row - maker->last.row == 1) { /* of pulses their lines say it */

@@ -57,6 +57,19 @@ static double unwrap(struct eo_sampler *sampler, int channel, double angle, doub
   return angle + (double)sampler->turns[channel] * period;
 }
 
+/* The row repeats the value before it while the shaft goes on. */
+static bool is_held(struct eo_sampler *sampler, int64_t row)
+{
+  bool held = false;
+  for (int c = 0; c < 2; c++) {
+    const struct eo_scan_hold *hold = sampler->hold[c];
+    while (sampler->held[c] < sampler->holds[c] && row >= hold[sampler->held[c]].row + hold[sampler->held[c]].rows)
+      sampler->held[c]++;
+    held = held || (sampler->held[c] < sampler->holds[c] && row >= hold[sampler->held[c]].row);
+  }
+  return held;
+}
+
 enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sample, int *count, struct eo_error *error)
 {
   const struct eo_tracks *tracks = sampler->tracks;
@@ -81,7 +94,7 @@ enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sampl
       bool usable = isfinite(time) && isfinite(angle[0]) && isfinite(angle[1]);
       bool repeated = sampler->started && time == sampler->time && angle[0] == sampler->raw[0] &&
                       angle[1] == sampler->raw[1];
-      if (!usable || repeated || sampler->next + i < sampler->begin)
+      if (!usable || repeated || is_held(sampler, sampler->next + i) || sampler->next + i < sampler->begin)
         continue;
       sample[*count] = (struct eo_sample){
           time, {unwrap(sampler, 0, angle[0], time), unwrap(sampler, 1, angle[1], time)}, sampler->next + i};

@@ -21,9 +21,11 @@ struct eo_sampler {
   bool goes_on;                     /* where the clock begins anew it goes on by an interval */
   double interval, shift;           /* s; put into the time by then */
   double scale[2], period[2]; /* [channel] rad per unit of an angle; rad after which it starts again, 0: it does not */
-  int64_t begin;              /* rows before it are left out */
-  int64_t next;               /* row */
-  int64_t turns[2];           /* seen so far */
+  const struct eo_scan_hold *hold[2]; /* [channel][holds], by rows: they are left out */
+  int holds[2], held[2];              /* how many, and how many are passed */
+  int64_t begin;                      /* rows before it are left out */
+  int64_t next;                       /* row */
+  int64_t turns[2];                   /* seen so far */
   bool started;
   double raw[2], time;      /* of the row before, not unwrapped */
   double step[2];           /* usual step of each channel, rad; follows slowly */

@@ -10,6 +10,7 @@
 enum { BLOCK = 4096, CHUNK = 256, WRONG_ROWS = 100 };
 static const double LANDING = 0.3;   /* typical steps: a step back by less is noise */
 static const double NEAR_ZERO = 1.5; /* typical steps from 0, in the row after an index pulse */
+enum { GAP = 20 };                   /* rows that cannot be used */
 static const double LEAP = 100;      /* typical intervals: a step of the time by more is a fault */
 
 double eo_scan_quantile(double *value, int count, double share)
@@ -71,6 +72,14 @@ static bool usable(const struct eo_tracks *tracks, const double *row)
   return good;
 }
 
+/* A run of equal values ended before the row `at`. */
+static void note_hold(struct eo_scan_column *column, int64_t at, double step)
+{
+  column->pairs += column->run == 2;
+  if (column->run > 2 && column->holds++ < EO_SCAN_HOLDS)
+    column->hold[column->holds - 1] = (struct eo_scan_hold){at - column->run + 1, column->run - 1, step};
+}
+
 static bool add_value(struct eo_scan_column *column, double value, int64_t at, int64_t used)
 {
   double step = used ? value - column->before : 0;
@@ -85,8 +94,13 @@ static bool add_value(struct eo_scan_column *column, double value, int64_t at, i
   column->at_low += value == column->low;
   column->at_high += value == column->high;
   column->rises += (step > 0) - (step < 0);
+  if (step != 0)
+    note_hold(column, at, step);
   column->run = used && step == 0 ? column->run + 1 : 1;
   column->travel = column->run > 1 ? column->travel : 0;
+  if (used && at - column->last > GAP)
+    step = 0; /* what jumps over a gap is the way in it */
+  column->last = at;
   bool wide = fabs(step) > 3 * column->typical && fabs(step) > 0.5 * (column->high - column->low);
   if (used && (wide || fabs(step) > 10 * column->typical) && column->typical > 0) {
     if (column->jumps < EO_SCAN_JUMPS) {
@@ -218,6 +232,8 @@ enum eo_code eo_scan_run(struct eo_scan *scan, const struct eo_recording *record
     for (int i = 0; i < count && !code; i++)
       add_row(scan, tracks, rows + (size_t)i * (size_t)columns, first + i);
   }
+  for (int i = 0; i < 4; i++)
+    note_hold(&scan->column[i / 2][i % 2], scan->rows, NAN);
   free(rows);
   return code;
 }

@@ -9,7 +9,13 @@
 #include "recording/recording.h"
 #include "recording/tracks.h"
 
-enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5, EO_SCAN_RETURNS = 16 };
+enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5, EO_SCAN_RETURNS = 16, EO_SCAN_HOLDS = 256 };
+
+/* Rows that repeat the one before them. */
+struct eo_scan_hold {
+  int64_t row, rows; /* the first, and how many */
+  double step;       /* to the value behind them; NaN: they are the last */
+};
 
 /* One column of values, in its own unit. */
 struct eo_scan_column {
@@ -21,6 +27,10 @@ struct eo_scan_column {
   int64_t run;
   double travel; /* of the other channel in that run, its own typical steps */
   double before;
+  int64_t last;  /* row of that value */
+  int64_t pairs; /* of equal values, no more of them: common where a step is less than a count */
+  int holds;     /* of more than one row; the first EO_SCAN_HOLDS are kept */
+  struct eo_scan_hold hold[EO_SCAN_HOLDS];
   int jumps; /* steps of more than ten typical ones, or three and half the range; the first EO_SCAN_JUMPS are kept */
   double jump[EO_SCAN_JUMPS];
   int64_t jump_row[EO_SCAN_JUMPS]; /* negative: downwards into that row */

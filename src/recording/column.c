@@ -8,7 +8,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/sort.h"
+
 #define ROWS 20000   /* that are looked at */
+#define HEIGHTS 512  /* of resets, that are kept */
 #define STRETCHES 64 /* within which noise does not count as travel */
 
 static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values,
@@ -64,6 +67,14 @@ static bool is_reset(const struct eo_column *look, double step, bool up)
   return fabs(step) > 0.5 * (look->high - look->low) && (step < 0) == up;
 }
 
+/* The median: a reset amid lost rows is higher or lower by the way in them. Of two the mean. */
+static double usual_height(double height[HEIGHTS], int resets)
+{
+  int kept = resets < HEIGHTS ? resets : HEIGHTS;
+  eo_sort_numbers(kept, height);
+  return (height[(kept - 1) / 2] + height[kept / 2]) / 2;
+}
+
 static void find_steps(struct eo_column *look, const double *values)
 {
   for (int64_t i = 1; i < look->count; i++) {
@@ -71,13 +82,14 @@ static void find_steps(struct eo_column *look, const double *values)
     look->falls += values[i] < values[i - 1];
   }
   bool up = look->rises >= look->falls;
-  double sum = 0, square = 0, height = 0, travel = 0, way = 0;
+  double sum = 0, square = 0, travel = 0, way = 0, height[HEIGHTS];
   int64_t steps = 0, stretch = 1 + look->count / STRETCHES;
   for (int64_t i = 1; i < look->count; i++) {
     double step = values[i] - values[i - 1];
     if (is_reset(look, step, up)) {
+      if (look->resets < HEIGHTS)
+        height[look->resets] = fabs(step);
       look->resets++;
-      height += fabs(step);
       continue;
     }
     steps++;
@@ -94,7 +106,7 @@ static void find_steps(struct eo_column *look, const double *values)
       square += (step - look->step) * (step - look->step);
   }
   look->spread = steps && look->step != 0 ? sqrt(square / (double)steps) / fabs(look->step) : INFINITY;
-  look->period = look->resets ? height / look->resets + fabs(look->step) : 0;
+  look->period = look->resets ? usual_height(height, look->resets) + fabs(look->step) : 0;
 }
 
 /* A column that is called by a unit of time alone: "ms", "millis", "seconds". Single letters name anything, and "min"

@@ -37,7 +37,7 @@ struct eo_column {
   int rises, falls; /* steps up and down */
   int resets;       /* steps against the trend by more than half the range */
   bool levels;      /* nearly all values lie at one of two levels, as those of a square wave */
-  double period;    /* mean height of the resets and a step, roughly the turn; 0: none */
+  double period;    /* usual height of the resets and a step, roughly the turn; 0: none */
 };
 
 /* Looks at the first rows. Errors of reading. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/layout_private.h"
+#include "recording/lost.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -432,6 +433,7 @@ enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_lay
                             struct eo_notes *notes, struct eo_error *error)
 {
   static const struct eo_layout_choice none;
+  EO_TRY(eo_lost_find(*recording, notes, error));
   struct eo_guess *guess = calloc(1, sizeof *guess);
   if (!guess)
     return eo_error_memory(error);

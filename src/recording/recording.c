@@ -26,6 +26,7 @@ struct column {
   int64_t length; /* -1: that of the table */
   struct eo_clock clock;
   double turn; /* counts, 0: not stated */
+  double lost; /* the value that stands for a lost one; NaN: none does */
 };
 
 struct eo_recording {
@@ -40,6 +41,7 @@ struct eo_recording {
   int marks, mark_capacity;
   int64_t next_line;  /* line of the next row, 0: unknown */
   double tick;        /* s, 0: not stated */
+  bool lossy;         /* a column has such a value */
   int64_t known_rows; /* rows from here on have no line any more */
 };
 
@@ -64,6 +66,7 @@ enum eo_code eo_recording_new(struct eo_recording **recording, int columns, cons
   }
   for (int c = 0; c < columns; c++) {
     this_recording->column[c].length = -1;
+    this_recording->column[c].lost = NAN;
     this_recording->column[c].clock = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
   }
   *recording = this_recording;
@@ -169,6 +172,12 @@ void eo_recording_set_turn(struct eo_recording *recording, int column, double co
 double eo_recording_turn(const struct eo_recording *recording, int column)
 {
   return recording->column[column].turn;
+}
+
+void eo_recording_set_lost(struct eo_recording *recording, int column, double value)
+{
+  recording->column[column].lost = value;
+  recording->lossy = true;
 }
 
 void eo_recording_set_tick(struct eo_recording *recording, double tick)
@@ -305,6 +314,14 @@ static enum eo_code read_all(int file, void *bytes, size_t size, off_t at, struc
   return EO_OK;
 }
 
+static void leave_lost_out(const struct eo_recording *recording, int64_t count, double *rows)
+{
+  for (int64_t i = 0; i < count; i++)
+    for (int c = 0; c < recording->columns; c++)
+      if (rows[i * recording->columns + c] == recording->column[c].lost)
+        rows[i * recording->columns + c] = NAN;
+}
+
 enum eo_code eo_recording_read(const struct eo_recording *recording, int64_t first, int64_t count, double *rows,
                                struct eo_error *error)
 {
@@ -326,5 +343,7 @@ enum eo_code eo_recording_read(const struct eo_recording *recording, int64_t fir
     memcpy(rows + in_file * recording->columns,
            recording->buffer + (first + in_file - recording->file_rows) * recording->columns,
            (size_t)(count - in_file) * row_size);
+  if (recording->lossy)
+    leave_lost_out(recording, count, rows);
   return EO_OK;
 }

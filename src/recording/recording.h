@@ -64,6 +64,9 @@ struct eo_clock eo_recording_clock(const struct eo_recording *recording, int col
 void eo_recording_set_turn(struct eo_recording *recording, int column, double counts);
 double eo_recording_turn(const struct eo_recording *recording, int column);
 
+/* A value of the column that stands for a lost one: it is read as NaN from then on. */
+void eo_recording_set_lost(struct eo_recording *recording, int column, double value);
+
 /* The length of one tick in which columns of ticks count the time, s; 0: not stated. */
 void eo_recording_set_tick(struct eo_recording *recording, double tick);
 double eo_recording_tick(const struct eo_recording *recording);

@@ -79,7 +79,8 @@ static bool means_nothing(const char *text, size_t length)
   static const char *const words[] = {"nan",  "-nan",     "+nan",      "n/a",      "na",       "#n/a", "null",
                                       "none", "-",        "--",        "---",      "*",        "inf",  "+inf",
                                       "-inf", "infinity", "-infinity", "nan(ind)", "-nan(ind)"};
-  if (!length)
+  size_t sign = length > 0 && (*text == '-' || *text == '+');
+  if (!length || (length > sign + 3 && text[sign] == '1' && text[sign + 2] == '#')) /* 1.#INF00, -1,#IND */
     return true;
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
     if (strlen(words[i]) == length && !strncasecmp(text, words[i], length))

@@ -813,6 +813,41 @@ static void pause_sums(double row[3])
   row[0] += counted++ < 15000 ? 0 : 0.0137;
 }
 
+/* A bus that gives its last values once more for a while, of one encoder or of both. */
+static void hold_gear(double row[3])
+{
+  static double held;
+  held = counted % 5000 < 4700 ? row[2] : held;
+  row[2] = held;
+  counted++;
+}
+
+static void hold_both(double row[3])
+{
+  static double held[2];
+  for (int c = 0; c < 2; c++)
+    row[c + 1] = held[c] = counted % 5000 < 4960 ? row[c + 1] : held[c];
+  counted++;
+}
+
+static void check_held_values(void)
+{
+  void (*const hold[2])(double row[3]) = {hold_gear, hold_both};
+  for (int wrapped = 0; wrapped < 2; wrapped++)
+    for (int both = 0; both < 2; both++) {
+      struct eo_synthetic s = usual();
+      s.wrapped = wrapped;
+      counted = 0;
+      const struct eo_measurement *m = measure_rewritten(&s, hold[both]);
+      double truth = eo_synthetic_rms(&s, 8);
+      ok(m && !m->refused && said(m, EO_FINDING_NAN, EO_SEVERITY_REPAIRED) &&
+             fabs(m->transmission.rms / truth - 1) < 0.01,
+         "values of %s that are held for a while are left out: %.4f of %.4f", both ? "both channels" : "a channel",
+         m ? m->transmission.rms : NAN, truth);
+      show(m);
+    }
+}
+
 /* What the angles tell of themselves: half a turn after which they start again, runs behind each other. */
 static void check_starts(void)
 {
@@ -959,6 +994,7 @@ int main(int argc, char **argv)
   check_faults();
   check_limits();
   check_few_lines();
+  check_held_values();
   check_starts();
   check_printed_radii();
   check_speeds();

@@ -260,6 +260,34 @@ static void test_stacked(void)
   }
 }
 
+/* Rows with one number in place of what a logger did not hear: in both channels, or in the gear's alone. */
+static FILE *lost(const char *number, int run, bool both)
+{
+  FILE *f = begin("t [s];pinion [deg];gear [deg]\n");
+  for (int i = 0; i < ROWS; i++) {
+    double angle[2] = {degrees(pinion(i / RATE)), degrees(gear(i / RATE))};
+    bool missing = i > 500 && i % 700 < run;
+    fprintf(f, "%.9g", i / RATE);
+    for (int c = 0; c < 2; c++)
+      if (missing && (both || c))
+        fprintf(f, ";%s", number);
+      else
+        fprintf(f, ";%.12g", angle[c]);
+    fputc('\n', f);
+  }
+  return f;
+}
+
+static void test_lost(void)
+{
+  static const char *const number[] = {"-9999", "99999", "0", "-1", "65535"};
+  for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+    right(lost(number[i], 5, true), NULL, 1e-7, "stands for lost ones", "a number for five lost rows");
+    right(lost(number[i], 90, false), NULL, 1e-7, "stands for lost ones", "and for ninety of one channel");
+  }
+  right(lost("-1.#IND00", 40, true), NULL, 1e-7, NULL, "no numbers as some runtimes print them");
+}
+
 int main(void)
 {
   fixture_open();
@@ -269,5 +297,6 @@ int main(void)
   test_negative_arcs();
   test_channels_in_rows();
   test_stacked();
+  test_lost();
   return fixture_close();
 }
