@@ -8,6 +8,7 @@
 static const double DEGREES = 180 / M_PI;
 static const double NEAR = 0.2;   /* steps that the jumps tell a turn to */
 static const double HELD = 0.3;   /* relative: how far the way behind held values may be from the usual */
+static const double SURE = 0.01;  /* relative: what the jumps tell of the width of a counter */
 static const double PAIRS = 0.05; /* of the rows: more that repeat the one before are in the nature of a counter */
 static const double MOVING = 0.1; /* of the fastest block: slower ones do not tell the usual speed */
 
@@ -167,7 +168,8 @@ static double exact_overflow(const struct eo_scan_column *column, double period)
   for (double unit = 1e6; unit >= 100 && fabs(period - width) > near; unit /= 10)
     if (round(period / unit) > 0 && fabs(round(period / unit) * unit - period) <= near)
       return round(period / unit) * unit;
-  return fabs(period - width) <= 2 * column->typical && width > 8 * column->typical ? width : period;
+  bool near_width = fabs(period - width) <= (width > 8 * column->typical ? 2 * column->typical : SURE * width);
+  return near_width ? width : period;
 }
 
 /* All that jumps are the beginnings of runs: no turns are counted there. */
@@ -410,6 +412,7 @@ static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
   for (int c = 0; c < 2; c++) {
     angles->rate[c] = usual_rate(maker->rate[c], maker->blocks);
     angles->wrapped[c] = maker->wrapped[c];
+    angles->around[c] = maker->wrapped[c] && maker->scan->column[c][0].width > 0 ? maker->sampler.period[c] : 0;
   }
   if (!even)
     advance = fabs(angles->rate[0]) * angles->interval * EO_SAMPLER_BLOCK;

@@ -30,6 +30,7 @@ struct eo_angles {
   int64_t dropped;              /* rows missing from both channels */
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   bool raw[2], wrapped[2];
+  double around[2]; /* [channel] rad after which a counter starts again every few rows; 0: it does not */
   struct eo_interpolation interpolated; /* of the second channel, whose values were brought to the first one's times */
   int breaks;                           /* runs that begin behind the first one */
   int64_t run[EO_RUNS];                 /* [breaks]: row with which each of them begins */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 static const double DEGREES = 180 / M_PI;
+static const double SAME_RATIO = 1e-3; /* relative: of steps from row to row, medians */
 
 bool eo_orientation_nearest(double ratio, double tolerance, const int teeth[2], int nearest[2])
 {
@@ -34,11 +35,48 @@ static bool matches(const struct eo_angles *angles, double ratio, double expecte
   return fabs(ratio / expected - 1) < angles->ratio_tolerance;
 }
 
+/* Counters that start again every few rows may have gone on by once more, or less, of what they hold. The other steps
+   from row to row that fit the teeth; true when there are such. step: as counted, then the others, rad. */
+static bool may_step_otherwise(const struct eo_angles *angles, const int teeth[2], double step[2])
+{
+  double own[2], expected = (double)teeth[0] / teeth[1];
+  for (int c = 0; c < 2; c++)
+    own[c] = angles->rate[c] * angles->interval;
+  for (int first = -1; first <= 1; first++)
+    for (int second = -1; second <= 1; second++) {
+      bool none = (first && !(angles->around[0] > 0)) || (second && !(angles->around[1] > 0)) || (!first && !second);
+      double one = own[0] + first * angles->around[0], two = own[1] + second * angles->around[1],
+             ratio = fabs(two / one);
+      if (none || (fabs(ratio / expected - 1) > SAME_RATIO && fabs(ratio * expected - 1) > SAME_RATIO))
+        continue;
+      step[0] = one;
+      step[1] = two;
+      return true;
+    }
+  return false;
+}
+
+/* remedy: what else tells, beside another recording. */
+static void refuse_steps(const struct eo_angles *angles, const double step[2], const char *remedy,
+                         struct eo_findings *findings)
+{
+  int channel = angles->around[0] > 0 ? 0 : 1;
+  double around = angles->around[channel];
+  eo_findings_add(findings, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED, channel, step[channel] / around,
+                  "From row to row the %s's counter goes on by %.3g of the counts after which it starts again, or by "
+                  "%.3g: with steps near half of them or beyond the counter does not tell. %s at a higher rate or with "
+                  "more bits.",
+                  channel ? "gear" : "pinion", angles->rate[channel] * angles->interval / around,
+                  step[channel] / around, remedy);
+}
+
 static void refuse_teeth(const struct eo_angles *angles, const int teeth[2], struct eo_findings *findings)
 {
   int nearest[2];
-  double ratio = fabs(angles->ratio);
-  if (eo_orientation_nearest(ratio, angles->ratio_tolerance, teeth, nearest))
+  double ratio = fabs(angles->ratio), step[2];
+  if (may_step_otherwise(angles, teeth, step))
+    refuse_steps(angles, step, "Record", findings);
+  else if (eo_orientation_nearest(ratio, angles->ratio_tolerance, teeth, nearest))
     eo_findings_add(
         findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
         "The gear turns %.6f times as far as the pinion, which is %d/%d, not the %d/%d = %.6f of the design.", ratio,
@@ -125,6 +163,12 @@ static void settle_speed(struct eo_angles *angles, double stated, struct eo_find
         findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, off,
         "Both angles are in %s, not in the stated unit: the speed would be %.5g rpm instead of %.5g rpm; read so.",
         factor > 1 ? "radians" : "degrees", 30 / M_PI * speed, 30 / M_PI * stated);
+  } else if (angles->around[0] > 0 || angles->around[1] > 0) {
+    eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_REFUSED, -1, 30 / M_PI * speed,
+                    "The pinion would run at %.6g rpm, not at the stated %.6g rpm: its counter starts again every few "
+                    "rows, and steps beyond half of its counts look like others. Record at a higher rate or with more "
+                    "bits.",
+                    30 / M_PI * speed, 30 / M_PI * stated);
   } else {
     eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_WARNING, -1, 30 / M_PI * speed,
                     "The pinion runs at %.6g rpm, not at the stated %.6g rpm.", 30 / M_PI * speed, 30 / M_PI * stated);
@@ -133,6 +177,7 @@ static void settle_speed(struct eo_angles *angles, double stated, struct eo_find
 
 void eo_orientation_judge(struct eo_angles *angles, const int teeth[2], double stated, struct eo_findings *findings)
 {
+  double step[2];
   if (!(fabs(angles->ratio) > 0) || !isfinite(angles->ratio)) {
     eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, angles->ratio,
                     "One of the shafts does not turn.");
@@ -140,6 +185,10 @@ void eo_orientation_judge(struct eo_angles *angles, const int teeth[2], double s
   }
   if (!settle_ratio(angles, teeth, stated, findings))
     return;
+  if (isnan(stated) && may_step_otherwise(angles, teeth, step)) {
+    refuse_steps(angles, step, "State the speed, or record", findings);
+    return;
+  }
   settle_directions(angles, findings);
   settle_speed(angles, stated, findings);
 }

@@ -8,6 +8,8 @@
 #include "base/sort.h"
 
 enum { BLOCK = 4096, CHUNK = 256, WRONG_ROWS = 100 };
+static const double UNLIKE = 0.06, ALIKE = 0.2; /* relative: sizes of steps that differ, that do not */
+static const double MOST_ROWS = 20;  /* times the usual step: a counter that starts again later shows plainly */
 static const double LANDING = 0.3;   /* typical steps: a step back by less is noise */
 static const double NEAR_ZERO = 1.5; /* typical steps from 0, in the row after an index pulse */
 enum { GAP = 20 };                   /* rows that cannot be used */
@@ -19,6 +21,30 @@ double eo_scan_quantile(double *value, int count, double share)
     return NAN;
   eo_sort_numbers(count, value);
   return value[(int)(share * (count - 1) + 0.5)];
+}
+
+/* A counter that starts again every few rows has steps of two sizes: one as it counts, one where it starts again, which
+   with the first makes its width; their shares are as those sizes. step[steps]: in order. Its usual step; 0: it is no
+   such counter. */
+static double wide_step(struct eo_scan_column *column, const double *step, int steps)
+{
+  double least = steps > 50 ? step[steps / 50] : 0, most = steps > 50 ? step[steps - 1 - steps / 50] : 0;
+  double sum[2] = {0};
+  int count[2] = {0};
+  for (int i = 0; i < steps; i++) {
+    int high = step[i] > (least + most) / 2;
+    sum[high] += step[i];
+    count[high]++;
+  }
+  if (!count[0] || !count[1] || !(least > 0))
+    return 0;
+  double low = sum[0] / count[0], high = sum[1] / count[1], share = (double)count[1] / steps;
+  bool two = high > (1 + UNLIKE) * low && least > (1 - ALIKE) * low &&
+             step[count[0] - 1 - count[0] / 50] < (1 + ALIKE) * low;
+  if (!two || high > MOST_ROWS * low || fabs(share * (low + high) / low - 1) > ALIKE)
+    return 0;
+  column->width = low + high;
+  return low;
 }
 
 static void learn_column(struct eo_scan_column *scan_column, const double *rows, int count, int columns, int column,
@@ -41,7 +67,8 @@ static void learn_column(struct eo_scan_column *scan_column, const double *rows,
   eo_scan_quantile(scratch, steps, 0.5);
   for (int i = 0; i < kept; i++)
     sum += scratch[i];
-  scan_column->typical = kept ? sum / kept : 0;
+  double wide = wide_step(scan_column, scratch, steps);
+  scan_column->typical = wide > 0 ? wide : kept ? sum / kept : 0;
   if (!isfinite(scan_column->quantum))
     scan_column->quantum = 0;
 }
@@ -101,7 +128,8 @@ static bool add_value(struct eo_scan_column *column, double value, int64_t at, i
   if (used && at - column->last > GAP)
     step = 0; /* what jumps over a gap is the way in it */
   column->last = at;
-  bool wide = fabs(step) > 3 * column->typical && fabs(step) > 0.5 * (column->high - column->low);
+  bool wide = column->width > 0 ? fabs(step) > column->width / 2
+                                : fabs(step) > 3 * column->typical && fabs(step) > 0.5 * (column->high - column->low);
   if (used && (wide || fabs(step) > 10 * column->typical) && column->typical > 0) {
     if (column->jumps < EO_SCAN_JUMPS) {
       column->jump[column->jumps] = fabs(step) + column->typical;

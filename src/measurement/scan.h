@@ -21,6 +21,7 @@ struct eo_scan_hold {
 struct eo_scan_column {
   double low, high;
   double typical;               /* size of a step: mean of the smaller nine tenths in samples of all rows */
+  double width;                 /* of a counter that starts again every few rows; 0: it is none */
   double quantum;               /* smallest step that is not zero there */
   int64_t at_low, at_high;      /* values equal to low, to high */
   int64_t longest, longest_row; /* run of equal values while the other channel goes on */

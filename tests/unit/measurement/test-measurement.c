@@ -848,6 +848,34 @@ static void check_held_values(void)
     }
 }
 
+static double counts_held; /* by a counter, before it starts again */
+
+static void overflow(double row[3])
+{
+  for (int c = 1; c < 3; c++)
+    row[c] -= counts_held * floor(row[c] / counts_held);
+}
+
+/* Counters that start again every few rows are unique up to half of what they hold, and a question beyond. */
+static void check_narrow_counters(void)
+{
+  struct eo_synthetic s = usual();
+  double truth = eo_synthetic_rms(&s, 8);
+  s.output = EO_SYNTHETIC_COUNTS;
+  s.interpolation = 4096;
+  for (int bits = 17; bits < 23; bits++) {
+    counts_held = exp2(bits);
+    const struct eo_measurement *m = measure_rewritten(&s, overflow);
+    double rows = counts_held / (s.lines[0] * s.interpolation * s.speed / (2 * M_PI) / s.sample_rate);
+    bool right = m && (bits == 17 ? m->refused && said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED)
+                                  : !m->refused && fabs(m->transmission.rms / truth - 1) < 0.01);
+    ok(right, "a counter that starts again every %.3g rows %s: %.4f of %.4f", rows, bits == 17 ? "asks" : "is counted",
+       m ? m->transmission.rms : NAN, truth);
+    if (!right)
+      show(m);
+  }
+}
+
 /* What the angles tell of themselves: half a turn after which they start again, runs behind each other. */
 static void check_starts(void)
 {
@@ -995,6 +1023,7 @@ int main(int argc, char **argv)
   check_limits();
   check_few_lines();
   check_held_values();
+  check_narrow_counters();
   check_starts();
   check_printed_radii();
   check_speeds();
