@@ -74,13 +74,19 @@ bool eo_text_next_cell(const char **at, const char *end, char separator, struct 
   return true;
 }
 
+/* 1.#INF00, 1,#IND, 1.#QNAN; no 16#1A of a controller. */
+static bool is_runtime_word(const char *text, size_t length)
+{
+  return length > 3 && text[0] == '1' && (text[1] == '.' || text[1] == ',') && text[2] == '#';
+}
+
 static bool means_nothing(const char *text, size_t length)
 {
   static const char *const words[] = {"nan",  "-nan",     "+nan",      "n/a",      "na",       "#n/a", "null",
                                       "none", "-",        "--",        "---",      "*",        "inf",  "+inf",
                                       "-inf", "infinity", "-infinity", "nan(ind)", "-nan(ind)"};
   size_t sign = length > 0 && (*text == '-' || *text == '+');
-  if (!length || (length > sign + 3 && text[sign] == '1' && text[sign + 2] == '#')) /* 1.#INF00, -1,#IND */
+  if (!length || is_runtime_word(text + sign, length - sign))
     return true;
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
     if (strlen(words[i]) == length && !strncasecmp(text, words[i], length))

@@ -286,6 +286,11 @@ static void test_lost(void)
     right(lost(number[i], 90, false), NULL, 1e-7, "stands for lost ones", "and for ninety of one channel");
   }
   right(lost("-1.#IND00", 40, true), NULL, 1e-7, NULL, "no numbers as some runtimes print them");
+  FILE *f = begin("Counts per revolution: 36000000\nt [s];pinion;gear\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.9g;16#%08llX;16#%08llX\n", i / RATE, llround(pinion(i / RATE) / (2 * M_PI) * 36e6),
+            llround(gear(i / RATE) / (2 * M_PI) * 36e6));
+  right(f, NULL, 1e-6, NULL, "but 16#1A of a controller is a number");
 }
 
 int main(void)
