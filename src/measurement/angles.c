@@ -7,9 +7,7 @@
 
 static const double DEGREES = 180 / M_PI;
 static const double NEAR = 0.2;   /* steps that the jumps tell a turn to */
-static const double HELD = 0.3;   /* relative: how far the way behind held values may be from the usual */
 static const double SURE = 0.01;  /* relative: what the jumps tell of the width of a counter */
-static const double PAIRS = 0.05; /* of the rows: more that repeat the one before are in the nature of a counter */
 static const double MOVING = 0.1; /* of the fastest block: slower ones do not tell the usual speed */
 
 static int64_t line_of(const struct eo_angles_maker *maker, int64_t row)
@@ -90,51 +88,6 @@ static void judge_gaps(struct eo_angles_maker *maker)
                    scan->unusable_row);
 }
 
-/* What a channel shows behind rows that repeat a value is where its shaft has come to meanwhile: a converter or a bus
-   gave its last value once more. A rest is followed by a usual step. */
-static bool goes_on_behind(const struct eo_angles_maker *maker, int channel, const struct eo_scan_hold *hold)
-{
-  const struct eo_scan_column *column = &maker->scan->column[channel][0];
-  double period = maker->sampler.period[channel] / maker->sampler.scale[channel],
-         way = copysign(column->typical, (double)column->rises) * (double)(hold->rows + 1), off = hold->step - way,
-         slack = fmax(HELD * fabs(way), 2 * column->typical);
-  if (isnan(hold->step)) /* the other channel went on until the end */
-    return column->longest_row + 1 == hold->row && column->longest == hold->rows + 1;
-  return fabs(period > 0 ? remainder(off, period) : off) < (period > 0 ? fmin(slack, period / 4) : slack);
-}
-
-/* Keeps those holds of a channel that stand for lost values. Steps of a few counts repeat by nature. */
-static void find_holds(struct eo_angles_maker *maker, int channel)
-{
-  struct eo_scan_column *column = &maker->scan->column[channel][0];
-  int64_t rows = 0;
-  int kept = 0;
-  for (int i = 0; i < column->holds && i < EO_SCAN_HOLDS; i++)
-    if (goes_on_behind(maker, channel, &column->hold[i])) {
-      column->hold[kept++] = column->hold[i];
-      rows += column->hold[i].rows;
-    }
-  if (!kept || column->holds > EO_SCAN_HOLDS || (double)column->pairs > PAIRS * (double)maker->scan->used ||
-      3 * rows > maker->scan->used)
-    return;
-  maker->sampler.hold[channel] = column->hold;
-  maker->sampler.holds[channel] = kept;
-  eo_angles_at_row(maker,
-                   eo_findings_add(maker->findings, EO_FINDING_NAN, EO_SEVERITY_REPAIRED, channel, (double)rows,
-                                   "%lld rows repeat the %s's value before them while the shaft goes on, the first is "
-                                   "row %lld; they were left out.",
-                                   (long long)rows, eo_channel_name(channel), (long long)column->hold[0].row + 1),
-                   column->hold[0].row);
-}
-
-static bool is_left_out(const struct eo_angles_maker *maker, int channel, int64_t row)
-{
-  for (int i = 0; i < maker->sampler.holds[channel]; i++)
-    if (row == maker->sampler.hold[channel][i].row)
-      return true;
-  return false;
-}
-
 /* A channel that stands still altogether or for a part of a turn while the other moves on. */
 static void judge_still(struct eo_angles_maker *maker, int channel)
 {
@@ -146,7 +99,7 @@ static void judge_still(struct eo_angles_maker *maker, int channel)
       eo_findings_add(maker->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, column->low,
                       "The %s channel is constant: every row holds %.9g.", eo_channel_name(channel), column->low);
     else if (advance > 0.5 && (double)column->longest * column->typical > 20 * column->quantum &&
-             column->longest > 20 && !is_left_out(maker, channel, column->longest_row + 1))
+             column->longest > 20 && !eo_holds_left_out(maker, channel, column->longest_row + 1))
       eo_angles_at_row(
           maker,
           eo_findings_add(maker->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, (double)column->longest,
@@ -321,7 +274,7 @@ static enum eo_code prepare_tracks(struct eo_angles_maker *maker, struct eo_angl
       maker->sampler.period[channel] = 2 * M_PI / maker->tracks->channel[channel].lines;
     } else {
       judge_turns(maker, channel);
-      find_holds(maker, channel);
+      eo_holds_find(maker, channel);
     }
     judge_still(maker, channel);
   }

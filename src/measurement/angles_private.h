@@ -73,6 +73,11 @@ enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *a
 /* Findings about gaps, single values and lost counts, at the end. */
 void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles);
 
+/* Keeps those rows of a channel that repeat a value for lost ones: the sampler leaves them out, a finding says so. */
+void eo_holds_find(struct eo_angles_maker *maker, int channel);
+/* They begin with this row. */
+bool eo_holds_left_out(const struct eo_angles_maker *maker, int channel, int64_t row);
+
 /* Both channels went on by the same time beyond the usual: excess is that way, rad, with the turns that angles which
    start again leave open, by which the samples from here on are moved. False: they did not. */
 bool eo_gaps_settle(struct eo_angles_maker *maker, const struct eo_usual *usual, struct eo_sample *sample, int left,
