@@ -71,7 +71,7 @@ double eo_hunting_gap(const struct eo_geometry *geometry, const struct eo_flank_
   return gap_at(geometry, normal_of(geometry), point, inwards, tooth);
 }
 
-bool eo_tooth_has_form(const struct eo_tooth_deviation *tooth)
+static bool tooth_has_form(const struct eo_tooth_deviation *tooth)
 {
   return tooth && (tooth->profile_slope != 0 || tooth->helix_slope != 0 || tooth->profile_crowning != 0 ||
                    tooth->lead_crowning != 0);
@@ -81,7 +81,7 @@ bool eo_tooth_any_form(const struct eo_tooth_deviation *tooth, int teeth)
 {
   bool any = false;
   for (int i = 0; i < teeth && tooth && !any; i++)
-    any = eo_tooth_has_form(&tooth[i]);
+    any = tooth_has_form(&tooth[i]);
   return any;
 }
 
@@ -105,7 +105,7 @@ static void set_gaps(const struct eo_hunt *hunt, struct eo_hunting_walker *walke
     const struct eo_contact_line *line = &position->line[l];
     const struct eo_tooth_deviation *tooth[2];
     teeth_of(hunt, end, cycle - line->pair, tooth);
-    bool formed = eo_tooth_has_form(tooth[0]) || eo_tooth_has_form(tooth[1]);
+    bool formed = tooth_has_form(tooth[0]) || tooth_has_form(tooth[1]);
     double off = gap_at(&grid->geometry, normal, &position->point[line->first], hunt->input->inwards, tooth);
     for (int i = line->first; i < line->first + line->cells; i++) {
       if (formed)

@@ -21,8 +21,7 @@ struct eo_tooth_deviation {
   double profile_crowning, lead_crowning; /* C_alpha as a barrel, C_beta, m, + takes off at both ends */
 };
 
-/* More than an index deviation: of a tooth, of any of a table. NULL has none. */
-bool eo_tooth_has_form(const struct eo_tooth_deviation *tooth);
+/* Whether any tooth of a table has more than an index deviation; NULL has none. */
 bool eo_tooth_any_form(const struct eo_tooth_deviation *tooth, int teeth);
 
 enum { EO_HUNTING_MOST_INSTANTS = 1 << 19 };

@@ -203,7 +203,8 @@ static int usual_driver(const struct eo_design *design)
   return design->load_cases ? EO_GEAR : EO_PINION;
 }
 
-enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case)
+/* The flank that carries a load case. */
+static enum eo_flank_side flank_of(const struct eo_design *design, int load_case)
 {
   const struct eo_load_case *this_case = &design->load_case[load_case];
   return (this_case->direction == EO_ASTERN) != (this_case->driver != usual_driver(design)) ? EO_COAST_FLANK
@@ -434,7 +435,7 @@ static void resolve_alignment(struct eo_design *design, double face_width)
   resolve_angle(&alignment->shaft_angle_out_of_plane, alignment->deviation_out_of_plane, face_width);
   for (int k = 0; k < design->load_cases; k++) {
     struct eo_case_alignment *own = &design->load_case[k].alignment;
-    design->load_case[k].flank = eo_design_flank_of(design, k);
+    design->load_case[k].flank = flank_of(design, k);
     if (design->load_case[k].has_alignment) {
       resolve_angle(&own->in_plane, own->deviation_in_plane, face_width);
       resolve_angle(&own->out_of_plane, own->deviation_out_of_plane, face_width);

@@ -225,10 +225,6 @@ enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
    both do; turning round either of torque or rotation brings the coast flanks into contact. */
 struct eo_running eo_design_running(const struct eo_design *design, int load_case);
 
-/* The flank that carries a load case; eo_design_resolve() notes it there, so that the case may stand alone afterwards.
- */
-enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case);
-
 /* Puts the derived default in place of every NaN whose rule does not need the loaded contact (mesh_damping_stiffness
    stays NaN: it is the mean mesh stiffness of each load case). geometry: of design->gear_pair. Idempotent; cannot fail.
  */

@@ -133,6 +133,19 @@ static void check_rotation(const json_t *document, const struct eo_design *desig
                  alignment.apex == EO_APEX_LEADING ? "leading" : "trailing", apex);
 }
 
+/* Says which keys of an earlier form were read as what. */
+static void note_migrations(const json_t *document, struct eo_warnings *warnings)
+{
+  const char *member, *end;
+  json_t *ends, *flank;
+  bool found = false;
+  json_object_foreach(json_object_get(document, "modification"), member, ends) json_object_foreach(ends, end, flank)
+      found |= json_object_get(flank, "lead_slope_um") != NULL;
+  if (found)
+    eo_warnings_add(warnings, "lead_slope_um was read as twice its value in helix_slope_um (C_Hbeta, over the face "
+                              "width): the same flank.");
+}
+
 static bool decode_current(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
                            struct eo_faults *faults)
 {
@@ -154,7 +167,7 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
     return false;
   drop_right_end(document, &read, warnings);
   migrate_variables(&read.optimization);
-  eo_design_note_migrations(document, warnings);
+  note_migrations(document, warnings);
   eo_assumptions_note(document, &read);
   *design = read;
   return true;
@@ -179,18 +192,6 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
     eo_inch_place(document, &faults->fault[i]);
   return good;
-}
-
-void eo_design_note_migrations(const json_t *document, struct eo_warnings *warnings)
-{
-  const char *member, *end;
-  json_t *ends, *flank;
-  bool found = false;
-  json_object_foreach(json_object_get(document, "modification"), member, ends) json_object_foreach(ends, end, flank)
-      found |= json_object_get(flank, "lead_slope_um") != NULL;
-  if (found)
-    eo_warnings_add(warnings, "lead_slope_um was read as twice its value in helix_slope_um (C_Hbeta, over the face "
-                              "width): the same flank.");
 }
 
 /* With the numbers that stand in place of a grid's. */

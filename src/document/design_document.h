@@ -15,7 +15,7 @@
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,
     eo_supports_table, eo_shafts_table, eo_load_case_table, eo_flank_modification_table, eo_member_modification_table,
     eo_modification_table, eo_modification_terms_table, eo_tolerance_table, eo_rating_table, eo_rating_member_table,
-    eo_lubricant_table, eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
+    eo_lubricant_table, eo_objective_table, eo_scenario_table, eo_resolution_table;
 
 /* Keys of a flank's modification that may be optimized, and numbers of its grid; ends with NULL. */
 extern const char *const eo_variable_parameters[];
@@ -57,9 +57,6 @@ json_t *eo_design_findings(const struct eo_warnings *warnings);
 
 /* All of them as texts; NULL: none. New; NULL without memory. */
 json_t *eo_warnings_encode(const struct eo_warnings *warnings);
-
-/* Says which keys of an earlier form were read as what. */
-void eo_design_note_migrations(const json_t *document, struct eo_warnings *warnings);
 
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);

@@ -301,7 +301,7 @@ static const struct eo_field resolution[] = {
 
 const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);
 const struct eo_table eo_objective_table = EO_TABLE("objective", struct eo_objective, objective);
-const struct eo_table eo_optimization_table = EO_TABLE("optimization", struct eo_optimization, optimization);
+static const struct eo_table optimization_table = EO_TABLE("optimization", struct eo_optimization, optimization);
 const struct eo_table eo_resolution_table = EO_TABLE("resolution", struct eo_resolution, resolution);
 
 static const struct eo_field design[] = {
@@ -345,7 +345,7 @@ static const struct eo_field design[] = {
      .table = &eo_tolerance_table,
      .help = "how the gears as made scatter; absent: as drawn"},
     EO_OBJECT(struct eo_design, objective, "objective", &eo_objective_table, "what is good"),
-    EO_OBJECT(struct eo_design, optimization, "optimization", &eo_optimization_table, "how the best is searched for"),
+    EO_OBJECT(struct eo_design, optimization, "optimization", &optimization_table, "how the best is searched for"),
     EO_OBJECT(struct eo_design, resolution, "resolution", &eo_resolution_table, "how finely it is computed"),
 };
 const struct eo_table eo_design_table = EO_TABLE("the design", struct eo_design, design);

@@ -149,7 +149,8 @@ double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *paramete
   return j[0] * j[1] / (j[0] * r[1] * r[1] + j[1] * r[0] * r[0]);
 }
 
-double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *parameters, double damping_ratio, double stiffness)
+/* c_m = 2 zeta sqrt(k m_e) / cos(beta_b), N s/m, k normal; 1/cos(beta_b) of ends that differ: the mean. */
+static double mesh_damping(const struct eo_dynamics_parameters *parameters, double damping_ratio, double stiffness)
 {
   double left = cos(parameters->base_helix_angle), right = cos(eo_dynamics_base_helix_angle(parameters, EO_RIGHT));
   /* theory (D3) */
@@ -296,9 +297,8 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
   }
   if (code)
     return code;
-  dynamics_parameters.mesh_damping =
-      eo_dynamics_mesh_damping(&dynamics_parameters, supports->mesh_damping_ratio,
-                               or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
+  dynamics_parameters.mesh_damping = mesh_damping(&dynamics_parameters, supports->mesh_damping_ratio,
+                                                  or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
   if ((code = eo_dynamics_parameters_check(&dynamics_parameters, error)))
     return code;
   *parameters = dynamics_parameters;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of the lumped model of paper Fig 4 and equations (3)-(10): two bodies (pinion, gear), one or two ends
+/* The numbers of the lumped model, theory (D1) to (D3): two bodies (pinion, gear), one or two ends
    each, every end with transverse (y), axial (z) and rotational (th) freedom; beyond them, where asked for, the
    machine that drives the pinion and the one that loads the gear, each with its rotation. */
 #ifndef EASEOFF_DYNAMICS_PARAMETERS_H
@@ -91,10 +91,6 @@ double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *paramete
 /* beta_b of an end, rad, and both on one footing. */
 double eo_dynamics_base_helix_angle(const struct eo_dynamics_parameters *parameters, int end);
 struct eo_double_helix eo_dynamics_double_helix(const struct eo_dynamics_parameters *parameters);
-
-/* c_m = 2 zeta sqrt(k m_e) / cos(beta_b), N s/m, k normal; 1/cos(beta_b) of ends that differ: the mean. */
-double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *parameters, double damping_ratio,
-                                double stiffness);
 
 /* Mean normal mesh force of one end that balances the torque (total, on the pinion), N; of unequal helices with the
    thrusts of a floating pinion in balance. */

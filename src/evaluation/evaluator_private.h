@@ -310,9 +310,6 @@ void eo_evaluator_rate(struct eo_evaluator *evaluator, const struct eo_run *run)
 /* Tells equal ends, and which ends need solving; notes what will be stored after this run. */
 void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run);
 
-/* The mesh laws of an end belong to no loads. */
-void eo_reuse_forget_laws(struct eo_evaluator *evaluator, int end);
-
 /* Nothing that is stored is valid. */
 void eo_reuse_forget(struct eo_evaluator *evaluator);
 

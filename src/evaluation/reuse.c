@@ -106,6 +106,13 @@ static bool differs_from_solved(const struct eo_end_key *key, const struct eo_en
   return !same;
 }
 
+/* The mesh laws of an end belong to no loads. */
+static void forget_laws(struct eo_evaluator *evaluator, int end)
+{
+  for (int k = 0; k < evaluator->most_cases; k++)
+    evaluator->law_of[k][end] = (struct eo_law_key){0};
+}
+
 /* An end is solved when it differs from what is stored, unless it is a copy. Stored are the loads of an end alone: what
    bodies or a held pinion make of them belongs to this run only, the root stress and the mesh laws of it as well; and a
    copied end leaves its own gaps and field behind. */
@@ -124,7 +131,7 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
     evaluator->kept[end] = alone && !copied && !evaluator->needs_solving[end];
     evaluator->root_valid[end] = evaluator->root_valid[end] && evaluator->kept[end];
     if (!alone || copied || evaluator->needs_solving[end])
-      eo_reuse_forget_laws(evaluator, end);
+      forget_laws(evaluator, end);
     key.around = key.around || (!evaluator->needs_solving[end] && evaluator->solved_for[end].around);
     evaluator->solved_for[end] = key;
     if (copied || !alone)
@@ -132,17 +139,11 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
   }
 }
 
-void eo_reuse_forget_laws(struct eo_evaluator *evaluator, int end)
-{
-  for (int k = 0; k < evaluator->most_cases; k++)
-    evaluator->law_of[k][end] = (struct eo_law_key){0};
-}
-
 void eo_reuse_forget(struct eo_evaluator *evaluator)
 {
   for (int end = 0; end < 2; end++) {
     evaluator->solved_for[end].cases = 0;
     evaluator->root_valid[end] = false;
-    eo_reuse_forget_laws(evaluator, end);
+    forget_laws(evaluator, end);
   }
 }

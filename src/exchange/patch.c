@@ -111,7 +111,8 @@ bool eo_patch_fit(struct eo_patch *patch, const struct eo_patch_sites *const sit
   return true;
 }
 
-void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[3])
+/* The spline's point. */
+static void patch_at(const struct eo_patch *patch, double p, double q, double point[3])
 {
   double along[DEGREE + 1], across[DEGREE + 1];
   int columns = patch->sites[1].count, i = basis(patch->knot[0], patch->sites[0].count, p, along),
@@ -134,7 +135,7 @@ static double distance_at(const struct eo_patch *patch, eo_patch_surface *surfac
 {
   double exact[3], normal[3], point[3], off = 0;
   surface(context, p, q, exact, normal);
-  eo_patch_at(patch, p, q, point);
+  patch_at(patch, p, q, point);
   for (int c = 0; c < 3; c++)
     off += (point[c] - exact[c]) * normal[c];
   return fabs(off);

@@ -33,9 +33,6 @@ bool eo_patch_halve(struct eo_patch_sites *sites, const bool wide[EO_PATCH_MOST]
 bool eo_patch_fit(struct eo_patch *patch, const struct eo_patch_sites *const sites[2], eo_patch_surface *surface,
                   const void *context);
 
-/* The spline's point. */
-void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[3]);
-
 /* Largest distance from the exact surface along its normal, m, half way between the points along p, q and both. Sets
    those intervals wide[along p, along q] where it is above the tolerance. */
 double eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context, double tolerance,

@@ -9,7 +9,8 @@
 
 #include "document/design_document.h"
 
-const struct eo_table *eo_rexs_flank_table(void)
+/* The table of a flank's keys. */
+static const struct eo_table *flank_table(void)
 {
   return eo_member_modification_table.field[EO_LEFT].table;
 }
@@ -78,7 +79,7 @@ static void refuse(struct eo_rexs_flank *flank, const struct eo_rexs_component *
 
 static bool takes(const char *key)
 {
-  return key && eo_import_has_key(eo_rexs_flank_table(), key);
+  return key && eo_import_has_key(flank_table(), key);
 }
 
 /* Whether a modification of this kind at another place of the face stands at the flank too. */
@@ -158,7 +159,7 @@ static void add_crowning(struct eo_rexs_flank *flank)
 
 static void put_shapes(struct eo_rexs_flank *flank, json_t *object)
 {
-  const struct eo_table *table = eo_rexs_flank_table();
+  const struct eo_table *table = flank_table();
   static const char *const end_key[2] = {"trailing_end_relief_shape", "leading_end_relief_shape"};
   const char *tip = flank->tip_relief > 0 ? flank->tip_shape : NULL,
              *root = flank->root_relief > 0 ? flank->root_shape : NULL;
@@ -183,7 +184,7 @@ static void put_flank(struct eo_rexs_flank *flank, json_t *object)
   put_shapes(flank, object);
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!takes(numbers[i].instead_of))
-      eo_rexs_put(flank->import, eo_rexs_flank_table(), object, numbers[i].key,
+      eo_rexs_put(flank->import, flank_table(), object, numbers[i].key,
                   *number_at(flank, numbers[i].offset) * numbers[i].factor);
   if (!isnan(flank->barrel) && !takes("profile_crowning_um"))
     eo_import_say(flank->import->out, flank->import->out->refused,

@@ -31,16 +31,10 @@ double eo_rexs_profile(const struct eo_rexs_flank *flank, double roll);
 /* u at the tip end and the root end of the active profile: > 0, < 0. */
 double eo_rexs_tip_end(const struct eo_rexs_flank *flank);
 double eo_rexs_root_end(const struct eo_rexs_flank *flank);
-/* Axial coordinate towards the face that meets first, from the common mid face, of a coordinate of a modification (from
-   the gear's mid face, - at the datum face). */
-double eo_rexs_axial(const struct eo_rexs_flank *flank, double coordinate);
 
 /* Reads one modification into the flank; "": done, else what stands in the way, as the end of "NAME: ". */
 typedef const char *eo_rexs_modification(struct eo_rexs_flank *flank, const struct eo_rexs_component *modification);
 eo_rexs_modification eo_rexs_tip_relief, eo_rexs_root_relief, eo_rexs_profile_crowning, eo_rexs_profile_slope,
     eo_rexs_profile_twist, eo_rexs_helix_crowning, eo_rexs_helix_slope, eo_rexs_end_relief, eo_rexs_topography;
-
-/* The table of a flank's keys. */
-const struct eo_table *eo_rexs_flank_table(void);
 
 #endif

@@ -7,7 +7,9 @@
 #include "exchange/flank_amount.h"
 #include "exchange/rexs_flank.h"
 
-double eo_rexs_axial(const struct eo_rexs_flank *flank, double coordinate)
+/* Axial coordinate towards the face that meets first, from the common mid face, of a coordinate of a modification (from
+   the gear's mid face, - at the datum face). */
+static double axial_place(const struct eo_rexs_flank *flank, double coordinate)
 {
   return (-flank->datum * coordinate + flank->shift) * flank->leading;
 }
@@ -31,7 +33,7 @@ const char *eo_rexs_helix_crowning(struct eo_rexs_flank *flank, const struct eo_
     return "no amount, or none beside its highest point";
   if (fabs(a[1] - a[0]) > agree * fabs(curvature))
     return "its parabola differs on both sides of the highest point";
-  double place = eo_rexs_axial(flank, highest);
+  double place = axial_place(flank, highest);
   if (flank->wheel->face_width > flank->width * (1 + 1e-9) && highest == 0) {
     place = 0;
     eo_import_say(flank->import->out, flank->import->out->assumed,
@@ -123,7 +125,7 @@ const char *eo_rexs_topography(struct eo_rexs_flank *flank, const struct eo_rexs
   for (int i = 0; i < rows; i++)
     u[i] = eo_rexs_profile(flank, eo_rexs_roll(flank, over[0]->value[i]));
   for (int k = 0; k < columns; k++)
-    y[k] = eo_rexs_axial(flank, over[1]->value[k]);
+    y[k] = axial_place(flank, over[1]->value[k]);
   int up = compare_numbers(u, rows), along = compare_numbers(y, columns);
   if (!up || !along)
     return "its diameters and coordinates do not rise or fall throughout, or lie below the base circle";

@@ -215,7 +215,8 @@ static double base_sum(const struct eo_gear_pair *pair)
   return reference_distance(pair) * cos(transverse_pressure_angle(pair));
 }
 
-double eo_gear_pair_tight_distance(const struct eo_gear_pair *pair)
+/* Working centre distance without backlash of a settled pair, m; NaN: so much negative shift that there is none. */
+static double tight_distance(const struct eo_gear_pair *pair)
 {
   double sum = pair->profile_shift[0] + pair->profile_shift[1], alpha = transverse_pressure_angle(pair);
   double value = eo_geometry_involute_function(alpha) +
@@ -309,7 +310,7 @@ static enum eo_code settle_shifts(struct eo_gear_pair *pair, struct eo_error *er
   if (stated)
     EO_TRY(settle_stated_shifts(pair, error));
   share_sum(pair->profile_shift, sum);
-  bool tight = fabs(eo_gear_pair_tight_distance(pair) - pair->centre_distance) <= DERIVED * pair->centre_distance;
+  bool tight = fabs(tight_distance(pair) - pair->centre_distance) <= DERIVED * pair->centre_distance;
   pair->centre_distance = tight ? NAN : in_digits(pair->centre_distance, MM); /* not before the shifts follow from it */
   return EO_OK;
 }
@@ -346,7 +347,8 @@ struct eo_rack eo_gear_pair_rack(const struct eo_gear_pair *pair, int member)
       first_stated(own->fillet_radius_coefficient, pair->fillet_radius_coefficient, usual.fillet_radius_coefficient)};
 }
 
-double eo_gear_pair_tip_alteration(const struct eo_gear_pair *pair, double centre_distance)
+/* k of both members at a centre distance a_w. */
+static double tip_alteration(const struct eo_gear_pair *pair, double centre_distance)
 {
   double sum = pair->profile_shift[0] + pair->profile_shift[1];
   return isnan(pair->tip_alteration) ? fmin(0, (centre_distance - reference_distance(pair)) / pair->normal_module - sum)
@@ -356,7 +358,7 @@ double eo_gear_pair_tip_alteration(const struct eo_gear_pair *pair, double centr
 double eo_gear_pair_tip_diameter(const struct eo_gear_pair *pair, double centre_distance, int member)
 {
   double coefficient = eo_gear_pair_rack(pair, member).addendum_coefficient + pair->profile_shift[member];
-  double alteration = eo_gear_pair_tip_alteration(pair, centre_distance);
+  double alteration = tip_alteration(pair, centre_distance);
   return 2 * (pair->normal_module / cos(pair->helix_angle) * pair->teeth[member] / 2 +
               (alteration == 0 ? coefficient : coefficient + alteration) * pair->normal_module); /* theory (G9) */
 }
@@ -364,7 +366,7 @@ double eo_gear_pair_tip_diameter(const struct eo_gear_pair *pair, double centre_
 /* d_a = d + 2 h_a; a tip that the rack gives anyway is derived. */
 static enum eo_code settle_tip(struct eo_gear_pair *pair, int i, struct eo_error *error)
 {
-  double distance = isnan(pair->centre_distance) ? eo_gear_pair_tight_distance(pair) : pair->centre_distance;
+  double distance = isnan(pair->centre_distance) ? tight_distance(pair) : pair->centre_distance;
   double reference = pair->normal_module / cos(pair->helix_angle) * pair->teeth[i], addendum = pair->entry.addendum[i],
          usual = eo_gear_pair_tip_diameter(pair, distance, i);
   if (!isnan(addendum)) {
@@ -391,7 +393,7 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
   EO_TRY(settle_right_half(&settled, error));
   EO_TRY(settle_right_helix(&settled, error));
   EO_TRY(settle_shifts(&settled, error));
-  if (isnan(eo_gear_pair_tight_distance(&settled)))
+  if (isnan(tight_distance(&settled)))
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
                         "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
                         settled.profile_shift[0] + settled.profile_shift[1]);

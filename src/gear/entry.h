@@ -23,10 +23,5 @@ double eo_gear_pair_backlash(double centre_distance, double normal_module);
 /* Tip diameter d_a = d + 2 m_n (x + h_aP* + k) of a settled pair, m; k: see struct eo_gear_pair. centre_distance: a_w.
  */
 double eo_gear_pair_tip_diameter(const struct eo_gear_pair *pair, double centre_distance, int member);
-/* k of both members there. */
-double eo_gear_pair_tip_alteration(const struct eo_gear_pair *pair, double centre_distance);
-
-/* Working centre distance without backlash of a settled pair, m; NaN: so much negative shift that there is none. */
-double eo_gear_pair_tight_distance(const struct eo_gear_pair *pair);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool eo_pareto_dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives)
+static bool dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives)
 {
   if (violation_a != violation_b)
     return violation_a < violation_b;
@@ -23,8 +23,8 @@ static int count_dominators(const double *objective, const double *violation, in
 {
   int dominators = 0;
   for (int j = 0; j < count; j++)
-    dominators += rank[j] < 0 && eo_pareto_dominates(objective + (size_t)j * objectives, violation[j],
-                                                     objective + (size_t)i * objectives, violation[i], objectives);
+    dominators += rank[j] < 0 && dominates(objective + (size_t)j * objectives, violation[j],
+                                           objective + (size_t)i * objectives, violation[i], objectives);
   return dominators;
 }
 
@@ -45,9 +45,8 @@ void eo_pareto_rank(const double *objective, const double *violation, int count,
       rank[front[f]] = level;
     for (int f = 0; f < size; f++)
       for (int j = 0; j < count; j++)
-        dominators[j] -= rank[j] < 0 &&
-                         eo_pareto_dominates(objective + (size_t)front[f] * objectives, violation[front[f]],
-                                             objective + (size_t)j * objectives, violation[j], objectives);
+        dominators[j] -= rank[j] < 0 && dominates(objective + (size_t)front[f] * objectives, violation[front[f]],
+                                                  objective + (size_t)j * objectives, violation[j], objectives);
     ranked += size;
   }
 }
@@ -113,8 +112,8 @@ static bool is_dominated(const struct eo_archive *archive, int row)
 {
   const int m = archive->objectives;
   for (int j = 0; j < archive->count; j++)
-    if (eo_pareto_dominates(archive->objective + (size_t)j * m, archive->violation[j],
-                            archive->objective + (size_t)row * m, archive->violation[row], m))
+    if (dominates(archive->objective + (size_t)j * m, archive->violation[j], archive->objective + (size_t)row * m,
+                  archive->violation[row], m))
       return true;
   return false;
 }

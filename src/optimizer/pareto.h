@@ -7,8 +7,6 @@
 #include "optimizer/true_rows.h"
 #include "optimizer/optimizer.h"
 
-bool eo_pareto_dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives);
-
 /* Front number of every point, 0 the best; objective: [count][objectives]. scratch: [2 count]. */
 void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank,
                     int *scratch);

@@ -144,7 +144,8 @@ static int compare_projections(const void *a, const void *b)
              : projection->row - this_projection->row;
 }
 
-void eo_history_measure_redundancy(struct eo_history *history)
+/* (H4) of every row into history->redundancy. */
+static void measure_redundancy(struct eo_history *history)
 {
   const int n = history->variables, count = history->count;
   struct projection *order = history->order;
@@ -174,7 +175,7 @@ static bool has_twin(const struct eo_history *history, int row, double threshold
 int eo_history_mark_redundant(struct eo_history *history, const struct eo_history_law *law)
 {
   int removed = 0;
-  eo_history_measure_redundancy(history);
+  measure_redundancy(history);
   for (int j = 0; j < history->count; j++) {
     if (!(history->redundancy[j] < law->redundancy_threshold))
       continue;

@@ -54,9 +54,6 @@ struct eo_history_estimate eo_history_predict(struct eo_history *history, const 
 /* Whether an individual is predicted, R(i) >= R*. */
 bool eo_history_trusts(const struct eo_history_estimate *estimate, double trust_threshold);
 
-/* (H4) of every row into history->redundancy. */
-void eo_history_measure_redundancy(struct eo_history *history);
-
 /* The steps at the end of a generation, (H4) and (H5). The first two mark rows in history->removed and return how many,
  * the last takes them out. */
 int eo_history_mark_redundant(struct eo_history *history, const struct eo_history_law *law);

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* ISO 6336-2 6.2: Z_H = sqrt(2 cos beta_b cos alpha_wt/(cos^2 alpha_t sin alpha_wt)). */
-double eo_zone_factor(const struct eo_rating_geometry *geometry)
+static double zone_factor(const struct eo_rating_geometry *geometry)
 {
   double transverse = cos(geometry->transverse_pressure_angle), working = geometry->working_pressure_angle;
   return sqrt(2 * cos(geometry->base_helix_angle) * cos(working) /
@@ -12,7 +12,7 @@ double eo_zone_factor(const struct eo_rating_geometry *geometry)
 }
 
 /* ISO 6336-2 7: Z_E = sqrt(1/(pi sum (1 - nu^2)/E)). */
-double eo_elasticity_factor(const struct eo_elastic *elastic)
+static double elasticity_factor(const struct eo_elastic *elastic)
 {
   double compliance = 0;
   for (int i = 0; i < 2; i++)
@@ -68,8 +68,8 @@ enum eo_code eo_contact_stress(struct eo_contact_stress *stress, const struct eo
     return eo_error_set(error, EO_ERROR_INPUT, "/tip_diameter_mm",
                         "The contact ratio %.4g is above 2, where ISO 6336-2 6.3 takes other points: not rated here.",
                         geometry->transverse_contact_ratio);
-  stress->zone = eo_zone_factor(geometry);
-  stress->elasticity = eo_elasticity_factor(&in->elastic);
+  stress->zone = zone_factor(geometry);
+  stress->elasticity = elasticity_factor(&in->elastic);
   stress->contact_ratio = eo_contact_ratio_factor(geometry->transverse_contact_ratio, geometry->overlap_ratio);
   stress->helix = helix_factor(in->edition, rating_pair->helix_angle);
   /* theory (W3) */

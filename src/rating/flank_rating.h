@@ -37,8 +37,6 @@ struct eo_contact_stress {
   double stress[2];                              /* sigma_H of both members */
 };
 
-double eo_zone_factor(const struct eo_rating_geometry *geometry);                      /* Z_H */
-double eo_elasticity_factor(const struct eo_elastic *elastic);                         /* Z_E */
 double eo_contact_ratio_factor(double transverse_contact_ratio, double overlap_ratio); /* Z_eps */
 
 /* EO_ERROR_INPUT: eps_alpha above 2 (6.3 has other points then) or a geometry without single pair contact points. */

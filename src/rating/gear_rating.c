@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-double eo_rating_hardness(enum eo_rating_material material)
+/* What the rating assumes where a member states none: hardness, HV, of the class. */
+static double class_hardness(enum eo_rating_material material)
 {
   static const double lowest[] = {
       [EO_CASE_HARDENED] = 660,           [EO_FLAME_HARDENED] = 500, [EO_THROUGH_HARDENED_ALLOY] = 200,
@@ -90,7 +91,7 @@ static enum eo_code set_strength(struct eo_rating_basis *basis, int i, struct eo
 {
   const struct eo_rating_member *member = &basis->input.rating->member[i];
   struct eo_strength *strength = &basis->strength[i];
-  basis->hardness[i] = isnan(member->hardness) ? eo_rating_hardness(member->material) : member->hardness;
+  basis->hardness[i] = isnan(member->hardness) ? class_hardness(member->material) : member->hardness;
   if (isnan(member->flank_limit) || isnan(member->root_limit))
     EO_TRY(eo_material_strength(strength, member->material, member->quality, member->core, basis->hardness[i], error));
   strength->flank = isnan(member->flank_limit) ? strength->flank : member->flank_limit;

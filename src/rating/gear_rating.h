@@ -112,9 +112,6 @@ struct eo_rated_spectrum {
 void eo_rated_spectrum_find(struct eo_rated_spectrum *spectrum, const struct eo_rating_basis *basis, int cases,
                             const struct eo_rated_case *rated);
 
-/* What the rating assumes where a member of the settings is NaN: hardness, HV, of the class. */
-double eo_rating_hardness(enum eo_rating_material material);
-
 /* The edition of ISO 1328-1 that belongs to that of ISO 6336: a rating never mixes them. */
 enum eo_tolerance_edition eo_rating_tolerance_edition(const struct eo_rating_settings *rating);
 

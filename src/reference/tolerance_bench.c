@@ -95,7 +95,8 @@ static bool find_input(const struct eo_tolerance_bench *bench, const char *name,
   return find_flank(bench, name, input);
 }
 
-struct eo_distribution eo_bench_distribution(struct eo_case *object)
+/* A distribution in the file's words. */
+static struct eo_distribution read_distribution(struct eo_case *object)
 {
   static const char *const types[] = {"normal", "uniform", NULL};
   struct eo_distribution distribution = {.cut = INFINITY};
@@ -122,7 +123,7 @@ void eo_bench_read_inputs(struct eo_tolerance_bench *bench, struct eo_case *vari
     struct eo_bench_input *input = &bench->input[bench->inputs];
     if (name && !find_input(bench, name, input))
       eo_case_fault(eo_case_find(row, "name"), "There is no input of this name.");
-    input->distribution = eo_bench_distribution(eo_case_need(row, "distribution"));
+    input->distribution = read_distribution(eo_case_need(row, "distribution"));
     bench->inputs++;
   }
 }

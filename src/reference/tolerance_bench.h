@@ -73,9 +73,6 @@ void eo_bench_done(struct eo_tolerance_bench *bench);
    units. False where the contact did not converge. */
 bool eo_bench_evaluate(struct eo_tolerance_bench *bench, const double *value, double *output);
 
-/* A distribution in the file's words. */
-struct eo_distribution eo_bench_distribution(struct eo_case *object);
-
 /* Points of the inputs in scrambled Sobol points: value[points][inputs]. */
 enum eo_code eo_bench_draw(const struct eo_bench_input *input, int inputs, int points, double *value,
                            struct eo_error *error);

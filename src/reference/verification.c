@@ -180,7 +180,8 @@ void eo_verify_diverged(struct eo_verification *verification, struct eo_case *wh
   add(verification, where, "did not converge", NAN, NAN, NAN, false);
 }
 
-void eo_verify_broken(struct eo_verification *verification, struct eo_case *where, const struct eo_error *error)
+/* The computation itself failed where numbers are expected: a check that fails, its reason as a note. */
+static void tell_broken(struct eo_verification *verification, struct eo_case *where, const struct eo_error *error)
 {
   eo_case_skip(where);
   add(verification, where, "computed at all", NAN, 1, 0, false);
@@ -256,7 +257,7 @@ static enum eo_code run_one(struct eo_verification *verification, struct eo_case
   int before = verification->count;
   enum eo_code code = run(context, item, error);
   if (code == EO_ERROR_INPUT || code == EO_ERROR_NUMERIC || code == EO_ERROR_FILE) {
-    eo_verify_broken(verification, item, error);
+    tell_broken(verification, item, error);
     code = EO_OK;
   }
   if (!code && checks && !verification->failed && verification->count == before && !eo_case_faulty(item))

@@ -48,8 +48,6 @@ void eo_verify_derived(struct eo_verification *verification, struct eo_case *whe
 void eo_verify_fact(struct eo_verification *verification, struct eo_case *where, const char *quantity, bool holds);
 /* "did not converge": fails, and what the case expects counts as read. */
 void eo_verify_diverged(struct eo_verification *verification, struct eo_case *where);
-/* The computation itself failed where numbers are expected: a check that fails, its reason as a note. */
-void eo_verify_broken(struct eo_verification *verification, struct eo_case *where, const struct eo_error *error);
 /* Told once, however often it is said. */
 void eo_verify_note(struct eo_verification *verification, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -95,9 +93,6 @@ struct eo_verify_kind {
   const char *name;
   enum eo_code (*run)(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 };
-
-/* NULL after the last. */
-const struct eo_verify_kind *eo_verify_kind_at(int index);
 
 /* Runs the file as its kind says. Faults of the file are collected in it; an error is what else went wrong. */
 enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);

@@ -17,7 +17,8 @@ static const struct eo_verify_kind kinds[] = {
     {"tolerance", eo_verify_tolerance},
 };
 
-const struct eo_verify_kind *eo_verify_kind_at(int index)
+/* NULL after the last. */
+static const struct eo_verify_kind *kind_at(int index)
 {
   return index >= 0 && index < (int)(sizeof kinds / sizeof kinds[0]) ? &kinds[index] : NULL;
 }
@@ -29,7 +30,7 @@ static const struct eo_verify_kind *find_kind(struct eo_case *file)
   const struct eo_verify_kind *kind;
   if (!name)
     return NULL;
-  for (int i = 0; (kind = eo_verify_kind_at(i)); i++) {
+  for (int i = 0; (kind = kind_at(i)); i++) {
     if (strcmp(name, kind->name) == 0) {
       eo_text_done(&known);
       return kind;

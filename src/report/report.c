@@ -188,8 +188,9 @@ static void put_all(const json_t *result, const struct eo_design *design, const 
   eo_page_end(page);
 }
 
-void eo_report_write(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
-                     const struct eo_page *page)
+/* From a result document of that design (with rating), which is in mm; the result is read alone. */
+static void write_page(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
+                       const struct eo_page *page)
 {
   json_t *spelt = page->inches ? eo_inch_from_mm(result) : NULL;
   if (page->inches && !spelt)
@@ -205,7 +206,7 @@ static enum eo_code write_report(const struct eo_analysis *analysis, const struc
   json_t *result = eo_result_encode_part(analysis, design, warnings, EO_RESULT_NO_HISTORIES | EO_RESULT_NO_PITCH);
   if (!result)
     return eo_error_memory(error);
-  eo_report_write(result, design, &analysis->pair->geometry, page);
+  write_page(result, design, &analysis->pair->geometry, page);
   json_decref(result);
   return page->text->failed ? eo_error_memory(error) : EO_OK;
 }

@@ -17,8 +17,4 @@ enum eo_code eo_report_make(const struct eo_pair *pair, const struct eo_design *
                             const struct eo_warnings *warnings, const struct eo_progress *progress,
                             const struct eo_page *page, struct eo_error *error);
 
-/* From a result document of that design (with rating), which is in mm; the result is read alone. */
-void eo_report_write(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
-                     const struct eo_page *page);
-
 #endif

@@ -32,7 +32,8 @@ static int watch(void *context, const struct eo_study_report *report)
   return eo_progress_report(run->r->plan->progress, run->what, FIRST + (LAST - FIRST) * share);
 }
 
-int eo_reproduction_generations(const struct reproduction *reproduction)
+/* Of fpga and ga. */
+static int generations_of(const struct reproduction *reproduction)
 {
   return reproduction->plan->order.generations > 0 ? reproduction->plan->order.generations
          : reproduction->plan->order.quick         ? 20
@@ -50,7 +51,7 @@ static void set_up(const struct reproduction *reproduction, struct eo_design *de
 {
   struct eo_optimizer_settings *search = &design->optimization.search;
   search->algorithm = algorithms[algorithm];
-  search->generations = eo_reproduction_generations(reproduction);
+  search->generations = generations_of(reproduction);
   search->true_evaluations = algorithm < 2 ? 0 : eo_reproduction_budget(reproduction);
 }
 
@@ -199,7 +200,7 @@ static enum eo_code study_all(struct run *run, struct drawing *drawing, struct e
 static enum eo_code add_figures(struct reproduction *reproduction, struct drawing *drawing, struct eo_error *error)
 {
   static const double printed[CASES] = {39.67, 33.25};
-  double generations = eo_reproduction_generations(reproduction) - 1;
+  double generations = generations_of(reproduction) - 1;
   eo_reproduction_series(&drawing->figure[0], "printed, A", 1, &generations, &printed[0], true);
   eo_reproduction_series(&drawing->figure[0], "printed, B", 1, &generations, &printed[1], true);
   return eo_reproduction_add_figures(reproduction, 1 + CASES, drawing->figure, error);

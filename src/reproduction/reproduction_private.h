@@ -34,9 +34,6 @@ struct reproduction {
   double torques_better[2];  /* share of the torques with less LTE, less impact, case A */
 };
 
-/* Of fpga and ga. */
-int eo_reproduction_generations(const struct reproduction *reproduction);
-
 /* Reports the work between two fractions; EO_ERROR_CANCELLED when a stop was asked for. */
 enum eo_code eo_reproduction_report(const struct reproduction *reproduction, const char *what, double fraction,
                                     struct eo_error *error);

@@ -48,10 +48,6 @@ struct eo_study_plan {
    before stays. eo_study_result_done() also after an error. */
 enum eo_code eo_study_run(const struct eo_study_plan *plan, struct eo_study_result *result, struct eo_error *error);
 
-/* The design with the best modification; false when there is none. */
-bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
-                          struct eo_design *best);
-
 /* The study's document: analyses the best design and keeps the text with the job. warnings may be NULL; document too:
    it is only kept then. */
 enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,

@@ -11,8 +11,8 @@
 #include "store/jobs.h"
 #include "study/made_check.h"
 
-bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
-                          struct eo_design *best)
+/* The design with the best modification; false when there is none. */
+static bool best_design(const struct eo_study_plan *plan, const struct eo_study_result *result, struct eo_design *best)
 {
   *best = *plan->design;
   best->modification = result->best.there ? result->best.modification : result->unmodified.modification;
@@ -72,7 +72,7 @@ static enum eo_code make(const struct eo_study_plan *plan, const struct eo_study
 {
   if (!making->best)
     return eo_error_memory(error);
-  if (eo_study_best_design(plan, result, making->best))
+  if (best_design(plan, result, making->best))
     EO_TRY(analyse(plan, making->best, &making->analysis, error));
   EO_TRY(check(plan, &making->result, error));
   *document = eo_study_result_encode(&making->result, plan->design, making->analysis, warnings);

@@ -12,7 +12,7 @@ static double binomial_term(int n, int k, double p)
 
 /* Terms from k away from the mode, where each is smaller than the one before it: the lower tail, or 1 less the upper
    one. */
-double eo_binomial_probability(int n, int k, double p)
+static double binomial_probability(int n, int k, double p)
 {
   double sum = 0, term;
   if (k < 0)
@@ -43,7 +43,7 @@ static int binomial_quantile(int n, double p, double share)
   int low = 0, high = n;
   while (low < high) {
     int middle = (low + high) / 2;
-    if (eo_binomial_probability(n, middle, p) >= share)
+    if (binomial_probability(n, middle, p) >= share)
       high = middle;
     else
       low = middle + 1;
@@ -56,8 +56,7 @@ struct eo_rank_interval eo_order_statistic_ranks(int n, double p, double level)
 {
   struct eo_rank_interval interval = {.low = binomial_quantile(n, p, (1 - level) / 2),
                                       .high = binomial_quantile(n, p, (1 + level) / 2) + 1};
-  interval.coverage = eo_binomial_probability(n, interval.high - 1, p) -
-                      eo_binomial_probability(n, interval.low - 1, p);
+  interval.coverage = binomial_probability(n, interval.high - 1, p) - binomial_probability(n, interval.low - 1, p);
   return interval;
 }
 
@@ -67,7 +66,7 @@ static double share_at(int n, int k, double probability)
   double low = 0, high = 1;
   for (int i = 0; i < 60; i++) {
     double middle = (low + high) / 2;
-    if (eo_binomial_probability(n, k, middle) > probability)
+    if (binomial_probability(n, k, middle) > probability)
       low = middle;
     else
       high = middle;

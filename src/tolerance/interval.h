@@ -3,9 +3,6 @@
 #ifndef EASEOFF_TOLERANCE_INTERVAL_H
 #define EASEOFF_TOLERANCE_INTERVAL_H
 
-/* Probability of at most k successes in n trials of probability p. */
-double eo_binomial_probability(int n, int k, double p);
-
 /* Ranks (1 .. n) of the sorted values between which the quantile of share p lies at least with the given level,
    whatever the distribution; coverage: with which probability it does. 0 or n + 1: beyond the values there are, that
    side is open. */

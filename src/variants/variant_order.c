@@ -19,7 +19,7 @@ static const struct eo_field axis_fields[] = {
     EO_INTEGER_DERIVED(struct eo_study_axis, points, "points", 1, EO_STUDY_MOST_LEVELS, "both ends of the range",
                        "of a full factorial study: how many, equally spaced, ends included"),
 };
-const struct eo_table eo_study_axis_table = EO_TABLE("what varies", struct eo_study_axis, axis_fields);
+static const struct eo_table axis_table = EO_TABLE("what varies", struct eo_study_axis, axis_fields);
 
 static const struct eo_field order_fields[] = {
     {.key = "name",
@@ -30,7 +30,7 @@ static const struct eo_field order_fields[] = {
      .help = "for people; that of the design where there is none"},
     EO_DOCUMENT(struct eo_study_order, design, "design", "Design", EO_FIELD_REQUIRED,
                 "what is varied; what it does not state follows in every variant"),
-    EO_LIST(struct eo_study_order, axis, axes, "vary", &eo_study_axis_table, 0, EO_STUDY_AXES, "what varies"),
+    EO_LIST(struct eo_study_order, axis, axes, "vary", &axis_table, 0, EO_STUDY_AXES, "what varies"),
     {.key = "table",
      .kind = EO_FIELD_TEXT,
      .flags = EO_FIELD_ELSEWHERE | EO_FIELD_NULLABLE,

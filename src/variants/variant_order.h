@@ -40,7 +40,7 @@ struct eo_study_order {
   char columns[2000];
 };
 
-extern const struct eo_table eo_study_order_table, eo_study_axis_table;
+extern const struct eo_table eo_study_order_table;
 
 /* Reads a document: *order, and *table: its key "table" (a text of comma-separated values; NULL: none), borrowed.
    eo_study_order_done() in any case. False with faults. */

@@ -373,7 +373,9 @@ enum eo_code eo_variant_sort(const struct eo_variant_plan *plan, int *order, int
   return EO_OK;
 }
 
-json_t *eo_variant_document(const json_t *base, const struct eo_variant_axis *axis, int axes, const json_t *values)
+/* The design of a variant, as it would have been stated; NULL without memory, or where the design has no place for a
+   value. A value null leaves the design as it is. */
+static json_t *variant_document(const json_t *base, const struct eo_variant_axis *axis, int axes, const json_t *values)
 {
   json_t *document = json_deep_copy(base);
   for (int i = 0; i < axes && document; i++) {
@@ -405,7 +407,7 @@ enum eo_code eo_variant_design(const json_t *base, const struct eo_variant_axis 
                                struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = eo_variant_document(base, axis, axes, values);
+  json_t *document = variant_document(base, axis, axes, values);
   enum eo_code code = read_design(document, design, geometry, faults, error);
   json_decref(document);
   free(faults);

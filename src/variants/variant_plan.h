@@ -57,11 +57,8 @@ enum eo_code eo_variant_hash(const struct eo_variant_plan *plan, const json_t *v
    place of its first variant. *pairs: how many. Errors: memory. */
 enum eo_code eo_variant_sort(const struct eo_variant_plan *plan, int *order, int *pairs, struct eo_error *error);
 
-/* The design of a variant, as it would have been stated; NULL without memory, or where the design has no place for a
-   value. A value null leaves the design as it is. */
-json_t *eo_variant_document(const json_t *base, const struct eo_variant_axis *axis, int axes, const json_t *values);
-
-/* The same, complete. Errors: EO_ERROR_INPUT (what the design may not be), memory. */
+/* The design of a variant, complete; a value null leaves the base as it is. Errors: EO_ERROR_INPUT (what the design may
+ * not be), memory. */
 enum eo_code eo_variant_design(const json_t *base, const struct eo_variant_axis *axis, int axes, const json_t *values,
                                struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error);
 

@@ -19,7 +19,8 @@ static const double MOST_SECONDS = 0.05;
 /* How long a row may wait in memory, to be written with others; a kill loses no more. */
 static const double MOST_WAIT = 0.2;
 
-double eo_variant_clock(void)
+/* s */
+static double read_clock(void)
 {
   return 1e-3 * eo_clock_milliseconds();
 }
@@ -41,7 +42,7 @@ static double time_left(const struct variant_study *study, double now)
 int eo_variant_report(struct variant_study *study, const char *what)
 {
   const struct eo_variant_result *result = study->result;
-  double now = eo_variant_clock();
+  double now = read_clock();
   if (!study->run->watch)
     return 0;
   const struct eo_variant_report report = {.job = study->job.id,
@@ -67,7 +68,7 @@ enum eo_code eo_variant_open(struct variant_study *study, struct eo_error *error
   EO_TRY(eo_store_begin(study->run->store, error));
   study->open = true;
   study->unsaved = 0;
-  study->committed = eo_variant_clock();
+  study->committed = read_clock();
   return EO_OK;
 }
 
@@ -82,7 +83,7 @@ static void sum_up(struct variant_study *study, enum eo_job_state state, const c
 
 enum eo_code eo_variant_commit(struct variant_study *study, bool now, struct eo_error *error)
 {
-  if (!study->open || (!now && study->unsaved < MOST_UNSAVED && eo_variant_clock() - study->committed < MOST_SECONDS))
+  if (!study->open || (!now && study->unsaved < MOST_UNSAVED && read_clock() - study->committed < MOST_SECONDS))
     return EO_OK;
   sum_up(study, EO_JOB_RUNNING, "");
   EO_TRY(eo_store_update_job(study->run->store, &study->job, error));
@@ -189,14 +190,14 @@ static enum eo_code write_waiting(struct variant_study *study, struct eo_error *
 /* Writes what waits, in its order. */
 static enum eo_code flush(struct variant_study *study, struct eo_error *error)
 {
-  double start = eo_variant_clock();
+  double start = read_clock();
   enum eo_code code = write_waiting(study, error);
   for (int i = 0; i < study->waiting_count; i++)
     eo_text_done(&study->waiting[i].bytes);
   study->waiting_count = 0;
   if (!code)
     code = eo_variant_commit(study, true, error);
-  study->result->store_seconds += eo_variant_clock() - start;
+  study->result->store_seconds += read_clock() - start;
   return code;
 }
 
@@ -207,18 +208,17 @@ static enum eo_code take_answer(void *context, int item, const char *bytes, size
   *waiting = (struct waiting_answer){.variant = study->missing[item]};
   eo_text_add_bytes(&waiting->bytes, bytes, size);
   if (study->waiting_count == 1)
-    study->waits_since = eo_variant_clock();
+    study->waits_since = read_clock();
   if (waiting->bytes.failed)
     return eo_error_memory(error);
-  return study->waiting_count == MOST_WAITING || eo_variant_clock() - study->waits_since > MOST_WAIT
-             ? flush(study, error)
-             : EO_OK;
+  return study->waiting_count == MOST_WAITING || read_clock() - study->waits_since > MOST_WAIT ? flush(study, error)
+                                                                                               : EO_OK;
 }
 
 static int watch_crew(void *context)
 {
   struct variant_study *study = context;
-  if (study->waiting_count && eo_variant_clock() - study->waits_since > MOST_WAIT && flush(study, &study->fault))
+  if (study->waiting_count && read_clock() - study->waits_since > MOST_WAIT && flush(study, &study->fault))
     return 1; /* told when the crew has stopped */
   return eo_variant_report(study, "");
 }
@@ -240,7 +240,7 @@ static enum eo_code compute(struct variant_study *study, struct eo_error *error)
   if (!study->missing_count)
     return EO_OK;
   enum eo_code code = eo_variant_trade_order(study->run->plan, &order, error);
-  study->computing = eo_variant_clock();
+  study->computing = read_clock();
   task.order = order.data;
   task.size = order.size;
   if (!code)
@@ -284,15 +284,15 @@ enum eo_code eo_variant_study_run(const struct eo_variant_run *run, struct eo_va
     return eo_error_memory(error);
   study->run = run;
   study->result = result;
-  study->started = eo_variant_clock();
+  study->started = read_clock();
   enum eo_code code = eo_variant_study_begin(study, error);
   if (!code)
     code = eo_variant_look_up(study, error);
-  result->look_up_seconds = eo_variant_clock() - study->started;
+  result->look_up_seconds = read_clock() - study->started;
   if (!code)
     code = compute(study, error);
   code = finish(study, code, error);
-  result->seconds = eo_variant_clock() - study->started;
+  result->seconds = read_clock() - study->started;
   if (study->job.id)
     eo_store_release_job(run->store, study->job.id);
   eo_scalars_done(&study->scalars);

@@ -36,8 +36,6 @@ struct variant_study {
   struct eo_objective_case *raw, *unmodified; /* [cases]; owned */
 };
 
-double eo_variant_clock(void); /* s */
-
 /* Columns, job, which variants have no row yet. */
 enum eo_code eo_variant_study_begin(struct variant_study *study, struct eo_error *error);
 
