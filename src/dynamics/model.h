@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Equations of motion of the lumped model, paper (3)-(7) with the signs corrected: every spring, damper and mesh is one
-   direction e of relative motion and adds k e e', c e e'. So K and C are symmetric and C is positive semi-definite.
-   Coordinates: y_p1 z_p1 th_p1 [y_p2 z_p2 th_p2] y_g1 z_g1 th_g1 [y_g2 z_g2 th_g2] [th_driver] [th_load].
-   A rigid spring takes its direction e out of the motions there are. A machine turns against the mean rotation of the
-   ends it is joined to, so that half the torque goes to each end; of unequal helices against that mean of theirs by
-   which each has the torque that balances the thrusts. */
+/* Equations of motion of the lumped model, theory (D1) and (D2), signs as doc/theory/paper.md has them: every spring,
+   damper and mesh is one direction e of relative motion and adds k e e', c e e'. So K and C are symmetric and C is
+   positive semi-definite. Coordinates: y_p1 z_p1 th_p1 [y_p2 z_p2 th_p2] y_g1 z_g1 th_g1 [y_g2 z_g2 th_g2] [th_driver]
+   [th_load]. A rigid spring takes its direction e out of the motions there are. A machine turns against the mean
+   rotation of the ends it is joined to, so that half the torque goes to each end; of unequal helices against that mean
+   of theirs by which each has the torque that balances the thrusts. */
 #ifndef EASEOFF_DYNAMICS_MODEL_H
 #define EASEOFF_DYNAMICS_MODEL_H
 

@@ -29,7 +29,7 @@ struct eo_objective_case {
   double scalar[EO_SCALARS]; /* in the units of their keys; NaN unless a term or a limit of the objective asks */
 };
 
-/* f_i = sum_k share_k value_ik / 3: the /3 is kept as printed, for three cases; n cases divide by n. */
+/* f_i = sum_k share_k value_ik / n of n cases, theory (O1). */
 struct eo_objective_sums {
   double f[3]; /* f1 PPLTE (m), f2 impact (N), f3 RMS (m/s2) */
   bool failed;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measurements of one design beside what the model says at their torque and their measured speed (paper 5.5, Figs 17
-   and 18): rotational acceleration at the end where the encoders sit, the same mesh orders on both sides. */
+/* Measurements of one design beside what the model says at their torque and their measured speed, theory (M4) and
+   (M5): rotational acceleration at the end where the encoders sit, the same mesh orders on both sides. */
 #ifndef EASEOFF_MEASUREMENT_COMPARISON_H
 #define EASEOFF_MEASUREMENT_COMPARISON_H
 

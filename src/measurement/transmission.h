@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Transmission error of two measured angles, TE = r_b,gear phi_gear - r_b,pinion phi_pinion (transverse, along the line
-   of action; the paper's (24) as printed exchanges the radii: a plausible signal, for 17:44 two to three times too
+   of action; theory (M1): with the radii exchanged, a plausible signal, for 17:44 two to three times too
    large), and what least squares on its samples tell: drift, shaft orders and mesh orders together, over the measured
    angle of the pinion. Accelerations are (h z omega)^2 times the amplitudes, omega the mean speed of the rows that were
    used: nothing is differentiated. Where the speed changes, the mean amplitudes stand for all of it and the tracks tell

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm (section 4); ga is fpga that never predicts: the
-   same operators on the same random numbers. What was settled where the paper is silent:
+/* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm, theory (H1) to (H5); ga is fpga that never
+   predicts: the same operators on the same random numbers. What was settled where the paper is silent:
    - decisions in batch order see the history as it was before the generation; sequential order is as the paper prints
    it;
    - an individual bit-equal to a true row takes its value and counts neither as true nor as predicted (reuse);

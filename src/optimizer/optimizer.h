@@ -18,7 +18,7 @@
    whatever the order of telling, and random numbers come from counters. So a run is resumed by running it again from
    the start and answering from a log what was evaluated before. One thread at a time may use an optimizer.
 
-   Laws: paper section 4; what was settled where it is silent or misprinted stands at each algorithm. */
+   Laws: doc/theory/search.md; what was settled where the paper is silent or misprinted stands at each algorithm. */
 #ifndef EASEOFF_OPTIMIZER_OPTIMIZER_H
 #define EASEOFF_OPTIMIZER_OPTIMIZER_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an optimizer can be told: each setting once, in EO_OPTIMIZER_SETTINGS, with its range, default and help. The
    struct below, its defaults and its check are made of that list, and so is the part of the document that states them
-   (document/design_tables.c). Paper: section 4 and Table 2; the paper's values are the defaults. */
+   (document/design_tables.c). Symbols are those of theory (H1) to (H5); the paper's values are the defaults. */
 #ifndef EASEOFF_OPTIMIZER_SETTINGS_H
 #define EASEOFF_OPTIMIZER_SETTINGS_H
 
@@ -57,18 +57,22 @@ enum { EO_MAX_VARIABLES = 64, EO_MAX_OBJECTIVES = 8 };
          "I_r*: rows closer than this to their neighbours leave the history (fpga)")                                   \
   DERIVED(share_radius, 1e-6, 10, "0.03 (n/5)^1.9 for n variables",                                                    \
           "r_share, radius in the unit cube of the region that predicts (fpga)")                                       \
-  NUMBER(weight_decay, 0, 10000, 20, "alpha of equation (15) (fpga)")                                                  \
-  NUMBER(credibility_loss, 0, 1, 0.8, "beta of equation (18): factor on predicted rows per generation (fpga)")         \
+  NUMBER(weight_decay, 0, 10000, 20,                                                                                   \
+         "alpha: a row at the distance e predicts with a weight that goes with exp(-alpha e) (fpga)")                  \
+  NUMBER(credibility_loss, 0, 1, 0.8,                                                                                  \
+         "beta: factor on the credibility of predicted rows at the end of each generation (fpga)")                     \
   NUMBER(removal_threshold, 0, 1, 0.1,                                                                                 \
          "R_0: predicted rows less credible leave the history; below trust_threshold (fpga)")                          \
-  COUNT(verify, 0, 1, 1, "1: the best predicted individual of each generation is evaluated; 0: as printed (fpga)")     \
+  COUNT(verify, 0, 1, 1,                                                                                               \
+        "1: the best predicted individual of each generation is evaluated; 0: none, as in the paper (fpga)")           \
   CHOICE(distance_norm, eo_distance_norms, EO_NORM_RANGE,                                                              \
          "Euclidean distance of normalised variables, or that over sqrt n (fpga)")                                     \
-  CHOICE(weight_sum, eo_weight_sums, EO_WEIGHTS_REGION, "rows in the sum of (15) (fpga)")                              \
+  CHOICE(weight_sum, eo_weight_sums, EO_WEIGHTS_REGION, "rows whose weights add up to 1 (fpga)")                       \
   CHOICE(decision_order, eo_decision_orders, EO_ORDER_BATCH,                                                           \
          "history frozen for a generation, or used as it grows (fpga)")                                                \
   FLAG(store_predicted, true, "predicted individuals enter the history too (fpga)")                                    \
-  FLAG(literal_redundancy, false, "redundancy exactly as printed, which deletes unique rows too (fpga)")               \
+  FLAG(literal_redundancy, false,                                                                                      \
+       "redundancy by the gaps of each coordinate alone, as in the paper, which deletes unique rows too (fpga)")       \
   FLAG(reuse, true, "an individual equal to an evaluated one takes its value (ga, fpga)")                              \
   COUNT(batch, 1, 1024, 8, "true evaluations at a time (credibility-ga)")                                              \
   COUNT(initial_factor, 1, 100, 4,                                                                                     \

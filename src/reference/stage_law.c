@@ -22,8 +22,8 @@ static const char *const kinds[] = {"tangent", "secant", "table", "fourier", NUL
 
 static const struct eo_field law[] = {
     EO_CHOICE(struct eo_stage_law, kind, "kind", kinds, EO_STAGE_LAW_TANGENT,
-              "P + k_tan (X - Z); P/(Z - datum) (X - datum); linear between the loads of a table; k(phi) f(X) with f "
-              "of equation (8)"),
+              "P + k_tan (X - Z); P/(Z - datum) (X - datum); linear between the loads of a table; k(phi) f(X), "
+              "f with the two sides of the backlash"),
     EO_SERIES(struct eo_stage_law, approach, "Z_um", &eo_unit_um, MOST_POSITIONS, -1e6, 1e6, 0,
               "tangent, secant: approach at equal steps of the mesh cycle"),
     EO_SERIES(struct eo_stage_law, tangent, "kt_N_per_um", &eo_unit_N_per_um, MOST_POSITIONS, 1e-9, 1e9, 0,

@@ -115,7 +115,7 @@ static void replace(struct eo_case *object, const char *key, double *value)
   *value = eo_case_number_or(object, key, *value);
 }
 
-/* The parameters of the files' operators and runs blocks; the files hold the algorithm as printed. */
+/* The parameters of the files' operators and runs blocks; the files hold the algorithm as the paper has it. */
 static void read_parameters(struct eo_optimizer_settings *settings, struct eo_case *this_case)
 {
   replace(this_case, "pc", &settings->crossover);
@@ -337,7 +337,7 @@ static const struct eo_verify_block blocks[] = {
     {"predict", EO_BLOCK_EACH, eo_verify_predict},
     {"redundancy", EO_BLOCK_EACH, eo_verify_redundancy},
     {"decay", EO_BLOCK_EACH, eo_verify_decay},
-    {"S6", EO_BLOCK_EACH, eo_verify_clean_up},
+    {"clean_up", EO_BLOCK_EACH, eo_verify_clean_up},
     {"operators", EO_BLOCK_EACH, check_operators},
     {"runs", EO_BLOCK_EACH, check_run},
     {"invariants", EO_BLOCK_REMARKS, NULL},

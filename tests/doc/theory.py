@@ -9,7 +9,7 @@ Each numbered equation of doc/theory/ names the function that computes it:
     > (C1): `load_points()` in src/contact/loaded.c.
 
 and that function, or the comment above it, says "theory (C1)". Nothing else in the source may say "theory (X)" of an
-equation that is not there.
+equation that is not there. Each function that a chapter names is defined in the source.
 
 Worked examples are blocks of the kind `worked`, for people to follow with a calculator:
 
@@ -110,6 +110,16 @@ def check_citations():
             unknown = [label for label in re.findall(LABEL, run) if label not in equations]
             faults += [f"{path.relative_to(SOURCES)} cites ({label})" for label in unknown]
     result(not faults, "the source cites no equation that is not there", faults)
+    check_names(sources.values())
+
+
+def check_names(sources):
+    defined = {name for text in sources for name in re.findall(r"(?m)^(?!\s|#|/)[^\n;=]*?\b(\w+)\([^;{]*\)\n\{", text)}
+    faults = []
+    for chapter in chapters():
+        named = re.findall(r"`(\w+)\(\)`", chapter.read_text(encoding="utf-8"))
+        faults += [f"{chapter.name} names {name}()" for name in named if name not in defined]
+    result(not faults, "each function that a chapter names is defined in the source", faults)
 
 
 def pick(document, place):

@@ -30,7 +30,7 @@ static const struct part parts[] = {
     {"optimizer", "predict", {"conventions", "histories"}, 3, false},
     {"optimizer", "redundancy", {"conventions"}, 1, false},
     {"optimizer", "decay", {"conventions"}, 1, false},
-    {"optimizer", "S6", {"conventions"}, 1, false},
+    {"optimizer", "clean_up", {"conventions"}, 1, false},
     {"optimizer", "operators", {"conventions"}, 1, false},
     {"optimizer", "runs", {"conventions"}, 1, false},
     {"optimizer", "successor", {"conventions"}, 1, false},
