@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "document/measure_order.h"
 #include "format/list_page.h"
 #include "format/object.h"
 #include "http/answers.h"
@@ -199,7 +200,7 @@ const struct eo_route eo_routes_measurements[] = {
      .handle = eo_measurement_add,
      .name = "addMeasurement",
      .takes = "MeasurementForm",
-     .order = &eo_measurement_form,
+     .order = &eo_measure_form_table,
      .form = true,
      .gives = "201 Measurement, 200 Measurement",
      .rate = EO_RATE_QUESTION,
@@ -211,7 +212,7 @@ const struct eo_route eo_routes_measurements[] = {
      .handle = eo_measurement_try,
      .name = "tryMeasurement",
      .takes = "MeasurementForm",
-     .order = &eo_measurement_form,
+     .order = &eo_measure_form_table,
      .form = true,
      .gives = "200 MeasurementOfFile",
      .rate = EO_RATE_QUESTION,

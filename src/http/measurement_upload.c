@@ -14,61 +14,26 @@
 #include "http/route.h"
 #include "http/http_private.h"
 #include "http/upload.h"
-#include "document/measure_file.h"
+#include "document/measure_order.h"
 #include "service/rig_tasks.h"
 
-/* What the form said. */
+/* What the form said, and the design that it names. */
 struct asked {
-  uint64_t design;
-  int label, end, harmonics; /* label: as in labels; harmonics 0: 8 */
-  double torque, speed;      /* N m and rad/s, NaN: not stated */
-  int part, whole;           /* of the recording: as in eo_part_choice */
-  double from, to;
-  const json_t *layout; /* NULL: to be found */
+  struct eo_measure_order order;
   struct eo_design parsed;
   struct eo_geometry geometry;
 };
-enum { MODIFIED, UNMODIFIED };
-enum { LEFT_OUT, INCLUDED };
-static const char *const run_ups[] = {"left out", "included", NULL};
-static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
-static const struct eo_field form_fields[] = {
-    {.key = "design",
-     .kind = EO_FIELD_SEED,
-     .flags = EO_FIELD_REQUIRED,
-     .offset = offsetof(struct asked, design),
-     .low = 1,
-     .high = 9007199254740991.0,
-     .help = "number of the stored design that was measured"},
-    {.key = "label",
-     .kind = EO_FIELD_CHOICE,
-     .flags = EO_FIELD_REQUIRED,
-     .offset = offsetof(struct asked, label),
-     .choices = labels,
-     .fallback = NAN,
-     .help = "whether the pair had its modification"},
-    EO_NUMBER_DERIVED(struct asked, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "as recorded, else asked for",
-                      "on the pinion"),
-    EO_NUMBER_DERIVED(struct asked, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "as measured", "of the pinion"),
-    EO_CHOICE(struct asked, end, "end", ends, EO_RIGHT, "where the encoders sit"),
-    EO_INTEGER_DERIVED(struct asked, harmonics, "harmonics", 1, EO_MESH_ORDERS, "8", "mesh orders that are measured"),
-    EO_INTEGER_DERIVED(struct asked, part, "part", 1, EO_PARTS, "the one with the most turns",
-                       "which stretch without a stop is measured, as `parts` of the result counts them"),
-    EO_CHOICE(struct asked, whole, "run_up", run_ups, LEFT_OUT,
-              "what leads to a long steady state: left out, or measured with it"),
-    EO_NUMBER(struct asked, from, "from_s", NULL, 0, 1e9, 0, "where what is measured begins, after the first row"),
-    EO_NUMBER_DERIVED(struct asked, to, "to_s", NULL, 0, 1e9, "the end", "where it ends, after the first row"),
-    EO_DOCUMENT(struct asked, layout, "layout", "AskedLayout", EO_FIELD_NULLABLE,
-                "what the columns are; without it they are recognised"),
-};
-const struct eo_table eo_measurement_form = EO_TABLE("a measurement", struct asked, form_fields);
+static bool is_unmodified(const struct asked *asked)
+{
+  return asked->order.label == EO_MEASURE_UNMODIFIED;
+}
 
 static bool find_design(struct eo_request *request, struct asked *asked)
 {
   bool missing = false;
   struct eo_error error;
-  if (eo_request_stored_design(request, (int64_t)asked->design, &asked->parsed, &asked->geometry, NULL, &missing))
+  if (eo_request_stored_design(request, (int64_t)asked->order.design, &asked->parsed, &asked->geometry, NULL, &missing))
     return true;
   if (missing) {
     eo_error_set(&error, EO_ERROR_INPUT, "/design", "There is no design with this number.");
@@ -92,22 +57,24 @@ static enum eo_code hash_files(struct eo_upload *upload, struct eo_error *error)
 static void write_request_digest(const struct asked *asked, const struct eo_upload *upload, const char *pair,
                                  char digest[EO_HASH_LENGTH + 1])
 {
+  const struct eo_measure_order *order = &asked->order;
   struct eo_hash hash;
   struct eo_text layout = {0};
-  if (asked->layout)
-    eo_json_write(&layout, asked->layout, EO_JSON_CANONICAL);
+  if (order->layout)
+    eo_json_write(&layout, order->layout, EO_JSON_CANONICAL);
   eo_hash_init(&hash);
-  eo_hash_add_number(&hash, "design", (double)asked->design);
-  eo_hash_add_number(&hash, "unmodified", asked->label == UNMODIFIED);
-  eo_hash_add_number(&hash, "end", asked->end);
-  eo_hash_add_number(&hash, "harmonics", asked->harmonics);
-  eo_hash_add_number(&hash, "torque", asked->torque);
-  eo_hash_add_number(&hash, "speed", asked->speed);
-  if (asked->part || asked->whole || asked->from > 0 || asked->to > 0) { /* what was stored before has none */
-    eo_hash_add_number(&hash, "part", asked->part);
-    eo_hash_add_number(&hash, "whole", asked->whole);
-    eo_hash_add_number(&hash, "from", asked->from);
-    eo_hash_add_number(&hash, "to", asked->to);
+  eo_hash_add_number(&hash, "design", (double)order->design);
+  eo_hash_add_number(&hash, "unmodified", is_unmodified(asked));
+  eo_hash_add_number(&hash, "end", order->end);
+  eo_hash_add_number(&hash, "harmonics", order->harmonics);
+  eo_hash_add_number(&hash, "torque", order->torque);
+  eo_hash_add_number(&hash, "speed", order->speed);
+  /* what was stored before has none of these */
+  if (order->part || order->run_up || order->from > 0 || order->to > 0) {
+    eo_hash_add_number(&hash, "part", order->part);
+    eo_hash_add_number(&hash, "whole", order->run_up);
+    eo_hash_add_number(&hash, "from", order->from);
+    eo_hash_add_number(&hash, "to", order->to);
   }
   eo_hash_add_text(&hash, "layout", layout.data ? layout.data : "");
   eo_hash_add_text(&hash, "pair", pair);
@@ -140,24 +107,10 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
   struct eo_measure_request work = {.path = path[0],
                                     .gear_path = upload->files > 1 ? path[1] : NULL,
                                     .name = upload->file[0].name,
-                                    .unmodified = asked->label == UNMODIFIED,
-                                    .torque = asked->torque,
-                                    .stated_speed = asked->speed,
-                                    .end = asked->end,
-                                    .harmonics = asked->harmonics,
-                                    .part = {.part = asked->part,
-                                             .whole = asked->whole == INCLUDED,
-                                             .from = asked->from,
-                                             .to = asked->to > 0 ? asked->to : 0},
-                                    .layout = asked->layout,
                                     .geometry = &asked->geometry,
                                     .spool_directory = upload->folder,
                                     .seconds = request->http->settings.limits.reading_seconds};
-  for (int i = 0; i < asked->parsed.load_cases; i++) {
-    double speed = asked->parsed.load_case[i].speed;
-    work.speed[0] = i ? fmin(work.speed[0], speed) : speed;
-    work.speed[1] = fmax(work.speed[1], speed);
-  }
+  eo_measure_order_take(&asked->order, &asked->parsed, &work);
   struct eo_measured *outcome = calloc(1, sizeof *outcome);
   if (!outcome)
     return eo_error_memory(error);
@@ -206,12 +159,13 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
 {
   const struct eo_upload *upload = request->upload;
   json_t *summary = eo_outline_take(&eo_measurement_brief, document);
-  char *texts[3] = {dump(document), summary ? dump(summary) : NULL, asked->layout ? dump(asked->layout) : strdup("")};
-  struct eo_stored_measurement row = {.design = (int64_t)asked->design,
+  char *texts[3] = {dump(document), summary ? dump(summary) : NULL,
+                    asked->order.layout ? dump(asked->order.layout) : strdup("")};
+  struct eo_stored_measurement row = {.design = (int64_t)asked->order.design,
                                       .digest = digest,
-                                      .unmodified = asked->label == UNMODIFIED,
+                                      .unmodified = is_unmodified(asked),
                                       .torque = torque,
-                                      .speed = asked->speed,
+                                      .speed = asked->order.speed,
                                       .layout = texts[2],
                                       .pair = pair,
                                       .summary = texts[1],
@@ -272,7 +226,7 @@ static void answer_upload(struct eo_request *request, struct asked *asked)
   struct eo_error error;
   enum eo_measurement_outcome outcome = EO_MEASUREMENT_MISSING;
   char pair[EO_HASH_LENGTH + 1], digest[EO_HASH_LENGTH + 1];
-  if (!eo_body_read(request, asked) || !find_design(request, asked))
+  if (!eo_body_read(request, &asked->order) || !find_design(request, asked))
     return;
   eo_rig_pair_hash(&asked->geometry, pair);
   enum eo_code code = hash_files(request->upload, &error);
@@ -294,7 +248,7 @@ static void answer_trial(struct eo_request *request, struct asked *asked)
 {
   struct eo_error error;
   json_t *document = NULL;
-  if (!eo_body_read(request, asked) || !find_design(request, asked))
+  if (!eo_body_read(request, &asked->order) || !find_design(request, asked))
     return;
   double torque = NAN;
   enum eo_code code = measure(request, asked, &document, &torque, &error);

@@ -3,12 +3,10 @@
 #ifndef EASEOFF_HTTP_MEASUREMENT_UPLOAD_H
 #define EASEOFF_HTTP_MEASUREMENT_UPLOAD_H
 
-#include "format/table.h"
 #include "http/request.h"
 
-/* The handler, on the thread that reads recordings, and the parts of its form. */
+/* The handler, on the thread that reads recordings; its form is eo_measure_form_table. */
 void eo_measurement_add(struct eo_request *request);
-extern const struct eo_table eo_measurement_form;
 
 /* The same without keeping anything: 200 with what was measured. */
 void eo_measurement_try(struct eo_request *request);

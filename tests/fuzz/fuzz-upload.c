@@ -5,8 +5,8 @@
    does not pass through it. For libFuzzer, and replayed by replay.c. */
 #define _GNU_SOURCE
 #include "base/hash.h"
+#include "document/measure_order.h"
 #include "http/http_private.h"
-#include "http/measurement_upload.h"
 #include "http/route.h"
 #include "http/upload.h"
 #include "fuzz/fuzz.h"
@@ -76,7 +76,7 @@ static void look(const struct eo_upload *upload, struct outcome *outcome)
 /* As server.c does it: once a reply is known, what comes is only counted. */
 static struct outcome upload_in_pieces(struct MHD_Connection *connection, size_t piece)
 {
-  static const struct eo_route route = {.order = &eo_measurement_form, .form = true};
+  static const struct eo_route route = {.order = &eo_measure_form_table, .form = true};
   struct eo_request request = {
       .http = &http, .store = http.store, .connection = connection, .route = &route, .id = "0123456789abcdef"};
   request.reply.request = request.id;
