@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,90 +7,56 @@
 
 #include "app/app.h"
 #include "app/data.h"
+#include "app/table_options.h"
 #include "app/watch.h"
 #include "format/json.h"
 #include "document/rig_document.h"
 
 struct request {
-  const char *design_file, *output, *truth, *settings, *torque, *speed, *data;
+  const char *design_file, *output, *truth, *settings, *data;
   bool no_cache;
+  struct eo_table_options options;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_rig_request rig;
 };
 
-enum { OWN_OPTIONS = 8, MOST_OPTIONS = 64, NAME_SIZE = 40 };
-
-/* Every key of the table is an option, "--sample-rate-Hz 50000". */
-struct options {
-  struct eo_option option[MOST_OPTIONS];
-  char name[MOST_OPTIONS][NAME_SIZE];
-  const char *value[MOST_OPTIONS];
-};
-
-static void make_options(struct request *request, struct options *options)
+static void add_options(struct request *request)
 {
-  const struct eo_option own[OWN_OPTIONS] = {
-      {.name = "--design", .value = &request->design_file}, {.name = "-o", .value = &request->output},
-      {.name = "--truth", .value = &request->truth},        {.name = "--settings", .value = &request->settings},
-      {.name = "--torque", .value = &request->torque},      {.name = "--speed", .value = &request->speed},
-      {.name = "--data", .value = &request->data},          {.name = "--no-cache", .flag = &request->no_cache}};
-  memcpy(options->option, own, sizeof own);
-  for (int i = 0; i < eo_rig_table.count; i++) {
-    snprintf(options->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
-    for (char *c = options->name[i]; *c; c++)
-      *c = *c == '_' ? '-' : *c;
-    options->option[OWN_OPTIONS + i] = (struct eo_option){.name = options->name[i], .value = &options->value[i]};
-  }
-  options->option[OWN_OPTIONS + eo_rig_table.count] = (struct eo_option){.name = NULL};
+  struct eo_table_options *options = &request->options;
+  eo_table_options_add(options, &eo_rig_table);
+  const struct eo_option own[] = {{.name = "--design", .value = &request->design_file},
+                                  {.name = "-o", .value = &request->output},
+                                  {.name = "--truth", .value = &request->truth},
+                                  {.name = "--settings", .value = &request->settings},
+                                  {.name = "--torque", .value = eo_table_options_text(options, "torque_Nm")},
+                                  {.name = "--speed", .value = eo_table_options_text(options, "speed_rpm")},
+                                  {.name = "--data", .value = &request->data},
+                                  {.name = "--no-cache", .flag = &request->no_cache}};
+  for (size_t i = 0; i < sizeof own / sizeof own[0]; i++)
+    eo_table_options_add_own(options, own[i]);
 }
 
-/* An option as the JSON value its key would have; what is no number stays text, for the table to refuse. */
-static json_t *value_of(const struct eo_field *field, const char *text)
+/* *document: owned, what --settings and the options say. */
+static enum eo_code load_settings(const struct request *request, json_t **document, struct eo_error *error)
 {
-  char *end;
-  if (field->kind == EO_FIELD_FLAG && (strcmp(text, "yes") == 0 || strcmp(text, "no") == 0))
-    return json_boolean(text[0] == 'y');
-  if (field->kind == EO_FIELD_CHOICE)
-    return json_string(text);
-  double number = strtod(text, &end);
-  bool whole = field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
-  if (*end || end == text || !isfinite(number))
-    return json_string(text);
-  return whole ? eo_json_whole(number) : json_real(number);
+  *document = request->settings ? eo_json_load(request->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
+  if (!*document)
+    return request->settings ? error->code : eo_error_memory(error);
+  return eo_table_options_put(&request->options, *document, error);
 }
 
-static json_t *settings_document(struct request *request, const struct options *options, struct eo_error *error)
+static bool read_settings(struct request *request, int *status)
 {
-  json_t *document = request->settings ? eo_json_load(request->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
-  bool failed = false;
-  for (int i = 0; i < eo_rig_table.count && document; i++) {
-    const struct eo_field *field = &eo_rig_table.field[i];
-    const char *text = options->value[i];
-    if (!text && strcmp(field->key, "torque_Nm") == 0)
-      text = request->torque;
-    if (!text && strcmp(field->key, "speed_rpm") == 0)
-      text = request->speed;
-    if (text)
-      eo_json_put(document, field->key, value_of(field, text), &failed);
-  }
-  if (failed)
-    eo_error_memory(error);
-  return failed ? (json_decref(document), NULL) : document;
-}
-
-static bool read_settings(struct request *request, const struct options *options, int *status)
-{
-  struct eo_error error = {0};
+  struct eo_error error;
   struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = faults ? settings_document(request, options, &error) : NULL;
-  *status = EO_EXIT_DONE;
-  if (!document)
-    *status = eo_app_fail(request->settings, error.code ? &error : (eo_error_memory(&error), &error));
-  else
+  json_t *document = NULL;
+  enum eo_code code = faults ? load_settings(request, &document, &error) : eo_error_memory(&error);
+  if (!code)
     eo_table_decode(&eo_rig_table, document, NULL, &request->rig, faults);
-  if (document && faults->count)
-    *status = eo_app_fail_all(request->settings, faults);
+  *status = code            ? eo_app_fail(request->settings, &error)
+            : faults->count ? eo_app_fail_all(request->settings, faults)
+                            : EO_EXIT_DONE;
   json_decref(document);
   free(faults);
   return *status == EO_EXIT_DONE;
@@ -173,29 +138,30 @@ static int run_request(struct request *request)
   return code ? eo_app_fail(code == EO_ERROR_INPUT ? request->design_file : NULL, &error) : EO_EXIT_DONE;
 }
 
-static int run(const struct eo_command *command, int argc, char **argv)
+static int run_named(struct request *request)
 {
-  struct request *request = calloc(1, sizeof *request);
-  struct options *options = calloc(1, sizeof *options);
   struct eo_error error;
-  const char *operand;
-  int operands, status;
-  if (!request || !options) {
-    status = eo_app_fail_memory();
-    goto out;
-  }
-  make_options(request, options);
-  if (!eo_app_arguments(command, argc, argv, options->option, 0, 0, &operand, &operands, &status))
-    goto out;
+  int status;
   if (!request->design_file || !request->output) {
     eo_error_set(&error, EO_ERROR_INPUT, "", "A rig needs --design FILE and -o FILE.");
-    status = eo_app_fail(NULL, &error);
-  } else if (read_settings(request, options, &status) &&
-             eo_app_load_design(request->design_file, &request->design, &request->geometry, NULL, &status)) {
-    status = run_request(request);
+    return eo_app_fail(NULL, &error);
   }
-out:
-  free(options);
+  if (read_settings(request, &status) &&
+      eo_app_load_design(request->design_file, &request->design, &request->geometry, NULL, &status))
+    status = run_request(request);
+  return status;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  const char *operand;
+  int operands, status;
+  struct request *request = eo_app_request(sizeof *request, &status);
+  if (!request)
+    return status;
+  add_options(request);
+  if (eo_table_options_read(&request->options, command, argc, argv, 0, 0, &operand, &operands, &status))
+    status = run_named(request);
   free(request);
   return status;
 }
@@ -203,18 +169,11 @@ out:
 const struct eo_command eo_command_rig = {
     "rig", "--design FILE --torque T --speed S -o FILE [--truth FILE] [--KEY VALUE]...",
     "a synthetic recording with known truth",
-    "Simulates the design at a torque (N m, on the pinion) and speed (rpm) and writes what two encoders would record. "
-    "--truth writes a case file\n"
-    "for easeoff verify beside it. Every key of the settings is an option, for instance --sample-rate-Hz 50000 "
-    "--output sine-cosine\n"
-    "--pinion-lines 200 --fault slip --fault-row 5000 --separator semicolon --decimal-comma yes; --settings FILE.json "
-    "holds them as JSON:\n"
-    "turns, sample_rate_Hz, noise_urad, jitter_us, skew_us, speed_drift, speed_swing, pinion_eccentricity_um, "
-    "gear_eccentricity_um, pinion_lines,\n"
-    "gear_lines, interpolation, output (angles, counts, sine-cosine, pulses), wrapped, radians, track_amplitude_V, "
-    "track_offset, track_gain,\n"
-    "track_phase_deg, track_noise_mV, track_step_mV, fault, fault_row, fault_size, seed, separator, heading, "
-    "decimal_comma, byte_order_mark,\n"
-    "carriage_return, end, unmodified, harmonics. The same settings give the same bytes.\n\n" EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n",
+    "Simulates the design at a torque (N m, on the pinion) and a speed (rpm, of the pinion), and writes what two "
+    "encoders would\n"
+    "record. --truth writes a case file for easeoff verify as well. The same settings give the same "
+    "bytes.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n\n"
+    "Keys of --settings FILE (JSON). Each is an option too, with dashes in place of underscores: \"sample_rate_Hz\" "
+    "is\n"
+    "--sample-rate-Hz 50000, and what is true or false takes yes or no: --wrapped yes.\n",
     run};

@@ -129,7 +129,7 @@ static enum eo_code serve(struct request *request, struct eo_error *error)
                                          .limits = own->work};
   block_signals(&signals);
   enum eo_code code = eo_service_new(&service, &settings, error);
-  struct eo_http_settings web = {.listen = *own->listen ? own->listen : "127.0.0.1:8080",
+  struct eo_http_settings web = {.listen = own->listen,
                                  .token = request->token.data,
                                  .allow_anyone = own->allow_anyone,
                                  .host = {or_null(own->host)},
@@ -182,20 +182,24 @@ const struct eo_command eo_command_serve = {
     "[--config FILE] [--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | "
     "--allow-anyone] [--host NAME] [--web DIR] [--threads N] [--launcher COMMAND] [--quiet] [--KEY VALUE ...]",
     "the page and the API, until SIGTERM or Ctrl-C",
-    "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. "
-    "The address is printed on standard output; requests, jobs\n"
-    "and errors go to standard error as JSON lines (with --quiet errors alone).\n\n"
-    "An address that others can reach needs a token, which every client then "
-    "has to give: the first line of --token-file, or\n"
-    "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as "
-    "clients call it, when that is neither localhost nor a\n"
-    "plain address and there is no token.\n\n"
-    "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
-    "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-    "--launcher \"mpirun -n 64 --hostfile F\" (or srun, or a script) runs all jobs but preparations: the command is "
-    "started with\n"
-    "easeoff optimize|study|tolerance --work N --data DIR behind it, on the same data folder.\n\n"
-    "A service manager that gives $NOTIFY_SOCKET hears when requests are "
-    "answered. On SIGTERM, SIGHUP and Ctrl-C running jobs are parked; they go on\n"
-    "when the server starts again.\n",
+    "Prints its address on standard output; requests, jobs and errors go to standard error as JSON lines (with "
+    "--quiet\n"
+    "errors only). The page's files are read from --web DIR, else from $EASEOFF_WEB, else from where they were "
+    "installed.\n"
+    "\n"
+    "An address that others can reach needs a token, which every client has to give: the first line of --token-file, "
+    "or\n"
+    "$EASEOFF_TOKEN. With --allow-anyone the server asks for none. --host names the server as clients call it; it is\n"
+    "needed when there is no token and that name is neither localhost nor a plain address.\n"
+    "\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP "\n"
+    "--launcher \"mpirun -n 64 --hostfile F\" (or srun, or a script) runs all jobs except preparations: the server "
+    "starts\n"
+    "that command with easeoff optimize|study|tolerance --work N --data DIR behind it, on the same data folder.\n"
+    "\n"
+    "Where systemd starts the server as a service of Type=notify, the server tells it (through $NOTIFY_SOCKET) when "
+    "it\n"
+    "answers requests. SIGTERM, SIGHUP and Ctrl-C stop running jobs; they go on when the server starts again.\n"
+    "\n"
+    "Keys of --config FILE (JSON). Each is an option too, with dashes in place of underscores: \"queued_jobs\" is\n"
+    "--queued-jobs N.\n",
     run};

@@ -9,8 +9,9 @@
 #include "service/service.h"
 
 struct eo_serve_settings {
-  char listen[120], data[2000], token_file[2000], host[256], web[2000], launcher[1000]; /* "": not said */
-  int threads;                                                                          /* 0: not said */
+  char listen[120], data[2000], token_file[2000], host[256], web[2000],
+      launcher[1000]; /* "": not said; listen has its default */
+  int threads;        /* 0: not said */
   bool allow_anyone, quiet;
   struct eo_http_limits limits;
   struct eo_service_limits work;

@@ -128,9 +128,32 @@ refuses "Between 1 and" measure "$design"
 refuses "/layout/lines" measure "$design" "$folder/one.csv" --layout '{"lines": -5}'
 refuses "/layout/colums: Unknown key" measure "$design" "$folder/one.csv" --layout '{"colums": {}}'
 refuses "has no column \"nix\"" measure "$design" "$folder/one.csv" --layout '{"columns": {"pinion": "nix"}}'
-refuses "\"modified\" or \"unmodified\"" measure "$design" "$folder/one.csv" --label best
-refuses "no positive number" measure "$design" "$folder/one.csv" --torque 0
+refuses "/label: \"best\"" measure "$design" "$folder/one.csv" --label best
+refuses "/torque_Nm: 0 is outside" measure "$design" "$folder/one.csv" --torque 0
 refuses "unknowns/colour" measure "$design" "$folder/one.csv" --update '{"unknowns": {"colour": [1, 2]}}'
+refuses "/to_s: Must be after" measure "$design" "$folder/one.csv" --from 3 --to 2
+refuses "/part: 99 is outside" measure "$design" "$folder/one.csv" --part 99
+
+# A row of a list is read as strictly as an upload, and a fault names the row and the key.
+row() # KEYS TEXT
+{
+  printf '{"measurements": [{"file": "one.csv"}, {"file": "one.csv", %s}]}' "$1" >"$folder/rows.json"
+  refuses "$2" measure "$design" --list "$folder/rows.json"
+}
+row '"torque_Nm": -828' "/measurements/1/torque_Nm: -828 is outside"
+row '"speed_rpm": "2000"' "/measurements/1/speed_rpm: Must be a number"
+row '"lable": "unmodified"' "/measurements/1/lable: Unknown key"
+row '"from_s": 3, "to_s": 2' "/measurements/1/to_s: Must be after"
+echo '{"measurements": [{"label": "modified"}]}' >"$folder/rows.json"
+refuses "/measurements/0/file" measure "$design" --list "$folder/rows.json"
+echo '{"measurements": [{"file": "one.csv"}], "torque_Nm": 828}' >"$folder/rows.json"
+refuses "/torque_Nm: Unknown key" measure "$design" --list "$folder/rows.json" --torque 828
+echo '{"measurements": [{"file": "relieved828.csv", "harmonics": 3}, {"file": "plain828.csv", "label": "unmodified"}]}' >"$folder/rows.json"
+measure --list "$folder/rows.json" --torque 828 --harmonics 2 --no-prediction --json
+[ $? -eq 0 ] && [ "$("$numbers" "$folder/out" /measurements/\*/result/mesh/order | tr ',' '\n' | wc -l)" -eq 5 ]
+result $? "a row of its own harmonics, another as the options say"
+"$EASEOFF" measure --help | grep -q "^  run_up .*left out" && "$EASEOFF" rig --help | grep -q "^  gear_delay_us .*default 0"
+result $? "the help of measure and rig prints their tables"
 refuses "goes with --update" measure "$design" "$folder/one.csv" --apply x.json
 refuses "Unknown key\|not JSON\|expected\|JSON" measure "$design" "$folder/one.csv" --layout '{"lines" 5}'
 measure "$folder/one.csv" --no-prediction
