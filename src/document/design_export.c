@@ -14,7 +14,7 @@
 #include "format/json.h"
 #include "gear/surface.h"
 
-enum { PROFILE_POINTS = 21, FACE_POINTS = 31, CHART_POINTS = 61 };
+enum { CHART_POINTS = 61 };
 
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
@@ -61,7 +61,7 @@ static double pitch_angle(const struct eo_geometry *geometry, int member)
   return atan2(point.position[0], point.position[1]);
 }
 
-static const int usual_grid[2] = {PROFILE_POINTS, FACE_POINTS};
+static const int usual_grid[2] = {EO_EXPORT_ROWS, EO_EXPORT_COLUMNS};
 
 static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
                        flank_function *function, struct eo_text *text)

@@ -14,11 +14,14 @@ struct eo_export {
   const char *type;    /* media type */
   const char *ending;  /* "csv" */
   void (*write)(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
-  /* the same with other rows (from root to tip) and columns (over the face) than 21 and 31; NULL: it has no grid */
+  /* the same with a grid of its own: rows from root to tip, columns over the face; NULL: it has no grid */
   void (*write_grid)(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
                      struct eo_text *text);
 };
 
+/* The usual grid; as text in a help too. */
+#define EO_EXPORT_ROWS 21
+#define EO_EXPORT_COLUMNS 31
 enum { EO_EXPORT_GRID_LEAST = 2, EO_EXPORT_GRID_MOST = 401 };
 
 /* NULL after the last; NULL: there is none of this name. */

@@ -102,8 +102,10 @@ const struct eo_route eo_routes_export[] = {
      .gives =
          "200 text/csv, 200 ResolvedDesign, 200 application/xml, 200 application/zip, 200 model/step, 200 model/stl, "
          "200 application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-     .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 21, NULL, "points of a flank from root to tip"},
-               {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"},
+     .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, EO_EXPORT_ROWS, NULL,
+                "points of a flank from root to tip"},
+               {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, EO_EXPORT_COLUMNS, NULL,
+                "points of a flank over the face"},
                EO_UNITS_QUERY},
      .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design. "
                 "Easeoff-Notes says which face of a STEP file is further off than 5 nm."},

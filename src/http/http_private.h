@@ -12,7 +12,6 @@
 #include "http/http.h"
 
 enum {
-  EO_MOST_CONNECTIONS = 4000,
   EO_IDLE_SECONDS = 30,         /* between requests, for all header fields of one, for a pause in a body */
   EO_BODY_SECONDS = 120,        /* for a whole body, and for the client to take a reply */
   EO_SLOWEST_READER = 64 << 10, /* bytes per second: a long reply has more time */

@@ -6,6 +6,8 @@
 
 #include "format/table.h"
 
+enum { EO_MOST_CONNECTIONS = 4000 }; /* of all clients together */
+
 enum eo_log_level { EO_LOG_ERROR, EO_LOG_WARNING, EO_LOG_INFO };
 
 struct eo_http_limits {
