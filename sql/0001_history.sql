@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- What was truly evaluated. SI units; a value that was not computed or is not finite is NULL.
 
 -- Everything an evaluation depends on but the modification: two designs that share it share their evaluations.

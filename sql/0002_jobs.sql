@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- Optimization jobs: what was asked for, how far it came, and what it gave.
 CREATE TABLE job (
   id               INTEGER PRIMARY KEY AUTOINCREMENT,

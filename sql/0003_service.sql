@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- Stored designs, and jobs as the server's queue knows them.
 CREATE TABLE design (
   id       INTEGER PRIMARY KEY AUTOINCREMENT,

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- Recordings of a rig. A row is there only once its files lie complete in the data folder, under measurements/ID/, and were read.
 CREATE TABLE measurement (
   id            INTEGER PRIMARY KEY AUTOINCREMENT,

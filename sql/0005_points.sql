@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- Where in the unit cube over its variables an evaluation was asked for, bit for bit: a study that knows earlier rows finds the same points again, also
 -- when the job that asked for them has been removed.
 CREATE TABLE point (

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- Studies of variants. The table of jobs once more with their kinds, and with what a study varies.
 CREATE TABLE job_new (
   id               INTEGER PRIMARY KEY AUTOINCREMENT,

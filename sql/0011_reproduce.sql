@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
 -- The paper once more, ordered like any job. The table of jobs once more with this kind.
 CREATE TABLE job_new (
   id               INTEGER PRIMARY KEY AUTOINCREMENT,

@@ -58,7 +58,7 @@ reads python3 'every link inside leads somewhere' python3 tests/doc/links.py
 find "$MANUAL" -name '*.1' >"$list"
 # shellcheck disable=SC2016
 reads groff 'the manual pages are well formed' sh -c '! groff -man -ww -Tutf8 -z "$@" 2>&1 | grep .' sh
-files '*.c' '*.h' '*.cpp' '*.sh' '*.py' '*.js' '*.mjs' '*.am'
+files '*.c' '*.h' '*.cpp' '*.sh' '*.py' '*.js' '*.mjs' '*.am' 'sql/*.sql' 'web/src/*.html' 'docker/*'
 reads grep 'each file states its licence' sh -c '! grep -L "SPDX-License-Identifier: GPL-3.0-or-later" "$@" | grep .' sh
 echo "1..$count"
 exit $failed
