@@ -165,14 +165,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_analyze = {
     "analyze", "DESIGN.json [--json] [--csv DIR] [--units mm|inch] [--pitch FILE] [--data DIR] [--no-cache]",
-    "one true evaluation of a design, everything it computed",
-    "Without --json or --csv, a summary for people: every load case "
-    "unmodified and as designed, the objectives, notes, where the\n"
-    "time went. --json prints the result document; --csv writes its curves "
-    "as files into DIR, which is made when missing. --pitch takes the "
-    "deviations of single teeth from FILE, a table of a measuring\n"
-    "machine with headings member, end, flank, tooth and index_um or "
-    "single_um, in place of the design's; its gear_tooth and positions stay. --units inch shows lengths in\n"
-    "inches and thousandths of an inch, in documents by keys and in CSV by "
-    "heads that end in _in and _thou.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    "one true evaluation of a design, with everything it computed",
+    "Without --json or --csv it prints a summary: every load case for the unmodified pair and for the design, the\n"
+    "objectives, notes, and where the time went. --json prints the result document. --csv writes the curves as files\n"
+    "into DIR, which is made when it is missing. --pitch takes the deviations of single teeth from FILE, a table of a\n"
+    "measuring machine with the headings member, end, flank, tooth and index_um or single_um, in place of the "
+    "design's; its gear_tooth and positions stay.\n"
+    "--units inch shows lengths in inches and thousandths of an inch: in documents the keys, in CSV the headings end "
+    "in\n"
+    "_in and _thou.\n"
+    "\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

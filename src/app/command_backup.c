@@ -82,19 +82,22 @@ static int run_restore(const struct eo_command *command, int argc, char **argv)
   return code ? eo_app_fail(NULL, &error) : eo_app_print(&text);
 }
 
-const struct eo_command eo_command_backup = {"backup", "FILE [--data DIR] [--design N]",
-                                             "designs, recordings, jobs and history in one file, while a server runs",
-                                             "Writes a tar.gz archive that was not there: the database as it is at one "
-                                             "moment, every recording, and the SHA-256 of\n"
-                                             "each. --design takes one design with its recordings alone, to hand it "
-                                             "on. Prepared gear pairs are left out: they are\n"
-                                             "computed again.\n\n" EO_APP_HISTORY_HELP,
-                                             run_backup};
+const struct eo_command eo_command_backup = {
+    "backup", "FILE [--data DIR] [--design N]",
+    "designs, recordings, jobs and history in one file, also while a server runs",
+    "Writes a tar.gz archive, and never over a file that is there: the database as it is at one moment, every "
+    "recording,\n"
+    "and the SHA-256 of each. --design N takes only that design and its recordings, to hand it on. Prepared gear "
+    "pairs\n"
+    "are left out, because they can be computed again.\n"
+    "\n" EO_APP_HISTORY_HELP,
+    run_backup};
 
 const struct eo_command eo_command_restore = {
-    "restore", "FILE [--data DIR]", "what easeoff backup wrote, back into a data folder",
-    "Compares every sum first. Into a folder without a database everything is restored. Into one that has a database,\n"
-    "also while a server works on it, designs and recordings are added under numbers of their own; what is there "
-    "already\n"
-    "stays once, and nothing is overwritten or removed.\n\n" EO_APP_HISTORY_HELP,
+    "restore", "FILE [--data DIR]", "puts what easeoff backup wrote back into a data folder",
+    "Compares every SHA-256 first. Into a folder without a database it restores everything. Into one that has a "
+    "database,\n"
+    "also while a server works on it, it adds designs and recordings under new numbers; what is there already stays\n"
+    "once, and nothing is overwritten or removed.\n"
+    "\n" EO_APP_HISTORY_HELP,
     run_restore};

@@ -50,14 +50,17 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_design = {
     "design", "DESIGN.json [--json] [--complete] [--units mm|inch]",
-    "completes a terse design: every derived value, and what was assumed",
-    "A design needs its teeth, module, helix angle, face width and a load case; all else follows from the pair by "
-    "rules "
-    "of the\nfield, and each may be stated in other ways (easeoff stage geometry --help lists the keys): diametral "
-    "pitch "
-    "or transverse\nmodule; centre distance, working pressure angle or sum of the profile shifts; shifts in mm; tip "
-    "diameter or addendum;\npower instead of torque. --json prints the document that POST /api/v1/check returns, less "
-    "what the service knows beyond\nit; --complete the completed design alone. --units inch shows lengths in inches "
-    "and "
-    "micrometres in thousandths of an inch;\ndocuments keep mm.\n",
+    "completes a short design: every derived value, and what was assumed",
+    "A design needs its teeth, module, helix angle, face width and a load case. All else follows from the pair by "
+    "rules\n"
+    "of the field, and each value may be stated in other ways (easeoff stage geometry --help lists the keys): "
+    "diametral\n"
+    "pitch or transverse module; centre distance, working pressure angle or sum of the profile shifts; shifts in mm; "
+    "tip\n"
+    "diameter or addendum; power instead of torque.\n"
+    "\n"
+    "--json prints the document that POST /api/v1/check returns, without what only the service adds; --complete "
+    "prints\n"
+    "the completed design and nothing else. --units inch shows lengths in inches and micrometres in thousandths of an\n"
+    "inch; documents keep mm.\n",
     run};

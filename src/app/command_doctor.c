@@ -77,11 +77,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
 }
 
 const struct eo_command eo_command_doctor = {
-    "doctor", "[--data DIR] [--trust]", "looks at everything in the data folder and says what is damaged",
-    "Compares every page of the database, every row that has a sum, and every recording with what was written, and "
-    "says\n"
-    "what is lost and what can be computed again; nothing is changed. A server may run meanwhile. Exit status 2 when\n"
-    "something is lost or has to be computed again.\n\n"
-    "--trust first takes the pages of the database for right as they are, after another program has written them and\n"
-    "while no server runs.\n\n" EO_APP_HISTORY_HELP,
+    "doctor", "[--data DIR] [--trust]", "checks everything in the data folder and says what is damaged",
+    "Compares every page of the database, every row that has a check sum, and every recording with what was written, "
+    "and\n"
+    "says what is lost and what can be computed again. It changes nothing, and a server may run meanwhile. Exit status "
+    "2\n"
+    "when something is lost or has to be computed again.\n"
+    "\n"
+    "--trust first accepts the pages of the database as they are, after another program has written them and while no\n"
+    "server runs.\n"
+    "\n" EO_APP_HISTORY_HELP,
     run};

@@ -30,4 +30,5 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_example = {
     "example", "[NAME]", "prints a design to start from; without a name, the list of examples",
-    "The design is complete: every key with its value, null where the value is derived from the others.\n", run};
+    "The design is complete: it has every key with its value, and null where the value is derived from the others.\n",
+    run};

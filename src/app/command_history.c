@@ -222,16 +222,17 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_history = {
     "history", "list | show JOB | export PROBLEM | export --job JOB | import DIR | prune  [--data DIR] [--json]",
     "what was evaluated and searched before",
-    "  list            problems (what an evaluation depends on but the modification) and jobs\n"
-    "  show JOB        the result of a search, as optimize printed it\n"
-    "  export PROBLEM  every true row as comma-separated values: modification, values per load case\n"
-    "  export --job JOB  the path of a search: each individual, whether computed, known or predicted\n"
-    "  import DIR      adds the evaluations and the rows of studies of another data folder; what is here stays. The "
-    "same "
-    "study or search\n"
-    "                  once more then finds them\n"
-    "  prune           removes predictions of searches that have ended; or instead\n"
-    "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check "
-    "sum),\n"
-    "    --unused (rows of studies and tolerance analyses that no job has any more)\n\n" EO_APP_HISTORY_HELP,
+    "  list              problems (all that an evaluation depends on except the modification) and jobs\n"
+    "  show JOB          the result of a search, as optimize printed it\n"
+    "  export PROBLEM    every true row as comma-separated values: modification, values per load case\n"
+    "  export --job JOB  the path of a search: each individual, and whether it was computed, known or predicted\n"
+    "  import DIR        adds the evaluations and the rows of studies of another data folder; what is here stays. The\n"
+    "                    same study or search, run again, then finds them\n"
+    "  prune             removes predictions of searches that have ended; or instead\n"
+    "    --predictions   all predictions (with other options; alone it is the default)\n"
+    "    --outdated      rows of an older model\n"
+    "    --problem N     a problem with its jobs\n"
+    "    --damaged       rows with a wrong check sum\n"
+    "    --unused        rows of studies and tolerance analyses that no job has any more\n"
+    "\n" EO_APP_HISTORY_HELP,
     run};

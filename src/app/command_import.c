@@ -137,16 +137,18 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_import = {
     "import", "FILE [--pair N] [--flank left|right] [--transverse] [--reversed] [--json] [-o DESIGN.json]",
-    "a design out of a REXS model or a table of another program",
-    "REXS 1.0 to 2.0.0, as XML, JSON or zip. A model with several gear pairs is listed, and one is chosen by its "
-    "number. "
-    "What the file\n"
-    "does not state takes its default; what was assumed, refused or not used is told by name on standard error.\n\n"
+    "a design from a REXS model or a table of another program",
+    "REXS 1.0 to 2.0.0, as XML, JSON or zip. A model with several gear pairs is listed, and --pair N chooses one of "
+    "them.\n"
+    "What the file does not state takes its default. On standard error the program names what was assumed, refused or "
+    "not\n"
+    "used.\n"
+    "\n"
     "  --flank       which flank of the driver is loaded, where the file leaves it open\n"
-    "  --transverse  amounts of modifications stand in the transverse section; else they are normal to the flank\n"
+    "  --transverse  amounts of modifications are in the transverse section; else they are normal to the flank\n"
     "  --reversed    a positive helix slope takes material off towards the datum face; else towards the other one\n"
-    "  --json        the whole answer as the API gives it, the design in it\n\n"
-    "GDE (VDI/VDE 2610), KISSsoft and MASTA files and those of measuring and grinding machines have no public layout: "
-    "export REXS or a\n"
-    "table from the program that made them.\n",
+    "  --json        the whole answer as the API gives it, with the design in it\n"
+    "\n"
+    "GDE (VDI/VDE 2610), KISSsoft and MASTA files and those of measuring and grinding machines have no public layout:\n"
+    "export REXS or a table from the program that made them.\n",
     run};

@@ -239,18 +239,19 @@ const struct eo_command eo_command_optimize = {
     "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--cache DIR] [--fresh] [--restart] "
     "[--front FILE] [--json] | --work N",
     "searches the modification that runs quietest over the duty cycle",
-    "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
-    "whatever their\n"
-    "weights, bounds and algorithm. Ctrl-C prints the best so far. The same search once more takes up an interrupted "
-    "one where it stopped\n"
-    "and gives the result of a finished one again; --restart searches on.\n\n"
+    "Every evaluation is kept in the history (see easeoff history), and later searches of the same pair use it, "
+    "whatever\n"
+    "their weights, bounds and algorithm. Ctrl-C prints the best so far. The same search, run again, goes on where it "
+    "was\n"
+    "interrupted, or gives its result again when it was finished; --restart searches on.\n"
+    "\n"
     "  --algorithm NAME  credibility-ga, fpga, ga or nsga2, in place of the design's\n"
-    "  --budget N        most true evaluations, in place of the design's true_evaluations\n"
+    "  --budget N        largest number of true evaluations, in place of the design's true_evaluations\n"
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
-    "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
+    "  --fresh           the algorithm learns nothing from earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
     "  --front FILE      the Pareto front of nsga2 as comma-separated values (-: standard output)\n"
     "  --json            the result document, as the server returns it\n"
-    "  --work N          works on that job of a server's queue\n\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP
-        EO_APP_DATA_HELP,
+    "  --work N          works on job N of a server's queue\n"
+    "\n" EO_APP_CREW_HELP EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
     run};

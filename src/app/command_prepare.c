@@ -209,8 +209,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_prepare = {
     "prepare", "DESIGN.json [--data DIR | --cache DIR] [--memory-MB N] [--seconds N] [--follow]",
-    "finite elements of a gear pair, kept for all who ask later",
-    "Says what it will take, computes the flexibility of the pair and keeps it. --memory-MB and --seconds (of the\n"
-    "processor) end it when it takes more; --follow prints progress as lines, as the server reads "
-    "them.\n\n" EO_APP_DATA_HELP,
+    "computes the finite elements of a gear pair and keeps them for later commands",
+    "Says what the preparation will take, computes the flexibility of the pair and keeps it. --memory-MB and "
+    "--seconds\n"
+    "(processor time) end it when it takes more. --follow prints progress as lines, for the server to read.\n"
+    "\n" EO_APP_DATA_HELP,
     run};

@@ -181,10 +181,10 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_report = {
     "report", "DESIGN.json [-o FILE.html|FILE.pdf] [--units mm|inch] [--data DIR] [--no-cache]",
-    "what is signed and sent: inputs, standards, factors, figures, verdict",
-    "One HTML file that needs nothing else; without -o it goes to standard output. The same design gives the same "
-    "bytes, here and\n"
-    "from POST /api/v1/report. A name that ends in .pdf is printed by Chromium, where it is "
-    "installed.\n--units inch: lengths in inches and thousandths, in tables, figures and "
-    "sentences.\n\n" EO_APP_DATA_HELP,
+    "the report of a design: inputs, standards, factors, figures, verdict",
+    "Writes one HTML file that needs no other file; without -o it goes to standard output. The same design gives the "
+    "same\n"
+    "bytes, here and from POST /api/v1/report. If the name ends in .pdf, Chromium prints it, where it is installed.\n"
+    "--units inch shows lengths in inches and thousandths, in tables, figures and sentences.\n"
+    "\n" EO_APP_DATA_HELP,
     run};

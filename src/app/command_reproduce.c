@@ -86,11 +86,13 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_reproduce = {
     "reproduce", "[--quick] [--json] [--csv DIR] [--html FILE] [--data DIR] [--threads N]",
-    "the paper's tables and figures beside ours",
-    "Runs the paper's pair unmodified, with Table 3 as given, and optimizes its two cases with the paper's algorithm, "
-    "the plain genetic\n"
-    "algorithm and ours; then prints every number of the paper beside ours and whether trend and value agree. Some "
-    "minutes the first\n"
-    "time; the history answers from then on. --quick takes a tenth of the generations. --html writes one page with all "
-    "figures.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    "the paper's tables and figures compared with ours",
+    "Runs the paper's pair unmodified and with Table 3 as given, and optimizes its two cases with the paper's "
+    "algorithm,\n"
+    "the plain genetic algorithm and ours. Then it prints every number of the paper next to ours, and whether trend "
+    "and\n"
+    "value agree. This takes some minutes the first time; after that the history has the answers. --quick takes a "
+    "tenth\n"
+    "of the generations. --html writes one page with all figures.\n"
+    "\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
     run};

@@ -117,7 +117,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_stage = {
     "stage", "[NAME INPUT.json]", "runs one stage of the computation alone; without a name, the list of stages",
-    "easeoff stage NAME --help describes the stage's input and output. A complete design document is an input for "
-    "stages that\n"
-    "need no more than a part of one: easeoff example paper | easeoff stage geometry -\n",
+    "easeoff stage NAME --help describes the stage's input and output. A stage that needs only a part of a design "
+    "takes a\n"
+    "complete design document too: easeoff example paper | easeoff stage geometry -\n",
     run};

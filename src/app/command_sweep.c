@@ -230,16 +230,16 @@ const struct eo_command eo_command_sweep = {
     "DESIGN.json [--torque A:B:N | --vary KEY=A:B:N] [--speed A:B:N] [--json] [--csv FILE] [--threads N] [--data DIR] "
     "[--no-cache]",
     "a design over torque or another of its numbers, over speed or both, compared with the unmodified pair",
-    "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. The axis "
-    "that is not given\n"
-    "stands at the load case with the largest share. --vary takes another number of the design in place of the torque, "
-    "by the name that\n"
-    "a study has for it (modification.pinion.*.tip_relief_um, modification.pinion.left.grid_um.3.4), as long as the "
-    "gear pair stays as\n"
-    "it is. A alone is one value. Loaded contact is solved once per torque; "
-    "every speed is\n"
-    "solved upwards and downwards, and both are shown where they differ (contact loss). --json prints everything as "
-    "columns, --csv\n"
-    "writes a line per point. All cores work unless --threads says otherwise; the numbers do not depend on "
-    "it.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. An axis "
+    "that is\n"
+    "not given has the value of the load case with the largest share. A alone is one value.\n"
+    "\n"
+    "--vary takes another number of the design in place of the torque, by the name that a study has for it\n"
+    "(modification.pinion.*.tip_relief_um, modification.pinion.left.grid_um.3.4); the gear pair has to stay as it is.\n"
+    "\n"
+    "Loaded contact is solved once per torque; every speed is solved upwards and downwards, and both are shown where "
+    "they\n"
+    "differ (contact loss). --json prints everything as columns, --csv writes a line per point. All cores work unless\n"
+    "--threads says otherwise; the numbers do not depend on it.\n"
+    "\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

@@ -257,22 +257,27 @@ out:
 }
 
 const struct eo_command eo_command_verify = {
-    "verify", "CASES.json... [--json]", "computes reference cases and compares them with what is expected",
-    "Each file says its kind. One line per case shows its largest deviation, in tolerances, and one per file how many "
-    "checks each block holds;\n"
-    "--json prints every number.\n\n"
-    "A file is read in full or refused: an unknown kind, block, key or name, a number given as text, a missing number "
-    "and a file or case in which\n"
-    "nothing is checked are faults, told as file:pointer: sentence, and nothing of that file counts. Commentary may "
-    "stand anywhere: about, what, note,\n"
-    "notes, source, remarks, units, conventions, uncertainty, mesh, reference_*.\n\n"
+    "verify", "CASES.json... [--json]", "computes reference cases and compares them with the expected numbers",
+    "Each file names its kind. The program prints one line per case with its largest deviation, in tolerances, and one "
+    "per\n"
+    "file with the number of checks of each block; --json prints every number.\n"
+    "\n"
+    "A file is read in full or refused: an unknown kind, block, key or name, a number given as text, a missing number, "
+    "and\n"
+    "a file or case in which nothing is checked are faults. They are reported as file:pointer: sentence, and nothing "
+    "of\n"
+    "that file counts. These keys may hold comments anywhere: about, what, note, notes, source, remarks, units,\n"
+    "conventions, uncertainty, mesh, reference_*.\n"
+    "\n"
     "A number is within tolerance when |value - expected| is at most the larger of a relative part of |expected| and "
-    "an "
-    "absolute part. The relative\n"
-    "part is what the file states (tol_rel and the like: above 0, below 1) or what the kind of case is known to hold. "
-    "The absolute part is stated in the\n"
-    "file's unit, is the rounding of a printed number, or a part of a scale: the largest number of the same list, the "
-    "mean load. An expected 0 needs it.\n"
-    "Counts and flags agree exactly. What did not converge fails and says so.\n\n"
+    "an\n"
+    "absolute part. The relative part is what the file states (tol_rel and the like: above 0, below 1) or what the "
+    "kind of\n"
+    "case is known to hold. The absolute part is stated in the file's unit, or is the rounding of a printed number, or "
+    "a\n"
+    "part of a scale: the largest number of the same list, the mean load. An expected 0 needs it. Counts and flags "
+    "must\n"
+    "agree exactly. A case that did not converge fails and says so.\n"
+    "\n"
     "Exit status 1 when a number is out of tolerance or a file is refused.\n",
     run};

@@ -110,7 +110,8 @@ const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scena
 static const struct eo_field term[] = {
     OUTPUT(struct eo_objective_term, "a number of the load cases, as tolerance.limits name them"),
     LOAD_CASE(struct eo_objective_term, "the mean over the duty cycle, by share of time"),
-    EO_NUMBER(struct eo_objective_term, weight, "weight", NULL, 0, 1e6, 1, "in the sum J, beside f1, f2 and f3"),
+    EO_NUMBER(struct eo_objective_term, weight, "weight", NULL, 0, 1e6, 1,
+              "in the sum J, in addition to f1, f2 and f3"),
     EO_NUMBER_DERIVED(struct eo_objective_term, scale, "scale", NULL, 1e-9, 1e9,
                       "the unmodified pair's, or 1 with normalise none",
                       "what it is divided by, in the unit of the output"),
@@ -150,9 +151,10 @@ static const struct eo_field objective[] = {
         "2 of more than 4 scatter_pairs, all of them where a front is sought",
         "of scatter_pairs: every flank is looked at with these; of each batch the best go on to all, so many that "
         "this costs less than the first look; as many as scatter_pairs: every flank with all"),
-    EO_INTEGER(struct eo_objective, check_pairs, "check_pairs", 0, 10000, 200,
-               "other pairs as made, on which a search with scatter_pairs ends: what it found beside the unmodified "
-               "pair, with intervals; 0: none"),
+    EO_INTEGER(
+        struct eo_objective, check_pairs, "check_pairs", 0, 10000, 200,
+        "other pairs as made, on which a search with scatter_pairs ends: what it found compared with the unmodified "
+        "pair, with intervals; 0: none"),
     EO_LIST(struct eo_objective, term, terms, "terms", &term_table, 0, EO_MAX_OBJECTIVE_TERMS,
             "further numbers in the sum J, or on the axes of a front"),
     EO_LIST(struct eo_objective, limit, limits, "limits", &limit_table, 0, EO_MAX_OBJECTIVE_LIMITS,

@@ -221,7 +221,7 @@ static void decode_grid(const json_t *object, const struct eo_path *path, struct
   }
   if (!json_is_string(text) || json_object_size(object) > 1 + (kind != NULL)) {
     eo_faults_at(faults, &place,
-                 "A table is a text and stands alone, without u_mm, y_mm and delta_um; kind may stand beside it.");
+                 "A table is a text and stands alone, without u_mm, y_mm and delta_um; kind may stand with it.");
     return;
   }
   eo_error_set(&error, EO_ERROR_MEMORY, NULL, "Not enough memory.");

@@ -35,17 +35,19 @@ static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2]
             "member's tolerance class, or none"),                                                                     \
       EO_SERIES(struct end_document, side.term[EO_TOOTH_PROFILE_SLOPE], "profile_slope_um", &eo_unit_um, MOST_TEETH,  \
                 -1000, 1000, 0,                                                                                       \
-                "C_Halpha of each tooth beside the flank's own, + takes more off at the tip; [] : none"),             \
-      EO_SERIES(struct end_document, side.term[EO_TOOTH_HELIX_SLOPE], "helix_slope_um", &eo_unit_um, MOST_TEETH,      \
-                -1000, 1000, 0,                                                                                       \
-                "C_Hbeta of each tooth beside the flank's own, + takes more off at the face end that meets first "    \
-                "on the drive flank; [] : none"),                                                                     \
+                "C_Halpha of each tooth in addition to the flank's own, + takes more off at the tip; [] : none"),     \
+      EO_SERIES(                                                                                                      \
+          struct end_document, side.term[EO_TOOTH_HELIX_SLOPE], "helix_slope_um", &eo_unit_um, MOST_TEETH, -1000,     \
+          1000, 0,                                                                                                    \
+          "C_Hbeta of each tooth in addition to the flank's own, + takes more off at the face end that meets first "  \
+          "on the drive flank; [] : none"),                                                                           \
       EO_SERIES(struct end_document, side.term[EO_TOOTH_PROFILE_CROWNING], "profile_crowning_um", &eo_unit_um,        \
                 MOST_TEETH, -1000, 1000, 0,                                                                           \
-                "C_alpha of each tooth beside the flank's own, as a barrel, + takes off at root and tip; [] : none"), \
+                "C_alpha of each tooth in addition to the flank's own, as a barrel, + takes off at root and tip; [] " \
+                ": none"),                                                                                            \
       EO_SERIES(struct end_document, side.term[EO_TOOTH_LEAD_CROWNING], "lead_crowning_um", &eo_unit_um, MOST_TEETH,  \
                 -1000, 1000, 0,                                                                                       \
-                "C_beta of each tooth beside the flank's own, + takes off at both face ends; [] : none")
+                "C_beta of each tooth in addition to the flank's own, + takes off at both face ends; [] : none")
 #define TEXT_ROW(help_)                                                                                 \
   {                                                                                                     \
     .key = "csv", .kind = EO_FIELD_TEXT, .flags = EO_FIELD_ELSEWHERE, .count = MOST_TEXT, .help = help_ \

@@ -407,7 +407,7 @@ static const struct eo_outline_row study_rows[] = {
            .there = has_front),
     EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline,
            .write = write_front, .there = has_front),
-    EO_KEY("check", "object", "what was found, and the design it began with, beside the unmodified pair",
+    EO_KEY("check", "object", "what was found, and the design it began with, compared with the unmodified pair",
            .when = "of a robust objective over pairs as made, with check_pairs", .outline = &eo_made_check_outline,
            .write = write_check, .there = has_check),
     EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops, EO_AT(struct source, result.stopped)),

@@ -81,7 +81,7 @@ void eo_sweep_summary(const struct eo_sweep *sweep, const struct eo_design *desi
     eo_text_print(text, "%s\n", design->name);
   eo_text_add(text,
               "Peak-to-peak transmission error, entering impact (worse end) and RMS of the normal acceleration, each "
-              "beside the unmodified pair;\n"
+              "compared with the unmodified pair;\n"
               "RMS of the transverse and rotational acceleration, dynamic factor and contact loss of the design\n\n");
   add_headings(sweep, &sheet);
   for (int i = 0; i < sweep->torques * sweep->speeds; i++)

@@ -53,10 +53,11 @@ static const struct eo_field limit[] = {
 static const struct eo_table limit_table = EO_TABLE("a limit", struct eo_tolerance_limit, limit);
 
 static const struct eo_field tolerance[] = {
-    EO_CHOICE(struct eo_tolerance_settings, preset, "preset", presets, EO_SCATTER_AS_STATED,
-              "inputs beside those stated: iso_class: slopes, form as crownings and shaft angles by ISO 1328-1, the "
-              "tolerance is 2 sigma, cut at 2.5; ground: the tolerance is 3 sigma, reliefs and crownings within 2 um; "
-              "as_stated, as_measured: none"),
+    EO_CHOICE(
+        struct eo_tolerance_settings, preset, "preset", presets, EO_SCATTER_AS_STATED,
+        "inputs in addition to those stated: iso_class: slopes, form as crownings and shaft angles by ISO 1328-1, the "
+        "tolerance is 2 sigma, cut at 2.5; ground: the tolerance is 3 sigma, reliefs and crownings within 2 um; "
+        "as_stated, as_measured: none"),
     EO_CHOICE(struct eo_tolerance_settings, edition, "edition", editions, EO_ISO1328_2013, "of ISO 1328-1"),
     EO_INTEGER(struct eo_tolerance_settings, grade, "class", 0, 12, 5,
                "tolerance class of 2013, or grade of 1995, of the preset and of single teeth"),

@@ -251,7 +251,7 @@ const struct eo_route eo_routes_analysis[] = {
      .rate = EO_RATE_START,
      .csv = true,
      .query = {EO_UNITS_QUERY},
-     .summary = "A design over torque or another of its numbers, over speed, or over both, beside the unmodified pair. "
-                "202 while "
-                "the gear pair is being prepared."},
+     .summary =
+         "A design over torque or another of its numbers, over speed, or over both, compared with the unmodified "
+         "pair. 202 while the gear pair is being prepared."},
     {0}};

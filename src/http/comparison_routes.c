@@ -231,8 +231,9 @@ const struct eo_route eo_routes_comparison[] = {
      .rate = EO_RATE_QUESTION,
      .csv = true,
      .query = {EO_UNITS_QUERY},
-     .summary = "A measurement beside the prediction at its torque and measured speed: rotational acceleration at the "
-                "encoders' end, orders, TE in phase."},
+     .summary =
+         "A measurement compared with the prediction at its torque and measured speed: rotational acceleration at the "
+         "encoders' end, orders, TE in phase."},
     {.method = EO_GET,
      .pattern = "/designs/{id}/comparison",
      .handle = compare_design,
@@ -242,8 +243,9 @@ const struct eo_route eo_routes_comparison[] = {
      .rate = EO_RATE_START,
      .csv = true,
      .query = {EO_UNITS_QUERY},
-     .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with "
-                "their reasons."},
+     .summary =
+         "All measurements of a design compared with the prediction, reductions by the modification, outliers with "
+         "their reasons."},
     {.method = EO_POST,
      .pattern = "/designs/{id}/comparison",
      .handle = compare_what_if,
@@ -264,8 +266,9 @@ const struct eo_route eo_routes_comparison[] = {
      .gives = "200 Fit, 202 Preparing",
      .headers = LANE,
      .rate = EO_RATE_START,
-     .summary = "Inputs that nobody knows, fitted to the measurements of a design (or of `design` in its place) within "
-                "ranges; `design` in the answer holds them, to be put in its place."},
+     .summary =
+         "Inputs that are not known, fitted to the measurements of a design (or of `design` in its place) within "
+         "ranges; `design` in the answer holds them, to be put in its place."},
     {.method = EO_POST,
      .pattern = "/rig",
      .handle = record,

@@ -120,9 +120,9 @@ const struct eo_route eo_routes_reproduction[] = {
      .pattern = "/reproductions",
      .handle = add,
      .name = "addReproduction",
-     .summary =
-         "Orders the paper's tables and figures beside ours, as `easeoff reproduce` computes them: some minutes, "
-         "less when the history knows them. Its job is listed with the others.",
+     .summary = "Orders the paper's tables and figures compared with ours, as `easeoff reproduce` computes them: some "
+                "minutes, "
+                "less when the history knows them. Its job is listed with the others.",
      .takes = "ReproductionOrder",
      .order = &eo_reproduction_order_table,
      .takes_nothing = true,
