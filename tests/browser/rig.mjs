@@ -107,7 +107,7 @@ await chapter('look', async () => {
 });
 
 await chapter('fit', async () => {
-  await page.locator('summary', { hasText: 'Fit what nobody knows' }).click();
+  await page.locator('summary', { hasText: 'Fit unknown inputs' }).click();
   await page.getByRole('button', { name: 'Fit to the measurements' }).click();
   const found = page.locator('section[aria-label="Fit"] tbody tr').first();
   await found.waitFor();

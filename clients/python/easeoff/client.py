@@ -191,7 +191,7 @@ class Client:
     def sweep(
         self, request: Mapping[str, Any], *, units: str | None = None, easeoff_lane: str | None = None
     ) -> doc.Sweep:
-        """A design over torque or another of its numbers, over speed or both, beside the unmodified pair. units: as in analyze().
+        """A design over torque or another of its numbers, over speed or both, compared with the unmodified pair. units: as in analyze().
 
         request: {"design": .., "speed_rpm": {"from": .., "to": .., "points": ..}, "torque_Nm": the same}; in place of
         torque_Nm "vary": {"key": "modification.pinion.left.grid_um.3.4", "from": .., "to": .., "points": ..}.
@@ -274,7 +274,7 @@ class Client:
     def add_reproduction(
         self, order: Mapping[str, Any] | None = None, idempotency_key: str | None = None
     ) -> doc.Job:
-        """Orders the paper's tables and figures beside ours: {"quick": True}."""
+        """Orders the paper's tables and figures compared with ours: {"quick": True}."""
         headers = {"Idempotency-Key": idempotency_key}
         return self._json("POST", "/reproductions", document=order or {}, headers=headers)
 
@@ -471,14 +471,14 @@ class Client:
     def compare_measurement(
         self, id: int, *, units: str | None = None, easeoff_lane: str | None = None
     ) -> doc.Comparison:
-        """A measurement beside the prediction at its torque and measured speed."""
+        """A measurement compared with the prediction at its torque and measured speed."""
         return self._computed("GET", f"/measurements/{id}/comparison", query={"units": units}, lane=easeoff_lane).json
 
     @operation("compareDesign")
     def compare_design(
         self, id: int, *, units: str | None = None, easeoff_lane: str | None = None
     ) -> doc.Comparison:
-        """All measurements of a design beside the prediction."""
+        """All measurements of a design compared with the prediction."""
         return self._computed("GET", f"/designs/{id}/comparison", query={"units": units}, lane=easeoff_lane).json
 
     @operation("compareWhatIf")
@@ -491,7 +491,7 @@ class Client:
 
     @operation("fitDesign")
     def fit(self, id: int, order: Mapping[str, Any], *, easeoff_lane: str | None = None) -> doc.Fit:
-        """Inputs that nobody knows, fitted to the measurements of a design within ranges."""
+        """Inputs that are not known, fitted to the measurements of a design within ranges."""
         return self._computed("POST", f"/designs/{id}/fit", document=order, lane=easeoff_lane).json
 
     @operation("recordRig")

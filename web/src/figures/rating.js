@@ -24,7 +24,7 @@ export class Rating {
       name: 'Load capacity by ISO 6336',
       help:
         'Safeties against pitting (S_H) and against tooth breakage (S_F), the smaller of both members, and the load ' +
-        'factors that the rating used; K_Hβ from the contact analysis beside that of method C.',
+        'factors that the rating used; K_Hβ from the contact analysis next to that of method C.',
       good: 'Above the required safety at every load case; load factors near 1.',
       wide: true,
       drawing: { table: () => this.#rows },
@@ -109,5 +109,5 @@ function unchecked(rating) {
           ),
         )
       : null;
-  return [listed('What it does not check', rating.unchecked), listed('What it goes by', rating.standards)];
+  return [listed('What it does not check', rating.unchecked), listed('Standards', rating.standards)];
 }

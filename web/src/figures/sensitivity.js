@@ -217,7 +217,7 @@ export class Sensitivity {
       name: 'Sensitivity of the design to one number',
       help:
         'One number of the design varied, all others as they are, at the load case with the largest share; the ' +
-        'unmodified pair beside it.',
+        'unmodified pair for comparison.',
       good:
         'Flat and below the unmodified pair over the whole range that your shafts, housing and grinding machine ' +
         'bring.',

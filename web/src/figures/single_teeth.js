@@ -53,9 +53,9 @@ export class SingleTeeth {
       unit: '',
       help:
         'Amplitude over the order per revolution of the pinion: shaft orders low, mesh orders at multiples of its ' +
-        'teeth with sidebands at the distance of the shafts beside them. µm of the transmission error, m/s² of the ' +
+        'teeth with sidebands at the distance of the shafts next to them. µm of the transmission error, m/s² of the ' +
         'normal or rotational acceleration that it excites.',
-      good: 'Small is good; sidebands beside a mesh order are heard as roughness.',
+      good: 'Small is good; sidebands next to a mesh order are heard as roughness.',
       xLabel: 'order per revolution of the pinion',
       wide: true,
       zero: true,

@@ -129,7 +129,7 @@ const WORDS = [
         'Hunting period',
         'The time until the same two teeth meet again; only then everything has happened that can.',
       ],
-      ['Sideband', 'An order beside a mesh order, one or several turns of a shaft away; uneven teeth make them.'],
+      ['Sideband', 'An order next to a mesh order, one or several turns of a shaft away; uneven teeth make them.'],
       [
         'Percentile',
         'The value below which so many per cent of the pairs stay: 95 % of the pairs as made are better than the 95th.',

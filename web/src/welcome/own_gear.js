@@ -211,11 +211,11 @@ class OwnGear {
   #say() {
     fill(
       this.finding,
-      h('h3', null, 'What follows and what is assumed'),
+      h('h3', null, 'Derived values and assumptions'),
       h(
         'p.figure-note',
         null,
-        'stands here as soon as the seven numbers do. A comma or a point, mm or inch, N m or lbf ft: as you write it.',
+        'They appear here when the seven numbers are there. Write a comma or a point, mm or inch, N m or lbf ft.',
       ),
     );
   }

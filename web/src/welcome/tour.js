@@ -17,7 +17,7 @@ const STEPS = [
     target: '.headline',
     title: '2 of 3: watch the numbers',
     text:
-      'Transmission error, impact and vibration beside those of the unmodified pair: green and ▼ is quieter. ' +
+      'Transmission error, impact and vibration compared with those of the unmodified pair: green and ▼ is quieter. ' +
       'Press a name to read what it is. Choose the load case on the left of them.',
   },
   {

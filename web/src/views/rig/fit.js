@@ -72,8 +72,8 @@ export class FitPanel {
     this.rows = UNKNOWNS.map(unknown => this.#unknown(unknown));
     this.start = h('button', { type: 'button', onclick: () => this.#run() }, 'Fit to the measurements');
     this.note = h('p.figure-note', { role: 'status' });
-    this.element = group('fit', 'Fit what nobody knows', false, [
-      h('p.figure-note', null, 'Finds these inputs by least squares on the orders of all measurements but outliers.'),
+    this.element = group('fit', 'Fit unknown inputs', false, [
+      h('p.figure-note', null, 'Finds these inputs by least squares on the orders of all measurements, no outliers.'),
       ...this.rows.map(row => row.element),
       h('.form-foot', null, this.start),
       this.note,

@@ -243,7 +243,7 @@ export class Recordings {
       h('.drop-box', null, this.drop, this.chooser),
       this.list,
       group('encoders', 'Encoders', true, [
-        h('.field', null, h('span.label', null, 'They sit at the'), this.end),
+        h('.field', null, h('span.label', null, 'End where the encoders are'), this.end),
         h('.field', null, h('span.label', null, 'Mesh orders of the RMS'), this.harmonics),
         h('label.field.flag', { for: this.two.id }, this.two, h('span', null, 'one file for each: pinion, then gear')),
       ]),

@@ -261,7 +261,7 @@ function emptyBench() {
       'p',
       null,
       'Drop recordings of two encoders here, on the pinion and the gear shaft: one file for each torque and ' +
-        'speed, of the unmodified and of the modified pair. They are kept with the design and shown beside its ' +
+        'speed, of the unmodified and of the modified pair. They are kept with the design and compared with its ' +
         'prediction at their torque and measured speed.',
     ),
     h('p', null, 'Without a rig at hand, make one under “Synthetic recording”.'),

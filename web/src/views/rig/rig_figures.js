@@ -115,7 +115,7 @@ export class RigFigures {
       unit: 'm/s²',
       help:
         'Acceleration over orders of the pinion; upright lines: mesh orders. Where the design states single teeth, ' +
-        'what they excite, mean of the ends, stands beside it.',
+        'what they excite, mean of the ends, is drawn with it.',
       xLabel: 'order of the pinion',
       zero: true,
       wide: true,

@@ -112,7 +112,7 @@ export function drawMeasurements(place, bench, chosen, what, acts) {
     {
       href: address(`designs/${bench.designId}/comparison.csv`),
       download: 'comparison.csv',
-      title: 'Beside the stored design',
+      title: 'Compared with the stored design',
     },
     'CSV',
   );

@@ -89,7 +89,7 @@ export class JobFigures {
       name: 'Loaded transmission error of the best so far',
       unit: 'µm',
       help:
-        'Beside the design that the search started from and the unmodified pair, at the load case with the ' +
+        'Compared with the unmodified pair and the design at the start of the search, at the load case with the ' +
         'largest share.',
       good: 'Flatter than both.',
       xLabel: 'mesh cycle',
