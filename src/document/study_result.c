@@ -310,10 +310,23 @@ static bool has_front(const void *source)
   return strcmp(((const struct source *)source)->algorithm, "nsga2") == 0;
 }
 
+/* What is to be said of the best one. */
+static json_t *write_findings(const struct eo_study_result *result)
+{
+  const struct eo_study_point *best = &result->best;
+  json_t *array = json_array();
+  if (best->there && best->evaluation == result->unmodified.evaluation)
+    array = eo_json_append(array, json_string("No flank of the search is fitter than the unmodified pair, which lies "
+                                              "within the bounds: it is the result."));
+  if (best->there && best->value.violation > 0)
+    array = eo_json_append(array, json_sprintf("Constraints are violated by %.4g in sum.", best->value.violation));
+  return array;
+}
+
 static json_t *write_warnings(const void *source)
 {
   const struct eo_warnings *warnings = ((const struct source *)source)->warnings;
-  json_t *array = json_array();
+  json_t *array = write_findings(&((const struct source *)source)->result);
   for (int i = 0; warnings && i < warnings->count && array; i++)
     array = eo_json_append(array, json_string(warnings->text[i]));
   return array;

@@ -2,6 +2,7 @@
 /* What a search found, for the terminal. */
 #include "document/study_result.h"
 
+#include <string.h>
 #include <math.h>
 
 #include "format/json.h"
@@ -136,11 +137,18 @@ static void print_effort(const json_t *document, struct eo_text *text)
                 find_text(document, "stopped"));
 }
 
+static const char violated[] = "Constraints are violated by";
+
+/* But for what stands above them. */
 static void print_notes(const json_t *warnings, struct eo_text *text)
 {
   const json_t *row;
   size_t i;
-  json_array_foreach((json_t *)warnings, i, row) eo_text_print(text, "Note: %s\n", json_string_value(row));
+  json_array_foreach((json_t *)warnings, i, row)
+  {
+    if (strncmp(json_string_value(row), violated, sizeof violated - 1) != 0)
+      eo_text_print(text, "Note: %s\n", json_string_value(row));
+  }
 }
 
 void eo_study_result_summary(const json_t *document, struct eo_text *text)
@@ -158,8 +166,7 @@ void eo_study_result_summary(const json_t *document, struct eo_text *text)
     print_cases(document, text);
   }
   if (eo_json_find_number(best, "objectives/violation") > 0)
-    eo_text_print(text, "Constraints are violated by %.4g in sum.\n",
-                  eo_json_find_number(best, "objectives/violation"));
+    eo_text_print(text, "%s %.4g in sum.\n", violated, eo_json_find_number(best, "objectives/violation"));
   if (front)
     print_front(document, text);
   if (json_object_get(document, "check"))

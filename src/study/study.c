@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "design/design_grids.h"
 #include "store/lock.h"
 #include "study/study_crew.h"
 
@@ -228,6 +229,30 @@ static enum eo_code tell(struct study *study, struct eo_error *error)
   return code ? code : note_best(study, error);
 }
 
+/* Whether the search could have asked for flanks that take nothing off: where the variables that the unmodified pair
+   has within their bounds, the others as near to it as they come, leave none, a relief's start among them. */
+static bool can_be_unmodified(struct study *study)
+{
+  const struct eo_study_space *space = &study->result->space;
+  double x[EO_MAX_LISTED];
+  for (int i = 0; i < space->count; i++) {
+    const struct eo_study_variable *variable = &space->variable[i];
+    double value = eo_study_variable_value(variable, &study->result->unmodified.modification);
+    x[i] = fmin(fmax((value - variable->low) / (variable->high - variable->low), 0), 1);
+  }
+  eo_study_space_apply(space, &study->plan->design->modification, x, &study->scratch->modification);
+  return eo_design_is_unmodified(study->scratch);
+}
+
+/* The unmodified pair is evaluated for reference alone: where the search may choose it, nothing less fit is its best.
+ */
+static enum eo_code settle_best(struct study *study, struct eo_error *error)
+{
+  struct eo_study_result *result = study->result;
+  bool fitter = study->told > 0 && (!result->best.there || result->unmodified.rank < result->best.rank);
+  return fitter && can_be_unmodified(study) ? copy_point(study, &result->unmodified, &result->best, error) : EO_OK;
+}
+
 static enum eo_code compute_batch(struct study *study, struct eo_error *error)
 {
   EO_TRY(lay_out(study, error));
@@ -331,6 +356,7 @@ static enum eo_code finish(struct study *study, bool cancelled, struct eo_error 
     result->stopped = EO_STOP_BUDGET; /* its generations are its budget */
   EO_TRY(collect_generations(study, error));
   EO_TRY(collect_front(study, error));
+  EO_TRY(settle_best(study, error));
   sum_up(study, cancelled ? EO_JOB_CANCELLED : EO_JOB_DONE, eo_study_stop_name(result->stopped));
   return eo_store_update_job(study->plan->store, &study->job, error);
 }

@@ -492,6 +492,30 @@ static double opened_value(const json_t *document)
 }
 
 /* What a search over grid numbers found, without the search. */
+/* A helix slope of one end makes something worse at one of the load cases, which weighs more than what it improves. */
+static void test_unmodified_best(void)
+{
+  struct eo_listed_variable slope = {EO_PINION, EO_LEFT, parameter("helix_slope_um"), {-40, 40}, 0, 0, 0, false};
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  const double least[2] = {-40, 5};
+  for (int within = 1; within >= 0; within--) {
+    empty_folder();
+    slope.bounds.low = least[!within];
+    with_list(1, &slope);
+    design.objective.no_worse_than_unmodified = true;
+    design.objective.penalty = 1e6;
+    char *text = run(&plan, &result);
+    bool same = result.best.there && result.best.evaluation == result.unmodified.evaluation,
+         says = text && strstr(text, "No flank of the search is fitter than the unmodified pair");
+    ok(text && same == within && says == within && (result.best.rank > result.unmodified.rank) != within,
+       "J and penalties of the best are %.3g, the unmodified pair %s", result.best.rank,
+       within ? "lies within the bounds" : "does not");
+    ok(text && (strstr(text, "Constraints are violated by") != NULL) != within, "the warnings say what is violated");
+    eo_study_result_done(&result);
+    free(text);
+  }
+}
+
 static void test_opened(json_t *document)
 {
   json_object_del(document, "optimization");
@@ -704,6 +728,7 @@ int main(void)
   test_race();
   test_failures();
   test_constraints();
+  test_unmodified_best();
   test_grid_search();
   test_grid_kinds();
   test_grid_refusals();
