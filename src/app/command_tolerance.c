@@ -11,6 +11,7 @@
 #include "app/work_note.h"
 #include "document/pair_log.h"
 #include "document/tolerance_document.h"
+#include "evaluation/scatter_tally.h"
 #include "format/json.h"
 #include "study/scatter_crew.h"
 #include "study/tolerance_job.h"
@@ -24,7 +25,7 @@ struct request {
   struct eo_geometry geometry;
   struct eo_warnings warnings;
   struct eo_scatter scatter;
-  bool assumed;
+  bool assumed, stopped; /* stopped: what is shown is of the pairs that were there then */
   struct eo_watch watch;
   struct eo_work_note note;
 };
@@ -111,30 +112,74 @@ static enum eo_code run_here(const struct request *request, const struct eo_scat
 }
 
 /* The rows, from the log as far as it has them; with other ranks these prepare the pair and evaluate. */
-static enum eo_code run_pairs(struct request *request, const struct eo_progress *progress, struct eo_scatter_run *run,
-                              struct eo_error *error)
+static enum eo_code run_logged(struct request *request, struct eo_scatter_tally *tally, struct eo_scatter_run *run,
+                               struct eo_error *error)
 {
+  const struct eo_progress *progress = &request->watch.progress;
   struct eo_scatter_plan plan = eo_tolerance_plan(&request->design.tolerance);
   struct eo_crew *crew = &request->crew->crew;
+  plan.threads = crew->place.threads;
+  plan.log = eo_scatter_tally_log(tally);
+  return crew->size > 1 ? eo_scatter_run_on_crew(run, crew, &request->design, &request->scatter, &plan, progress, error)
+                        : run_here(request, &plan, progress, run, error);
+}
+
+/* After a stop what is there, where it is enough. */
+static enum eo_code settle(struct request *request, const struct eo_scatter_tally *tally, struct eo_scatter_run *run,
+                           struct eo_error *error)
+{
+  const char *on = request->keep ? " The same command goes on from here." : "";
+  int full;
+  EO_TRY(eo_scatter_tally_settle(tally, &request->design, run, &full, error));
+  if (full < EO_SCATTER_FEWEST)
+    return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.%s Numbers are shown from %d pairs in full on: %s %d.",
+                        on, EO_SCATTER_FEWEST, full == 1 ? "there is" : "there are", full);
+  request->stopped = true;
+  eo_watch_clear(&request->watch);
+  fprintf(stderr, "easeoff: Stopped.%s\n", on);
+  return EO_OK;
+}
+
+static enum eo_code run_tallied(struct request *request, struct eo_pair_log *log, struct eo_scatter_run *run,
+                                struct eo_error *error)
+{
+  struct eo_scatter_tally tally;
+  const struct eo_scatter_log kept = eo_pair_log_of(log);
+  EO_TRY(eo_scatter_tally_init(&tally, request->design.tolerance.pairs, &kept, error));
+  enum eo_code code = run_logged(request, &tally, run, error);
+  if (code && request->watch.stopped)
+    code = settle(request, &tally, run, error);
+  eo_scatter_tally_done(&tally);
+  return code;
+}
+
+static enum eo_code run_pairs(struct request *request, struct eo_scatter_run *run, struct eo_error *error)
+{
   struct eo_pair_log *log = NULL;
   EO_TRY(open_log(request, &log, error));
-  plan.threads = crew->place.threads;
-  plan.log = eo_pair_log_of(log);
-  enum eo_code code = crew->size > 1 ? eo_scatter_run_on_crew(run, crew, &request->design, &request->scatter, &plan,
-                                                              progress, error)
-                                     : run_here(request, &plan, progress, run, error);
+  enum eo_code code = run_tallied(request, log, run, error);
   eo_pair_log_close(log);
   return code;
+}
+
+/* The pairs are there: a stop does not lose their statistics, which take little beside them. */
+static int show_statistics(void *context, const char *what, double fraction)
+{
+  struct eo_watch *watch = context;
+  watch->progress.report(watch->progress.context, what, fraction);
+  return 0;
 }
 
 static enum eo_code make(struct request *request, struct eo_scatter_run *run, struct eo_tolerance_report **report,
                          struct eo_error *error)
 {
-  const struct eo_progress *progress = &request->watch.progress;
+  const struct eo_progress progress = {show_statistics, &request->watch};
   EO_TRY(eo_scatter_of_design(&request->scatter, &request->design, true, &request->assumed, error));
   EO_TRY(eo_tolerance_check_limits(&request->design, error));
-  EO_TRY(run_pairs(request, progress, run, error));
-  return eo_tolerance_report_new(report, &request->design, &request->scatter, run, request->assumed, progress, error);
+  EO_TRY(run_pairs(request, run, error));
+  EO_TRY(eo_tolerance_report_new(report, &request->design, &request->scatter, run, request->assumed, &progress, error));
+  (*report)->stopped = request->stopped;
+  return EO_OK;
 }
 
 static int run_request(struct request *request)
@@ -146,9 +191,6 @@ static int run_request(struct request *request)
   eo_watch_start(watch);
   enum eo_code code = make(request, &run, &report, &error);
   eo_watch_clear(watch);
-  if (watch->stopped)
-    code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.%s",
-                        request->keep ? " The same command goes on from here." : "");
   if (!code)
     code = save_files(request, report, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, report);
@@ -176,6 +218,12 @@ static int follow_pairs(void *context, const struct eo_tolerance_progress *progr
   return eo_work_note_shall_stop(&request->note, &request->watch);
 }
 
+/* By the table; a signal only ends this process. */
+static bool is_given_up(void *context)
+{
+  return ((const struct request *)context)->note.stop;
+}
+
 static enum eo_code run_job(struct request *request, struct eo_tolerance_outcome *outcome, struct eo_error *error)
 {
   const struct eo_pair_options options = {.cache_directory = request->crew->cache.data};
@@ -185,6 +233,7 @@ static enum eo_code run_job(struct request *request, struct eo_tolerance_outcome
                                  .warnings = &request->warnings,
                                  .threads = request->crew->crew.place.threads,
                                  .watch = follow_pairs,
+                                 .is_given_up = is_given_up,
                                  .context = request};
   struct eo_pair *pair = NULL;
   if (request->crew->crew.size > 1)
@@ -310,8 +359,9 @@ const struct eo_command eo_command_tolerance = {
     "\n"
     "--worst FILE writes the worst pair as a design. --csv FILE writes a line for each pair that was computed in "
     "full.\n"
-    "--keep FILE keeps every pair as soon as it is computed: the same command goes on from there. All cores work "
-    "unless\n"
-    "--threads says otherwise; the numbers do not depend on it. --work N works on job N of a server's queue.\n"
+    "--keep FILE keeps every pair as soon as it is computed: the same command goes on from there. Ctrl-C prints "
+    "what\n"
+    "the pairs say that are there. All cores work unless --threads says otherwise; the numbers do not depend on it.\n"
+    "--work N works on job N of a server's queue.\n"
     "\n" EO_APP_CREW_HELP EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
     run};

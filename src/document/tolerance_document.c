@@ -169,7 +169,7 @@ static const struct eo_outline_row tolerance_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
            EO_AT(struct tolerance, design)),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design", EO_AT(struct tolerance, hash)),
-    EO_KEY("pairs", "integer", "drawn", EO_AT(struct tolerance, pairs)),
+    EO_KEY("pairs", "integer", "drawn; after a stop fewer than design/tolerance/pairs", EO_AT(struct tolerance, pairs)),
     EO_KEY("full_pairs", "integer",
            "of them computed in full; the others on a coarse grid and completed, with what that leaves open in every "
            "interval",
@@ -373,12 +373,12 @@ static json_t *encode_worst(const struct eo_tolerance_report *report)
 static const char assumed_text[] =
     "Nothing is stated about the gears as made: class 5 of ISO 1328-1:2013 is taken, the tolerance as 2 sigma.";
 
-enum { MOST_NOTES = 3 };
+enum { MOST_NOTES = 4 };
 
 /* What is to be said of the run itself; returns how many notes. */
 static int write_notes(const struct eo_tolerance_report *report, char note[MOST_NOTES][EO_COMPLETION_NOTE])
 {
-  int notes = 0;
+  int notes = eo_tolerance_stopped_note(report, note[0]);
   if (report->assumed)
     snprintf(note[notes++], sizeof *note, "%s", assumed_text);
   notes += eo_tolerance_completion_note(report, note[notes]);

@@ -31,6 +31,7 @@ struct eo_tolerance_report {
   const struct eo_scatter *scatter; /* borrowed */
   const struct eo_scatter_run *run; /* borrowed */
   bool assumed;                     /* class 5 was taken because nothing was stated */
+  bool stopped;                     /* the run is what was there at a stop: evaluation/scatter_tally.h */
   int outputs;
   struct eo_tolerance_case *output; /* [outputs] that any pair has; owned */
   int yields;
@@ -42,8 +43,8 @@ struct eo_tolerance_report {
   struct eo_design worst_design;  /* it, as a complete design; the compliance stays nominal */
 };
 
-/* Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not there), cancelled, memory.
-   eo_tolerance_report_free() accepts NULL. */
+/* Errors: EO_ERROR_INPUT (a limit on no output, on a load case that is not there), cancelled, memory. Who makes one of
+   a run that was stopped says so in it. eo_tolerance_report_free() accepts NULL. */
 enum eo_code eo_tolerance_report_new(struct eo_tolerance_report **report, const struct eo_design *design,
                                      const struct eo_scatter *scatter, const struct eo_scatter_run *run, bool assumed,
                                      const struct eo_progress *progress, struct eo_error *error);
@@ -65,6 +66,11 @@ void eo_tolerance_summary(const struct eo_tolerance_report *report, const struct
  */
 enum { EO_COMPLETION_NOTE = 480 };
 bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char note[EO_COMPLETION_NOTE]);
+
+/* What is to be said where the run was stopped: of how many pairs the numbers are; false: of all that were asked for.
+ */
+enum { EO_STOPPED_NOTE = 240 };
+bool eo_tolerance_stopped_note(const struct eo_tolerance_report *report, char note[EO_STOPPED_NOTE]);
 
 /* A line for each pair that is in full: number, inputs, outputs. */
 void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text);

@@ -318,6 +318,26 @@ bool eo_tolerance_completion_note(const struct eo_tolerance_report *report, char
   return true;
 }
 
+bool eo_tolerance_stopped_note(const struct eo_tolerance_report *report, char note[EO_STOPPED_NOTE])
+{
+  const struct eo_scatter_run *run = report->run;
+  int asked = report->design->tolerance.pairs;
+  if (!report->stopped || (!run->coarse && run->pairs == asked))
+    return false;
+  if (run->coarse)
+    snprintf(
+        note, EO_STOPPED_NOTE,
+        "Stopped when %d of %d pairs had been computed in full, all of them coarsely: the intervals are those of so "
+        "few.",
+        eo_scatter_full_pairs(run), asked);
+  else
+    snprintf(note, EO_STOPPED_NOTE,
+             "Stopped: these are the first %d of the %d pairs that were asked for, and the intervals are those of so "
+             "few.",
+             run->pairs, asked);
+  return true;
+}
+
 void eo_tolerance_csv(const struct eo_tolerance_report *report, struct eo_text *text)
 {
   const struct eo_scatter_run *run = report->run;

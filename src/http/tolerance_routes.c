@@ -109,8 +109,8 @@ static void tolerance(struct eo_request *request)
     order_job(request, &design);
 }
 
-/* The design of a tolerance job that is done; false: the reply says what is in the way. */
-static bool find_done(struct eo_request *request, int64_t id, struct eo_design *design)
+/* The design of a tolerance job that has a result, done or stopped; false: the reply says what is in the way. */
+static bool find_result(struct eo_request *request, int64_t id, struct eo_design *design, bool *whole)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
@@ -118,17 +118,18 @@ static bool find_done(struct eo_request *request, int64_t id, struct eo_design *
   struct eo_job_view job = {0};
   enum eo_code code = eo_service_job(request->http->service, id, true, &outcome, &job, &error);
   bool there = !code && outcome == EO_JOB_OUTCOME_DONE && job.row.kind == EO_JOB_TOLERANCE;
-  bool done = there && job.row.state == EO_JOB_DONE;
-  if (done)
+  *whole = there && job.row.state == EO_JOB_DONE;
+  bool ended = *whole || (there && job.row.state == EO_JOB_CANCELLED && *job.row.result);
+  if (ended)
     code = eo_design_read(job.row.design, strlen(job.row.design), design, &geometry, NULL, &error);
   if (code)
     eo_reply_error(&request->reply, "", &error);
   else if (!there)
     eo_reply_problem(&request->reply, 404, NULL, "There is no tolerance analysis with this number.");
-  else if (!done)
+  else if (!ended)
     eo_reply_job_outcome(&request->reply, EO_JOB_OUTCOME_STATE);
   eo_job_view_done(&job);
-  return done && !code;
+  return ended && !code;
 }
 
 static void get_pairs(struct eo_request *request)
@@ -137,10 +138,11 @@ static void get_pairs(struct eo_request *request)
   struct eo_error error;
   struct eo_text text = {0};
   int64_t id;
+  bool whole;
   if (!design)
     eo_reply_no_memory(&request->reply);
-  else if (eo_request_id_at(request, 0, &id) && find_done(request, id, design)) {
-    if (eo_tolerance_job_csv(request->store, id, design, &text, &error))
+  else if (eo_request_id_at(request, 0, &id) && find_result(request, id, design, &whole)) {
+    if (eo_tolerance_job_csv(request->store, id, whole, design, &text, &error))
       eo_reply_error(&request->reply, "", &error);
     else
       eo_reply_table(request, &text);
@@ -172,7 +174,7 @@ const struct eo_route eo_routes_tolerance[] = {
      .gives = "200 text/csv",
      .aside = true,
      .query = {EO_UNITS_QUERY},
-     .summary =
-         "The pairs of a tolerance analysis that is done as CSV, a line for each that was computed in full: `easeoff "
-         "tolerance --csv`. 409 while it is not."},
+     .summary = "The pairs of a tolerance analysis that is done, or was stopped with a result, as CSV, a line for each "
+                "that was "
+                "computed in full: `easeoff tolerance --csv`. 409 while it is neither."},
     {0}};

@@ -191,6 +191,11 @@ static enum eo_code vary(struct eo_service_worker *worker, const struct task *ta
   return code;
 }
 
+static bool is_given_up(void *context)
+{
+  return atomic_load(&((struct eo_service_worker *)context)->cancelled);
+}
+
 static enum eo_code draw_pairs(struct eo_service_worker *worker, const struct task *task, bool *stopped,
                                struct eo_error *error)
 {
@@ -201,6 +206,7 @@ static enum eo_code draw_pairs(struct eo_service_worker *worker, const struct ta
                                        .pair = eo_held_pair(task->held),
                                        .threads = worker->service->settings.threads,
                                        .watch = follow_pairs,
+                                       .is_given_up = is_given_up,
                                        .context = worker};
   struct eo_tolerance_outcome outcome;
   enum eo_code code = eo_tolerance_job_run(&job, &outcome, error);

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "document/pair_log.h"
 #include "evaluation/scatter_levels.h"
+#include "evaluation/scatter_tally.h"
 #include "format/json.h"
 #include "store/jobs.h"
 #include "store/lock.h"
@@ -339,10 +340,10 @@ static enum eo_code put_result(struct run *run, const char *text, struct eo_erro
 }
 
 /* A job's end and its result are one transaction. */
-static enum eo_code write_result(struct run *run, const char *text, struct eo_error *error)
+static enum eo_code write_result(struct run *run, bool stopped, const char *text, struct eo_error *error)
 {
   EO_TRY(eo_store_begin_lasting(run->job->store, error));
-  sum_up(run, EO_JOB_DONE, "");
+  sum_up(run, stopped ? EO_JOB_CANCELLED : EO_JOB_DONE, stopped ? "cancelled" : "");
   enum eo_code code = put_result(run, text, error);
   if (code)
     eo_store_rollback(run->job->store);
@@ -350,39 +351,67 @@ static enum eo_code write_result(struct run *run, const char *text, struct eo_er
 }
 
 /* The document of what came, kept with the job. */
-static enum eo_code conclude(struct run *run, const struct eo_scatter_run *rows, const struct eo_progress *progress,
-                             struct eo_error *error)
+static enum eo_code conclude(struct run *run, const struct eo_scatter_run *rows, bool stopped,
+                             const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_tolerance_report *report = NULL;
   struct eo_text text = {0};
   EO_TRY(eo_tolerance_report_new(&report, run->job->design, &run->scatter, rows, run->assumed, progress, error));
+  report->stopped = stopped;
   eo_tolerance_write(report, run->job->warnings, &text);
   eo_tolerance_report_free(report);
-  enum eo_code code = text.failed ? eo_error_memory(error) : write_result(run, text.data, error);
+  enum eo_code code = text.failed ? eo_error_memory(error) : write_result(run, stopped, text.data, error);
   eo_text_done(&text);
   return code;
 }
 
-static enum eo_code compute(struct run *run, struct eo_error *error)
+/* Of a job that nobody wants to go on what is there; the stop stays one. */
+static enum eo_code conclude_stopped(struct run *run, const struct eo_scatter_tally *tally, struct eo_scatter_run *rows,
+                                     struct eo_error *error)
+{
+  int full;
+  if (!run->job->is_given_up || !run->job->is_given_up(run->job->context))
+    return EO_ERROR_CANCELLED;
+  EO_TRY(eo_scatter_tally_settle(tally, run->job->design, rows, &full, error));
+  if (full >= EO_SCATTER_FEWEST)
+    EO_TRY(conclude(run, rows, true, NULL, error));
+  return EO_ERROR_CANCELLED;
+}
+
+static enum eo_code compute_rows(struct run *run, const struct eo_scatter_log *log, struct eo_scatter_run *rows,
+                                 const struct eo_progress *progress, struct eo_error *error)
 {
   const struct eo_tolerance_job *job = run->job;
-  const struct eo_progress progress = {watch, run};
   struct eo_scatter_plan plan = eo_tolerance_plan(&job->design->tolerance);
-  struct eo_scatter_run rows = {0};
   plan.threads = job->threads;
-  plan.log = (struct eo_scatter_log){find, keep, run};
+  plan.log = *log;
   run->computing = eo_clock_milliseconds();
-  enum eo_code code =
-      job->pair ? eo_scatter_run_pairs(&rows, job->pair, job->design, &run->scatter, &plan, &progress, error)
-                : eo_scatter_run_on_crew(&rows, job->crew, job->design, &run->scatter, &plan, &progress, error);
+  enum eo_code code = job->pair
+                          ? eo_scatter_run_pairs(rows, job->pair, job->design, &run->scatter, &plan, progress, error)
+                          : eo_scatter_run_on_crew(rows, job->crew, job->design, &run->scatter, &plan, progress, error);
   if (!run->fault.code)
     flush(run, true, &run->fault);
   if (run->fault.code && (!code || code == EO_ERROR_CANCELLED)) {
     *error = run->fault;
     code = run->fault.code;
   }
+  return code;
+}
+
+static enum eo_code compute(struct run *run, struct eo_error *error)
+{
+  const struct eo_progress progress = {watch, run};
+  const struct eo_scatter_log own = {find, keep, run};
+  struct eo_scatter_tally tally;
+  struct eo_scatter_run rows = {0};
+  EO_TRY(eo_scatter_tally_init(&tally, run->pairs, &own, error));
+  const struct eo_scatter_log log = eo_scatter_tally_log(&tally);
+  enum eo_code code = compute_rows(run, &log, &rows, &progress, error);
   if (!code)
-    code = conclude(run, &rows, &progress, error);
+    code = conclude(run, &rows, false, &progress, error);
+  if (code == EO_ERROR_CANCELLED)
+    code = conclude_stopped(run, &tally, &rows, error);
+  eo_scatter_tally_done(&tally);
   eo_scatter_run_done(&rows);
   return code;
 }

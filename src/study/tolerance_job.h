@@ -28,7 +28,8 @@ struct eo_tolerance_job {
   const struct eo_pair *pair; /* serves the design, on `threads` of this process (0: eo_parallel_cores()); NULL: crew */
   struct eo_crew *crew;       /* evaluates, and prepares for itself */
   int threads;
-  eo_tolerance_watch *watch; /* may be NULL */
+  eo_tolerance_watch *watch;          /* may be NULL */
+  bool (*is_given_up)(void *context); /* whether a stop is for good: what is there is its result; NULL: it never is */
   void *context;
 };
 
@@ -38,14 +39,15 @@ struct eo_tolerance_outcome {
   double seconds; /* wall time */
 };
 
-/* A stop that was asked for is no error: outcome->cancelled tells. The result is kept with the job. Errors:
-   EO_ERROR_INPUT (job, scatter, limits), of the evaluator, the crew, the history; pairs that were kept stay. */
+/* A stop that was asked for is no error: outcome->cancelled tells. The result is kept with the job, after a stop for
+   good that of the pairs that are there, where they are EO_SCATTER_FEWEST or more in full. Errors: EO_ERROR_INPUT (job,
+   scatter, limits), of the evaluator, the crew, the history; pairs that were kept stay. */
 enum eo_code eo_tolerance_job_run(const struct eo_tolerance_job *job, struct eo_tolerance_outcome *outcome,
                                   struct eo_error *error);
 
-/* The pairs of a job that is done as a table, a line for each that was computed in full. Errors: EO_ERROR_INPUT (a pair
-   is missing), memory, of the history. */
-enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, const struct eo_design *design,
+/* The pairs of a job as a table, a line for each that was computed in full. whole: it is done, so that none may be
+   missing. Errors: EO_ERROR_INPUT (a pair is missing), memory, of the history. */
+enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, bool whole, const struct eo_design *design,
                                   struct eo_text *text, struct eo_error *error);
 
 /* Takes over what a job reports, for whoever looks at it: true evaluations are pairs that have a row. */

@@ -9,6 +9,7 @@
 
 struct table {
   struct eo_scatter_run rows;
+  bool whole;
   int there;
 };
 
@@ -25,7 +26,7 @@ static enum eo_code take_row(void *context, const struct eo_stored_variant *row,
   return EO_OK;
 }
 
-/* The rows of a job that has all of them, or as many as it computes in full. */
+/* The rows of a job that has all of them, as many as it computes in full, or those that were there at its stop. */
 static enum eo_code fill_table(struct table *table, struct eo_store *store, int64_t job, const struct eo_design *design,
                                struct eo_scatter *scatter, struct eo_error *error)
 {
@@ -35,15 +36,15 @@ static enum eo_code fill_table(struct table *table, struct eo_store *store, int6
   for (int i = 0; i < table->rows.pairs; i++)
     table->rows.full[i] = false;
   EO_TRY(eo_store_each_variant(store, job, -1, table->rows.outputs, take_row, table, error));
-  if (!table->rows.coarse && table->there < table->rows.pairs)
+  if (table->whole && !table->rows.coarse && table->there < table->rows.pairs)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The job has %d of its %d pairs.", table->there, table->rows.pairs);
   return EO_OK;
 }
 
-enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, const struct eo_design *design,
+enum eo_code eo_tolerance_job_csv(struct eo_store *store, int64_t job, bool whole, const struct eo_design *design,
                                   struct eo_text *text, struct eo_error *error)
 {
-  struct table table = {0};
+  struct table table = {.whole = whole};
   struct eo_scatter *scatter = malloc(sizeof *scatter);
   if (!scatter)
     return eo_error_memory(error);

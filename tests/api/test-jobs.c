@@ -162,6 +162,45 @@ static void test_park(void)
   ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "it can be stopped for good");
 }
 
+/* Pairs that were drawn before the stop are a result; where it goes on, more are. */
+static void test_stopped_pairs(void)
+{
+  json_t *own = coarse_document("ga", 10);
+  json_object_set_new(own, "tolerance", json_pack("{s:i,s:s}", "pairs", 100000, "method", "full"));
+  json_t *order = json_pack("{s:s, s:o}", "kind", "tolerance", "design", own);
+  char *text = json_dumps(order, JSON_COMPACT);
+  json_t *added = call_json("POST", API "/jobs", NULL, text, NULL);
+  int id = (int)json_integer_value(json_object_get(added, "id"));
+  json_decref(added);
+  json_decref(order);
+  free(text);
+  long long before = 0;
+  for (int i = 0; i < 2; i++) {
+    wait_for_evaluations(id, (int)before + 30);
+    ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "a tolerance analysis is stopped");
+    json_t *job = get_of_job(id, ""), *answer = get_of_job(id, "/result");
+    long long pairs = json_integer_value(json_object_get(answer, "pairs"));
+    const char *note = json_string_value(json_array_get(json_object_get(answer, "warnings"), 0));
+    ok(json_is_true(json_object_get(job, "has_result")) && pairs >= 10 && pairs > before && pairs < 100000 && note &&
+           strstr(note, "of the 100000 pairs"),
+       "it has a result of %lld pairs: %s", pairs, note ? note : "");
+    before = pairs;
+    json_decref(answer);
+    json_decref(job);
+    char path[80];
+    struct reply lines;
+    snprintf(path, sizeof path, API "/jobs/%d/pairs", id);
+    int connection = open_connection();
+    send_request(connection, "GET", path, "", NULL);
+    read_reply(connection, &lines, false);
+    ok(lines.status == 200 && strncmp(lines.body, "pair,", 5) == 0, "and lines of its pairs: %d", lines.status);
+    free_reply(&lines);
+    close(connection);
+    if (i == 0)
+      ok(post_to_job(id, "retry") == 202, "it goes on");
+  }
+}
+
 static void test_overtaking(void)
 {
   enum { QUESTIONS = 4 };
@@ -200,6 +239,7 @@ int main(void)
   test_cancel_and_retry();
   test_kill();
   test_park();
+  test_stopped_pairs();
   test_overtaking();
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();

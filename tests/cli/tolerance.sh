@@ -111,6 +111,37 @@ near "the yield" /yields/1/fraction "$folder/all.json" /yields/1/fraction 0.02 a
 near "the worst pair" /worst/pair "$folder/all.json" /worst/pair 0 absolute
 write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
 
+# ---- a stop: what is there is said ----
+
+stopped() # WORDS METHOD PAIRS ENOUGH: stopped when so many pairs are kept
+{
+  write_design "{\"preset\": \"iso_class\", \"class\": 5, \"method\": \"$2\"}"
+  rm -f "$folder/stopped"
+  "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs "$3" --json --threads 1 --keep "$folder/stopped" >"$folder/out" 2>"$folder/err" &
+  looks=0
+  while [ $looks -lt 6000 ] && [ "$(cat "$folder/stopped" 2>/dev/null | grep -c ';$')" -lt "$4" ]; do
+    sleep 0.01
+    looks=$((looks + 1))
+  done
+  kill -s TERM $!
+  wait $!
+  result $? "a stop of $2 is no failure"
+  grep -q "Stopped. The same command goes on from here." "$folder/err" && grep -q "$1" "$folder/out"
+  result $? "and its result says $1"
+}
+
+stopped 'Stopped: these are the first [0-9]* of the 100000 pairs' full 100000 20
+pairs=$("$numbers" "$folder/out" /pairs | tr -d "[] ")
+[ "$pairs" -ge 10 ] && [ "$pairs" -lt 100000 ]
+result $? "of $pairs pairs"
+cp "$folder/out" "$folder/stopped.json"
+tolerance --pairs "$pairs" --json
+near "the 95 % percentile is that of as many pairs" /outputs/0/percentiles/7/value "$folder/stopped.json" /outputs/0/percentiles/7/value 0 absolute
+stopped 'Stopped when [0-9]* of 2000 pairs had been computed in full, all of them coarsely' coarse_first 2000 12
+pairs=$("$numbers" "$folder/out" /pairs | tr -d "[] ")
+[ "$pairs" -eq 2000 ]
+result $? "of all $pairs pairs, most of them coarse"
+
 # ---- teeth of its own for every pair: shaft orders grow with the eccentricity, the same bytes ----
 
 write_design '{"vibration": false, "single_teeth": true, "inputs": [{"key": "pitch.*.tolerance_share", "sigma": 0}, {"key": "pitch.gear.eccentricity_um", "distribution": "half_normal", "sigma": 2}]}, "pitch": {"positions_per_cycle": 4}'

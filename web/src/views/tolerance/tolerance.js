@@ -239,7 +239,8 @@ class ToleranceView {
   /** @param {Api.Job} job */
   async #finish(job) {
     this.#job = 0;
-    if (job.state !== 'done') {
+    const done = job.state === 'done';
+    if (!done && !(job.state === 'cancelled' && job.has_result)) {
       const failed = job.state === 'failed';
       this.#end(failed ? shownSentence(job.error?.detail ?? 'The job failed.') : 'Stopped; what was drawn is kept.');
       return;
@@ -247,7 +248,8 @@ class ToleranceView {
     try {
       const result = await get(`jobs/${job.id}/result`);
       if ('pairs' in result) this.#show(result);
-      this.#end(this.#of ? '' : `${job.name}, ${dateText(job.finished)}`);
+      if (done) this.#end(this.#of ? '' : `${job.name}, ${dateText(job.finished)}`);
+      else this.#end('Stopped; these are the pairs that were drawn.');
     } catch (error) {
       this.#end(/** @type {Error} */ (error).message);
     }
@@ -278,7 +280,8 @@ class ToleranceView {
    */
   #recall() {
     const [newest] = [...this.app.jobs.all.values()]
-      .filter(job => job.kind === 'tolerance' && (ACTIVE.includes(job.state) || job.state === 'done'))
+      .filter(job => job.kind === 'tolerance')
+      .filter(job => ACTIVE.includes(job.state) || (job.has_result && job.state !== 'failed'))
       .sort((a, b) => b.id - a.id);
     if (!newest || newest.id <= this.#ended || this.#result || this.#asked || this.#job) return;
     this.#job = newest.id;
