@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which columns are times, which belong to which channel, and in what unit. */
 #include "recording/layout_private.h"
+#include "recording/series.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -187,12 +189,15 @@ static enum eo_code even_clock(struct eo_guess *guess, int channel, struct eo_la
   struct eo_clock stated = eo_recording_clock(guess->recording, channel);
   clock->interval = guess->choice->sample_rate > 0 ? 1 / guess->choice->sample_rate : stated.interval;
   clock->start = stated.start;
+  char ratio[96] = "sampling rates";
+  if (stated.thinned > 1 && !eo_series_contradicts(stated.interval * stated.thinned, stated.other))
+    snprintf(ratio, sizeof ratio, "a sampling rate and that a row is made of %.6g samples, which makes rates",
+             stated.thinned);
   if (stated.other > 0 && !(guess->choice->sample_rate > 0))
-    return eo_error_set(
-        error, EO_ERROR_INPUT, "/sample_rate_Hz",
-        "The file states sampling rates of %.6g and %.6g Hz, and no column holds the time: give the one "
-        "that the rows have.",
-        1 / stated.interval, 1 / stated.other);
+    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
+                        "The file states %s of %.6g and %.6g Hz, and no column holds the time: give the one "
+                        "that the rows have.",
+                        ratio, 1 / stated.interval, 1 / stated.other);
   return clock->interval > 0 ? EO_OK : refuse_times(guess, error);
 }
 

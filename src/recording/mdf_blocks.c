@@ -115,7 +115,7 @@ static void read_attribute(const char *element, const char *end, const char *nam
 void eo_mdf_facts(struct eo_mdf *mdf, int64_t at, struct eo_series *series)
 {
   bool xml = false;
-  char *all = read_text(mdf, at, &xml), key[128], unit[32];
+  char *all = read_text(mdf, at, &xml), key[128], unit[32], told[192];
   const struct eo_clock outer = series->clock;
   series->clock.interval = series->clock.other =
       0; /* this text is nearer; only what it says twice contradicts itself */
@@ -127,6 +127,9 @@ void eo_mdf_facts(struct eo_mdf *mdf, int64_t at, struct eo_series *series)
     double number;
     const char *after = eo_decimal_read(content + 1, '.', &number);
     read_attribute(e, content, "name=\"", key, sizeof key);
+    copy_text(content + 1, strchr(content, '<'), told, sizeof told);
+    struct eo_stated ratio = eo_stated_read_ratio(key, told);
+    eo_series_state(series, &ratio);
     read_attribute(e, content, "unit=\"", unit, sizeof unit);
     if (after && !*unit)
       copy_text(after, strchr(after, '<'), unit, sizeof unit);

@@ -54,6 +54,8 @@ struct eo_clock {
   int64_t epoch;   /* ns since 1970-01-01: when the time 0 was; EO_CLOCK_NO_EPOCH: not stated. Local or universal: two
                       clocks are only compared with each other */
   double other;    /* s: another interval that the file states for the same rows; 0: it does not contradict itself */
+  double thinned;  /* of so many samples a row was made, before or behind the stated rate; 0: not stated */
+  int thins, told; /* enum eo_stated_strength of that number and of the intervals */
 };
 #define EO_CLOCK_NO_EPOCH INT64_MIN
 

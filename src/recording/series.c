@@ -14,6 +14,7 @@
 #define BLOCK 4096     /* rows that are copied at once */
 #define SHORT 20       /* a channel with so many times fewer values than the longest belongs to something else */
 #define LASTS 0.5      /* unless it is a slow one, which lasts as long: of the time of the others */
+#define SLOWEST 0.02   /* s: no rows of an encoder; of two intervals the one below is theirs */
 #define SAME_RATE 0.01 /* relative: an interval may be rounded */
 
 static bool same_interval(double a, double b)
@@ -145,9 +146,7 @@ static void choose_columns(const struct eo_series_file *file, const int *chosen,
 {
   for (int c = 0; c < count; c++) {
     column[c] = file->series[chosen[c]];
-    struct eo_clock *clock = &column[c].clock;
-    if (column[c].thinned > 1 && !(clock->other > 0)) /* whether the rate is that before or behind it cannot be known */
-      clock->other = clock->interval * column[c].thinned;
+    eo_series_settle(&column[c].clock);
     int time = column[c].clock.column;
     column[c].clock.column = -1;
     for (int k = 0; time >= 0 && k < count; k++)
@@ -208,14 +207,39 @@ bool eo_series_contradicts(double interval, double other)
   return interval > 0 && other > 0 && fabs(other / interval - 1) > SAME_RATE;
 }
 
+void eo_series_tell(struct eo_clock *clock, const struct eo_stated *stated)
+{
+  if (stated->kind == EO_STATED_THINNED && (int)stated->strength >= clock->thins)
+    clock->thinned = stated->value, clock->thins = (int)stated->strength;
+  if (stated->kind != EO_STATED_INTERVAL)
+    return;
+  bool contradicts = eo_series_contradicts(clock->interval, stated->value);
+  if (contradicts && stated->value > SLOWEST && clock->interval < SLOWEST)
+    return;
+  if (!(clock->interval > 0) || (contradicts && clock->interval > SLOWEST && stated->value < SLOWEST))
+    clock->interval = stated->value;
+  else if (contradicts)
+    clock->other = stated->value;
+  clock->told = (int)stated->strength > clock->told ? (int)stated->strength : clock->told;
+}
+
+void eo_series_settle(struct eo_clock *clock)
+{
+  double longer = fmax(clock->interval, clock->other), shorter = fmin(clock->interval, clock->other);
+  if (!(clock->thinned > 1) || !(clock->interval > 0))
+    return;
+  if (clock->other > 0 && !eo_series_contradicts(shorter * clock->thinned, longer))
+    clock->interval = longer, clock->other = 0;
+  else if (!(clock->other > 0) && clock->told < clock->thins)
+    clock->other = clock->interval * clock->thinned;
+}
+
 bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
 {
   switch (stated->kind) {
   case EO_STATED_INTERVAL:
-    if (eo_series_contradicts(series->clock.interval, stated->value))
-      series->clock.other = stated->value;
-    else
-      series->clock.interval = stated->value;
+  case EO_STATED_THINNED:
+    eo_series_tell(&series->clock, stated);
     return true;
   case EO_STATED_START:
     series->clock.start = stated->value;
@@ -225,9 +249,6 @@ bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
     return true;
   case EO_STATED_TURN:
     series->turn = stated->value;
-    return true;
-  case EO_STATED_THINNED:
-    series->thinned = stated->value;
     return true;
   default:
     return false;

@@ -20,7 +20,6 @@ struct eo_series {
   struct eo_clock clock; /* its column: number of the series with the times of this one, -1: none */
   double turn;           /* counts per turn; 0: not stated */
   double tick;           /* s of a tick, where the file states one; 0: not */
-  double thinned;        /* of so many rows one was kept, before or behind the stated rate; 0: not stated */
 };
 
 /* A series of this name and length whose clock is not known. */
@@ -33,6 +32,13 @@ bool eo_series_state(struct eo_series *series, const struct eo_stated *stated);
 
 /* The intervals are not those of one rate; they may be rounded. */
 bool eo_series_contradicts(double interval, double other);
+
+/* Takes an interval and a number of samples for a row to a clock. */
+void eo_series_tell(struct eo_clock *clock, const struct eo_stated *stated);
+
+/* What the number of samples for a row makes of the stated rates, once all are known: of two whose ratio it is the rows
+   have the lower one, that of stored rows is theirs anyway; else the other rate is set, since nobody can know. */
+void eo_series_settle(struct eo_clock *clock);
 
 /* Where the table goes: once its columns, then all rows in order. */
 struct eo_series_sink {

@@ -65,6 +65,9 @@ bool eo_stated_holds(const char *key, const char *words)
   "points length filter cutoff corte coupure grenz lowpass tiefpass antialias max nyquist original duration dauer " \
   "divid teiler message calibrat accura generat aggregate"
 
+/* Of a converter, behind what it averages; no output shaft is meant. */
+#define OUTPUT_RATES "outputrate outputdatarate ausgaberate"
+
 static bool is_about(const char *key, const char *what, const char *measure)
 {
   return eo_stated_holds(key, what) && eo_stated_holds(key, measure) && !eo_stated_holds(key, NOT_SAMPLING);
@@ -74,10 +77,12 @@ static bool is_rate(const char *key)
 {
   return eo_stated_is_one(key, "fs sr rate fsample fsamp fsampling fa ratehz samples/s samples/sec s/s sa/s frequenz "
                                "fabtast fech samplespersec") ||
-         eo_stated_holds(key,
-                         "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
-                         "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate "
-                         "framerate storerate storagerate recordrate recordingrate loggingrate") ||
+         eo_stated_holds(
+             key,
+             "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
+             "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate storedrate "
+             "resultingrate effectiverate effektiverate "
+             "framerate storerate storagerate recordrate recordingrate loggingrate") ||
          is_about(key, SAMPLING, RATES " clk clock velocid") || is_about(key, TAKING, RATES);
 }
 
@@ -177,6 +182,16 @@ bool eo_stated_thins(const char *words)
   return eo_stated_holds(folded, "decimat dezimi downsampl unterabtast subsampl");
 }
 
+/* "Stored rate", "sampling rate after decimation", "output rate". */
+static enum eo_stated_strength strength_of(const char *folded)
+{
+  return eo_stated_holds(folded, "store storage saved speicher effecti effekti result afterdecim afteraver afterdown "
+                                 "nachdezim nachmitt nachunter apresdecim decimatedrate decimatedsampl")
+             ? EO_STATED_ROWS
+         : eo_stated_holds(folded, OUTPUT_RATES) ? EO_STATED_OUTPUT
+                                                 : EO_STATED_CONVERTER;
+}
+
 bool eo_stated_begin(const char *key)
 {
   char folded[KEY];
@@ -255,6 +270,14 @@ static bool is_slow_clock(const char *folded, double number, enum eo_quantity qu
          !eo_stated_holds(folded, "zaehler zahler timer counter");
 }
 
+static void state_interval(const char *folded, struct eo_stated *stated)
+{
+  stated->kind = EO_STATED_INTERVAL;
+  stated->strength = strength_of(folded);
+  if (eo_stated_holds(folded, OUTPUT_RATES))
+    stated->member = -1;
+}
+
 /* What a key of one meaning says; folded: in lower case, its unit taken off. */
 static void judge_key(const char *folded, double number, enum eo_quantity quantity, double factor, bool turn_unit,
                       struct eo_stated *stated)
@@ -273,8 +296,8 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
   else if (tick && positive && (time || frequency || number > 1000))
     stated->kind = EO_STATED_TICK, stated->value = time ? number * factor : 1 / (number * factor);
   else if ((rate || interval) && positive && (time || frequency || plain))
-    stated->kind = EO_STATED_INTERVAL,
-    stated->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
+    state_interval(folded, stated),
+        stated->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
   else if (is_start(folded) && (time || plain))
     stated->kind = EO_STATED_START, stated->value = number * factor;
   else if (is_scale(folded) && number != 0)
@@ -288,6 +311,17 @@ static int member_of(const char *key, const char *name, const char *own)
 {
   int member = eo_stated_member(name);
   return member < 0 && *own && isalpha((unsigned char)key[strlen(key) - 1]) ? eo_stated_member(own) : member;
+}
+
+/* "decimation_factor" 4, "Averages" 4: as it would stand in a line. */
+static void read_ratio(const char *key, double number, const char *unit, struct eo_stated *stated)
+{
+  char text[64];
+  snprintf(text, sizeof text, "%.9g %.32s", number, unit);
+  struct eo_stated ratio = eo_stated_read_ratio(key, text);
+  stated->kind = ratio.kind;
+  stated->value = ratio.value;
+  stated->strength = ratio.strength;
 }
 
 struct eo_stated eo_stated_read(const char *key, double number, const char *unit)
@@ -323,7 +357,7 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   }
   if (stated.kind == EO_STATED_INTERVAL && is_unknown_ratio(unit))
     return eo_stated_nothing();
-  if (!stated.kind && number > 1 && eo_stated_thins(key))
-    stated.kind = EO_STATED_THINNED, stated.value = number;
+  if (!stated.kind)
+    read_ratio(key, number, unit, &stated);
   return stated;
 }

@@ -18,8 +18,16 @@ enum eo_stated_kind {
   EO_STATED_FOLD,     /* counts for each line of an encoder: interpolation, or the edges that a counter takes */
   EO_STATED_SCALE,    /* value = scale * stored + offset */
   EO_STATED_OFFSET,
-  EO_STATED_THINNED, /* of so many rows one was kept */
+  EO_STATED_THINNED, /* of so many samples a row was made */
   EO_STATED_KINDS
+};
+
+/* What a rate speaks of, and what a number of samples for a row changes: a rate is that of the rows unless something of
+   a greater strength divides it. */
+enum eo_stated_strength {
+  EO_STATED_CONVERTER, /* any rate */
+  EO_STATED_OUTPUT,    /* behind averages: "output rate"; averages and oversampling */
+  EO_STATED_ROWS,      /* behind all: "stored rate", "effective rate"; decimation, "every 4th sample is stored" */
 };
 
 struct eo_stated {
@@ -29,6 +37,7 @@ struct eo_stated {
   int number;   /* of a channel, in the key: "CPR1"; -1: none */
   bool lines;   /* EO_STATED_TURN: lines or pulses, which EO_STATED_FOLD multiplies; not so counts */
   bool vague;   /* EO_STATED_TURN: by a resolution in bits or in an angle, which need not be that of the counts */
+  enum eo_stated_strength strength; /* of EO_STATED_INTERVAL and EO_STATED_THINNED */
 };
 
 /* What a number under a key means. unit: of the number, "" when it stands in the key ("Sampling rate [kHz]", "dt_ms")
@@ -47,6 +56,13 @@ bool eo_stated_keeps(const char *unit);
 
 /* True for words that tell what is no sampling: filters, numbers of points, what a device could do. */
 bool eo_stated_excludes(const char *words);
+
+/* Of how many samples of the converter a row was made, as a line of a heading or a key with its value says:
+   "decimation factor: 4", "every 4th sample is stored", "64 kHz / 16", "averages: 4". 0: it says nothing of that. */
+double eo_stated_ratio(const char *line, enum eo_stated_strength *strength);
+
+/* The same of a text under a key, as a fact: "decimation" "4:1", "comment" "every 4th sample is stored". */
+struct eo_stated eo_stated_read_ratio(const char *key, const char *text);
 
 /* True for words that say that of the rows only one in so many was kept. */
 bool eo_stated_thins(const char *words);

@@ -9,7 +9,7 @@
 
 static inline struct eo_stated eo_stated_nothing(void)
 {
-  return (struct eo_stated){EO_STATED_NOTHING, 0, -1, -1, false, false};
+  return (struct eo_stated){.member = -1, .number = -1};
 }
 
 /* The key without accents, in lower case, with nothing but letters, digits and the slash of "samples/s". */

@@ -121,12 +121,14 @@ static void inherit(struct eo_tdms *tdms, int c)
       if (!(series->clock.interval > 0)) {
         series->clock.interval = group->stated.clock.interval;
         series->clock.other = group->stated.clock.other;
+        series->clock.told = group->stated.clock.told;
       }
       if (series->clock.epoch == EO_CLOCK_NO_EPOCH)
         series->clock.epoch = group->stated.clock.epoch;
       series->turn = series->turn > 0 ? series->turn : group->stated.turn;
       series->tick = series->tick > 0 ? series->tick : group->stated.tick;
-      series->thinned = series->thinned > 0 ? series->thinned : group->stated.thinned;
+      if (!(series->clock.thinned > 0))
+        series->clock.thinned = group->stated.clock.thinned, series->clock.thins = group->stated.clock.thins;
     }
 }
 
@@ -143,7 +145,7 @@ static double settle_waveform(const struct eo_tdms_channel *channel, struct eo_s
   if (!(step > 0))
     return 0;
   series->clock.interval = step;
-  series->thinned = 0;
+  series->clock.thinned = 0;
   series->clock.other = contradicts && channel->increment == 1 ? beside : 0;
   return contradicts && !(series->clock.other > 0) ? 1 / beside : 0;
 }

@@ -186,11 +186,13 @@ static void use_scale(struct eo_tdms_channel *channel, const char *name, const s
 /* What a property of a channel, a group or the file says of the sampling. */
 static void use_fact(struct eo_series *series, const char *name, const struct property *value)
 {
-  char unit[64] = "", text[64] = "";
+  char unit[64] = "", text[192] = "";
   double number = value->number;
   struct eo_moment moment;
   if (value->text)
     snprintf(text, sizeof text, "%.*s", (int)(value->length < sizeof text ? value->length : 0), value->text);
+  struct eo_stated ratio = eo_stated_read_ratio(name, text);
+  eo_series_state(series, &ratio);
   if (*text && eo_stated_moment(name, text, &moment))
     series->clock.epoch = eo_moment_epoch(&moment);
   else if (*text && !eo_stated_read_number(text, &number, unit, sizeof unit))

@@ -3,6 +3,7 @@
 #include "recording/letters.h"
 #include "recording/moment.h"
 #include "recording/recorded_unit.h"
+#include "recording/series.h"
 #include "recording/stated.h"
 #include "recording/text_cell.h"
 #include "recording/text_number.h"
@@ -14,7 +15,6 @@
 #include <string.h>
 
 #define KEY 96
-#define SAME_RATE 0.01 /* relative: an interval may be rounded */
 #define MARKS " \t:=;,|\"([{<>)]}'"
 
 void eo_header_split(struct eo_header *header, const struct eo_text_format *format, const char *head)
@@ -52,23 +52,14 @@ static void use_fact(struct eo_text_format *format, const struct eo_stated *stat
     struct eo_clock *clock = &format->clock[c];
     if (!eo_header_means(format, stated, c))
       continue;
-    if (stated->kind == EO_STATED_INTERVAL && !(clock->interval > 0))
-      clock->interval = stated->value;
-    else if (stated->kind == EO_STATED_INTERVAL && fabs(stated->value / clock->interval - 1) > SAME_RATE)
-      clock->other = stated->value;
-    else if (stated->kind == EO_STATED_START)
+    eo_series_tell(clock, stated);
+    if (stated->kind == EO_STATED_START)
       clock->start = stated->value;
   }
   if (stated->kind == EO_STATED_TICK)
     format->tick = stated->value;
   eo_turns_use(format, stated);
 }
-
-/* What no column states alone: when the recording began; that one row in so many was kept, 0: not stated. */
-struct begin {
-  struct eo_moment moment;
-  double thinned;
-};
 
 /* "filter at", before a number: what stands before the last word belongs to the number before. */
 static bool leads_on(const char *words)
@@ -111,23 +102,29 @@ static bool take_from_behind(struct eo_text_format *format, double value, const 
   return true;
 }
 
-/* "decimated by 10", "decimation factor: 10", and "decimated to 400 Hz", which is another rate. */
-static bool take_thinning(struct eo_text_format *format, const char *from, const char *number, double value,
-                          const char *unit, struct begin *begin)
+/* "decimated to 400 Hz", which is another rate. */
+static bool take_thinned_rate(struct eo_text_format *format, const struct eo_header_number *number)
 {
   char key[KEY];
   double factor;
-  eo_header_trim(key, sizeof key, from, number);
-  if (!eo_stated_thins(key) || !(value > 1))
+  eo_header_trim(key, sizeof key, number->from, number->at);
+  if (!eo_stated_thins(key) || !(number->value > 0) || eo_unit_find(number->unit, &factor) != EO_QUANTITY_FREQUENCY ||
+      eo_stated_read(key, number->value, number->unit).kind == EO_STATED_INTERVAL)
     return false;
-  struct eo_stated rate = {EO_STATED_INTERVAL, 0, -1, -1, false, false};
-  bool frequency = eo_unit_find(unit, &factor) == EO_QUANTITY_FREQUENCY;
-  rate.value = 1 / (value * factor);
-  if (frequency)
-    use_fact(format, &rate);
-  else
-    begin->thinned = value;
+  struct eo_stated rate = {EO_STATED_INTERVAL, 1 / (number->value * factor), .member = -1, .number = -1};
+  use_fact(format, &rate);
   return true;
+}
+
+/* Of how many samples a row was made, as the whole line says; all columns are meant. */
+static void take_ratio(struct eo_text_format *format, const struct eo_header_line *line)
+{
+  char text[256];
+  struct eo_stated stated = {.kind = EO_STATED_THINNED, .member = -1, .number = -1};
+  eo_header_trim(text, sizeof text, line->start, line->end);
+  stated.value = eo_stated_ratio(text, &stated.strength);
+  if (stated.value > 1)
+    use_fact(format, &stated);
 }
 
 /* A date or time in the line up to its end or the next cell; *after: behind it. */
@@ -146,16 +143,16 @@ static bool moment_at(const char *p, const char *end, struct eo_moment *moment, 
   return false;
 }
 
-static void use_moment(struct begin *begin, const char *from, const char *at, const struct eo_moment *moment)
+static void use_moment(struct eo_moment *begin, const char *from, const char *at, const struct eo_moment *moment)
 {
   char key[KEY];
   eo_header_trim(key, sizeof key, from, at);
   if (!eo_stated_begin(key))
     return;
-  if (moment->has_day && !begin->moment.has_day)
-    begin->moment.has_day = true, begin->moment.day = moment->day;
-  if (moment->has_time && !begin->moment.has_time)
-    begin->moment.has_time = true, begin->moment.seconds = moment->seconds;
+  if (moment->has_day && !begin->has_day)
+    begin->has_day = true, begin->day = moment->day;
+  if (moment->has_time && !begin->has_time)
+    begin->has_time = true, begin->seconds = moment->seconds;
 }
 
 /* "Sampling rate: " */
@@ -189,7 +186,7 @@ static const char *pass_unit(const char *p, const char *end)
 }
 
 /* Every number of a line with the words before and behind it. */
-static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct begin *begin)
+static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct eo_moment *begin)
 {
   struct eo_turns turns = {0};
   struct eo_header_number number = {.from = line->start};
@@ -211,14 +208,14 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
       continue;
     number.behind = eo_header_unit(number.after, line->end, number.unit, sizeof number.unit);
     p = number.after - 1;
-    if (take_thinning(format, number.from, number.at, number.value, number.unit, begin) ||
+    if (take_thinned_rate(format, &number) ||
         take_from_behind(format, number.value, number.unit, line->end, &number.behind)) {
       number.from = number.behind;
       p = number.behind - 1;
       continue;
     }
     struct eo_stated stated = eo_turns_state(&turns, format, &number, line->end);
-    if (!stated.kind)
+    if (!stated.kind || stated.kind == EO_STATED_THINNED) /* the whole line is read for it */
       continue;
     use_fact(format, &stated);
     number.from = number.behind;
@@ -336,12 +333,13 @@ static void take_bare_rates(struct eo_text_format *format, const struct eo_heade
 
 void eo_header_facts(const struct eo_header *header, struct eo_text_format *format, int names)
 {
-  struct begin begin = {0};
+  struct eo_moment begin = {0};
   for (int i = 0; i < header->lines; i++) {
     struct eo_header_line line = header->line[i];
     if (i == names) /* facts stand behind the names, as in "CH1,CH2,t0 = 0 s,tInc = 2.0E-4" */
       skip_cells(format, &line);
     take_facts(format, &line, &begin);
+    take_ratio(format, &line);
     if (i + 1 < header->lines && format->separator != ' ' && !eo_text_is_named(format->separator))
       take_below(format, &header->line[i], &header->line[i + 1]);
   }
@@ -350,10 +348,9 @@ void eo_header_facts(const struct eo_header *header, struct eo_text_format *form
   for (int i = 0; i < header->lines; i++)
     take_bare_rates(format, &header->line[i]);
   fill_clocks(format);
-  for (int c = 0; c < format->cells && begin.thinned > 0; c++)
-    if (format->clock[c].interval > 0 && !(format->clock[c].other > 0)) /* before or behind it cannot be known */
-      format->clock[c].other = format->clock[c].interval * begin.thinned;
-  if (begin.moment.has_day)
+  for (int c = 0; c < format->cells; c++)
+    eo_series_settle(&format->clock[c]);
+  if (begin.has_day)
     for (int c = 0; c < format->cells; c++)
-      format->clock[c].epoch = eo_moment_epoch(&begin.moment);
+      format->clock[c].epoch = eo_moment_epoch(&begin);
 }

@@ -160,7 +160,7 @@ struct eo_stated eo_turns_state(struct eo_turns *turns, const struct eo_text_for
   if (is_one_of_unit(number, end))
     return stated;
   if (lines && multiplies(number))
-    stated = (struct eo_stated){EO_STATED_FOLD, number->value, -1, -1, false, false};
+    stated = (struct eo_stated){.kind = EO_STATED_FOLD, .value = number->value, .member = -1, .number = -1};
   else if (goes_on(turns, format, number))
     stated = next_of_list(turns, format, number);
   if (!stated.kind)

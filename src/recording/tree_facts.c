@@ -198,9 +198,9 @@ static void take_interval(const struct eo_tree *tree, const struct eo_leaf *fact
                           const struct eo_stated *stated, bool nearer, struct eo_clock *clock)
 {
   if (nearer)
-    clock->interval = stated->value, clock->other = 0;
+    clock->interval = stated->value, clock->other = 0, clock->told = (int)stated->strength;
   else if (eo_series_contradicts(clock->interval, stated->value) && !hints_at_other(tree, fact, series))
-    clock->other = stated->value;
+    eo_series_tell(clock, stated);
 }
 
 /* What a fact of that depth states, for all channels of a series. */
@@ -350,6 +350,9 @@ static void use_told(struct eo_tree *tree, const struct eo_leaf *fact, const str
     if ((kind != EO_STATED_SCALE && kind != EO_STATED_OFFSET) || settle_factor(tree, series, unit))
       use_number(tree, fact, series, number, unit);
   }
+  struct eo_stated ratio = eo_stated_read_ratio(key, fact->text);
+  if (ratio.kind)
+    use_stated(tree, fact, series, &ratio, depth);
 }
 
 static int count_lines(const char *texts)

@@ -996,8 +996,11 @@ static void check_slow_load(void)
   }
   eo_recording_set_column(r, 3, "t", "ms");
   const struct eo_clock own[COLUMNS] = {
-      {-1, 1e-3, 5, EO_CLOCK_NO_EPOCH, 0}, {-1, 1e-3, 5, EO_CLOCK_NO_EPOCH, 0}, {-1, 0.1, 6, EO_CLOCK_NO_EPOCH, 0},
-      {-1, 0, 0, EO_CLOCK_NO_EPOCH, 0},    {3, 0, 0, EO_CLOCK_NO_EPOCH, 0},
+      {.column = -1, .interval = 1e-3, .start = 5, .epoch = EO_CLOCK_NO_EPOCH},
+      {.column = -1, .interval = 1e-3, .start = 5, .epoch = EO_CLOCK_NO_EPOCH},
+      {.column = -1, .interval = 0.1, .start = 6, .epoch = EO_CLOCK_NO_EPOCH},
+      {.column = -1, .epoch = EO_CLOCK_NO_EPOCH},
+      {.column = 3, .epoch = EO_CLOCK_NO_EPOCH},
   };
   for (int c = 0; c < COLUMNS; c++) {
     eo_recording_set_clock(r, c, &own[c]);

@@ -156,6 +156,51 @@ static void test_sentences(void)
     asked(told(open[i][0]), NULL, "/sample_rate_Hz", open[i][1], open[i][0]);
 }
 
+/* The rate of the converter beside words for a row of four of its samples, which was taken for that of the rows. */
+static void test_fewer_rows(void)
+{
+  static const char *const open[] = {"Sampling rate: 16 kHz\nEvery 4th sample is stored",
+                                     "Every fourth sample is stored, sampling rate: 16 kHz",
+                                     "Sampling rate: 16 kHz\nStore every: 4",
+                                     "Sampling rate: 16 kHz\n1 of 4 samples stored",
+                                     "Sampling rate: 16 kHz\naveraging: 4",
+                                     "Sampling rate: 16 kHz\nEach row is the mean of 4 samples",
+                                     "Sampling rate: 16 kHz\noversampling 4x",
+                                     "Sampling rate: 16 kHz / 4",
+                                     "Sampling rate: 16 kHz (1:4)",
+                                     "Sampling rate: 16000/4 Hz",
+                                     "Sampling rate: 16 kHz; stored rate = rate / 4",
+                                     "Sampling rate: 16 kHz\nData reduction 4:1",
+                                     "Sampling rate: 16 kHz\nresampled by 1/4",
+                                     "Sampling rate: 16 kHz, divider: 4",
+                                     "dt = 62.5 us\nDecimation = 4",
+                                     "Abtastrate: 16 kHz\nUnterabtastung 1:4",
+                                     "Abtastrate: 16 kHz\nMittelung \xc3\xbc"
+                                     "ber 4 Werte",
+                                     "Abtastrate: 16 kHz\nnur jeder 4. Abtastwert wird gespeichert",
+                                     "Abtastrate: 16 kHz, 4fach dezimiert",
+                                     "Fr\xc3\xa9quence d'\xc3\xa9"
+                                     "chantillonnage : 16 kHz\nSous-\xc3\xa9"
+                                     "chantillonnage : 4",
+                                     "Cadence d'echantillonnage : 16 kHz\nUn point sur 4 est enregistre"},
+                           *const clear[] = {"Sampling rate: 16 kHz\nDecimation: 4\nStored rate: 4 kHz",
+                                             "Sampling rate: 16 kHz, averaging 4, output rate 4 kHz",
+                                             "Sampling rate after decimation: 4 kHz\nDecimation: 4",
+                                             "Decimation factor 4, resulting rate 4000 Hz",
+                                             "Oversampling ratio 64, output rate 4 kHz",
+                                             "Oversampling: 256 (internal)\nSampling rate: 4 kHz",
+                                             "Sampling rate: 4 kHz\nDecimation: 1, averages: off",
+                                             "Sampling rate: 4 kHz / 2 channels, run 1 of 4",
+                                             "Sampling rate: 4 kHz\nMean temperature: 40\nMoving average: 4",
+                                             "Sampling rate: 4 kHz\nDecimation filter: 4th order",
+                                             "Sampling rate: 4 kHz\nGear reduction: 3",
+                                             "Sampling rate: 4 kHz\nDisplay update rate: 10 Hz"};
+  for (size_t i = 0; i < sizeof open / sizeof *open; i++)
+    asked(told(open[i]), NULL, "/sample_rate_Hz", "16000 and 4000 Hz", open[i]);
+  for (size_t i = 0; i < sizeof clear / sizeof *clear; i++)
+    right(told(clear[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", clear[i]);
+}
+
 /* One row for each value, with the number of its channel; what else stands there is about the value. */
 static void test_channels(void)
 {
@@ -329,6 +374,7 @@ int main(void)
   test_places();
   test_overflows();
   test_sentences();
+  test_fewer_rows();
   test_channels();
   test_arcs();
   return fixture_close();

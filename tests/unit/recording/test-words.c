@@ -53,6 +53,13 @@ static void test_numbers(void)
      "the angle of a count states the counts per turn");
   ok(eo_stated_read("scale", 0.25, "deg/count").kind == EO_STATED_SCALE, "a scale in degrees per count stays one");
   ok(eo_stated_read("decimation_factor", 10, "").kind == EO_STATED_THINNED, "a decimation is stated");
+  ok(eo_stated_read("store_every", 4, "").value == 4 && eo_stated_read("averages", 4, "").value == 4 &&
+         eo_stated_read_ratio("decimation", "4:1").value == 4 &&
+         eo_stated_read_ratio("comment", "one row stored of every 4 samples").value == 4,
+     "keys and texts of properties state of how many samples a row is made");
+  ok(!eo_stated_read("mean_torque", 4, "").kind && !eo_stated_read("averaging time", 4, "ms").kind &&
+         !eo_stated_read_ratio("comment", "run 1 of 4, 16 bit").kind,
+     "other means and ratios do not");
 }
 
 static void test_moments(void)
