@@ -215,6 +215,34 @@ static enum eo_code check_time_unit(const struct eo_guess *guess, int column, st
                       eo_recording_unit(guess->recording, column), eo_layout_label(guess, column, text, sizeof text));
 }
 
+/* Rows come at a rate that an encoder is recorded with. */
+static bool is_usual(double interval)
+{
+  return fabs(interval) > SHORTEST && fabs(interval) < LONGEST;
+}
+
+/* Whole numbers without a unit count what the file says that its times resolve, "timestamp resolution: 10 us"; but not
+   surely where they are multiples of that in a finer unit. */
+static enum eo_code count_resolution(const struct eo_guess *guess, int column, double *scale, struct eo_error *error)
+{
+  static const double finer[] = {1e-3, 1e-6, 1e-9};
+  char text[80];
+  const struct eo_column *look = &guess->look[column];
+  double each = eo_recording_clock(guess->recording, column).resolution;
+  if (!(each > 0) || !look->whole || look->quantity != EO_QUANTITY_NONE || !is_usual(look->step * each))
+    return EO_OK;
+  for (size_t i = 0; i < sizeof finer / sizeof *finer; i++) {
+    double units = round(each / finer[i]);
+    if (units > 1 && is_usual(look->step * finer[i]) && fmod(look->step, units) == 0 && fmod(look->low, units) == 0)
+      return eo_error_set(error, EO_ERROR_INPUT, "/time_unit",
+                          "The file states that times resolve %.6g s and no unit of %s, which may count that or units "
+                          "of %.6g s: give the seconds that one of them takes.",
+                          each, eo_layout_label(guess, column, text, sizeof text), finer[i]);
+  }
+  *scale = each;
+  return EO_OK;
+}
+
 static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_error *error)
 {
   struct eo_layout_clock *clock = &guess->clock[member];
@@ -243,6 +271,8 @@ static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_err
   if (clock->scale == 1 && !(guess->choice->time_scale > 0) && look->quantity == EO_QUANTITY_NONE &&
       scale_by_size(look) > 0)
     clock->scale = scale_by_size(look);
+  if (clock->scale == 1 && !(guess->choice->time_scale > 0))
+    EO_TRY(count_resolution(guess, clock->column, &clock->scale, error));
   clock->interval = look->step * clock->scale;
   return EO_OK;
 }
@@ -291,12 +321,6 @@ bool eo_layout_is_open(const struct eo_guess *guess, int member)
 }
 
 static const double time_units[] = {1, 1e-3, 1e-6, 1e-9, 86400};
-
-/* Rows come at a rate that an encoder is recorded with. */
-static bool is_usual(double interval)
-{
-  return fabs(interval) > SHORTEST && fabs(interval) < LONGEST;
-}
 
 double eo_layout_time_factor(const struct eo_guess *guess, int member)
 {

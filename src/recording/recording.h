@@ -48,14 +48,15 @@ int64_t eo_recording_length(const struct eo_recording *recording, int column);
    start + k interval when the rows are even, else at the value in column `column` of the same row, in that column's
    unit. A file that says nothing has interval 0 and column -1: what the times are is then for the layout to find. */
 struct eo_clock {
-  int column;      /* of the recording, that holds the times of this one; -1: none */
-  double interval; /* s between rows that are even; 0: not stated */
-  double start;    /* s: time of row 0 where rows are even */
-  int64_t epoch;   /* ns since 1970-01-01: when the time 0 was; EO_CLOCK_NO_EPOCH: not stated. Local or universal: two
-                      clocks are only compared with each other */
-  double other;    /* s: another interval that the file states for the same rows; 0: it does not contradict itself */
-  double thinned;  /* of so many samples a row was made, before or behind the stated rate; 0: not stated */
-  int thins, told; /* enum eo_stated_strength of that number and of the intervals */
+  int column;        /* of the recording, that holds the times of this one; -1: none */
+  double interval;   /* s between rows that are even; 0: not stated */
+  double start;      /* s: time of row 0 where rows are even */
+  int64_t epoch;     /* ns since 1970-01-01: when the time 0 was; EO_CLOCK_NO_EPOCH: not stated. Local or universal: two
+                        clocks are only compared with each other */
+  double other;      /* s: another interval that the file states for the same rows; 0: it does not contradict itself */
+  double thinned;    /* of so many samples a row was made, before or behind the stated rate; 0: not stated */
+  double resolution; /* s that times resolve, and may count where they are whole; 0: not stated */
+  int thins, told;   /* enum eo_stated_strength of that number and of the intervals */
 };
 #define EO_CLOCK_NO_EPOCH INT64_MIN
 

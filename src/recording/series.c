@@ -211,6 +211,8 @@ void eo_series_tell(struct eo_clock *clock, const struct eo_stated *stated)
 {
   if (stated->kind == EO_STATED_THINNED && (int)stated->strength >= clock->thins)
     clock->thinned = stated->value, clock->thins = (int)stated->strength;
+  if (stated->kind == EO_STATED_RESOLUTION)
+    clock->resolution = stated->value;
   if (stated->kind != EO_STATED_INTERVAL)
     return;
   bool contradicts = eo_series_contradicts(clock->interval, stated->value);
@@ -239,6 +241,7 @@ bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
   switch (stated->kind) {
   case EO_STATED_INTERVAL:
   case EO_STATED_THINNED:
+  case EO_STATED_RESOLUTION:
     eo_series_tell(&series->clock, stated);
     return true;
   case EO_STATED_START:

@@ -60,10 +60,12 @@ bool eo_stated_holds(const char *key, const char *words)
 #define TIMES "time zeit temps tiempo tempo horiz"
 
 /* Amounts of samples, what a filter does, and what a device could do are no sampling. */
-#define NOT_SAMPLING                                                                                                \
-  "numberof numof noof nof nrof anzahl nombre numero cantidad samplecount numsampl nsampl wfsamples samplesize "    \
-  "points length filter cutoff corte coupure grenz lowpass tiefpass antialias max nyquist original duration dauer " \
-  "divid teiler message calibrat accura generat aggregate"
+#define NOT_SAMPLING                                                                                                 \
+  "numberof numof noof nof nrof anzahl nombre numero cantidad samplecount numsampl nsampl wfsamples samplesize "     \
+  "points length filter cutoff corte coupure grenz lowpass tiefpass antialias max nyquist original duration dauer "  \
+  "divid teiler message calibrat accura generat aggregate uncertain transfer limit minim mindest recommend empfohl " \
+  "planned geplant required erforder intern display anzeige temperat vibrat accelerom beschleunig microph mikrofon " \
+  "audio"
 
 /* Of a converter, behind what it averages; no output shaft is meant. */
 #define OUTPUT_RATES "outputrate outputdatarate ausgaberate"
@@ -78,11 +80,12 @@ static bool is_rate(const char *key)
   return eo_stated_is_one(key, "fs sr rate fsample fsamp fsampling fa ratehz samples/s samples/sec s/s sa/s frequenz "
                                "fabtast fech samplespersec") ||
          eo_stated_holds(
-             key,
-             "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
-             "samplingspeed ratehz recordedat sampledat acquiredat loggedat outputrate updaterate pollrate storedrate "
-             "resultingrate effectiverate effektiverate "
-             "framerate storerate storagerate recordrate recordingrate loggingrate") ||
+             key, "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
+                  "rowrate rowspersec rows/s valuespersec values/s points/s linespersec werte/s werteprosek wertejesek "
+                  "punkteprosek punktejesek pointsparsec samplingspeed ratehz recordedat sampledat acquiredat loggedat "
+                  "outputrate updaterate pollrate storedrate "
+                  "resultingrate effectiverate effektiverate "
+                  "framerate storerate storagerate recordrate recordingrate loggingrate") ||
          is_about(key, SAMPLING, RATES " clk clock velocid") || is_about(key, TAKING, RATES);
 }
 
@@ -94,7 +97,8 @@ static bool is_interval(const char *key)
                   "xstep tinc tincr tincrement tinterval hresolution") ||
          eo_stated_holds(
              key,
-             "sampletime samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
+             "betweensamples betweenrows betweenpoints betweenvalues rowinterval intervalofrows sampletime "
+             "samplingtime abtastzeit timeperpoint timepersample secondspersample tasttakt dtsec "
              "samplingresolution wfincrement xincrement xinterval storageinterval recordinginterval logginginterval") ||
          is_about(key, SAMPLING, INTERVALS " period temps tiempo tempo") || is_about(key, TAKING " " TIMES, INTERVALS);
 }
@@ -145,6 +149,13 @@ static bool is_tick(const char *key)
                    "tickduration ticklength tickperiod ticktime tickinterval taktfreq taktrate timerresolution "
                    "timerperiod zaehlertakt zahlertakt clockperiod referenceclock") &&
           !eo_stated_holds(key, SAMPLING));
+}
+
+/* What times resolve, and which whole numbers without a unit may count. */
+static bool is_resolution(const char *key)
+{
+  return eo_stated_holds(key, "resolution aufloesung auflosung granular quantum timestampunit timestampstep") &&
+         !eo_stated_holds(key, "samplingresolution hresolution horizontalresolution");
 }
 
 static bool is_scale(const char *key)
@@ -295,6 +306,8 @@ static void judge_key(const char *folded, double number, enum eo_quantity quanti
     stated->kind = EO_STATED_FOLD, stated->value = number;
   else if (tick && positive && (time || frequency || number > 1000))
     stated->kind = EO_STATED_TICK, stated->value = time ? number * factor : 1 / (number * factor);
+  else if (time && positive && is_resolution(folded))
+    stated->kind = EO_STATED_RESOLUTION, stated->value = number * factor;
   else if ((rate || interval) && positive && (time || frequency || plain))
     state_interval(folded, stated),
         stated->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);

@@ -11,12 +11,13 @@
 
 enum eo_stated_kind {
   EO_STATED_NOTHING,
-  EO_STATED_INTERVAL, /* s between rows */
-  EO_STATED_START,    /* s: time of the first row */
-  EO_STATED_TICK,     /* s of one tick of the clock that times are counted by */
-  EO_STATED_TURN,     /* counts or pulses per turn of an encoder */
-  EO_STATED_FOLD,     /* counts for each line of an encoder: interpolation, or the edges that a counter takes */
-  EO_STATED_SCALE,    /* value = scale * stored + offset */
+  EO_STATED_INTERVAL,   /* s between rows */
+  EO_STATED_START,      /* s: time of the first row */
+  EO_STATED_TICK,       /* s of one tick of the clock that times are counted by */
+  EO_STATED_RESOLUTION, /* s that times resolve */
+  EO_STATED_TURN,       /* counts or pulses per turn of an encoder */
+  EO_STATED_FOLD,       /* counts for each line of an encoder: interpolation, or the edges that a counter takes */
+  EO_STATED_SCALE,      /* value = scale * stored + offset */
   EO_STATED_OFFSET,
   EO_STATED_THINNED, /* of so many samples a row was made */
   EO_STATED_KINDS

@@ -201,6 +201,34 @@ static void test_fewer_rows(void)
     right(told(clear[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", clear[i]);
 }
 
+/* Times that count as many seconds each, under a heading. */
+static FILE *whole_times(const char *header, double each)
+{
+  FILE *f = begin(header);
+  fputs("\nTimestamp;pinion [deg];gear [deg]\n", f);
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.0f;%.12g;%.12g\n", i / RATE / each, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  return f;
+}
+
+/* What times resolve is what they count, where they can count nothing finer; it is no distance of rows. */
+static void test_resolutions(void)
+{
+  static const char *const counted[] = {"timestamp resolution: 10 us", "Zeitstempelaufl\xc3\xb6sung: 10 us",
+                                        "resolution of the time stamps: 10 us", "clock resolution 0.01 ms"},
+                           *const none[] = {"Sampling time resolution: 10 us", "minimum sampling interval: 10 us",
+                                            "sample rate limit: 10 kHz", "accelerometer sampling rate: 50 kHz"},
+                           *const rates[] = {"rows per second: 4000", "time between rows: 250 us", "row rate: 4 kHz"};
+  for (size_t i = 0; i < sizeof counted / sizeof *counted; i++)
+    right(whole_times(counted[i], 1e-5), NULL, 1e-7, NULL, counted[i]);
+  asked(whole_times("timestamp resolution: 10 us", 1e-6), NULL, "/time_unit", "may count that or units of 1e-06 s",
+        "times that are multiples of what they resolve");
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+    asked(told(none[i]), NULL, "/sample_rate_Hz", "states no sampling rate", none[i]);
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+    right(told(rates[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", rates[i]);
+}
+
 /* One row for each value, with the number of its channel; what else stands there is about the value. */
 static void test_channels(void)
 {
@@ -375,6 +403,7 @@ int main(void)
   test_overflows();
   test_sentences();
   test_fewer_rows();
+  test_resolutions();
   test_channels();
   test_arcs();
   return fixture_close();
