@@ -81,7 +81,8 @@ static bool is_rate(const char *key)
                                "fabtast fech samplespersec") ||
          eo_stated_holds(
              key, "samplespersec samplesper/ samples/s readingspersec scanspersec scans/s pointspersec "
-                  "rowrate rowspersec rows/s valuespersec values/s points/s linespersec werte/s werteprosek wertejesek "
+                  "ratechang newrate rowrate rowspersec rows/s valuespersec values/s points/s linespersec werte/s "
+                  "werteprosek wertejesek "
                   "punkteprosek punktejesek pointsparsec samplingspeed ratehz recordedat sampledat acquiredat loggedat "
                   "outputrate updaterate pollrate storedrate "
                   "resultingrate effectiverate effektiverate "

@@ -354,3 +354,33 @@ void eo_header_facts(const struct eo_header *header, struct eo_text_format *form
     for (int c = 0; c < format->cells; c++)
       format->clock[c].epoch = eo_moment_epoch(&begin);
 }
+
+void eo_header_late_fact(struct eo_text_format *format, struct eo_text_format *scratch, const char *start,
+                         const char *end)
+{
+  const char *comment = eo_text_comment(start, end, format->separator);
+  struct eo_header_line line = {comment ? comment : start, end};
+  struct eo_moment begin = {0};
+  struct eo_clock *told = &scratch->clock[0];
+  *told = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
+  scratch->cells = 1;
+  scratch->separator = format->separator;
+  scratch->point = format->point;
+  scratch->line_end = format->line_end;
+  scratch->name[0][0] = scratch->unit[0][0] = '\0';
+  take_facts(scratch, &line, &begin);
+  take_ratio(scratch, &line);
+  for (int c = 0; c < format->cells; c++) {
+    struct eo_clock *clock = &format->clock[c];
+    struct eo_stated rate = {EO_STATED_INTERVAL, told->interval, .member = -1, .number = -1},
+                     ratio = {EO_STATED_THINNED, told->thinned, .member = -1, .number = -1};
+    rate.strength = (enum eo_stated_strength)told->told;
+    ratio.strength = (enum eo_stated_strength)told->thins;
+    if (told->interval > 0)
+      eo_series_tell(clock, &rate);
+    if (told->thinned > 1 && !(clock->thinned > 1)) {
+      eo_series_tell(clock, &ratio);
+      eo_series_settle(clock);
+    }
+  }
+}

@@ -27,4 +27,9 @@ void eo_header_split(struct eo_header *header, const struct eo_text_format *form
    line with a value for each column. names: index of the line of names, -1: none; the names of the format are set. */
 void eo_header_facts(const struct eo_header *header, struct eo_text_format *format, int names);
 
+/* Takes the rate that a line between the rows or behind them states, to all columns: where the heading states none it
+   is theirs, else it stands beside what was stated. scratch: room for one column. */
+void eo_header_late_fact(struct eo_text_format *format, struct eo_text_format *scratch, const char *start,
+                         const char *end);
+
 #endif

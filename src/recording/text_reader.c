@@ -5,6 +5,7 @@
 #include "recording/decimal.h"
 #include "recording/readers.h"
 #include "recording/text_cell.h"
+#include "recording/text_facts.h"
 #include "recording/text_format.h"
 #include "recording/text_named.h"
 #include "recording/text_sections.h"
@@ -23,6 +24,7 @@
 #define FAULTS_FREE 10          /* odd rows that every file may have, */
 #define FAULT_SHARE 100         /* and one in so many rows */
 #define TRIED 64                /* places between rows where another table may begin */
+#define LATE_LINES 1000         /* lines between the rows that are looked at for a rate */
 #define TABLE_ROWS 20           /* behind which one is looked for */
 
 _Static_assert(BLOCK > EO_TEXT_HEAD, "the layout is found in the first block");
@@ -45,9 +47,9 @@ struct text {
   const char *spool_directory;
   struct eo_tables tables; /* those that are read, and those of channels */
   struct eo_text_channels channels;
-  char label[EO_RECORDING_NAME]; /* of the current table */
-  bool heading;                  /* the block begins with what may be the heading of another table */
-  int tried;
+  char label[EO_RECORDING_NAME];      /* of the current table */
+  bool heading;                       /* the block begins with what may be the heading of another table */
+  int tried, late;                    /* lines that are no rows */
   int64_t passed;                     /* line where none began */
   int64_t first_line;                 /* of the first row of all */
   struct eo_text_format next;         /* of another table */
@@ -216,26 +218,41 @@ static int split_row(struct text *text, const char **at, const char *end)
   return found ? format->cells : 0;
 }
 
+/* "rate changed to 5000 Hz", or the rate behind the last row: in a line that is no row. */
+static void take_late(struct text *text, const char *line, const char *end)
+{
+  if (text->late++ < LATE_LINES)
+    eo_header_late_fact(&text->format, &text->next, line, end);
+}
+
 /* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
    without a line end. */
 static enum eo_code read_slowly(struct text *text, const char *line, const char *end, bool last, struct eo_error *error)
 {
   const struct eo_text_format *format = &text->format;
-  if (eo_text_empty(line, end) || eo_text_comment(line, end, format->separator))
+  if (eo_text_empty(line, end))
     return EO_OK;
+  if (eo_text_comment(line, end, format->separator)) {
+    take_late(text, line, end);
+    return EO_OK;
+  }
   if (text->sections.used && eo_text_sections_take(&text->sections, line, end, text->kept))
     return EO_OK;
   const char *at = line;
   int c = split_row(text, &at, end);
   if (c < format->cells && last) {
+    take_late(text, line, end);
     eo_notes_add(text->notes, "The last row, in line %lld, is cut off and was left out.", (long long)text->line);
     return EO_OK;
   }
-  if (c < format->cells || !only_empty_cells(at, end, format->separator))
+  if (c < format->cells || !only_empty_cells(at, end, format->separator)) {
+    take_late(text, line, end);
     return odd_length(text, c < format->cells ? c : c + 1, error);
+  }
   enum eo_code code = EO_OK;
   int odd = convert_cells(text);
   if (odd >= 0) {
+    take_late(text, line, end);
     char what[64];
     describe_cell(&text->cell[odd], what, sizeof what);
     code = add_fault(text, odd, what, error);

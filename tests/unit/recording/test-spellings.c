@@ -201,6 +201,33 @@ static void test_fewer_rows(void)
     right(told(clear[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", clear[i]);
 }
 
+/* Rows with a line between them, or behind them. */
+static FILE *interrupted(const char *header, int row, const char *line)
+{
+  FILE *f = begin(header);
+  for (int i = 0; i <= ROWS; i++) {
+    if (i == row)
+      fputs(line, f);
+    if (i < ROWS)
+      fprintf(f, "%.12g,%.12g\n", degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  }
+  return f;
+}
+
+/* A rate that is stated behind the first row was passed over. */
+static void test_late_rates(void)
+{
+  static const char *const lines[] = {"# rate changed: sample rate 5000 Hz\n", "Sample interval: 200 us\n",
+                                      "# Sample rate: 5 kHz\npinion [deg],gear [deg]\n"};
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+    asked(interrupted("Sample rate: 4 kHz\npinion [deg],gear [deg]\n", ROWS / 2, lines[i]), NULL, "/sample_rate_Hz",
+          "4000 and 5000 Hz", lines[i]);
+  right(interrupted("Sample rate: 4 kHz\npinion [deg],gear [deg]\n", ROWS / 2, "# Sample rate: 4000 Hz at 828 N m\n"),
+        NULL, 1e-7, "a sampling rate of 4000 Hz", "the same rate again");
+  right(interrupted("pinion [deg],gear [deg]\n", ROWS, "# Sample rate: 4000 Hz\n"), NULL, 1e-7,
+        "a sampling rate of 4000 Hz", "a rate behind the last row");
+}
+
 /* Times that count as many seconds each, under a heading. */
 static FILE *whole_times(const char *header, double each)
 {
@@ -404,6 +431,7 @@ int main(void)
   test_sentences();
   test_fewer_rows();
   test_resolutions();
+  test_late_rates();
   test_channels();
   test_arcs();
   return fixture_close();
