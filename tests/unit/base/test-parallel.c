@@ -99,7 +99,8 @@ int main(void)
     lowest_failure(threads);
     progress_and_cancellation(threads);
   }
-  ok(eo_parallel_run(&none, 0, NULL) == EO_OK && w.done[0] == 0, "no items, no work");
-  ok(eo_parallel_cores() >= 1 && eo_parallel_cores() <= EO_MAX_THREADS, "%d cores", eo_parallel_cores());
+  ok(eo_parallel_run(&none, 0, NULL) == EO_OK && w.done[0] == 0, "a run of no items does no work");
+  ok(eo_parallel_cores() >= 1 && eo_parallel_cores() <= EO_MAX_THREADS,
+     "the machine has %d cores, within what is allowed", eo_parallel_cores());
   return tap_done();
 }

@@ -61,7 +61,7 @@ static void every_piece_once(int threads)
   eo_team_do(team, &(struct eo_work_list){count_piece, &urgent, .pieces = PIECES});
   ok(each_once(&urgent), "%d threads: every piece of a list is done once", threads);
   eo_team_settle(team);
-  ok(each_once(&filler), "%d threads: and of one that was left to whoever has time", threads);
+  ok(each_once(&filler), "%d threads: every piece of a list left to whoever has time is done once", threads);
   ok(threads > 1 || (!urgent.second && !filler.second), "%d threads: one thread alone works alone", threads);
   eo_team_free(team);
 }
@@ -77,7 +77,7 @@ static void second_is_kept(void)
   eo_team_use(team, 2);
   eo_team_do(team, &(struct eo_work_list){meet, &again, .pieces = 2});
   ok(first.second && again.second && pthread_equal(first.thread, again.thread), "the second thread is kept");
-  ok(each_once(&alone) && !alone.second, "it takes nothing while one thread is to work");
+  ok(each_once(&alone) && !alone.second, "the second thread takes nothing while one thread is to work");
   eo_team_free(team);
 }
 

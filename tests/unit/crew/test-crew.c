@@ -94,25 +94,27 @@ static enum eo_code run(struct eo_crew *crew, const char *order, int items, stru
 static void try_crew(struct eo_crew *crew, const char *what)
 {
   struct list list = {0};
-  ok(run(crew, "one", ITEMS, &list) == EO_OK && list.right && list.next == ITEMS, "%s: every answer in its order",
+  ok(run(crew, "one", ITEMS, &list) == EO_OK && list.right && list.next == ITEMS, "%s: every answer comes in its order",
      what);
   int before = atomic_load(&opened);
   ok(run(crew, "one", ITEMS / 4, &list) == EO_OK && list.right && atomic_load(&opened) == before,
      "%s: the same order goes on at the same benches", what);
   ok(run(crew, "two", ITEMS / 4, &list) == EO_OK && list.right && atomic_load(&opened) > before,
-     "%s: another one opens others", what);
+     "%s: another order opens other benches", what);
   atomic_store(&failing, 100);
   ok(run(crew, "one", ITEMS, &list) == EO_ERROR_NUMERIC && strcmp(error.text, "Item 100 failed.") == 0 &&
          list.next == 100 && list.right,
-     "%s: the error of the lowest item, after all before it: %s", what, error.text);
+     "%s: the error of the lowest item is told, after all before it: %s", what, error.text);
   atomic_store(&failing, -1);
-  ok(run(crew, "broken", 10, &list) == EO_ERROR_FILE && list.next == 0, "%s: a bench that cannot be opened", what);
+  ok(run(crew, "broken", 10, &list) == EO_ERROR_FILE && list.next == 0, "%s: a bench that cannot be opened is told",
+     what);
   list.stop_at = 50;
   ok(run(crew, "one", 20000, &list) == EO_ERROR_CANCELLED && list.right && list.next >= 50 && list.next < 20000,
      "%s: a stop keeps what was done in order: %d", what, list.next);
   list.stop_at = 0;
-  ok(run(crew, "one", ITEMS, &list) == EO_OK && list.right && list.next == ITEMS, "%s: and it goes on", what);
-  ok(run(crew, "one", 0, &list) == EO_OK && list.next == 0, "%s: nothing to do", what);
+  ok(run(crew, "one", ITEMS, &list) == EO_OK && list.right && list.next == ITEMS, "%s: the crew goes on after a stop",
+     what);
+  ok(run(crew, "one", 0, &list) == EO_OK && list.next == 0, "%s: an order of nothing succeeds", what);
 }
 
 /* Ranks that are threads of this process: */
@@ -211,7 +213,7 @@ static void try_ranks(int size, int threads)
   for (int rank = 1; rank < size; rank++)
     pthread_create(&thread[rank], NULL, serve, &crew[rank]);
   snprintf(what, sizeof what, "%d ranks of %d threads", size, threads);
-  ok(eo_crew_strength(&crew[0]) == (size - 1) * threads, "%s: its strength", what);
+  ok(eo_crew_strength(&crew[0]) == (size - 1) * threads, "%s: the crew knows its strength", what);
   try_crew(&crew[0], what);
   eo_crew_end(&crew[0]);
   for (int rank = 1; rank < size; rank++) {
@@ -219,7 +221,7 @@ static void try_ranks(int size, int threads)
     pthread_join(thread[rank], &failed);
     good = good && !failed;
   }
-  ok(good, "%s: all go home", what);
+  ok(good, "%s: all ranks go home", what);
 }
 
 int main(void)

@@ -58,16 +58,17 @@ static int factor_rank(double tolerance)
   struct eo_error error;
   memcpy(work, original, sizeof work);
   enum eo_code code = eo_lowrank_factor(N, work, tolerance, &rank, &stride, &factor, &error);
-  ok(code == EO_OK, "factored to %.0e: rank %d", tolerance, rank);
-  ok(stride % EO_GRAM_LANE == 0 && stride >= rank && stride - rank < EO_GRAM_LANE + (rank == 0), "stride %d", stride);
+  ok(code == EO_OK, "a matrix is factored to %.0e: rank %d", tolerance, rank);
+  ok(stride % EO_GRAM_LANE == 0 && stride >= rank && stride - rank < EO_GRAM_LANE + (rank == 0),
+     "the stride of the factor is %d", stride);
   remainder_of(factor, stride, &diagonal, &beside);
   ok(diagonal <= tolerance * (1 + 1e-9) + 1e-15 && beside <= diagonal + 1e-15,
-     "what is left: %.1e on the diagonal, %.1e beside it", diagonal, beside);
+     "the factor leaves %.1e on the diagonal, %.1e beside it", diagonal, beside);
   bool padded = true;
   for (int i = 0; i < N; i++)
     for (int k = rank; k < stride; k++)
       padded = padded && factor[i * stride + k] == 0;
-  ok(padded, "rows are padded with zeros");
+  ok(padded, "the factor's rows are padded with zeros");
   free(factor);
   return rank;
 }
@@ -94,7 +95,7 @@ int main(void)
   random_rank(17);
   ok(factor_rank(1e-10) == 17, "a matrix of rank 17 has rank 17");
   memset(original, 0, sizeof original);
-  ok(factor_rank(1e-3) == 0, "nothing has rank 0");
+  ok(factor_rank(1e-3) == 0, "a matrix of zeros has rank 0");
   refused(NAN, 3, "NaN on the diagonal");
   refused(INFINITY, 3, "an infinite entry");
   refused(-1e-12, N - 1, "a negative diagonal entry");

@@ -91,18 +91,18 @@ static void one_workspace_many_solves(void)
   eo_nonlinear_solve(w, &problem, &usual, x, &report, NULL);
   ok(report.outcome == EO_NONLINEAR_CONVERGED && report.iterations > 0, "Rosenbrock converges in %d iterations",
      report.iterations);
-  close_to(x[0], 1, 1e-12, "x");
-  close_to(x[1], 1, 1e-12, "y");
-  ok(report.evaluations == calls, "%d evaluations are counted", calls);
+  close_to(x[0], 1, 1e-12, "x of Rosenbrock's minimum");
+  close_to(x[1], 1, 1e-12, "y of Rosenbrock's minimum");
+  ok(report.evaluations == calls, "the %d evaluations of a solution are counted", calls);
   double again[2] = {x[0], x[1]};
   eo_nonlinear_solve(w, &problem, &usual, again, &report, NULL);
   ok(report.outcome == EO_NONLINEAR_CONVERGED && report.iterations == 0, "a guess that is a solution is accepted");
-  ok(!memcmp(x, again, sizeof x), "and comes back unchanged");
+  ok(!memcmp(x, again, sizeof x), "a guess that is a solution comes back unchanged");
   problem.jacobian = NULL;
   double differences[2] = {-1.2, 1};
   eo_nonlinear_solve(w, &problem, &usual, differences, &report, NULL);
   ok(report.outcome == EO_NONLINEAR_CONVERGED, "differences instead of the analytic Jacobian converge as well");
-  close_to(differences[1], 1, 1e-9, "to the same point");
+  close_to(differences[1], 1, 1e-9, "y of Rosenbrock's minimum by differences");
   eo_nonlinear_free(w);
 }
 
@@ -112,16 +112,16 @@ static void outcomes(void)
   struct eo_nonlinear_report report = solve(2, powell, valley);
   ok(report.outcome == EO_NONLINEAR_CONVERGED, "Powell's badly scaled system converges in %d iterations",
      report.iterations);
-  near(valley[0], 1.0981593e-5, 1e-7, "x");
-  near(valley[1], 9.1061467, 1e-7, "y");
+  near(valley[0], 1.0981593e-5, 1e-7, "x of Powell's solution");
+  near(valley[1], 9.1061467, 1e-7, "y of Powell's solution");
   double x = 3;
   report = solve(1, rootless, &x);
-  ok(report.outcome == EO_NONLINEAR_STALLED && report.residual >= 1, "no solution is an outcome, residual %g",
-     report.residual);
+  ok(report.outcome == EO_NONLINEAR_STALLED && report.residual >= 1,
+     "an equation without a solution is an outcome, residual %g", report.residual);
   x = 20;
   report = solve(1, logarithm, &x);
-  ok(report.outcome == EO_NONLINEAR_CONVERGED, "steps out of the domain are shortened");
-  near(x, exp(1), 1e-11, "e");
+  ok(report.outcome == EO_NONLINEAR_CONVERGED, "steps out of the logarithm's domain are shortened");
+  near(x, exp(1), 1e-11, "root of ln x - 1, e");
   x = 10;
   ok(solve(1, gives_up, &x).outcome == EO_NONLINEAR_FAILED, "a function that gives up fails");
   double two[2] = {1, 2};
@@ -133,7 +133,7 @@ static void bad_input(void)
   struct eo_nonlinear *w = NULL;
   struct eo_error error = {0};
   int refused = eo_nonlinear_new(&w, 0, &error) == EO_ERROR_NUMERIC && !w;
-  ok(refused, "no unknowns: %s", error.text);
+  ok(refused, "a system of no unknowns is refused: %s", error.text);
   eo_nonlinear_new(&w, 1, NULL);
   struct eo_nonlinear_problem problem = {rootless, NULL, NULL};
   struct eo_nonlinear_options options = usual;
@@ -141,11 +141,11 @@ static void bad_input(void)
   double x = 1, scale = 0;
   options.residual_tolerance = 0;
   refused = eo_nonlinear_solve(w, &problem, &options, &x, &report, &error) == EO_ERROR_NUMERIC;
-  ok(refused, "%s", error.text);
+  ok(refused, "a tolerance that cannot be is refused: %s", error.text);
   options = usual;
   options.x_scale = &scale;
   refused = eo_nonlinear_solve(w, &problem, &options, &x, &report, &error) == EO_ERROR_NUMERIC;
-  ok(refused, "%s", error.text);
+  ok(refused, "options that cannot be are refused: %s", error.text);
   eo_nonlinear_free(w);
   eo_nonlinear_free(NULL);
 }

@@ -37,9 +37,9 @@ static void test_order(void)
   double coarse[2], fine[2];
   spline_error(64, coarse);
   spline_error(128, fine);
-  close_to(log2(coarse[0] / fine[0]), 4, 0.15, "order of the value");
-  close_to(log2(coarse[1] / fine[1]), 3, 0.15, "order of the slope");
-  ok(fine[0] < 3e-6, "error with 128 nodes %.1e", fine[0]);
+  close_to(log2(coarse[0] / fine[0]), 4, 0.15, "order of convergence of the value");
+  close_to(log2(coarse[1] / fine[1]), 3, 0.15, "order of convergence of the slope");
+  ok(fine[0] < 3e-6, "the error with 128 nodes is %.1e", fine[0]);
 }
 
 /* What makes it a spline: the second derivative, taken from the slopes on either side of each node, does not jump. */
@@ -51,7 +51,7 @@ static void test_continuity(void)
   for (int i = 0; i < 5; i++) {
     double at = i / 5.0, before = i ? at : 1,
            slope[6]; /* on a cubic three slopes give the second derivative at their end exactly */
-    close_to(eo_periodic_at(&spline, at, NULL), node[i], 1e-14, "through the node");
+    close_to(eo_periodic_at(&spline, at, NULL), node[i], 1e-14, "value of the spline at a node");
     for (int k = 0; k < 3; k++) {
       eo_periodic_at(&spline, before - (k + 0.5) * h, &slope[k]);
       eo_periodic_at(&spline, at + (k + 0.5) * h, &slope[3 + k]);
@@ -59,8 +59,8 @@ static void test_continuity(void)
     double left = (2 * slope[0] - 3 * slope[1] + slope[2]) / h, right = (-2 * slope[3] + 3 * slope[4] - slope[5]) / h;
     bend = fmax(bend, fabs(left - right) / fmax(1, fabs(left)));
   }
-  ok(bend < 1e-8, "its second derivative does not jump: %.1e", bend);
-  close_to(eo_periodic_at(&spline, 1, NULL), node[0], 1e-14, "phase 1 is phase 0");
+  ok(bend < 1e-8, "the spline's second derivative does not jump: %.1e", bend);
+  close_to(eo_periodic_at(&spline, 1, NULL), node[0], 1e-14, "value at phase 1, that at phase 0");
 }
 
 static void test_flat(void)
@@ -68,8 +68,8 @@ static void test_flat(void)
   struct eo_periodic spline;
   double node[3] = {7, 7, 7}, slope;
   eo_periodic_init(&spline, 3, node);
-  close_to(eo_periodic_at(&spline, 0.41, &slope), 7, 1e-14, "a constant stays one with three nodes");
-  close_to(slope, 0, 1e-13, "without slope");
+  close_to(eo_periodic_at(&spline, 0.41, &slope), 7, 1e-14, "value of a constant with three nodes");
+  close_to(slope, 0, 1e-13, "slope of a constant");
 }
 
 static void test_harmonics(void)
@@ -81,10 +81,10 @@ static void test_harmonics(void)
     for (int h = 1; h <= HARMONICS; h++)
       node[i] += cos(2 * M_PI * h * i / COUNT) / h - 0.1 * h * sin(2 * M_PI * h * i / COUNT);
   }
-  close_to(eo_periodic_harmonics(COUNT, node, HARMONICS, amplitude), 2.5, 1e-14, "mean");
+  close_to(eo_periodic_harmonics(COUNT, node, HARMONICS, amplitude), 2.5, 1e-14, "mean of a trigonometric polynomial");
   for (int h = 1; h <= HARMONICS; h++)
     worst = fmax(worst, hypot(amplitude[h - 1][0] - 1.0 / h, amplitude[h - 1][1] - 0.1 * h));
-  close_to(worst, 0, 1e-13, "harmonics of a trigonometric polynomial are exact");
+  close_to(worst, 0, 1e-13, "harmonics of a trigonometric polynomial");
 }
 
 /* Sizes that come again, and more of them than are kept. */

@@ -118,14 +118,14 @@ int main(void)
   for (int j = 0; j < LOADED; j++)
     for (int k = 0; k < KEPT; k++)
       worst = fmax(worst, fabs(inverse[j * KEPT + k] - dense[keep[k] * N + keep[KEPT - LOADED + j]]));
-  ok(worst < 1e-13, "its inverse is that of the dense matrix: %.2e", worst);
+  ok(worst < 1e-13, "the inverse of the grid is that of the dense matrix: %.2e", worst);
   ok(invert(-6, keep, inverse, &error) == EO_ERROR_NUMERIC && strstr(error.text, "positive definite"),
      "an indefinite matrix is refused: %s", error.text);
   ok(invert(NAN, keep, inverse, &error) == EO_ERROR_NUMERIC, "NaN is refused: %s", error.text);
   check_threads();
   double small[9] = {2, 1, 0, 1, 2, 0, 0, 0, 5}, low, high;
-  ok(!eo_symmetric_extremes(3, small, &low, &high, &error), "eigenvalues are found");
-  close_to(low, 1, 1e-14, "smallest eigenvalue");
-  close_to(high, 5, 1e-14, "largest eigenvalue");
+  ok(!eo_symmetric_extremes(3, small, &low, &high, &error), "the eigenvalues of a small matrix are found");
+  close_to(low, 1, 1e-14, "smallest eigenvalue of a small matrix");
+  close_to(high, 5, 1e-14, "largest eigenvalue of a small matrix");
   return tap_done();
 }

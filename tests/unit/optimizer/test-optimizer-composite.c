@@ -38,11 +38,11 @@ static void test_reductions(void)
 {
   const double part[PARTS] = {0, 3, -2, 1, 0, 0, 0, 0, 5, 7};
   int most, least;
-  close_to(eo_anatomy_reduce(&group[0], part, &most, &least), 5, 0, "a range");
-  ok(most == 1 && least == 2, "and the parts that it takes");
-  close_to(eo_anatomy_reduce(&group[1], part + SAMPLES, &most, &least), 7, 0, "the largest");
-  ok(most == 1 && least == -1, "and its part");
-  close_to(eo_anatomy_sum(&anatomy, part), 0.7 * 5 + 0.3 * 7, 1e-15, "their sum by weight");
+  close_to(eo_anatomy_reduce(&group[0], part, &most, &least), 5, 0, "range of the parts");
+  ok(most == 1 && least == 2, "the range names the parts that it takes");
+  close_to(eo_anatomy_reduce(&group[1], part + SAMPLES, &most, &least), 7, 0, "largest of the parts");
+  ok(most == 1 && least == -1, "the largest names its part alone");
+  close_to(eo_anatomy_sum(&anatomy, part), 0.7 * 5 + 0.3 * 7, 1e-15, "sum of both by weight");
 }
 
 static double unit(int i, int k)
@@ -91,8 +91,8 @@ static void check_against(struct eo_composite *composite, const char *what, doub
       up[k] = down[k] = x[k];
     }
   }
-  ok(worst < bound, "%s: off by at most %.2g", what, worst);
-  ok(worst_slope < 1e-6, "%s: its gradient by %.2g", what, worst_slope);
+  ok(worst < bound, "%s: the composite is off by at most %.2g", what, worst);
+  ok(worst_slope < 1e-6, "%s: the composite's gradient is off by %.2g", what, worst_slope);
 }
 
 static void test_composite(void)
@@ -106,12 +106,12 @@ static void test_composite(void)
   struct eo_composite_rows rows = {&archive, ROWS, row, x, value, 0.1, 2, INFINITY};
   ok(eo_composite_init(&composite, &anatomy, N, ROWS, EO_TAIL_LINEAR, &error) == EO_OK &&
          eo_composite_fit(&composite, EO_TAIL_LINEAR, 1e-9, &rows),
-     "a composite of linear parts");
+     "a composite of linear parts is fitted");
   check_against(&composite, "parts", 1e-8);
   double worst = 0;
   for (int j = 0; j < ROWS; j++)
     worst = fmax(worst, composite.residual[j]);
-  ok(worst < 1e-7, "left out, every row is still known: %.2g", worst);
+  ok(worst < 1e-7, "every row that is left out is still known: %.2g", worst);
   ok(eo_composite_takes(&composite, &archive, 0) && !eo_composite_takes(&composite, &archive, ROWS),
      "a row without its parts cannot serve");
   rows.most_rest = -1;
@@ -120,7 +120,7 @@ static void test_composite(void)
   eo_composite_done(&composite);
   ok(eo_composite_init(&composite, &none, N, ROWS, EO_TAIL_LINEAR, &error) == EO_OK &&
          eo_composite_fit(&composite, EO_TAIL_LINEAR, 1e-9, &rows),
-     "without an anatomy");
+     "a composite without an anatomy is fitted");
   double most = 0, part[PARTS];
   for (int i = 100; i < 160; i++) {
     double place[N];
@@ -128,8 +128,8 @@ static void test_composite(void)
       place[k] = unit(i, k);
     most = fmax(most, fabs(eo_composite_value(&composite, place) * 2 + 0.1 - value_at(place, part)));
   }
-  ok(most > 1e-2, "the same rows round its kinks off by %.2g", most);
-  ok(eo_composite_takes(&composite, &archive, ROWS), "and every row serves");
+  ok(most > 1e-2, "a surrogate of the same rows rounds their kinks off by %.2g", most);
+  ok(eo_composite_takes(&composite, &archive, ROWS), "every row serves a composite without an anatomy");
   eo_composite_done(&composite);
   eo_archive_done(&archive);
 }
@@ -174,7 +174,7 @@ static void test_search(void)
     without += (search(false, seed, 64) - least) / 5;
   }
   ok(with < 2e-4, "64 evaluations with parts come within %.2g of the least value", with);
-  ok(without > 10 * with, "without parts within %.2g on the mean", without);
+  ok(without > 10 * with, "64 evaluations without parts come within %.2g on the mean", without);
 }
 
 static void test_description(void)
@@ -185,9 +185,10 @@ static void test_description(void)
   const double x[N] = {0.5, 0.5, 0.5, 0.5};
   eo_optimizer_defaults(&settings, EO_CREDIBILITY_GA, N);
   eo_optimizer_new(&settings, &optimizer, &error);
-  ok(eo_optimizer_describe(optimizer, &anatomy, &error) == EO_OK, "a value is described");
+  ok(eo_optimizer_describe(optimizer, &anatomy, &error) == EO_OK, "a value is described before the first row");
   eo_optimizer_import(optimizer, x, &(struct eo_outcome){.value = 1}, &error);
-  ok(eo_optimizer_describe(optimizer, &anatomy, &error) == EO_ERROR_INPUT, "not behind a row: %s", error.text);
+  ok(eo_optimizer_describe(optimizer, &anatomy, &error) == EO_ERROR_INPUT, "a value is not described behind a row: %s",
+     error.text);
   eo_optimizer_free(optimizer);
 }
 

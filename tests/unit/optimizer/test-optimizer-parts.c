@@ -33,12 +33,12 @@ static void test_random(void)
     normal += z / COUNT;
     normal_square += z * z / COUNT;
   }
-  close_to(mean, 0.5, 0.01, "uniform numbers: mean");
-  close_to(square, 1.0 / 3, 0.01, "uniform numbers: second moment");
-  close_to(product, 0.25, 0.01, "neighbouring draws are uncorrelated");
-  close_to(normal, 0, 0.03, "normal numbers: mean");
-  close_to(normal_square, 1, 0.04, "normal numbers: variance");
-  ok(eo_random_index(eo_random_at(1, 1, 1, 1), 9, 1) == 0, "an index of one");
+  close_to(mean, 0.5, 0.01, "mean of uniform numbers");
+  close_to(square, 1.0 / 3, 0.01, "second moment of uniform numbers");
+  close_to(product, 0.25, 0.01, "mean product of neighbouring draws");
+  close_to(normal, 0, 0.03, "mean of normal numbers");
+  close_to(normal_square, 1, 0.04, "variance of normal numbers");
+  ok(eo_random_index(eo_random_at(1, 1, 1, 1), 9, 1) == 0, "an index among one is 0");
 }
 
 /* A x = b is checked by multiplying back. */
@@ -72,7 +72,7 @@ static void test_saddle(void)
       row += p[k * M + i] * c[i];
     worst = fmax(worst, fabs(row));
   }
-  ok(worst < 1e-12, "its solution satisfies the equations: %.2g", worst);
+  ok(worst < 1e-12, "the solution of a saddle point satisfies the equations: %.2g", worst);
   eo_saddle_inverse_diagonal(&saddle, diagonal);
   worst = 0;
   for (int j = 0; j < M; j++) { /* column j of the inverse is the solution for a unit vector */
@@ -81,7 +81,7 @@ static void test_saddle(void)
     eo_saddle_solve(&saddle, 1, y, c, M, b);
     worst = fmax(worst, fabs(c[j] - diagonal[j]));
   }
-  ok(worst < 1e-13, "the diagonal of the inverse: %.2g", worst);
+  ok(worst < 1e-13, "the diagonal of the inverse is right to %.2g", worst);
   memcpy(p + M, p, M * sizeof *p);
   ok(!eo_saddle_factor(&saddle, M, Q, a, p), "a tail of less than full rank is noticed");
   a[0] = -50;
@@ -111,13 +111,13 @@ static void test_minimise(void)
   const double low[2] = {-2, -2}, high[2] = {1, 2};
   double x[2] = {-1, 1};
   eo_minimise(bowl, NULL, low, high, 2, 50, 1e-12, x);
-  close_to(x[0], 1, 1e-12, "a minimum at a bound");
-  close_to(x[1], 0.05, 1e-8, "and what is free follows"); /* 20 (y - 0.1) + 1 = 0 */
+  close_to(x[0], 1, 1e-12, "minimum of a variable at a bound");
+  close_to(x[1], 0.05, 1e-8, "minimum of the variable that is free beside it"); /* 20 (y - 0.1) + 1 = 0 */
   double y[2] = {-1.2, 1};
   const double wide[2] = {3, 3};
   eo_minimise(banana, NULL, low, wide, 2, 200, 1e-12, y);
-  close_to(y[0], 1, 1e-6, "Rosenbrock's valley to its end");
-  close_to(y[1], 1, 1e-6, "both variables");
+  close_to(y[0], 1, 1e-6, "first variable of Rosenbrock's minimum");
+  close_to(y[1], 1, 1e-6, "second variable of Rosenbrock's minimum");
 }
 
 static double quadratic(const double *x)
@@ -132,7 +132,7 @@ static void test_surrogate(void)
   double x[M * N], y[M], gradient[N];
   struct eo_surrogate s;
   struct eo_error error;
-  ok(eo_surrogate_init(&s, N, M, 1, EO_TAIL_QUADRATIC, &error) == EO_OK, "room for a surrogate");
+  ok(eo_surrogate_init(&s, N, M, 1, EO_TAIL_QUADRATIC, &error) == EO_OK, "room is made for a surrogate");
   for (int j = 0; j < M; j++) {
     for (int k = 0; k < N; k++)
       x[j * N + k] = unit(j, 20 + k);
@@ -141,10 +141,10 @@ static void test_surrogate(void)
   const double q[N] = {0.3, 0.8, 0.4}, cubic = 1e-3;
   ok(eo_surrogate_fit(&s, EO_TAIL_QUADRATIC, 1e-9, x, y, M, 1), "a quadratic tail is fitted");
   eo_surrogate_visit(&s, q);
-  close_to(eo_surrogate_value(&s, 0), quadratic(q), 1e-10, "a quadratic function is reproduced");
+  close_to(eo_surrogate_value(&s, 0), quadratic(q), 1e-10, "value of a surrogate of a quadratic function");
   eo_surrogate_set_scale(&s, s.residual, 1);
   eo_surrogate_visit(&s, x);
-  close_to(eo_surrogate_credibility(&s, 0.1), 1, 1e-9, "such a surrogate is fully credible at a row");
+  close_to(eo_surrogate_credibility(&s, 0.1), 1, 1e-9, "credibility of such a surrogate at a row");
 
   for (int j = 0; j < M; j++)
     y[j] = sin(4 * x[j * N]) * x[j * N + 1] + cubic;
@@ -165,13 +165,13 @@ static void test_surrogate(void)
       slope = (slope - eo_surrogate_value(&s, 0)) / (2 * step);
       worst = fmax(worst, fabs(slope - gradient[k]));
     }
-    ok(worst < 1e-7, "its gradient is the slope of its value: %.2g", worst);
+    ok(worst < 1e-7, "the surrogate's gradient is the slope of its value: %.2g", worst);
     worst = 0;
     for (int j = 0; j < M; j++) {
       eo_surrogate_visit(&s, x + j * N);
       worst = fmax(worst, fabs(eo_surrogate_value(&s, 0) - y[j]));
     }
-    ok(worst < 1e-6, "it passes through its rows: %.2g", worst);
+    ok(worst < 1e-6, "the surrogate passes through its rows: %.2g", worst);
   }
   ok(!eo_surrogate_fit(&s, EO_TAIL_QUADRATIC, 1e-9, x, y, 10, 1), "too few rows make no surrogate");
   for (int j = 0; j < M; j++)
@@ -209,9 +209,9 @@ static void test_history(void)
     inside = inside && e.fitness >= low - 1e-12 && e.fitness <= high + 1e-12;
     credible = credible && e.credibility >= 0.7 && e.credibility <= 1;
   }
-  ok(worst < 1e-12, "weights sum up to 1: %.2g", worst);
+  ok(worst < 1e-12, "the weights of a region sum up to 1: %.2g", worst);
   ok(inside, "a prediction lies within the fitness of its region");
-  ok(credible, "and its credibility within theirs");
+  ok(credible, "the credibility of a prediction lies within that of its region");
   eo_history_done(&h);
 
   /* A cross: the middle is unique in space though both coordinates have neighbours; then a predicted twin of a true
@@ -226,7 +226,7 @@ static void test_history(void)
   ok(eo_history_mark_redundant(&h, &law) > 0 && !h.removed[2], "a true row survives its predicted twins");
   const int kept = h.count - 1;
   eo_history_compact(&h);
-  ok(h.count <= kept && !h.predicted[2] && h.x[4] == 0.5 && h.x[5] == 0.5, "and stays where it was");
+  ok(h.count <= kept && !h.predicted[2] && h.x[4] == 0.5 && h.x[5] == 0.5, "a true row stays where it was");
   eo_history_done(&h);
 }
 
@@ -254,12 +254,12 @@ static void test_pareto(void)
   int rank[7], scratch[14], order[7];
   double crowding[7];
   eo_pareto_rank(f, violation, 7, 2, rank, scratch);
-  ok(memcmp(rank, expected, sizeof rank) == 0, "fronts: %d %d %d %d %d %d %d", rank[0], rank[1], rank[2], rank[3],
-     rank[4], rank[5], rank[6]);
+  ok(memcmp(rank, expected, sizeof rank) == 0, "the rows are sorted into their fronts: %d %d %d %d %d %d %d", rank[0],
+     rank[1], rank[2], rank[3], rank[4], rank[5], rank[6]);
   eo_pareto_crowding(f, rank, 7, 2, crowding, scratch);
   ok(isinf(crowding[0]) && isinf(crowding[2]), "the ends of a front stand out");
-  close_to(crowding[1], 2.0 / 3, 1e-12, "crowding of two equal points: the first"); /* (2 - 1)/3 + (2 - 1)/3 */
-  close_to(crowding[5], 4.0 / 3, 1e-12, "and the second");                          /* (4 - 2)/3 + (4 - 2)/3 */
+  close_to(crowding[1], 2.0 / 3, 1e-12, "crowding of the first of two equal points");  /* (2 - 1)/3 + (2 - 1)/3 */
+  close_to(crowding[5], 4.0 / 3, 1e-12, "crowding of the second of two equal points"); /* (4 - 2)/3 + (4 - 2)/3 */
   eo_pareto_order(rank, crowding, 7, order);
   ok(order[0] == 0 && order[1] == 2 && order[6] == 6,
      "best fronts first, then the least crowded, an infeasible row last");
@@ -320,7 +320,7 @@ static void test_evolution(void)
   static const double start[AXES] = {0.8, 0.7, 0.6, 0.5};
   struct eo_evolution e;
   struct eo_error error;
-  ok(eo_evolution_init(&e, AXES, &error) == EO_OK, "an evolution strategy");
+  ok(eo_evolution_init(&e, AXES, &error) == EO_OK, "an evolution strategy is made");
   eo_evolution_restart(&e, start, 0.1);
   const double best = evolve(&e, ellipsoid, 400);
   bool learnt = true;
@@ -328,15 +328,15 @@ static void test_evolution(void)
     const double ratio = e.covariance[(k - 1) * (AXES + 1)] / e.covariance[k * (AXES + 1)];
     learnt = learnt && ratio > 100 / 5. && ratio < 100 * 5.;
   }
-  ok(best < 1e-8, "3200 points on an ellipsoid of condition 10^6: %.1e", best);
-  ok(learnt, "the covariance has learnt its curvatures");
+  ok(best < 1e-8, "3200 points on an ellipsoid of condition 10^6 end at %.1e", best);
+  ok(learnt, "the covariance has learnt the ellipsoid's curvatures");
   eo_evolution_restart(&e, start, 0.1);
   const double end = evolve(&e, kink, 150), before = kink(start);
-  ok(end < 1e-3 * before, "down a valley with a kinked floor into a corner of the cube: %.1e from %.1e", end, before);
+  ok(end < 1e-3 * before, "a valley with a kinked floor leads into a corner of the cube: %.1e from %.1e", end, before);
   const double far[2][AXES] = {{1, 1, 1, 1}, {0, 0, 0, 0}}, *given[2] = {far[0], far[1]};
   eo_evolution_restart(&e, start, 1e-3);
   ok(eo_evolution_learn(&e, given, 2) && e.step < 3e-3 && fabs(e.mean[0] - start[0]) < 0.01,
-     "a point from far away moves it by no more than a sample may");
+     "a point from far away moves the mean by no more than a sample may");
   eo_evolution_restart(&e, start, 1e-300);
   ok(!eo_evolution_learn(&e, (const double *[]){start, start}, 2), "a step that has vanished is told");
   eo_evolution_done(&e);

@@ -212,13 +212,15 @@ static void test_repeatable(int algorithm)
   const struct eo_optimizer_settings s = settings_of(algorithm);
   struct how how = plainly;
   bool ended = run_with(&s, &how, &first);
-  ok(ended && first.rows > 100, "%s: %d rows", name, first.rows);
+  ok(ended && first.rows > 100, "%s: the search has %d rows", name, first.rows);
   ok(run_with(&s, &how, &second) && same(&first, &second), "%s: a second run gives the same bytes", name);
   for (how.threads = 2; how.threads <= 4; how.threads *= 2)
-    ok(run_with(&s, &how, &second) && same(&first, &second), "%s: so does one with %d threads", name, how.threads);
+    ok(run_with(&s, &how, &second) && same(&first, &second), "%s: a run with %d threads gives the same bytes", name,
+       how.threads);
   how = plainly;
   how.backwards = true;
-  ok(run_with(&s, &how, &second) && same(&first, &second), "%s: and one told backwards", name);
+  ok(run_with(&s, &how, &second) && same(&first, &second), "%s: a run that is told backwards gives the same bytes",
+     name);
   struct eo_optimizer_settings other = s;
   other.seed++;
   ok(run_with(&other, &plainly, &second) && !same(&first, &second), "%s: another seed goes another way", name);
@@ -232,14 +234,17 @@ static void test_accounts(int algorithm)
   const struct eo_counters c = first.counters;
   ok(c.true_evaluations == first.rows && first.calls == first.rows, "%s: every true evaluation is a row", name);
   ok(c.true_evaluations <= s.true_evaluations, "%s: the budget is kept: %d", name, c.true_evaluations);
-  ok(algorithm == EO_GA || algorithm == EO_FPGA || c.true_evaluations == s.true_evaluations, "%s: and used", name);
+  ok(algorithm == EO_GA || algorithm == EO_FPGA || c.true_evaluations == s.true_evaluations,
+     "%s: the budget is used up", name);
   ok(c.true_evaluations + c.predicted + c.reused == c.individuals, "%s: true, predicted and reused are the individuals",
      name);
-  ok(first.individuals_of_generations == c.individuals, "%s: so are those of the generations", name);
-  close_to(c.fitness_computed, (double)c.true_evaluations / c.individuals, 1e-15, "PFC");
+  ok(first.individuals_of_generations == c.individuals,
+     "%s: the individuals of the generations are those of the search", name);
+  close_to(c.fitness_computed, (double)c.true_evaluations / c.individuals, 1e-15,
+           "PFC, true evaluations over individuals");
   ok(algorithm == EO_FPGA ? c.predicted > 0 && first.predictions >= c.predicted : c.predicted == 0,
-     "%s: %d predicted, %d announced", name, c.predicted, first.predictions);
-  ok(count_twins(&first) == 0, "%s: no point twice", name);
+     "%s: %d rows are predicted, %d announced", name, c.predicted, first.predictions);
+  ok(count_twins(&first) == 0, "%s: no point stands twice", name);
   ok(first.best == best_by_hand(&first) && first.value[first.best] == value_at(first.x[first.best]),
      "%s: the best is a true row", name);
 }
@@ -262,7 +267,7 @@ static void test_resume(int algorithm)
   const bool ended = run_with(&s, &how, &second);
   ok(cut.rows >= 150 && cut.rows < first.rows && ended && same(&first, &second),
      "%s: a replay from the log of %d rows goes the same way", name, cut.rows);
-  ok(second.calls == first.rows - cut.rows, "%s: with %d new evaluations", name, second.calls);
+  ok(second.calls == first.rows - cut.rows, "%s: a replay makes %d new evaluations", name, second.calls);
 }
 
 static void test_import(int algorithm)
@@ -285,17 +290,19 @@ static void test_import(int algorithm)
      imported);
   finish(o, &plainly, INT32_MAX, &second);
   ok(count_twins(&second) == 0 && second.counters.true_evaluations == second.rows - imported,
-     "%s: none of them is asked for again", name);
+     "%s: no imported row is asked for again", name);
   const double inside[N] = {0.5, 0.5, 0.5, 0.25}, outside[N] = {0.5, 1.5, 0.5, 0.5};
   const struct eo_outcome outcome = {.value = 1};
-  ok(eo_optimizer_import(o, inside, &outcome, &error) == EO_ERROR_INPUT, "%s: too late to import: %s", name,
-     error.text);
+  ok(eo_optimizer_import(o, inside, &outcome, &error) == EO_ERROR_INPUT,
+     "%s: an import after the first row is refused: %s", name, error.text);
   eo_optimizer_free(o);
   make(&s, &o, &error);
-  ok(eo_optimizer_import(o, outside, &outcome, &error) == EO_ERROR_INPUT, "%s: outside: %s", name, error.text);
+  ok(eo_optimizer_import(o, outside, &outcome, &error) == EO_ERROR_INPUT,
+     "%s: an import outside the cube is refused: %s", name, error.text);
   ok(eo_optimizer_ask(o, &batch, &error) == EO_OK && eo_optimizer_ask(o, &batch, &error) == EO_ERROR_INPUT,
-     "%s: asking twice: %s", name, error.text);
-  ok(eo_optimizer_tell(o, batch.count, &outcome, &error) == EO_ERROR_INPUT, "%s: a stranger: %s", name, error.text);
+     "%s: asking twice is refused: %s", name, error.text);
+  ok(eo_optimizer_tell(o, batch.count, &outcome, &error) == EO_ERROR_INPUT,
+     "%s: the answer to another question is refused: %s", name, error.text);
   eo_optimizer_free(o);
 }
 
@@ -332,7 +339,8 @@ static void test_family(void)
   ok(same(&first, &second), "fpga with an empty region is ga");
   run_with(&s, &plainly, &first);
   s.algorithm = EO_FPGA;
-  ok(first.counters.individuals == s.population * s.generations, "individuals: %d", first.counters.individuals);
+  ok(first.counters.individuals == s.population * s.generations, "the search has %d individuals",
+     first.counters.individuals);
   s.share_radius = 0.1;
   run_with(&s, &plainly, &second);
   ok(second.counters.fitness_computed < 0.8 * first.counters.fitness_computed,
@@ -381,11 +389,11 @@ static void test_front(void)
     memcpy(point + (size_t)i * OBJECTIVES, row.objectives, sizeof(double[OBJECTIVES]));
   }
   ok(f.count > 20 && rising, "the front has %d rows and none dominates another", f.count);
-  ok(feasible, "all of them feasible");
-  ok(knee && weighted, "knee and weighted optimum stand on it");
+  ok(feasible, "all rows of the front are feasible");
+  ok(knee && weighted, "knee and weighted optimum stand on the front");
   /* The true front is f2 = (1 - f1)^2 for f1 in 0..1. Volume below the reference: 1.2 * 2.2 less the area under it. */
   const double ideal = 1.2 * 2.2 - 1.0 / 3, volume = hypervolume(point, f.count, OBJECTIVES, reference);
-  ok(volume > 0.985 * ideal && volume <= ideal, "hypervolume %.4f of %.4f", volume, ideal);
+  ok(volume > 0.985 * ideal && volume <= ideal, "the hypervolume of the front is %.4f of %.4f", volume, ideal);
   eo_optimizer_free(o);
 }
 
@@ -393,8 +401,8 @@ static void refused(struct eo_optimizer_settings s, const char *pointer)
 {
   struct eo_optimizer *o = NULL;
   struct eo_error error = {0};
-  ok(make(&s, &o, &error) == EO_ERROR_INPUT && !o && strcmp(error.pointer, pointer) == 0, "refused: %s %s",
-     error.pointer, error.text);
+  ok(make(&s, &o, &error) == EO_ERROR_INPUT && !o && strcmp(error.pointer, pointer) == 0,
+     "the settings are refused: %s %s", error.pointer, error.text);
 }
 
 /* Whether the check answers so, a refusal at this pointer; thresholds that only contradict each other are sound. */
@@ -432,10 +440,10 @@ static void test_bad_settings(void)
   s = good, s.algorithm = EO_NSGA2, s.objectives = 99;
   refused(s, "/optimization/objectives");
   ok(eo_optimizer_algorithm_find("credibility-ga") == EO_CREDIBILITY_GA && eo_optimizer_algorithm_find("x") == -1,
-     "names");
+     "algorithms are found by name");
   close_to((s = good, s.share_radius = NAN, s.variables = 5, eo_optimizer_share_radius(&s)), 0.03, 1e-12,
-           "r_share, n = 5");
-  close_to((s.variables = 10, eo_optimizer_share_radius(&s)), 0.11, 0.003, "r_share, n = 10");
+           "sharing radius r_share of 5 variables");
+  close_to((s.variables = 10, eo_optimizer_share_radius(&s)), 0.11, 0.003, "sharing radius r_share of 10 variables");
 }
 
 /* Every row of the list: its default lies in its range, and what the range excludes is refused at its key. */

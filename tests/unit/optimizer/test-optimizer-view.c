@@ -42,7 +42,7 @@ static void test_warp(void)
   double t[N], x[N], back[N], worst = 0, longest = 0;
   bool rising = true, untouched = true;
   ok(eo_cube_warp_init(&warp, &view, N, &error) == EO_OK && eo_cube_warp_init(&same, &no_view, N, &error) == EO_OK,
-     "cubes are stretched, or not");
+     "a cube is stretched by a view, and left alone without one");
   for (int i = 0; i < 200; i++) {
     for (int k = 0; k < N; k++)
       t[k] = i == 0 ? 0 : i == 1 ? 1 : unit(i, k);
@@ -55,7 +55,7 @@ static void test_warp(void)
     untouched = untouched && (i > 1 || memcmp(x, t, sizeof x) == 0);
     worst = fmax(worst, fabs(x[SEEN] - t[SEEN]));
   }
-  ok(worst < 1e-12, "out and in again, and what is not seen, off by at most %.2g", worst);
+  ok(worst < 1e-12, "points go out and in again, and what is not seen too, off by at most %.2g", worst);
   ok(untouched, "without a view no bit changes, nor at the bounds with one");
   for (int i = 1; i < EO_WARP_KNOTS; i++) {
     rising = rising && warp.knot[0][i] > warp.knot[0][i - 1];
@@ -64,7 +64,7 @@ static void test_warp(void)
   const double share = amount(1) / (EO_WARP_KNOTS - 1);
   ok(rising && longest < 2.2 * share, "no step shows more than twice its share of what there is to see: %.2f",
      longest / share);
-  ok(warp.knot[0][EO_WARP_KNOTS / 2] < 0.25, "the middle lies at %.3f", warp.knot[0][EO_WARP_KNOTS / 2]);
+  ok(warp.knot[0][EO_WARP_KNOTS / 2] < 0.25, "the middle of the view lies at %.3f", warp.knot[0][EO_WARP_KNOTS / 2]);
   eo_cube_warp_done(&warp);
   eo_cube_warp_done(&same);
 }
@@ -88,16 +88,16 @@ static void test_distance(void)
   }
   ok(eo_view_distance_init(&distance, &warp, &error) == EO_OK &&
          eo_view_distance_follow(&distance, &archive, &error) == EO_OK,
-     "distances by what is seen");
+     "distances follow what is seen");
   for (int i = 0; i < ROWS; i++)
     for (int j = 0; j < i; j++)
       sum += pow(eo_view_distance_between(&distance, i, j), 2) / (ROWS * (ROWS - 1) / 2.0);
-  close_to(sqrt(sum), sqrt(N / 6.), 0.05, "random points are as far apart as in the cube");
+  close_to(sqrt(sum), sqrt(N / 6.), 0.05, "distance of random points over that in the cube");
   memcpy(x, archive.x, sizeof x);
   x[SEEN] = 1 - x[SEEN];
   eo_view_distance_visit(&distance, x);
-  close_to(eo_view_distance_from(&distance, 0), 0, 1e-12, "a variable that shows nothing makes no distance");
-  ok(eo_view_distance_from(&distance, 1) > 0.05, "another point does");
+  close_to(eo_view_distance_from(&distance, 0), 0, 1e-12, "distance by a variable that shows nothing");
+  ok(eo_view_distance_from(&distance, 1) > 0.05, "another point is at a distance");
   eo_view_distance_done(&distance);
   eo_archive_done(&archive);
   eo_cube_warp_done(&warp);
@@ -154,7 +154,7 @@ static void test_blocks(void)
   double slope[2];
   const double whole = error_of(0, NULL, &slope[0]), added = error_of(2, block, &slope[1]);
   ok(added < 0.7 * whole, "blocks that add up are known from fewer rows: %.3f, without them %.3f", added, whole);
-  ok(slope[0] < 1e-6 && slope[1] < 1e-6, "gradients off by at most %.2g and %.2g", slope[0], slope[1]);
+  ok(slope[0] < 1e-6 && slope[1] < 1e-6, "the gradients are off by at most %.2g and %.2g", slope[0], slope[1]);
 }
 
 /* A curved valley among amounts below 0.05, level beyond; by what it is made of. */
@@ -207,7 +207,8 @@ static void search(const struct eo_view *shown, uint64_t seed, struct run *run)
               memcmp(eo_optimizer_row(optimizer, 0).x, known, sizeof known) == 0;
   for (int i = 0; i < run->count; i++)
     run->kept = run->kept && memcmp(eo_optimizer_row(optimizer, i + 1).x, run->asked[i], sizeof known) == 0;
-  ok(eo_optimizer_set_view(optimizer, shown, &error) == EO_ERROR_INPUT, "no view behind a row: %s", error.text);
+  ok(eo_optimizer_set_view(optimizer, shown, &error) == EO_ERROR_INPUT, "no view is taken behind a row: %s",
+     error.text);
   eo_optimizer_free(optimizer);
 }
 

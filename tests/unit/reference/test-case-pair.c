@@ -9,7 +9,8 @@
 static void test_document(json_t *document, const char *name, enum eo_tilt_rule wanted)
 {
   struct eo_case *file = eo_case_open(document);
-  ok(document && eo_case_tilt_rule(file) == wanted && !eo_case_faulty(file), "%s", name);
+  ok(document && eo_case_tilt_rule(file) == wanted && !eo_case_faulty(file),
+     "%s follows the rule of tilt that it names", name);
   eo_case_close(file);
 }
 
@@ -40,7 +41,7 @@ int main(void)
   test_kept("evaluation.json", EO_TILT_AT_RADIUS);
   struct eo_case *file = eo_case_open(json_pack("{s:{s:s}}", "defaults", "tip_corner_convention", "as usual"));
   eo_case_tilt_rule(file);
-  ok(eo_case_faulty(file), "another convention is a fault");
+  ok(eo_case_faulty(file), "a convention that is none is a fault");
   eo_case_close(file);
   return tap_done();
 }
