@@ -94,7 +94,7 @@ static struct eo_geometry paper_geometry(void)
   struct eo_gear_pair pair = paper_pair();
   struct eo_geometry g;
   struct eo_error error;
-  ok(eo_geometry_init(&g, &pair, &error) == EO_OK, "the paper's pair");
+  ok(eo_geometry_init(&g, &pair, &error) == EO_OK, "the paper's pair is made");
   return g;
 }
 
@@ -299,7 +299,7 @@ static void test_monotony(void)
   double stiff = b.result[3].approach[0];
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1.1, 1, &load[3], b.result);
   softer = b.result[0].approach[0] > stiff;
-  ok(softer, "more compliance, more approach");
+  ok(softer, "more compliance gives more approach");
   bench_close(&b);
 }
 
@@ -333,8 +333,8 @@ static void test_mirror(void)
     for (int end = 0; end < 2; end++)
       worst = fmax(worst, fmax(fabs(b.result[end].approach[j] - b.result[3 - end].approach[j]) / 1e-6,
                                fabs(b.result[end].load[j] / b.result[3 - end].load[j] - 1)));
-  ok(b.result[0].load[0] != load, "the spring shifts load between the ends");
-  ok(worst < 1e-9, "left and right exchanged, shaft errors reversed: the same within %.1e", worst);
+  ok(b.result[0].load[0] != load, "the spring between the ends shifts load from one to the other");
+  ok(worst < 1e-9, "exchanged ends under reversed shaft errors give the same within %.1e", worst);
   bench_close(&b);
 }
 
@@ -357,7 +357,7 @@ static void test_warm_starts(void)
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_LEFT], 0.9, 1, up, b.result + 3);
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 3, up, b.result + 3);
   ok(same_end(&b, &b.result[1], &b.result[4]) && same_end(&b, &b.result[2], &b.result[5]),
-     "a workspace remembers nothing: the same bytes");
+     "a workspace remembers nothing and gives the same bytes");
   bench_close(&b);
 }
 
@@ -375,7 +375,7 @@ static void test_loads_about(void)
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[0]);
   b.result[1].around = true;
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[1]);
-  ok(same_end(&b, &b.result[0], &b.result[1]), "loads about it are asked for: the same bytes");
+  ok(same_end(&b, &b.result[0], &b.result[1]), "loads that are asked for about P leave the same bytes");
   for (int i = -1; i <= EO_LOADED_NEARBY; i++) {
     double share = i < 0 ? 0.96 : i == EO_LOADED_NEARBY ? 1.12 : EO_LOADED_NEARBY_SHARE[i], there = share * load;
     eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &there, &b.result[2]);
@@ -391,9 +391,9 @@ static void test_loads_about(void)
       bent = fmax(bent, straight);
     }
   }
-  ok(worst < 1e-8, "Z at the loads about P: within %.2g nm of solutions of their own", 1e9 * worst);
-  ok(between < 1e-8 && bent > 5e-8, "between them within %.2g nm; the tangent is off by up to %.2g nm", 1e9 * between,
-     1e9 * bent);
+  ok(worst < 1e-8, "Z at the loads about P is within %.2g nm of solutions of their own", 1e9 * worst);
+  ok(between < 1e-8 && bent > 5e-8, "Z between them is within %.2g nm; the tangent is off by up to %.2g nm",
+     1e9 * between, 1e9 * bent);
   for (int j = 0; j < b.grid->positions; j++) {
     struct eo_load_bow bow;
     eo_load_bow_init(&bow, &b.result[1], j);
@@ -406,7 +406,7 @@ static void test_loads_about(void)
   worst = 0;
   for (int i = 0; i < b.grid->positions * EO_LOADED_NEARBY; i++)
     worst = fmax(worst, fabs(b.result[2].nearby[i] - b.result[1].nearby[i]));
-  ok(worst < 5e-10, "of a result that is there already: within %.2g nm of the same", 1e9 * worst);
+  ok(worst < 5e-10, "loads about a result that is there already give Z within %.2g nm of the same", 1e9 * worst);
   bench_close(&b);
 }
 
@@ -439,7 +439,7 @@ static void test_threads(void)
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, &b.result[0]);
   for (int i = 0; i < 2; i++) {
     worker[i] = (struct worker){&b, NULL, &b.result[1 + i], load};
-    ok(eo_loaded_workspace_new(&worker[i].workspace, b.grid, &error) == EO_OK, "a workspace for thread %d", i);
+    ok(eo_loaded_workspace_new(&worker[i].workspace, b.grid, &error) == EO_OK, "a workspace for thread %d is made", i);
   }
   for (int i = 0; i < 2; i++)
     pthread_create(&thread[i], NULL, work, &worker[i]);
@@ -448,7 +448,7 @@ static void test_threads(void)
     eo_loaded_workspace_free(worker[i].workspace);
   }
   ok(same_end(&b, &b.result[0], &b.result[1]) && same_end(&b, &b.result[0], &b.result[2]),
-     "two threads at once: the same bytes");
+     "two threads at once give the same bytes");
   bench_close(&b);
 }
 
@@ -492,7 +492,7 @@ static void test_axial(void)
   bench_open(&b, &g, kernel_of(0), true, POSITIONS, CELLS);
   hold(&b, angle, 0, 0, load);
   copy_ends(&b, &b.result[2], &b.result[0]);
-  ok(b.result[0].load[5] == load && b.result[1].load[5] == load, "floating: each end carries P");
+  ok(b.result[0].load[5] == load && b.result[1].load[5] == load, "each end of a floating pinion carries P");
   hold(&b, angle, 1e-3, 0, load);
   ok(difference(&b, &b.result[0], &b.result[2], load) < 1e-6, "a soft spring is no support");
   hold(&b, angle, INFINITY, 0, load);
@@ -500,7 +500,7 @@ static void test_axial(void)
   for (int j = 0; j < b.grid->positions; j++)
     worst = fmax(worst, fabs(b.result[0].approach[j] - b.result[1].approach[j]));
   ok(worst < 1e-12 && fabs(b.result[0].load[0] / b.result[1].load[0] - 1) > 0.05,
-     "fixed: one approach for both ends within %.1e m, unequal loads", worst);
+     "a fixed pinion has one approach for both ends within %.1e m and unequal loads", worst);
   hold(&b, angle, 1e15, 0, load);
   ok(difference(&b, &b.result[0], &b.result[2], load) < 1e-6, "a hard spring is a fixed support");
   hold(&b, angle, 1e8, stagger, load);
@@ -513,11 +513,12 @@ static void test_axial(void)
     worst = fmax(worst, fabs(left + right - 2 * load) / load);
   }
   ok(balance < 1e-6 && worst < 1e-12,
-     "spring: axial forces in balance within %.1e P, loads add up to 2 P, the right end staggered", balance);
+     "a pinion on a spring balances axial forces within %.1e P, its loads add up to 2 P, the right end staggered",
+     balance);
   bool sound = true;
   for (int end = 0; end < 2; end++)
     sound = sound && check_end(&b, b.gaps[end].gap, &b.result[end], 1).closed < 2e-12;
-  ok(sound, "and each end is in contact under its own load");
+  ok(sound, "each end of a pinion on a spring is in contact under its own load");
   bench_close(&b);
 }
 
@@ -539,8 +540,8 @@ static void test_released_end(void)
                             fabs(b.result[light].approach[j] - b.result[heavy].approach[j]));
   }
   ok(released && clearance > 0, "an end that does not touch carries nothing and is %.1f um clear", 1e6 * clearance);
-  ok(worst < 3e-12, "the other one carries all of it");
-  ok(b.result[0].failures == 0 && b.result[1].failures == 0, "which is no failure");
+  ok(worst < 3e-12, "the end that touches carries all of the load");
+  ok(b.result[0].failures == 0 && b.result[1].failures == 0, "an end that does not touch is no failure");
   bench_close(&b);
 }
 
@@ -553,7 +554,7 @@ static void test_random(void)
     struct eo_geometry g;
     struct bench b;
     if (!random_pair(index, &pair, &g)) {
-      ok(false, "random pair %d", index);
+      ok(false, "random pair %d is made", index);
       continue;
     }
     /* Compliances in proportion to the size; loads from next to nothing to far beyond what the teeth could bear. */
@@ -592,8 +593,8 @@ static void test_random(void)
     bench_close(&b);
   }
   ok(sound == DESIGNS, "%d of %d random pairs solve for 1 N m to 1e5 N m", sound, DESIGNS);
-  ok(spur > 20 && wide > 5 && narrow > 20, "among them %d spur, %d with an overlap above 3, %d below 0.3", spur, wide,
-     narrow);
+  ok(spur > 20 && wide > 5 && narrow > 20,
+     "the random pairs hold %d spur ones, %d with an overlap above 3, %d below 0.3", spur, wide, narrow);
 }
 
 int main(void)

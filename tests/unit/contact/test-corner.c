@@ -203,7 +203,7 @@ static void test_published(const struct eo_geometry *g)
       double s = g->path_start - 0.5e-3, eta = 27.5e-3 * (i - 1), even = eo_gap_field_at(&field[0], s, eta, NULL, NULL);
       close_to(1e6 * (eo_gap_field_at(&field[1], s, eta, NULL, NULL) - even), wanted[kind][i], 0.16,
                kind ? "out of plane, um" : "in plane, um");
-      close_to(1e6 * even, 5.2, 0.05, "the corner's own gap, um");
+      close_to(1e6 * even, 5.2, 0.05, "the corner's own gap without the pair's, um");
     }
   }
 }
@@ -256,7 +256,7 @@ int main(void)
   spur.profile_shift[EO_PINION] = 0.2;
   ok(!eo_geometry_init(&g[0], &paper, &error) && !eo_geometry_init(&g[1], &shifted, &error) &&
          !eo_geometry_init(&g[2], &fine, &error) && !eo_geometry_init(&g[3], &spur, &error),
-     "four pairs");
+     "four pairs are made");
   test_published(&g[0]);
   test_unmodified("paper pair", &g[0]);
   test_unmodified("profile shift", &g[1]);

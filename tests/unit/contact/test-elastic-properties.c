@@ -155,7 +155,7 @@ static void test_field(void)
   }
   ok(worst < 2e-9 && slope_error < 3e-6,
      "a rigid rotation as a deflection is the shaft angle error: off by %.2g m, slope %.2g", worst, slope_error);
-  ok(beyond < 3e-3, "beyond the path too, by %.2g of it", beyond);
+  ok(beyond < 3e-3, "a rigid rotation is the shaft angle error beyond the path too, off by %.2g", beyond);
   ok(lowest > -1e-12 && lowest < 5e-7, "no gap is below the datum, %.2g m", lowest);
   clear_bench(&b);
 }
@@ -222,8 +222,8 @@ static void test_against_iteration(void)
     approach = fmax(approach, difference(POSITIONS, b.result[end].approach, plain.result[end].approach));
     load = fmax(load, difference(b.grid->points, b.result[end].line_load, plain.result[end].line_load));
   }
-  ok(report.failures == 0 && report.most_iterations <= 5, "at most %d iterations at a position, %d in all",
-     report.most_iterations, report.iterations);
+  ok(report.failures == 0 && report.most_iterations <= 5,
+     "the bodies take at most %d iterations at a position, %d in all", report.most_iterations, report.iterations);
   ok(approach < 2e-11 && load < 2,
      "plain iteration (%d times round) finds the same: Z within %.2g m, line load within %.2g N/m", count, approach,
      load);
@@ -245,7 +245,7 @@ static void test_ends_differ(void)
   ok(left > 0.53 && left > right + 0.02,
      "torque from the left: %.3f of the left end's load, %.3f of the right one's on its outer half", left, right);
   ok(report.mean[EO_RIGHT].part[0][NODES / 2] > report.mean[EO_LEFT].part[0][NODES / 2] + 2e-6,
-     "and the far end gives %.2f um more",
+     "the end far from the drive gives way by %.2f um more",
      1e6 * (report.mean[EO_RIGHT].part[0][NODES / 2] - report.mean[EO_LEFT].part[0][NODES / 2]));
   clear_bench(&b);
 }
@@ -448,7 +448,7 @@ static void test_option(void)
     code = eo_evaluator_new(&evaluator, pair, 1, &error);
   if (!code)
     code = eo_evaluator_run(evaluator, &d, NULL, 0, &r, &error);
-  if (!ok(!code, "an evaluation on rigid bodies %s", error.text))
+  if (!ok(!code, "an evaluation on rigid bodies succeeds %s", error.text))
     return;
   const struct eo_case_result *c = &r->load_case[0];
   memcpy(first, c->transmission, sizeof first);
@@ -458,13 +458,13 @@ static void test_option(void)
   for (int j = 0; j < POSITIONS; j++)
     stiffness = fmax(stiffness, c->end[0].stiffness[j]);
   rms = c->vibration.rms_pair[0];
-  ok(r->equal_ends && c->body_iterations == 0, "equal ends are computed once");
+  ok(r->equal_ends && c->body_iterations == 0, "equal ends on rigid bodies are computed once");
 
   d.shafts.enabled = true;
   code = eo_evaluator_run(evaluator, &d, NULL, EO_WANT_BAND, &r, &error);
   memcpy(bent, c->transmission, sizeof bent);
   ok(!code && !r->equal_ends && c->contact_failures == 0 && c->body_iterations > 1,
-     "elastic bodies: the ends differ, %d iterations", c->body_iterations);
+     "the ends on elastic bodies differ, after %d iterations", c->body_iterations);
   ok(fabs(c->end[0].impact.force - c->end[1].impact.force) > 20 && c->end[0].impact.force > impact,
      "entering impact %.0f N rigid, %.0f N left, %.0f N right", impact, c->end[0].impact.force, c->end[1].impact.force);
   ok(c->vibration.rms_pair[0] != rms && isfinite(c->band[0][0]) && isfinite(c->band[0][1]),
@@ -491,14 +491,15 @@ static void test_option(void)
     miss += (eo_law_deflection(problem.law[EO_RIGHT], rows, c->force) - c->end[EO_RIGHT].loaded.approach[j]) /
             POSITIONS;
   }
-  close_to(miss, 0, 1e-10, "the table law carries the load at the loaded approach, mean over the cycle");
-  ok(!code && memcmp(bent, c->transmission, sizeof bent) == 0, "again: the same bytes");
+  close_to(miss, 0, 1e-10, "the load of the table law at the loaded approach, mean over the cycle");
+  ok(!code && memcmp(bent, c->transmission, sizeof bent) == 0,
+     "a second evaluation on elastic bodies gives the same bytes");
 
   d.resolution.mesh_law = EO_LAW_TANGENT;
   d.shafts.enabled = false;
   code = eo_evaluator_run(evaluator, &d, NULL, 0, &r, &error);
   ok(!code && memcmp(first, c->transmission, sizeof first) == 0 && c->end[0].impact.force == impact,
-     "off again: as if it had never been on");
+     "an evaluation after elastic bodies gives the bytes of one that never had them");
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
 }

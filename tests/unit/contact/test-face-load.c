@@ -85,7 +85,7 @@ int main(void)
     snprintf(what, sizeof what, "K_Hbeta at %.3g um over the face, r = %.2g", 1e6 * deviation, ratio[i]);
     /* the slices at the ends average over 1/32 of the face; the local deformation is not straight */
     near(face->face_factor, expected, 0.04, what);
-    near(mean(EO_FACE_SLICES, face->load), load, 1e-9, "  the sum stays the normal force");
+    near(mean(EO_FACE_SLICES, face->load), load, 1e-9, " the sum of the load over the face");
     ok(face->line_factor > best, "  the largest line load grows");
     best = face->line_factor;
   }

@@ -12,7 +12,7 @@ struct pair {
 static void make_pair(struct pair *pair, const struct eo_gear_pair *gears)
 {
   struct eo_error error;
-  ok(eo_geometry_init(&pair->geometry, gears, &error) == EO_OK, "a pair with %d/%d teeth", gears->teeth[0],
+  ok(eo_geometry_init(&pair->geometry, gears, &error) == EO_OK, "a pair with %d/%d teeth is made", gears->teeth[0],
      gears->teeth[1]);
   eo_corner_gap_init(pair->corner, &pair->geometry);
 }
@@ -50,7 +50,7 @@ static void test_sum(const struct pair *pair)
       most = fmax(most, fabs(share));
     }
   }
-  close_to(worst[0], 0, 1e-16, "the gap is the sum of profile, lead and misalignment");
+  close_to(worst[0], 0, 1e-16, "the gap less the sum of profile, lead and misalignment");
   ok(worst[1] > 0.05e-6 && worst[1] < 0.02 * most,
      "relief turns the common normal: misalignment's share changes by up to %.2f of %.0f um", 1e6 * worst[1],
      1e6 * most);
@@ -158,8 +158,8 @@ static void test_relieved_corner(const struct pair *pair)
       double exact = turn_pinion(&field, g->path_start - d);
       worst = fmax(worst, fabs(eo_gap_field_at(&field, g->path_start - d, 0, NULL, NULL) - exact) / exact);
     }
-    ok(worst < (k ? 0.015 : 1e-4), "gear tip before A against a turned pinion, reliefs %d: within %.2f %%", k,
-       100 * worst);
+    ok(worst < (k ? 0.015 : 1e-4),
+       "the gear tip before A lies where a turned pinion has it, reliefs %d, within %.2f %%", k, 100 * worst);
     ok(k == 0 ? field.corner[0].start == 0 : field.corner[0].start > 0, "the corner takes over %.3f mm before A",
        1e3 * field.corner[0].start);
   }
@@ -240,12 +240,12 @@ static void test_line_minimum(const struct pair *pair)
        "the minimum is where it is said to be");
   }
   ok(worst < 2e-9, "smallest gap of a line: at most %.3f nm above a fine scan", 1e9 * worst);
-  ok(lower > -30e-9, "and at most %.1f nm below it", -1e9 * lower);
+  ok(lower > -30e-9, "the minimum is at most %.1f nm below a fine scan", -1e9 * lower);
   struct eo_flank_modification none = {0};
   struct eo_gap_field field;
   eo_gap_field_init(&field, g, &none, &none, EO_RIGHT, 0, 0, 0, pair->corner);
   ok(isinf(eo_gap_field_line_minimum(&field, g->path_end + 30e-3, true, NULL)),
-     "no gap where the line misses the flank");
+     "a line that misses the flank has no gap");
 }
 
 static void test_datum(const struct pair *pair)
@@ -275,21 +275,21 @@ static void test_range(const struct pair *pair)
   ok(eo_gap_field_line_range(g, 0, g->path_start, g->path_end, range) && range[0] == -half && range[1] == half,
      "a line in the middle crosses the whole face");
   ok(eo_gap_field_line_range(g, -20e-3, g->path_start, g->path_end, range), "an incoming line crosses a part of it");
-  close_to(-20e-3 + range[0] * lean, g->path_start, 1e-15, "from the start of the path");
-  close_to(range[1], half, 0, "to the face end");
+  close_to(-20e-3 + range[0] * lean, g->path_start, 1e-15, "an incoming line begins at the start of the path");
+  close_to(range[1], half, 0, "an incoming line goes to the face end");
   ok(!eo_gap_field_line_range(g, g->path_start - half * lean - 1e-6, g->path_start, g->path_end, range),
-     "before that, nothing");
+     "a line that has not come in crosses nothing");
   struct eo_gear_pair spur = paper_pair();
   struct eo_geometry straight;
   struct eo_error error;
   spur.helix_angle = 0;
   spur.teeth[0] = 25;
-  ok(eo_geometry_init(&straight, &spur, &error) == EO_OK, "a spur pair");
+  ok(eo_geometry_init(&straight, &spur, &error) == EO_OK, "a spur pair is made");
   ok(eo_gap_field_line_range(&straight, 1e-3, straight.path_start, straight.path_end, range) &&
          range[1] - range[0] == straight.face_width,
-     "its lines cross the whole face");
+     "a line of a spur pair crosses the whole face");
   ok(!eo_gap_field_line_range(&straight, straight.path_end + 1e-9, straight.path_start, straight.path_end, range),
-     "or none of it");
+     "a line of a spur pair beyond the path crosses nothing");
 }
 
 int main(void)

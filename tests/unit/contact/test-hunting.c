@@ -130,9 +130,9 @@ static void test_no_deviations(void)
     most = fmax(most, fabs(h.approach[0][i] - once.approach[i % POSITIONS]));
     share = fmax(share, fabs(sum / force - 1));
   }
-  ok(h.cycles == CYCLES && h.failures == 0, "%d cycles, all converge", h.cycles);
+  ok(h.cycles == CYCLES && h.failures == 0, "all %d cycles converge", h.cycles);
   ok(most < SOLVED, "without deviations every cycle is the one cycle (%.1e m)", most);
-  ok(share < 1e-6, "loads of the pairs add up to P (%.1e)", share);
+  ok(share < 1e-6, "the loads of the pairs add up to P (%.1e)", share);
   eo_hunting_done(&h);
 }
 
@@ -151,7 +151,7 @@ static void test_constant(void)
     loads = fmax(loads, (double)fabsf(h.pair_load[0][i] - base.pair_load[0][i]));
   double moved = apart(h.instants, h.approach[0], base.approach[0], -20e-6 * normal);
   ok(moved < SOLVED, "10 um on all teeth of both members move Z by -20 um cos(alpha_t) cos(beta_b) (%.1e m)", moved);
-  ok(loads < 1e-4 * force, "... and no load (%.1e N)", loads);
+  ok(loads < 1e-4 * force, "10 um on all teeth of both members change no load (%.1e N)", loads);
   eo_hunting_done(&h);
   eo_hunting_done(&base);
 }
@@ -176,7 +176,7 @@ static void test_rigid(void)
     }
     most = fmax(most, fabs(h.approach[0][i] - least));
   }
-  ok(most < 5e-9, "rigid teeth: the most advanced pair alone decides (%.1e m)", most);
+  ok(most < 5e-9, "on rigid teeth the most advanced pair alone decides (%.1e m)", most);
   eo_hunting_done(&h);
   set_gaps(&a);
 }
@@ -240,13 +240,13 @@ static void test_hands(void)
   alone.tooth[0][1] = table[1][1];
   struct eo_hunting h = run(&input), right = run(&alone);
   double most = apart(h.instants, h.approach[1], right.approach[0], 0);
-  ok(most < SOLVED, "floating: the right hand is what it is alone (%.1e m)", most);
+  ok(most < SOLVED, "the right hand of a floating pinion is what it is alone (%.1e m)", most);
   eo_hunting_done(&right);
   input.stagger = 5;
   struct eo_hunting late = run(&input);
   most = apart(h.instants - 5, late.approach[1] + 5, h.approach[1], 0);
   ok(most < SOLVED && apart(h.instants, late.approach[0], h.approach[0], 0) == 0,
-     "stagger: the right hand comes 5 positions later (%.1e m)", most);
+     "a staggered right hand comes 5 positions later (%.1e m)", most);
   eo_hunting_done(&late);
   input.stagger = 0;
   input.hold.stiffness = INFINITY;
@@ -255,9 +255,11 @@ static void test_hands(void)
   for (int i = 0; i < held.instants; i++)
     sum = fmax(sum, fabs(held.load[0][i] + held.load[1][i] - 2 * force));
   most = apart(held.instants, held.approach[0], held.approach[1], 0);
-  ok(held.failures == 0 && most < 1e-11, "fixed: one Z for both hands (%.1e m, %d failures)", most, held.failures);
-  ok(sum < 1e-6 * force, "... which carry 2 P together (%.1e N)", sum);
-  ok(held.most_load[0].value > h.most_load[0].value, "... with more on a tooth than when the pinion floats");
+  ok(held.failures == 0 && most < 1e-11, "both hands of a fixed pinion have one Z (%.1e m, %d failures)", most,
+     held.failures);
+  ok(sum < 1e-6 * force, "both hands of a fixed pinion carry 2 P together (%.1e N)", sum);
+  ok(held.most_load[0].value > h.most_load[0].value,
+     "a tooth of a fixed pinion carries more than one of a floating pinion");
   eo_hunting_done(&held);
   eo_hunting_done(&h);
 }
@@ -293,7 +295,7 @@ static void test_threads(void)
   }
   same = same && same_places(2, many[0].most_load, many[1].most_load) &&
          same_places(2, many[0].most_pressure, many[1].most_pressure);
-  ok(same, "one thread and three: the same bytes");
+  ok(same, "one thread and three give the same bytes");
   for (int end = 0; end < 2; end++) {
     const struct eo_hunting_place *p = &many[0].most_load[end];
     double there = (double)many[0].pair_load[end][(p->cycle * POSITIONS + p->position) * many[0].lines + p->line -
@@ -356,7 +358,7 @@ static void test_one_full_tooth(void)
     square += h.approach[0][i] * h.approach[0][i] / h.instants;
   for (int k = 0; k <= h.instants / 2; k++)
     lines += cabs(line[k]) * cabs(line[k]) * (k == 0 || 2 * k == h.instants ? 1 : 0.5);
-  ok(fabs(lines / square - 1) < 1e-9, "its orders hold all of the transmission error (Parseval, %.1e)",
+  ok(fabs(lines / square - 1) < 1e-9, "the orders hold all of the transmission error (Parseval, %.1e)",
      fabs(lines / square - 1));
   free(line);
   eo_hunting_done(&h);
@@ -374,7 +376,7 @@ static void test_fewer_positions(void)
   double most = 0;
   for (int i = 0; i < half.instants; i++)
     most = fmax(most, fabs(half.approach[0][i] - full.approach[0][2 * i]));
-  ok(most < SOLVED, "every other position: the same numbers there (%.1e m)", most);
+  ok(most < SOLVED, "every other position has the same numbers (%.1e m)", most);
   eo_hunting_done(&full);
   eo_hunting_done(&half);
 }
@@ -424,9 +426,11 @@ static void test_followed_alike(void)
   struct followed alike = follow(&input, INFINITY, 3);
   double most = apart(full.instants, alike.period.approach[0], full.approach[0], 0);
   ok(most < 1e-11 && alike.period.failures == 0,
-     "followed without deviations: the approach of the full contact (%.1e m)", most);
-  close_to(alike.period.most_load[0].value / full.most_load[0].value, 1, 1e-6, "the largest load of a pair");
-  close_to(alike.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6, "the largest pressure");
+     "a period followed without deviations has the approach of the full contact (%.1e m)", most);
+  close_to(alike.period.most_load[0].value / full.most_load[0].value, 1, 1e-6,
+           "the largest load of a pair over that of the full contact");
+  close_to(alike.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6,
+           "the largest pressure over that of the full contact");
   ok(apart(alike.stretch.instants, alike.stretch.approach[0], alike.period.approach[0], 0) < 1e-11 &&
          alike.stretch.cycles == 3 && alike.stretch.positions == POSITIONS,
      "a stretch is the beginning of the period");
@@ -460,15 +464,17 @@ static void test_followed_drawn(void)
   double swing = swing_of(&full), far = sqrt(mean_square(&rough.period, &full)),
          near = sqrt(mean_square(&fine.period, &full)),
          worst = apart(full.instants, fine.period.approach[0], full.approach[0], 0);
-  ok(far < 0.00075 * swing, "three solutions of each pair: %.1f nm off a swing of %.2f um (root mean square)",
+  ok(far < 0.00075 * swing, "three solutions of each pair are %.1f nm off a swing of %.2f um (root mean square)",
      1e9 * far, 1e6 * swing);
-  ok(near < 3.5e-10 && worst < 4e-9, "solutions within 2 nm: %.2f nm off, %.1f nm at most", 1e9 * near, 1e9 * worst);
+  ok(near < 3.5e-10 && worst < 4e-9, "solutions within 2 nm are %.2f nm off, %.1f nm at most", 1e9 * near, 1e9 * worst);
   ok(stiffness_off(&fine.period, &full) < 0.006 && stiffness_off(&rough.period, &full) < 0.026,
      "the stiffness is %.3f %% off, of three solutions %.3f %%", 100 * stiffness_off(&fine.period, &full),
      100 * stiffness_off(&rough.period, &full));
-  close_to(swing_of(&fine.period) / swing, 1, 5e-4, "the swing over the period");
-  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 1e-6, "the largest load of a tooth");
-  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6, "its largest pressure");
+  close_to(swing_of(&fine.period) / swing, 1, 5e-4, "the swing of fine solutions over that in full");
+  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 1e-6,
+           "the largest load of a tooth by fine solutions over that in full");
+  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-6,
+           "the largest pressure of a tooth by fine solutions over that in full");
   followed_done(&rough);
   followed_done(&fine);
   eo_hunting_done(&full);
@@ -484,13 +490,15 @@ static void test_followed_alone(void)
   struct followed rough = follow(&input, INFINITY, 0), fine = follow(&input, 2e-9, 0);
   double swing = swing_of(&full), far = sqrt(mean_square(&rough.period, &full)),
          near = sqrt(mean_square(&fine.period, &full));
-  ok(far < 0.003 * swing && near < 6e-9, "teeth that carry alone: %.1f nm off a swing of %.1f um, %.2f nm in full",
+  ok(far < 0.003 * swing && near < 6e-9, "teeth that carry alone are %.1f nm off a swing of %.1f um, %.2f nm in full",
      1e9 * far, 1e6 * swing, 1e9 * near);
   ok(stiffness_off(&fine.period, &full) < 0.015 && stiffness_off(&rough.period, &full) < 0.08,
      "the stiffness is %.3f %% off, of three solutions %.3f %%", 100 * stiffness_off(&fine.period, &full),
      100 * stiffness_off(&rough.period, &full));
-  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 1e-3, "the largest load of a tooth");
-  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-3, "its largest pressure");
+  close_to(fine.period.most_load[0].value / full.most_load[0].value, 1, 1e-3,
+           "the largest load of a tooth that carries alone over that in full");
+  close_to(fine.period.most_pressure[0].value / full.most_pressure[0].value, 1, 1e-3,
+           "the largest pressure of a tooth that carries alone over that in full");
   followed_done(&rough);
   followed_done(&fine);
   eo_hunting_done(&full);
@@ -509,9 +517,10 @@ static void test_followed_known(void)
   input.alike[0] = &once;
   struct followed known = follow(&input, INFINITY, 0), same = follow(&input, 2e-9, 0);
   double most = apart(cold.period.instants, known.period.approach[0], cold.period.approach[0], 0);
-  ok(known.period.failures == 0 && most < 20 * ROUGHLY && most > 0, "from what is known: Z within %.2g nm", 1e9 * most);
+  ok(known.period.failures == 0 && most < 20 * ROUGHLY && most > 0, "Z from what is known is within %.2g nm",
+     1e9 * most);
   ok(apart(fine.period.instants, same.period.approach[0], fine.period.approach[0], 0) == 0,
-     "pairs in full begin as before");
+     "pairs in full begin as they did before");
   followed_done(&cold);
   followed_done(&fine);
   followed_done(&known);
@@ -533,20 +542,20 @@ static void test_followed_forms(void)
   double swing = swing_of(&full), off = sqrt(mean_square(&drawn.period, &full)),
          load = drawn.period.most_load[0].value / full.most_load[0].value,
          pressure = drawn.period.most_pressure[0].value / full.most_pressure[0].value;
-  ok(drawn.period.failures == 0 && off < 0.01 * swing, "with forms %.3f um off a swing of %.2f um (root mean square)",
-     1e6 * off, 1e6 * swing);
-  close_to(swing_of(&drawn.period) / swing, 1, 0.01, "the swing over the period");
-  close_to(load, 1, 0.03, "the largest load of a tooth");
-  close_to(pressure, 1, 0.05, "the largest pressure of a tooth");
+  ok(drawn.period.failures == 0 && off < 0.01 * swing,
+     "teeth with forms are %.3f um off a swing of %.2f um (root mean square)", 1e6 * off, 1e6 * swing);
+  close_to(swing_of(&drawn.period) / swing, 1, 0.01, "the swing of teeth with forms over that in full");
+  close_to(load, 1, 0.03, "the largest load of a tooth with a form over that in full");
+  close_to(pressure, 1, 0.05, "the largest pressure of a tooth with a form over that in full");
   struct eo_hunting_input few = input;
   few.positions = POSITIONS / 4;
   struct followed seldom = follow(&few, INFINITY, 2);
   double most = 0;
   for (int i = 0; i < seldom.period.instants; i++)
     most = fmax(most, fabs(seldom.period.approach[0][i] - drawn.period.approach[0][4 * i]));
-  ok(most < 1e-10, "fewer positions: the same numbers there (%.1e m)", most);
+  ok(most < 1e-10, "fewer positions have the same numbers (%.1e m)", most);
   ok(apart(seldom.stretch.instants, seldom.stretch.approach[0], drawn.period.approach[0], 0) < 1e-10,
-     "and a stretch has all of them");
+     "a stretch has all of the positions");
   followed_done(&seldom);
   followed_done(&drawn);
   eo_hunting_done(&full);

@@ -23,7 +23,7 @@ static void make_grid(void)
   ok(eo_geometry_init(&g, &pair, &error) == EO_OK &&
          eo_contact_grid_new(&grid, &g, &steel, &settings, NULL, (struct eo_kernel){eo_closed_form_kernel, &form}, NULL,
                              &error) == EO_OK,
-     "the paper's pair");
+     "the paper's pair has a contact grid");
 }
 
 /* Impact of a constant approach on the field as it is. */
@@ -54,9 +54,9 @@ static void test_reference(void)
   struct eo_impact i = strike(&none, &none, 7e-6, 2000 * rpm, 5e-3, 0);
   ok(i.touched && i.off_line, "the unmodified pair is struck before the path of contact");
   close_to(1e3 * i.phase, -26.51968, 0.02, "phase of the first touch, mm");
-  close_to(1e3 * i.eta, 27.5, 1e-3, "at the face end that meets first, mm");
-  close_to(1e3 * i.pinion_radius, 52.44873, 5e-3, "radius on the pinion, mm");
-  near(1e3 * i.speed, 259.4021, 0.005, "closing speed, mm/s");
+  close_to(1e3 * i.eta, 27.5, 1e-3, "place of the first touch: at the face end that meets first, mm");
+  close_to(1e3 * i.pinion_radius, 52.44873, 5e-3, "radius of the first touch on the pinion, mm");
+  near(1e3 * i.speed, 259.4021, 0.005, "closing speed of the first touch, mm/s");
   close_to(i.start, i.phase / grid->geometry.transverse_base_pitch + 2, 1e-12, "start of the pulse in the cycle");
   double inertia[2];
   eo_impact_inertia(&grid->geometry, &grid->material, inertia);
@@ -64,7 +64,7 @@ static void test_reference(void)
        "inertia of one end of the pinion, kg m2");
   near(eo_impact_mass(&grid->geometry, (double[2]){6.587e-3, 0.2956}) * pow(cos(grid->geometry.base_helix_angle), 2),
        1 / (51.861854e-3 * 51.861854e-3 / 6.587e-3 + 134.230681e-3 * 134.230681e-3 / 0.2956), 1e-6,
-       "effective mass: both discs at their base circles");
+       "effective mass of both discs at their base circles");
 }
 
 /* F = v sqrt(m/q), T = pi sqrt(m q): the pulse turns the closing speed round, 2 F T / pi = 2 m v, and stores its
@@ -76,8 +76,9 @@ static void test_half_sine(void)
   double mass = eo_impact_mass(&grid->geometry, inertia);
   for (double patch = 2e-3; patch < 30e-3; patch *= 3) {
     struct eo_impact i = strike(&none, &none, 7e-6, 2000 * rpm, patch, 0);
-    near(2 / M_PI * i.force * i.duration, 2 * mass * i.speed, 1e-10, "impulse of the half sine");
-    near(i.force * i.force * i.compliance, mass * i.speed * i.speed, 1e-10, "energy");
+    near(2 / M_PI * i.force * i.duration, 2 * mass * i.speed, 1e-10, "impulse of the half sine against twice m v");
+    near(i.force * i.force * i.compliance, mass * i.speed * i.speed, 1e-10,
+         "energy of the spring against that of the mass");
     /* Its compliance: bulk as a mean over the patch, Hertz at the force's own line load. */
     double length = patch / cos(grid->geometry.base_helix_angle),
            law = eo_contact_local_constant(&grid->geometry, &grid->material, grid->geometry.path_start);
@@ -99,10 +100,10 @@ static void test_speed(void)
 {
   struct eo_impact slow = strike(&none, &none, 7e-6, 500 * rpm, 5e-3, 0),
                    fast = strike(&none, &none, 7e-6, 2000 * rpm, 5e-3, 0);
-  near(fast.speed, 4 * slow.speed, 1e-12, "closing speed in proportion to the running speed");
+  near(fast.speed, 4 * slow.speed, 1e-12, "closing speed over that at half the running speed");
   ok(fast.force > 4 * slow.force && fast.force < 4.5 * slow.force,
-     "force a little more than that: the Hertz contact stiffens (%.3f)", fast.force / slow.force);
-  ok(fast.phase == slow.phase, "the place of the touch does not depend on it");
+     "the force grows a little more than the speed, as the Hertz contact stiffens (%.3f)", fast.force / slow.force);
+  ok(fast.phase == slow.phase, "the place of the touch does not depend on the speed");
 }
 
 /* Only what lies where the gear's tip strikes: root relief of the pinion, tip relief of the gear, lead at the face end.
@@ -117,14 +118,14 @@ static void test_what_moves_it(void)
   struct eo_impact by_tip = strike(&tip, &none, 7e-6, speed, 5e-3, 0),
                    by_gear_root = strike(&none, &root, 7e-6, speed, 5e-3, 0);
   struct eo_impact by_far_end = strike(&middle, &none, 7e-6, speed, 5e-3, 0);
-  near(by_tip.force, plain.force, 1e-5, "tip relief of the pinion does not move it, N");
-  near(by_gear_root.force, plain.force, 1e-5, "nor root relief of the gear, N");
-  near(by_far_end.force, plain.force, 1e-12, "nor relief of the far face end, N");
+  near(by_tip.force, plain.force, 1e-5, "force under tip relief of the pinion, which does not move it, N");
+  near(by_gear_root.force, plain.force, 1e-5, "force under root relief of the gear, which does not move it, N");
+  near(by_far_end.force, plain.force, 1e-12, "force under relief of the far face end, which does not move it, N");
   double last = plain.force;
   for (double depth = 1.5e-6; depth < 7e-6; depth += 1.5e-6) { /* while it is less than the approach */
     root.root_relief = depth;
     struct eo_impact i = strike(&root, &none, 7e-6, speed, 5e-3, 0);
-    ok(i.force < last && i.off_line, "root relief of %.1f um softens it: %.0f N", 1e6 * depth, i.force);
+    ok(i.force < last && i.off_line, "root relief of %.1f um softens the impact to %.0f N", 1e6 * depth, i.force);
     last = i.force;
   }
   /* Beyond, the relieved flank itself meets the gear, at the slope 2 sqrt(Z depth) / length where the relief equals the
@@ -133,13 +134,13 @@ static void test_what_moves_it(void)
     root.root_relief = depth;
     struct eo_impact i = strike(&root, &none, 7e-6, speed, 5e-3, 0);
     double slope = 2 * sqrt(7e-6 * depth) / (-grid->geometry.rack_bottom - 3.5e-3) * grid->geometry.rack_factor;
-    ok(!i.off_line && i.classical == 0, "root relief of %.0f um: no classical impact", 1e6 * depth);
+    ok(!i.off_line && i.classical == 0, "root relief of %.0f um leaves no classical impact", 1e6 * depth);
     near(i.speed, slope * speed * grid->geometry.base_radius[EO_PINION], 0.15,
          "general speed from the slope of the parabola, m/s");
   }
   tip = (struct eo_flank_modification){.tip_relief = 17e-6, .tip_relief_start = 3.5e-3};
   struct eo_impact by_gear_tip = strike(&none, &tip, 7e-6, speed, 5e-3, 0);
-  ok(by_gear_tip.force < 0.2 * plain.force, "so does tip relief of the gear: %.0f N", by_gear_tip.force);
+  ok(by_gear_tip.force < 0.2 * plain.force, "tip relief of the gear softens the impact to %.0f N", by_gear_tip.force);
 }
 
 /* Largest relative step of the force and step of the place while the approach grows from one on the path of contact to
@@ -167,9 +168,9 @@ static void test_continuity(void)
   sweep_approach(250, &coarse, &path, &changes);
   sweep_approach(2000, &fine, &path, &changes);
   ok(changes == 1, "a deeper approach brings the touch before the path of contact");
-  ok(fine < 0.03 && fine < coarse / 5, "nothing jumps: force in steps of %.1f %%, eight times finer %.1f %%",
-     100 * coarse, 100 * fine);
-  ok(path < 0.01e-3, "place in steps of at most %.4f mm", 1e3 * path);
+  ok(fine < 0.03 && fine < coarse / 5,
+     "nothing jumps: the force changes in steps of %.1f %%, eight times finer %.1f %%", 100 * coarse, 100 * fine);
+  ok(path < 0.01e-3, "the place of the touch changes in steps of at most %.4f mm", 1e3 * path);
 }
 
 /* Where the tip corner takes over the gap has neither a step nor a kink. With crowning and a shaft angle error the
@@ -205,9 +206,9 @@ static void test_outcomes(void)
   ok(!free_run.touched && free_run.force == 0, "without load nothing touches");
   struct eo_impact fine = strike(&a, &none, 13.5e-6, 2000 * rpm, 5e-3, 0),
                    sampled = strike(&a, &none, 13.5e-6, 2000 * rpm, 5e-3, 221);
-  near(sampled.force, fine.force, 0.01, "221 stations over the face against the exact place, N");
+  near(sampled.force, fine.force, 0.01, "force from 221 stations over the face against the exact place, N");
   struct eo_impact still = strike(&none, &none, 7e-6, 0, 5e-3, 0);
-  ok(still.touched && still.force == 0, "at rest no force");
+  ok(still.touched && still.force == 0, "a touch at rest has no force");
 }
 
 int main(void)

@@ -48,7 +48,7 @@ static void check(const char *example, double shaft_angle, double tolerance)
   design->alignment.shaft_angle_in_plane = shaft_angle;
   if (eo_design_complete(design, &geometry, &error) || eo_pair_new(&pair, design, &options, NULL, &error) ||
       eo_analysis_new(&analysis, pair, &error) || eo_analysis_run(analysis, design, 0, &error)) {
-    ok(0, "%s: %s", example, error.text);
+    ok(0, "%s is prepared: %s", example, error.text);
     return;
   }
   const struct eo_case_result *c = &analysis->evaluation->load_case[0];
@@ -67,7 +67,8 @@ static void check(const char *example, double shaft_angle, double tolerance)
      themselves. */
   near(swept_load(pair, pattern), c->force, tolerance, example);
   ok(highest < 1.05 * c->end[0].max_pressure && highest > 0.9 * c->end[0].max_pressure,
-     "%s: largest pressure %.1f of %.1f MPa", example, highest / 1e6, c->end[0].max_pressure / 1e6);
+     "%s: the largest pressure of the pattern is %.1f of %.1f MPa", example, highest / 1e6,
+     c->end[0].max_pressure / 1e6);
   ok(widest >= 0 && widest < 0.3e-6 && (deepest > 1e-6) == (shaft_angle != 0 || *example == 'n'),
      "%s: the unloaded teeth touch somewhere, gaps up to %.3g um", example, 1e6 * deepest);
   int range[2];
@@ -76,7 +77,7 @@ static void check(const char *example, double shaft_angle, double tolerance)
     eo_contact_pair_share(pair->grid, &c->end[0].loaded, k, share);
     sum += share[3];
   }
-  close_to(sum, 1, 1e-7, "shares of the tooth pairs");
+  close_to(sum, 1, 1e-7, "sum of the shares of the tooth pairs");
   free(share);
   free(pattern);
   eo_analysis_free(analysis);

@@ -96,9 +96,9 @@ static void test_sections(void)
   near(solid.bending, 2.6e11 * M_PI * 1e-4 / 64, 1e-14, "E I of a solid shaft");
   near(solid.torsion, 1e11 * M_PI * 1e-4 / 32, 1e-14, "G J of a solid shaft");
   near(solid.shear / (1e11 * M_PI * 1e-2 / 4), 6 * 1.3 / (7 + 6 * 0.3), 1e-14,
-       "Cowper's coefficient, solid: 6 (1 + nu) / (7 + 6 nu)");
+       "Cowper's coefficient of a solid shaft: 6 (1 + nu) / (7 + 6 nu)");
   near(tube.shear / (1e11 * M_PI / 4 * (1e-2 - 0.09999 * 0.09999)), 2 * 1.3 / (4 + 3 * 0.3), 1e-7,
-       "thin tube: 2 (1 + nu) / (4 + 3 nu)");
+       "Cowper's coefficient of a thin tube: 2 (1 + nu) / (4 + 3 nu)");
 }
 
 struct bar {
@@ -216,7 +216,8 @@ static void test_even_load(void)
     expected += 5 * w * pow(b, 4) / (384 * section.bending) + w * b * b / (8 * section.shear);
     twist += pow(geometry.base_radius[member], 2) / section.torsion * (b / 2 - b / 8); /* T b/2 (1 - 1/4) */
   }
-  near(deflection.part[0][NODES / 2], expected + twist, 2e-4, "even load over a simply supported span, middle");
+  near(deflection.part[0][NODES / 2], expected + twist, 2e-4,
+       "deflection in the middle of a simply supported span under even load");
 }
 
 /* Wind-up of the double helical bar as derived above; the bending of uniform bars, checked above, is taken off. */
@@ -250,14 +251,14 @@ static void test_double_helical_twist(void)
       worst = fmax(worst, fabs(deflection[end].part[0][i] - expected));
       most = fmax(most, expected);
     }
-  ok(worst < 1e-12 * most, "wind-up of a double helical bar under even loads, off by %.2g of %.3g m/N", worst / most,
-     most);
+  ok(worst < 1e-12 * most, "the wind-up of a double helical bar under even loads is off by %.2g of %.3g m/N",
+     worst / most, most);
   for (int end = 0; end < 2; end++)
     chord[end] = fabs(deflection[end].part[0][NODES - 1] - deflection[end].part[0][0]);
   for (int member = 0; member < 2; member++)
     single += pow(geometry.base_radius[member], 2) / 2 * b / stiffness[member];
   near(chord[EO_LEFT] / single, 3, 1e-10, "chord at the drive's end over that of a single end under the same load");
-  near(chord[EO_RIGHT] / single, 1, 1e-10, "and at the far end");
+  near(chord[EO_RIGHT] / single, 1, 1e-10, "chord at the far end over that of a single end under the same load");
 }
 
 static double diameter_at(int member, double x)
@@ -310,7 +311,7 @@ static void test_stepped_bodies(void)
   for (size_t k = 0; k < sizeof where / sizeof *where; k++) {
     double expected = mohr(where[k][0], where[k][1], where[k][2], where[k][3]);
     near(entry(where[k][0] * VECTOR + where[k][1], where[k][2] * VECTOR + where[k][3]), expected, 2e-4,
-         "stepped hollow bodies, Mohr's integral");
+         "influence of stepped hollow bodies against Mohr's integral");
   }
 }
 
@@ -329,11 +330,11 @@ static void test_semidefinite(void)
       largest = fmax(largest, fabs(matrix[i * n + j]));
       missed = fmax(missed, fabs(matrix[i * n + j] - scale * modes));
     }
-  ok(asymmetric == 0, "Maxwell: the influence is symmetric, bit for bit");
+  ok(asymmetric == 0, "the influence is symmetric, bit for bit (Maxwell)");
   eo_dense_symmetric_eigen(n, matrix, value);
-  ok(value[0] > -1e-14 * value[n - 1], "positive semi-definite: eigenvalues from %.2g to %.2g m/N", value[0],
-     value[n - 1]);
-  ok(missed < 0.02 * largest, "its modes leave %.2g of it", missed / largest);
+  ok(value[0] > -1e-14 * value[n - 1], "the influence is positive semi-definite: eigenvalues from %.2g to %.2g m/N",
+     value[0], value[n - 1]);
+  ok(missed < 0.02 * largest, "the modes of the influence leave %.2g of it", missed / largest);
   free(matrix);
   free(value);
 }

@@ -25,14 +25,14 @@ static void run(const struct eo_gear_pair *gears, const struct eo_flank_modifica
 {
   struct eo_error error;
   struct eo_geometry *g = &bench.geometry;
-  ok(eo_geometry_init(g, gears, &error) == EO_OK, "a pair");
+  ok(eo_geometry_init(g, gears, &error) == EO_OK, "a pair is made");
   eo_corner_gap_init(bench.corner, g);
   eo_gap_field_init(&bench.field, g, pinion, gear, EO_RIGHT, kappa, gamma, 0, bench.corner);
   bench.errors = (struct eo_shaft_errors){kappa, gamma, 0};
   for (int i = 0; i < PHASES; i++)
     bench.phase[i] = reach * (2.0 * i / (PHASES - 1) - 1);
   ok(eo_unloaded_exact(&bench.field, &bench.errors, PHASES, bench.phase, bench.exact, &error) == EO_OK,
-     "exact contact");
+     "exact contact is found");
   eo_unloaded_minimum(&bench.field, PHASES, bench.phase, bench.least);
 }
 
@@ -55,9 +55,9 @@ static void agree(const char *what, int fewest, double tolerance)
         worst = fmax(worst, fabs(difference - mean / points));
       }
     }
-  ok(points >= fewest, "%s: %d points inside the flank", what, points);
-  ok(residual < 1e-10, "%s: residual of the five equations %.1e", what, residual);
-  close_to(1e6 * worst, 0, tolerance, "two forms of unloaded contact, um");
+  ok(points >= fewest, "%s: %d points lie inside the flank", what, points);
+  ok(residual < 1e-10, "%s: the residual of the five equations is %.1e", what, residual);
+  close_to(1e6 * worst, 0, tolerance, "difference between two forms of unloaded contact, um");
 }
 
 /* Flanks that conform along lines have no point of their own: the exact form says edge, and no transmission error
@@ -72,8 +72,8 @@ static void test_conjugate(const struct eo_gear_pair *gears)
     worst = fmax(worst, fmax(fabs(bench.exact[i].transmission_error), fabs(bench.least[i].transmission_error)));
     edge = edge && bench.least[i].touch == EO_TOUCH_EDGE;
   }
-  close_to(worst, 0, 1e-15, "conjugate flanks turn without transmission error, m");
-  ok(edge, "and touch over the whole line, ends included");
+  close_to(worst, 0, 1e-15, "transmission error of conjugate flanks, m");
+  ok(edge, "conjugate flanks touch over the whole line, ends included");
 }
 
 /* The way a crowned flank gives: with lead crowning alone the contact stays in mid face and moves by the phase. */

@@ -29,13 +29,13 @@ static void compare(const char *what, struct eo_design *design)
       eo_preparation_cost_find(&geometry, &design->gear_pair, &settings, &cost, &error) ||
       eo_flexibility_prepare(&geometry, &design->gear_pair, &design->material, &settings, NULL, NULL, &flexibility,
                              &error)) {
-    ok(0, "%s: %s", what, error.text);
+    ok(0, "%s is priced: %s", what, error.text);
     return;
   }
   const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
   double held = report->times[0].memory + report->times[1].memory;
-  ok(cost.memory > held && cost.memory < 100e6 + 1.6 * held, "%s: %.0f MB said, %.0f MB held by the solver", what,
-     cost.memory / 1e6, held / 1e6);
+  ok(cost.memory > held && cost.memory < 100e6 + 1.6 * held,
+     "%s: the solver holds as much as was said, %.0f MB said, %.0f MB held", what, cost.memory / 1e6, held / 1e6);
   eo_flexibility_free(flexibility);
 }
 
@@ -62,7 +62,7 @@ static struct eo_preparation_cost cost_of(double right_helix, double right_width
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
   ok(!eo_geometry_init(&geometry, &design.gear_pair, &error) &&
          !eo_preparation_cost_find(&geometry, &design.gear_pair, &settings, &cost, &error),
-     "a cost %s", error.text);
+     "the cost of a preparation is found %s", error.text);
   return cost;
 }
 
@@ -71,11 +71,11 @@ static void test_halves(void)
 {
   struct eo_preparation_cost even = cost_of(NAN, NAN), helix = cost_of(30, NAN), width = cost_of(NAN, 40e-3);
   ok(helix.seconds > 1.6 * even.seconds && helix.seconds < 2.4 * even.seconds,
-     "of two helices the time of both halves: %.3g s, not %.3g", helix.seconds, even.seconds);
-  ok(width.seconds > 1.6 * even.seconds && width.seconds < 2.4 * even.seconds, "of two widths too: %.3g s",
-     width.seconds);
-  ok(helix.memory > 0.7 * even.memory && helix.memory < 1.4 * even.memory, "and the memory of one: %.0f MB, %.0f alike",
-     helix.memory / 1e6, even.memory / 1e6);
+     "a pair of two helices takes the time of both halves: %.3g s, not %.3g", helix.seconds, even.seconds);
+  ok(width.seconds > 1.6 * even.seconds && width.seconds < 2.4 * even.seconds,
+     "a pair of two widths takes the time of both halves: %.3g s", width.seconds);
+  ok(helix.memory > 0.7 * even.memory && helix.memory < 1.4 * even.memory,
+     "a pair of two helices takes the memory of one half: %.0f MB, %.0f alike", helix.memory / 1e6, even.memory / 1e6);
 }
 
 int main(void)

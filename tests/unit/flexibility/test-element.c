@@ -99,7 +99,7 @@ static void check_patch(void)
   double expected[3];
   linear_field(mesh.point[inner], expected);
   for (int c = 0; c < 3; c++)
-    close_to(displacement[3 * inner + c], expected[c], 1e-15, "patch test, displacement of the inner node");
+    close_to(displacement[3 * inner + c], expected[c], 1e-15, "displacement of the inner node in the patch test, m");
 }
 
 /* A slender bar of eight bricks, clamped at x = 0. */
@@ -128,12 +128,12 @@ static double tip_deflection(int direction, double total)
 static void check_bar(void)
 {
   double e = steel.youngs_modulus, inertia = pow(0.1, 4) / 12, shear = e / 2.6, area = 0.01;
-  near(tip_deflection(0, 1e3), 1e3 / (e * area), 1e-9, "bar in tension, F L / (E A)");
+  near(tip_deflection(0, 1e3), 1e3 / (e * area), 1e-9, "stretch of a bar in tension, F L / (E A)");
   /* Timoshenko: F L^3 / (3 E I) + F L / (k G A), k = 10 (1 + nu) / (12 + 11 nu) (Cowper 1966); the bricks are 1.25 high
    */
   double k = 10 * 1.3 / (12 + 11 * 0.3), beam = 1e3 / (3 * e * inertia) + 1e3 / (k * shear * area);
-  near(tip_deflection(1, 1e3), beam, 0.01, "cantilever of one brick's height");
-  near(tip_deflection(2, 1e3), beam, 0.01, "cantilever, other direction");
+  near(tip_deflection(1, 1e3), beam, 0.01, "deflection of a cantilever of one brick's height");
+  near(tip_deflection(2, 1e3), beam, 0.01, "deflection of the cantilever in the other direction");
 }
 
 /* A sheared brick held at its lower face; displacements of the upper face printed by CalculiX 2.20 for C3D8I. */

@@ -87,13 +87,14 @@ static void check_matrix(const struct eo_flexibility *flexibility)
   ok(neighbour > 0.01 * own && neighbour < 0.5 * own,
      "a neighbour moves less than the loaded tooth, but the same way: %.3g of %.3g um/kN", 1e9 * neighbour, 1e9 * own);
   ok(extreme_ratio(matrix, PER_PAIR, POINTS) > -1e-9,
-     "semi-definite on one pair: smallest eigenvalue over largest %.2e", extreme_ratio(matrix, PER_PAIR, POINTS));
-  ok(extreme_ratio(matrix, POINTS, POINTS) > -1e-9, "semi-definite over four pairs: %.2e",
+     "the compliance is semi-definite on one pair: smallest eigenvalue over largest %.2e",
+     extreme_ratio(matrix, PER_PAIR, POINTS));
+  ok(extreme_ratio(matrix, POINTS, POINTS) > -1e-9, "the compliance is semi-definite over four pairs: %.2e",
      extreme_ratio(matrix, POINTS, POINTS));
   const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
   ok(report->smallest_eigenvalue[0] > -1e-9 && report->smallest_eigenvalue[1] > -1e-9,
-     "semi-definite on all nodes of a flank with its neighbours: %.2e, %.2e", report->smallest_eigenvalue[0],
-     report->smallest_eigenvalue[1]);
+     "the compliance is semi-definite on all nodes of a flank with its neighbours: %.2e, %.2e",
+     report->smallest_eigenvalue[0], report->smallest_eigenvalue[1]);
 }
 
 /* Compliance at the nodes of a flank is what the finite elements gave; the spline between them is smooth. */
@@ -135,7 +136,7 @@ static void check_coupling(const struct eo_flexibility *flexibility)
   struct eo_flexibility_settings uncoupled = coarse;
   uncoupled.neighbour_coupling = false;
   struct eo_flexibility *other = prepare(&uncoupled, NULL);
-  if (!ok(other != NULL, "prepared without coupling"))
+  if (!ok(other != NULL, "the pair is prepared without coupling"))
     return;
   evaluate(flexibility, with);
   evaluate(other, without);
@@ -146,7 +147,8 @@ static void check_coupling(const struct eo_flexibility *flexibility)
       zero = zero && (i / PER_PAIR == j / PER_PAIR || without[i * POINTS + j] == 0);
     }
   ok(same && zero, "coupling adds blocks between neighbours and changes nothing else, to the last bit on a second run");
-  ok(!strcmp(eo_flexibility_report(other)->key, eo_flexibility_report(flexibility)->key), "both share one cache file");
+  ok(!strcmp(eo_flexibility_report(other)->key, eo_flexibility_report(flexibility)->key),
+     "preparations with and without coupling share one cache file");
   eo_flexibility_free(other);
 }
 
@@ -186,14 +188,14 @@ static void check_same(const struct eo_flexibility *flexibility, const char *dir
 {
   static double fresh[POINTS * POINTS], other[POINTS * POINTS];
   struct eo_flexibility *again = prepare(&coarse, directory);
-  if (!ok(again != NULL, "%s: prepared", what))
+  if (!ok(again != NULL, "%s: the pair is prepared", what))
     return;
   evaluate(flexibility, fresh);
   evaluate(again, other);
   const struct eo_flexibility_report *report = eo_flexibility_report(again);
-  ok(report->from_cache == expect_read, "%s: %s%s%s", what, expect_read ? "read from the cache" : "computed again",
-     report->note[0] ? ", note: " : "", report->note);
-  ok(!memcmp(fresh, other, sizeof fresh), "%s: the same bytes", what);
+  ok(report->from_cache == expect_read, "%s: the pair is %s%s%s", what,
+     expect_read ? "read from the cache" : "computed again", report->note[0] ? ", note: " : "", report->note);
+  ok(!memcmp(fresh, other, sizeof fresh), "%s: the pair has the same bytes", what);
   eo_flexibility_free(again);
 }
 
@@ -244,11 +246,11 @@ static void check_cache(const struct eo_flexibility *flexibility)
     pthread_join(thread[i], &result[i]);
   int both = result[0] && result[1];
   ok(both && eo_flexibility_report(result[0])->from_cache + eo_flexibility_report(result[1])->from_cache == 1,
-     "of two at once one computes and the other reads");
+     "one of two preparations at once computes and the other reads");
   eo_flexibility_free(result[0]);
   eo_flexibility_free(result[1]);
   snprintf(command, sizeof command, "test $(ls '%s' | wc -l) = 1", directory);
-  ok(!system(command), "nothing but the file is left");
+  ok(!system(command), "the directory holds nothing but the cache file");
   check_same(flexibility, "/dev/null/nowhere", 0, "a directory that cannot be");
   check_same(flexibility, "/proc/self", 0, "a directory that cannot be written");
   snprintf(command, sizeof command, "rm -r '%s'", parent);
@@ -264,7 +266,7 @@ static void check_full_disk(const struct eo_flexibility *flexibility)
   ok(!symlink("/dev/full", path), "whatever is written there meets a full disk");
   check_same(flexibility, directory, 0, "full disk");
   snprintf(command, sizeof command, "test $(ls '%s' | wc -l) = 0 && rmdir '%s'", directory, directory);
-  ok(!system(command), "nothing is left");
+  ok(!system(command), "a full disk leaves no file behind");
 }
 
 static int stop_at_half(void *context, const char *what, double fraction)
@@ -293,8 +295,8 @@ static void refuse(struct eo_flexibility_settings settings, const struct eo_gear
   struct eo_flexibility *flexibility = NULL;
   struct eo_error error = {0};
   enum eo_code code = eo_flexibility_prepare(&geometry, asked, &material, &settings, NULL, NULL, &flexibility, &error);
-  ok(code == EO_ERROR_INPUT && !flexibility && !strcmp(error.pointer, pointer), "refused at %s: %s", error.pointer,
-     error.text);
+  ok(code == EO_ERROR_INPUT && !flexibility && !strcmp(error.pointer, pointer), "the input is refused at %s: %s",
+     error.pointer, error.text);
 }
 
 static void check_refusals(void)
@@ -346,9 +348,11 @@ static void check_wider_member(const struct eo_flexibility *narrow)
     ok(before[EO_PINION] > 3 && after[EO_PINION] < 1.3,
        "the end of the common face is %.3f times as soft as its middle, with teeth beyond it %.3f times",
        before[EO_PINION], after[EO_PINION]);
-    near(own_compliance(wide, EO_PINION, 0), own_compliance(narrow, EO_PINION, 0), 0.06, "mid face hardly knows of it");
-    near(after[EO_GEAR], before[EO_GEAR], 0.05, "nor does the gear");
-    close_to(eo_flexibility_root(wide, EO_PINION).width, pair.member_width[EO_PINION], 0, "the root reaches over it");
+    near(own_compliance(wide, EO_PINION, 0), own_compliance(narrow, EO_PINION, 0), 0.06,
+         "compliance in mid face of a wider pinion, hardly another");
+    near(after[EO_GEAR], before[EO_GEAR], 0.05, "compliance of the gear beside a wider pinion, hardly another");
+    close_to(eo_flexibility_root(wide, EO_PINION).width, pair.member_width[EO_PINION], 0,
+             "width over which the root reaches, m");
   }
   eo_flexibility_free(wide);
   pair = usual;
@@ -361,7 +365,7 @@ int main(void)
   pair = paper_pair();
   ok(!eo_geometry_init(&geometry, &pair, &error), "the paper's pair is accepted");
   struct eo_flexibility *flexibility = prepare(&coarse, NULL);
-  if (!ok(flexibility != NULL, "it is prepared"))
+  if (!ok(flexibility != NULL, "the paper's pair is prepared"))
     return tap_done();
   check_matrix(flexibility);
   check_nodes(flexibility);

@@ -372,13 +372,13 @@ static void compare_ring(const struct eo_geometry *g, const struct eo_gear_pair 
   struct eo_sector sector;
   struct eo_error error = {0};
   const char *name = member ? "gear" : "pinion", *how = settings.section.floating ? "floating" : "held";
-  if (!ok(!eo_member_compute(&result, g, member, &material, &settings, NULL, &times, &error), "%s %s: computed %s",
-          name, how, error.text))
+  if (!ok(!eo_member_compute(&result, g, member, &material, &settings, NULL, &times, &error),
+          "%s %s: the compliance is computed %s", name, how, error.text))
     return;
   if (!ok(!eo_section_init(&section, g, member, settings.bore_radius, &settings.section, &error) &&
               !eo_sector_init(&sector, &section, settings.layers, g->face_width, eo_sector_twist(g, member), &material,
                               EO_WHOLE_SECTOR, &error),
-          "%s %s: one tooth's mesh %s", name, how, error.text))
+          "%s %s: the mesh of one tooth is made %s", name, how, error.text))
     return;
   struct body body = {
       .section = &section, .sector = &sector, .teeth = g->teeth[member], .pitches = g->teeth[member], .closed = true};
@@ -424,7 +424,8 @@ static void check_matrix(const struct eo_geometry *g, const struct eo_gear_pair 
   struct eo_member_result r;
   struct eo_member_times times;
   struct eo_error error = {0};
-  if (!ok(!eo_member_compute(&r, g, member, &material, &settings, NULL, &times, &error), "computed %s", error.text))
+  if (!ok(!eo_member_compute(&r, g, member, &material, &settings, NULL, &times, &error),
+          "the compliance is computed %s", error.text))
     return;
   int n = r.rows * (r.layers + 1), z = g->teeth[member], all = z * n;
   double odd = 0, size = 0, smallest = 0, largest = 0;
@@ -434,7 +435,7 @@ static void check_matrix(const struct eo_geometry *g, const struct eo_gear_pair 
         odd = fmax(odd, fabs(result_of(&r, member, d)[i * n + j] - result_of(&r, member, -d)[j * n + i]));
         size = fmax(size, fabs(result_of(&r, member, d)[i * n + j]));
       }
-  ok(odd < 1e-9 * size, "%s: D_-d = D_d': %.1e of %.3g m/N", member ? "gear" : "pinion", odd, size);
+  ok(odd < 1e-9 * size, "%s: the compliance has D_-d = D_d': %.1e of %.3g m/N", member ? "gear" : "pinion", odd, size);
   double *matrix = malloc(sizeof *matrix * (size_t)all * (size_t)all);
   for (int a = 0; a < all; a++)
     for (int b = 0; b < all; b++) {
@@ -443,7 +444,7 @@ static void check_matrix(const struct eo_geometry *g, const struct eo_gear_pair 
       matrix[(size_t)a * (size_t)all + (size_t)b] = value;
     }
   enum eo_code code = eo_symmetric_extremes(all, matrix, &smallest, &largest, &error);
-  ok(!code && smallest > -1e-9 * largest, "%s: compliance of all %d teeth, eigenvalues %.2e .. %.2e m/N",
+  ok(!code && smallest > -1e-9 * largest, "%s: the compliance of all %d teeth has eigenvalues %.2e .. %.2e m/N",
      member ? "gear" : "pinion", z, smallest, largest);
   free(matrix);
   eo_member_result_done(&r);
@@ -510,7 +511,7 @@ static void check_threads(const struct eo_geometry *g, const struct eo_gear_pair
   ok(!code && !memcmp(r[0].full, r[1].full, n * n * sizeof(double)) &&
          !memcmp(r[0].next[0], r[1].next[0], reach * n * n * sizeof(double)) &&
          !memcmp(r[0].part[1], r[1].part[1], (size_t)r[0].rows * sizeof(double)),
-     "the same bytes with one thread and with three");
+     "one thread and three give the same bytes");
   for (int i = 0; i < 2; i++)
     eo_member_result_done(&r[i]);
 }
@@ -525,9 +526,9 @@ static void check_support(void)
   settings.support = EO_SUPPORT_HELD_AT_BORE;
   ok(eo_flexibility_support(&settings, &pair, EO_PINION) == EO_MEMBER_FLOATING &&
          eo_flexibility_support(&settings, &pair, EO_GEAR) == EO_MEMBER_HELD_AT_BORE,
-     "held at the bore: a solid pinion floats");
+     "a solid pinion floats where it is held at the bore");
   settings.body = EO_BODY_SECTOR;
-  ok(eo_flexibility_support(&settings, &pair, EO_GEAR) == EO_MEMBER_SECTOR, "a sector is a sector");
+  ok(eo_flexibility_support(&settings, &pair, EO_GEAR) == EO_MEMBER_SECTOR, "a member that is to be a sector is one");
 }
 
 int main(void)
@@ -542,7 +543,7 @@ int main(void)
   pair.centre_distance = NAN;
   for (int m = 0; m < 2; m++)
     pair.tip_diameter[m] = NAN;
-  if (!ok(!eo_geometry_init(&g, &pair, &error), "a pair of %d and %d teeth %s", teeth[0], teeth[1], error.text))
+  if (!ok(!eo_geometry_init(&g, &pair, &error), "a pair of %d and %d teeth is made %s", teeth[0], teeth[1], error.text))
     return tap_done();
   for (int member = 0; member < 2; member++) {
     for (int method = EO_RING_HARMONICS; method <= EO_RING_CHAINS; method++) {

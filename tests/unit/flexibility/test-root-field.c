@@ -51,8 +51,8 @@ static void test_field(const struct eo_gram *gram, int rank, int nodes, double f
       coefficient[j * stride + k] = (float)(j == 3 ? 0 : draw(2, j * rank + k) * pow(fall, k));
   for (int j = 5; j < ROWS; j += 7)
     coefficient[j * stride + rank - 1] = 100;
-  ok(eo_root_field_init(&field, rank, nodes, shape, &error) == EO_OK, "%s: %d shapes of %d nodes", gram->name, rank,
-     nodes);
+  ok(eo_root_field_init(&field, rank, nodes, shape, &error) == EO_OK, "%s: a field of %d shapes on %d nodes is made",
+     gram->name, rank, nodes);
   float *room = eo_gram_allocate((long)ROWS * field.columns / 2 + 1);
   eo_root_field_find_largest(&field, gram, ROWS, coefficient, stride, room, largest, node);
   for (int j = 0; j < ROWS; j++) {
@@ -62,9 +62,9 @@ static void test_field(const struct eo_gram *gram, int rank, int nodes, double f
     elsewhere += node[j] != where;
     in_tension += plain > 0;
   }
-  ok(in_tension > ROWS / 2 && largest[3] == 0, "most rows are in tension, one carries nothing");
-  ok(wrong == 0, "falling by %g: %d of %d rows have another largest stress", fall, wrong, ROWS);
-  ok(elsewhere == 0, "%d have it elsewhere", elsewhere);
+  ok(in_tension > ROWS / 2 && largest[3] == 0, "most rows are in tension, and one carries nothing");
+  ok(wrong == 0, "a field falling by %g: %d of %d rows have another largest stress", fall, wrong, ROWS);
+  ok(elsewhere == 0, "no row has its largest stress elsewhere, but %d", elsewhere);
   eo_root_field_done(&field);
   free(shape);
   free(coefficient);

@@ -70,10 +70,10 @@ static void check_paper(const struct eo_geometry *g, int member)
     /* The normal of an involute touches the base circle. */
     slant = fmax(slant, fabs(fabs(n[0] * p[1] - n[1] * p[0]) - g->base_radius[member]));
   }
-  ok(off < 1e-12 && slant < 1e-12, "%s: flank nodes and normals are those of the involute: %.1e, %.1e m", name, off,
-     slant);
-  near(s.flank.s[0], g->path_start, 1e-12, "first row at the start of contact");
-  near(s.flank.s[s.flank.count - 1], g->path_end, 1e-12, "last row at the end of contact");
+  ok(off < 1e-12 && slant < 1e-12, "%s: the flank's nodes and normals are those of the involute: %.1e, %.1e m", name,
+     off, slant);
+  near(s.flank.s[0], g->path_start, 1e-12, "place of the first row, at the start of contact, m");
+  near(s.flank.s[s.flank.count - 1], g->path_end, 1e-12, "place of the last row, at the end of contact, m");
   /* The loaded flank leads the pinion's motion and trails the gear's; pair k + 1 is ahead in the motion. */
   double ahead = s.point[2 * s.next_flank[1].node[0]], behind = s.point[2 * s.next_flank[0].node[0]];
   ok(member ? ahead < 0 && behind > 0 : ahead > 0 && behind < 0, "%s: pair k + 1 is ahead of pair k", name);
@@ -95,7 +95,7 @@ static void check_shape(const char *what, struct eo_gear_pair pair)
   struct eo_geometry g;
   struct eo_error error = {0};
   struct eo_material material = paper_steel();
-  if (!ok(!eo_geometry_init(&g, &pair, &error), "%s: accepted %s", what, error.text))
+  if (!ok(!eo_geometry_init(&g, &pair, &error), "%s: the pair is accepted %s", what, error.text))
     return;
   for (int member = 0; member < 2; member++) {
     struct eo_section section;
@@ -109,7 +109,7 @@ static void check_shape(const char *what, struct eo_gear_pair pair)
         eo_sector_done(&sector);
       eo_section_done(&section);
     }
-    ok(!code, "%s: %s without folds %s", what, member ? "gear" : "pinion", error.text);
+    ok(!code, "%s: the section of the %s has no folds %s", what, member ? "gear" : "pinion", error.text);
   }
 }
 

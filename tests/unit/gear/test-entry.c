@@ -126,7 +126,7 @@ static char *as_text(void)
 static void test_paths(const char *start, const char *what)
 {
   int same = 0, count = (int)(sizeof paths / sizeof *paths);
-  ok(complete(with_pair(start)), "%s %s", what, error.text);
+  ok(complete(with_pair(start)), "the pair %s is made %s", what, error.text);
   struct eo_geometry first = geometry;
   char *expected = as_text();
   for (int i = 0; i < count; i++) {
@@ -142,7 +142,7 @@ static void test_paths(const char *start, const char *what)
     }
     free(found);
   }
-  ok(same == count, "%d of %d ways to state it give the same document", same, count);
+  ok(same == count, "%d of %d ways to state the pair give the same document", same, count);
   free(expected);
 }
 
@@ -168,8 +168,8 @@ static void test_digits(void)
                way ? row[i].same : row[i].value);
       made[way] = complete(with_pair(text[way])) ? as_text() : NULL;
     }
-    ok(made[0] && made[1] && strcmp(made[0], made[1]) == 0, "%s of %.17g is %s of %.17g%s", row[i].key, row[i].value,
-       row[i].other, row[i].same, error.text);
+    ok(made[0] && made[1] && strcmp(made[0], made[1]) == 0, "%s of %.17g says the same as %s of %.17g%s", row[i].key,
+       row[i].value, row[i].other, row[i].same, error.text);
     free(made[0]);
     free(made[1]);
   }
@@ -211,7 +211,7 @@ static void test_contradictions(void)
     char pair[600];
     snprintf(pair, sizeof pair, TEETH "%s", row[i].pair);
     ok(!complete(with_pair(pair)) && strcmp(error.pointer, row[i].key) == 0 && strstr(error.text, row[i].text),
-       "%s: %s: %s", row[i].pair, error.pointer, error.text);
+       "%s is refused: %s: %s", row[i].pair, error.pointer, error.text);
   }
 }
 
@@ -222,9 +222,9 @@ static void test_series(void)
   for (size_t i = 0; i < sizeof spelt / sizeof *spelt; i++) {
     char pair[300];
     snprintf(pair, sizeof pair, TEETH "\"normal_module_mm\":3,\"thickness_series\":\"%s\"", spelt[i]);
-    ok(complete(with_pair(pair)), "\"%s\" is a series %s", spelt[i], error.text);
-    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][0], -70, 1e-6, "its A_sne at 73 mm, um");
-    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][1], -110, 1e-6, "its A_sni, um");
+    ok(complete(with_pair(pair)), "\"%s\" is read as a series %s", spelt[i], error.text);
+    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][0], -70, 1e-6, "A_sne of the series at 73 mm, um");
+    close_to(1e6 * design.gear_pair.thickness_allowance[EO_PINION][1], -110, 1e-6, "A_sni of the series at 73 mm, um");
   }
 }
 
@@ -254,9 +254,9 @@ static void test_drawn(void)
     if (!good)
       printf("# %d: %s: %s\n", i, error.pointer, error.text);
   }
-  ok(wrong == 0, "%d drawn gears: %d completed, %d refused with a number at a key that was stated", DRAWN, completed,
-     refused);
-  ok(completed > DRAWN / 2 && unmeasured == 0, "most are gears, and can be measured");
+  ok(wrong == 0, "%d gears are drawn: %d completed, %d refused with a number at a key that was stated", DRAWN,
+     completed, refused);
+  ok(completed > DRAWN / 2 && unmeasured == 0, "most drawn gears are complete and can be measured");
 }
 
 /* Own widths of the members: the same design however it is stated; what is beyond the common width adds mass. */
@@ -284,9 +284,9 @@ static void test_widths(void)
     snprintf(pair, sizeof pair, "%s%s", head, same[i]);
     ok(complete(with_pair(pair)) && geometry.face_width == 36e-3 && geometry.member_width[EO_PINION] == 41e-3 &&
            geometry.member_width[EO_GEAR] == 36e-3,
-       "own widths 41 and 36 mm share 36 mm %s", error.text);
+       "widths of 41 and 36 mm of the members share 36 mm %s", error.text);
     char *text = as_text();
-    ok(!first || strcmp(text, first) == 0, "in the same bits");
+    ok(!first || strcmp(text, first) == 0, "widths stated either way give the same bits");
     free(i ? text : NULL);
     first = i ? first : text;
   }
@@ -294,12 +294,13 @@ static void test_widths(void)
   double more = 5e-3 * M_PI * 7850 *
                 (pow(geometry.reference_radius[0], 2) - pow(design.gear_pair.groove_diameter[0] / 2, 2) / 2 -
                  pow(design.gear_pair.bore[0] / 2, 2) / 2);
-  near(design.supports.mass[0] - plain[0], more, 1e-9, "5 mm more of the pinion, half of it out of the groove, kg");
-  ok(design.supports.mass[1] == plain[1], "the gear is what it was");
+  near(design.supports.mass[0] - plain[0], more, 1e-9,
+       "mass of a pinion that is 5 mm wider, half of it out of the groove, kg");
+  ok(design.supports.mass[1] == plain[1], "the gear is what it was beside a wider pinion");
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     snprintf(pair, sizeof pair, "%s%s", head, wrong[i].pair);
     ok(!complete(with_pair(pair)) && strcmp(error.pointer, wrong[i].key) == 0 && strstr(error.text, wrong[i].text),
-       "%s: %s: %s", wrong[i].pair, error.pointer, error.text);
+       "%s is refused: %s: %s", wrong[i].pair, error.pointer, error.text);
   }
 }
 
@@ -404,10 +405,12 @@ static void test_migration(void)
   ok(design.load_cases == 3 && design.load_case[1].torque == 828 && design.gear_pair.backlash == 100e-6 &&
          design.gear_pair.profile_shift[EO_GEAR] == 0 && design.supports.bearing_stiffness[0] == 8e8 &&
          design.optimization.tip_relief.high == 40e-6,
-     "with what it left out then");
-  close_to(design.alignment.shaft_angle_in_plane, 0.1 * M_PI / 180, 1e-18, "0.1 deg of shaft angle error");
-  close_to(2 * geometry.tip_radius[0], 1e-3 * (3 / cos(24 * M_PI / 180) * 17 + 6 * 1.3), 1e-15, "and tips of the rack");
-  ok(warnings.count == 1 && strstr(warnings.text[0], "version 1"), "and a note says so: %s", warnings.text[0]);
+     "a document of version 1 has what it left out then");
+  close_to(design.alignment.shaft_angle_in_plane, 0.1 * M_PI / 180, 1e-18,
+           "shaft angle error of a document of version 1, rad");
+  close_to(2 * geometry.tip_radius[0], 1e-3 * (3 / cos(24 * M_PI / 180) * 17 + 6 * 1.3), 1e-15,
+           "tip diameter of a document of version 1, that of the rack, m");
+  ok(warnings.count == 1 && strstr(warnings.text[0], "version 1"), "a note tells of the version: %s", warnings.text[0]);
   json_decref(document);
 }
 
@@ -435,7 +438,7 @@ static void test_assumed(void)
 {
   ok(complete(with_pair("\"pinion_teeth\":20,\"gear_teeth\":60,\"transverse_module_mm\":5,\"helix_angle_deg\":20,"
                         "\"face_width_mm\":50,\"profile_shift_sum\":0.4,\"pinion_addendum_mm\":5")),
-     "a terse design %s", error.text);
+     "a terse design is made %s", error.text);
   json_t *assumed = eo_assumptions_encode(&design, false), *row;
   struct eo_text keys = {0};
   size_t i;
@@ -443,11 +446,11 @@ static void test_assumed(void)
   ok(strstr(keys.data, "/gear_pair/backlash_um;") && strstr(keys.data, "/gear_pair/gear_profile_shift;") &&
          strstr(keys.data, "/gear_pair/gear_tip_diameter_mm;") && strstr(keys.data, "/alignment/stagger;") &&
          strstr(keys.data, "/supports/pinion_mass_kg;") && strstr(keys.data, "/modification/gear/right;"),
-     "what it does not state is listed");
+     "what a terse design does not state is listed");
   ok(!strstr(keys.data, "normal_module_mm") && !strstr(keys.data, "centre_distance_mm;") &&
          !strstr(keys.data, "pinion_tip_diameter_mm") && !strstr(keys.data, "pinion_teeth;") &&
          !strstr(keys.data, "/optimization"),
-     "what it states in another way is not, nor what an analysis does not use");
+     "what it states in another way, or an analysis does not use, is not listed");
   eo_text_done(&keys);
   json_decref(assumed);
 }
@@ -474,7 +477,7 @@ static void test_roots(void)
   };
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     double end[2], start[2], normal[2];
-    ok(complete(with_pair(row[i].pair)), "%s %s", row[i].what, error.text);
+    ok(complete(with_pair(row[i].pair)), "%s is made %s", row[i].what, error.text);
     const struct eo_tooth tooth = {.teeth = geometry.teeth[0],
                                    .normal_module = geometry.normal_module,
                                    .normal_pressure_angle = geometry.normal_pressure_angle,
@@ -484,10 +487,11 @@ static void test_roots(void)
                                    .fillet_radius_coefficient = geometry.fillet_radius[0] / geometry.normal_module};
     eo_geometry_fillet(&geometry, EO_PINION, 1, end, normal);
     eo_geometry_involute(&geometry, EO_PINION, geometry.form_radius[0], start, normal);
-    close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9, "the fillet meets the involute, m");
-    close_to(2 * geometry.form_radius[0], eo_tooth_form_diameter(&tooth, NULL), 1e-9, "at the form circle, m");
+    close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9, "gap between fillet and involute, m");
+    close_to(2 * geometry.form_radius[0], eo_tooth_form_diameter(&tooth, NULL), 1e-9,
+             "form diameter where they meet, m");
     if (row[i].published > 0)
-      close_to(2e3 * geometry.form_radius[0], row[i].published, 1e-3, "as published, mm");
+      close_to(2e3 * geometry.form_radius[0], row[i].published, 1e-3, "form diameter as published, mm");
   }
 }
 
@@ -504,37 +508,39 @@ static void test_protuberance(void)
   plain_form = geometry.form_radius[0];
   eo_geometry_fillet(&geometry, EO_PINION, 0.75, plain, normal);
   snprintf(text, sizeof text, pair, 100.);
-  ok(complete(with_pair(text)) && geometry.residual_undercut[0] == 40e-6 && !geometry.undercut[0], "protuberance %s",
-     error.text);
+  ok(complete(with_pair(text)) && geometry.residual_undercut[0] == 40e-6 && !geometry.undercut[0],
+     "a pair with protuberance is made %s", error.text);
   double nearest = INFINITY;
   for (int i = 0; i <= 4000; i++) {
     eo_geometry_fillet(&geometry, EO_PINION, i / 4000., cut, normal);
     nearest = fmin(nearest, hypot(cut[0] - plain[0], cut[1] - plain[1]));
   }
-  ok(nearest > 20e-6 && nearest < 45e-6, "the fillet lies %.1f um further in", 1e6 * nearest);
+  ok(nearest > 20e-6 && nearest < 45e-6, "the fillet of a protuberance lies %.1f um further in", 1e6 * nearest);
   eo_geometry_fillet(&geometry, EO_PINION, 1, end, normal);
   eo_geometry_involute(&geometry, EO_PINION, geometry.form_radius[0], start, normal);
-  close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9, "and meets the involute, m");
-  ok(geometry.form_radius[0] > plain_form, "further out: %.4f instead of %.4f mm", 1e3 * geometry.form_radius[0],
-     1e3 * plain_form);
+  close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9,
+           "gap between the fillet of a protuberance and its involute, m");
+  ok(geometry.form_radius[0] > plain_form, "a protuberance puts the form circle further out: %.4f instead of %.4f mm",
+     1e3 * geometry.form_radius[0], 1e3 * plain_form);
 }
 
 /* A chamfer ends the flank: contact begins and ends there, the clearance stays that of the tip. */
 static void test_chamfer(void)
 {
   const char *plain = TEETH "\"normal_module_mm\":3";
-  ok(complete(with_pair(plain)), "without a chamfer");
+  ok(complete(with_pair(plain)), "a pair without a chamfer is made");
   struct eo_geometry before = geometry;
-  ok(complete(with_pair(TEETH "\"normal_module_mm\":3,\"gear_tip_chamfer_mm\":0.3")), "with one %s", error.text);
+  ok(complete(with_pair(TEETH "\"normal_module_mm\":3,\"gear_tip_chamfer_mm\":0.3")),
+     "a pair with a chamfer is made %s", error.text);
   close_to(geometry.tip_form_radius[EO_GEAR], before.tip_radius[EO_GEAR] - 0.3e-3, 1e-15,
-           "the flank ends below the tip");
+           "radius of the end of a chamfered flank, below the tip");
   close_to(-geometry.path_start,
            sqrt(pow(geometry.tip_form_radius[EO_GEAR], 2) - pow(geometry.base_radius[EO_GEAR], 2)) -
                geometry.tangent_length[EO_GEAR],
-           1e-15, "and contact starts there");
+           1e-15, "start of contact at the chamfer, m");
   ok(geometry.tip_clearance[EO_GEAR] == before.tip_clearance[EO_GEAR] &&
          geometry.transverse_contact_ratio < before.transverse_contact_ratio,
-     "less contact, the same clearance");
+     "a chamfer leaves less contact and the same clearance");
 }
 
 /* An iron wheel on a steel pinion: closed forms of Hertz and of ISO 6336-1, and a law that does not jump where unlike
@@ -545,26 +551,27 @@ static void test_materials(void)
                      nearly = {206e9, 0.3, 7850, 206e9 * (1 + 1e-12), NAN, NAN},
                      alike = {206e9, 0.3, 7850, NAN, NAN, NAN};
   double sum = 0.91 / 206e9 + (1 - 0.26 * 0.26) / 110e9;
-  near(0.91 / eo_material_contact_modulus(&unlike), sum / 2, 1e-12, "mean of (1 - nu^2)/E");
-  near(eo_material_mean_modulus(&unlike), 2 / (1 / 206e9 + 1 / 110e9), 1e-12, "2 E1 E2/(E1 + E2)");
-  ok(eo_material_is_one(&alike) && !eo_material_is_one(&unlike), "one material, two materials");
+  near(0.91 / eo_material_contact_modulus(&unlike), sum / 2, 1e-12, "contact modulus by the mean of (1 - nu^2)/E");
+  near(eo_material_mean_modulus(&unlike), 2 / (1 / 206e9 + 1 / 110e9), 1e-12, "mean modulus 2 E1 E2/(E1 + E2)");
+  ok(eo_material_is_one(&alike) && !eo_material_is_one(&unlike), "one material is told from two");
   complete(with_pair(TEETH "\"normal_module_mm\":3"));
   near(eo_contact_local_constant(&geometry, &nearly, 1e-3), eo_contact_local_constant(&geometry, &alike, 1e-3), 1e-11,
-       "nearly the same material, nearly the same law");
+       "local approach of nearly the same material over that of the same");
   /* Weber and Banaschek's two terms, written out at a load: delta = sum A_i q (2 ln(2 h_i/b) - nu_i/(1 - nu_i)). */
   double q = 2e5, s = -2e-3, compliance[2] = {0.91 / (M_PI * 206e9), (1 - 0.26 * 0.26) / (M_PI * 110e9)}, delta = 0;
   double nu[2] = {0.3, 0.26}, all = compliance[0] + compliance[1];
   double b = sqrt(4 * q * eo_geometry_relative_radius(&geometry, s) * all);
   for (int i = 0; i < 2; i++)
     delta += compliance[i] * q * (2 * log(2 * eo_geometry_depth(&geometry, i, s) / b) - nu[i] / (1 - nu[i]));
-  near(all * q * (eo_contact_local_constant(&geometry, &unlike, s) - log(q)), delta, 1e-12, "the local approach, m");
+  near(all * q * (eo_contact_local_constant(&geometry, &unlike, s) - log(q)), delta, 1e-12,
+       "local approach of two materials, m");
   json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
   json_object_set_new(document, "material",
                       json_pack("{s:f,s:f}", "gear_youngs_modulus_GPa", 3., "gear_density_kg_per_m3", 1410.));
   complete(document);
   double steel = design.supports.mass[EO_GEAR];
   complete(with_pair(TEETH "\"normal_module_mm\":3"));
-  near(steel / design.supports.mass[EO_GEAR], 1410. / 7850, 1e-12, "a polymer wheel is lighter");
+  near(steel / design.supports.mass[EO_GEAR], 1410. / 7850, 1e-12, "mass of a polymer wheel over that of steel");
 }
 
 /* f_Sigma_beta of a published gearbox, 27 um over 360 mm: 0.0043 deg, stated and not assumed. */
@@ -577,10 +584,12 @@ static void test_deviation(void)
   size_t i;
   json_object_set_new(document, "alignment", json_pack("{s:i}", "shaft_angle_error_out_of_plane_um", 27));
   complete(document);
-  near(design.alignment.shaft_angle_out_of_plane * 180 / M_PI, 0.004297, 1e-4, "27 um over 360 mm, deg");
+  near(design.alignment.shaft_angle_out_of_plane * 180 / M_PI, 0.004297, 1e-4,
+       "shaft angle error of 27 um over 360 mm, deg");
   json_t *assumed = eo_assumptions_encode(&design, false);
   json_array_foreach(assumed, i, row) eo_text_print(&keys, "%s;", json_string_value(json_object_get(row, "key")));
-  ok(!strstr(keys.data, "out_of_plane_deg") && strstr(keys.data, "in_plane_deg"), "the other angle is assumed to be 0");
+  ok(!strstr(keys.data, "out_of_plane_deg") && strstr(keys.data, "in_plane_deg"),
+     "the angle that is not stated is 0, with a note");
   eo_text_done(&keys);
   json_decref(assumed);
 }
@@ -593,32 +602,33 @@ static void test_error_grade(void)
                      "\"helix_angle_deg\":10,\"face_width_mm\":360";
   json_t *document = with_pair(pair);
   json_object_set_new(document, "alignment", json_pack("{s:i}", "shaft_error_grade", 6));
-  ok(complete(document), "a grade stands for shaft angle errors %s", error.text);
-  near(design.alignment.shaft_angle_out_of_plane * 360e-3, 13.5e-6, 0.02, "out of plane, over the face, m");
+  ok(complete(document), "a grade that stands for shaft angle errors is read %s", error.text);
+  near(design.alignment.shaft_angle_out_of_plane * 360e-3, 13.5e-6, 0.02,
+       "deviation out of plane by the grade, over the face, m");
   near(design.alignment.shaft_angle_in_plane, -2 * design.alignment.shaft_angle_out_of_plane, 1e-12,
-       "in the plane twice that, the other way round");
+       "deviation in the plane by the grade, twice that, the other way round");
   document = eo_design_encode(&design);
   double angle = design.alignment.shaft_angle_in_plane;
-  ok(complete(document) && design.alignment.shaft_angle_in_plane == angle, "what follows may stand beside it %s",
-     error.text);
+  ok(complete(document) && design.alignment.shaft_angle_in_plane == angle,
+     "an angle that follows from the grade may stand beside it %s", error.text);
   document = with_pair(pair);
   json_object_set_new(document, "alignment",
                       json_pack("{s:i,s:f}", "shaft_error_grade", 6, "shaft_angle_error_in_plane_deg", 0.05));
   ok(!complete(document) && strcmp(error.pointer, "/alignment/shaft_error_grade") == 0 && strstr(error.text, "0.05"),
-     "what contradicts may not: %s", error.text);
+     "an angle that contradicts the grade is refused: %s", error.text);
 }
 
 static void test_power(void)
 {
   json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
   json_object_set_new(document, "load_cases", json_pack("[{s:i,s:f}]", "power_kW", 5000, "speed_rpm", 1165.9));
-  ok(complete(document), "a power stands for a torque %s", error.text);
-  near(design.load_case[0].torque, 40953, 2e-5, "5000 kW at 1165.9 rpm, N m");
+  ok(complete(document), "a power that stands for a torque is read %s", error.text);
+  near(design.load_case[0].torque, 40953, 2e-5, "torque of 5000 kW at 1165.9 rpm, N m");
   document = with_pair(TEETH "\"normal_module_mm\":3");
   json_object_set_new(document, "load_cases",
                       json_pack("[{s:i,s:f,s:i}]", "power_kW", 5, "speed_rpm", 1000., "torque_Nm", 40));
   ok(!complete(document) && strcmp(error.pointer, "/load_cases/0/power_kW") == 0 && strstr(error.text, "47.7464829"),
-     "and contradicts another: %s", error.text);
+     "a power that contradicts a torque is refused: %s", error.text);
 }
 
 /* Signs as a drive's table has them, against the same load case in words. */
@@ -645,7 +655,7 @@ static void test_signs(void)
     ok(done && by_sign.torque == by_word->torque && by_sign.speed == by_word->speed &&
            by_sign.direction == by_word->direction && by_sign.driver == by_word->driver &&
            by_sign.flank == by_word->flank,
-       "%g N m at %g rpm is %s, the %s drives %s", row[i].torque, row[i].speed, row[i].direction, row[i].driver,
+       "%g N m at %g rpm runs %s, and the %s drives %s", row[i].torque, row[i].speed, row[i].direction, row[i].driver,
        error.text);
   }
   json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
@@ -656,7 +666,7 @@ static void test_signs(void)
   document = with_pair(TEETH "\"normal_module_mm\":3");
   json_object_set_new(document, "load_cases", json_pack("[{s:f,s:f}]", "torque_Nm", 40., "speed_rpm", -0.05));
   ok(!complete(document) && strcmp(error.pointer, "/load_cases/0/speed_rpm") == 0 && strstr(error.text, "0.1"),
-     "and so is next to no speed: %s", error.text);
+     "a power at next to no speed is refused: %s", error.text);
 }
 
 int main(void)

@@ -41,19 +41,19 @@ static void test_geometry(struct eo_geometry *g)
   struct eo_gear_pair pair = paper_pair();
   struct eo_error error;
   ok(eo_geometry_init(g, &pair, &error) == EO_OK, "the paper's pair is accepted");
-  near(g->base_radius[0], 51.861854090581396e-3, 1e-12, "base radius, pinion");
-  near(g->base_radius[1], 134.23068117562244e-3, 1e-12, "base radius, gear");
-  near(g->centre_distance, 200.3184389666066e-3, 1e-12, "centre distance");
-  near(g->path_start, -14.564310930974557e-3, 1e-10, "s_A");
-  near(g->path_end, 12.995414714111963e-3, 1e-10, "s_E");
-  near(g->transverse_contact_ratio, 1.4377914739258402, 1e-12, "transverse contact ratio");
-  near(g->overlap_ratio, 1.1867927001721548, 1e-12, "overlap ratio");
-  near(g->rack_bottom, -5.736511343236966e-3, 1e-10, "u_A");
-  near(g->form_radius[0], 52.05260380103431e-3, 1e-10, "fillet form radius, pinion");
-  near(g->form_radius[1], 139.30852016026358e-3, 1e-10, "fillet form radius, gear");
-  near(eo_geometry_relative_radius(g, -14e-3), 6.562046708016926e-3, 1e-10, "relative radius at s = -14 mm");
-  near(eo_geometry_depth(g, 0, -14e-3), 5.351898871772353e-3, 1e-10, "depth, pinion, s = -14 mm");
-  near(eo_geometry_depth(g, 1, 12e-3), 6.123306138245925e-3, 1e-10, "depth, gear, s = 12 mm");
+  near(g->base_radius[0], 51.861854090581396e-3, 1e-12, "base radius of the pinion, m");
+  near(g->base_radius[1], 134.23068117562244e-3, 1e-12, "base radius of the gear, m");
+  near(g->centre_distance, 200.3184389666066e-3, 1e-12, "centre distance of the pair, m");
+  near(g->path_start, -14.564310930974557e-3, 1e-10, "start of the path of contact s_A, m");
+  near(g->path_end, 12.995414714111963e-3, 1e-10, "end of the path of contact s_E, m");
+  near(g->transverse_contact_ratio, 1.4377914739258402, 1e-12, "transverse contact ratio of the pair");
+  near(g->overlap_ratio, 1.1867927001721548, 1e-12, "overlap ratio of the pair");
+  near(g->rack_bottom, -5.736511343236966e-3, 1e-10, "lowest active place on the rack u_A, m");
+  near(g->form_radius[0], 52.05260380103431e-3, 1e-10, "fillet form radius of the pinion, m");
+  near(g->form_radius[1], 139.30852016026358e-3, 1e-10, "fillet form radius of the gear, m");
+  near(eo_geometry_relative_radius(g, -14e-3), 6.562046708016926e-3, 1e-10, "relative radius at s = -14 mm, m");
+  near(eo_geometry_depth(g, 0, -14e-3), 5.351898871772353e-3, 1e-10, "depth on the pinion at s = -14 mm, m");
+  near(eo_geometry_depth(g, 1, 12e-3), 6.123306138245925e-3, 1e-10, "depth on the gear at s = 12 mm, m");
 }
 
 static void test_fillet(const struct eo_geometry *g)
@@ -62,11 +62,13 @@ static void test_fillet(const struct eo_geometry *g)
     double p[2], n[2], q[2], m[2];
     eo_geometry_fillet(g, member, 1, p, n);
     eo_geometry_involute(g, member, g->form_radius[member], q, m);
-    close_to(hypot(p[0] - q[0], p[1] - q[1]), 0, 1e-12, "the trochoid ends where the involute starts");
-    close_to(hypot(n[0] - m[0], n[1] - m[1]), 0, 1e-9, "in the same direction");
+    close_to(hypot(p[0] - q[0], p[1] - q[1]), 0, 1e-12,
+             "gap between the end of the trochoid and the start of the involute, m");
+    close_to(hypot(n[0] - m[0], n[1] - m[1]), 0, 1e-9, "angle between both where they meet");
     eo_geometry_fillet(g, member, 0, p, n);
-    close_to(atan2(p[0], p[1]), M_PI / g->teeth[member], 1e-12, "the root starts in the middle of the tooth space");
-    close_to(hypot(p[0], p[1]), g->root_radius[member], 1e-12, "on the root circle");
+    close_to(atan2(p[0], p[1]), M_PI / g->teeth[member], 1e-12, "start of the root, in the middle of the tooth space");
+    close_to(hypot(p[0], p[1]), g->root_radius[member], 1e-12,
+             "radius of the start of the root, that of the root circle, m");
     double worst = 0, step = 1e-5;
     for (double t = 0.02; t < 0.99; t += 0.02) { /* the normal against the chord of the curve */
       double a[2], b[2], unused[2];
@@ -75,7 +77,7 @@ static void test_fillet(const struct eo_geometry *g)
       eo_geometry_fillet(g, member, t + step, b, unused);
       worst = fmax(worst, fabs((b[0] - a[0]) * n[0] + (b[1] - a[1]) * n[1]) / hypot(b[0] - a[0], b[1] - a[1]));
     }
-    close_to(worst, 0, 2e-3, "normals stand on the curve");
+    close_to(worst, 0, 2e-3, "slope of the normals along the curve");
   }
 }
 
@@ -97,20 +99,21 @@ static void test_modification(const struct eo_geometry *g)
   double slopes[2];
   eo_modification_init(&shape, g, EO_PINION, &crowned);
   near(eo_modification_profile(&shape, g->rack_top, slopes), 0.2 * g->rack_top * g->rack_top, 1e-12,
-       "profile crowning without relief goes on to the tip");
-  near(slopes[0], 0.4 * g->rack_top, 1e-12, "with its slope");
+       "profile crowning at the tip of a flank without relief, m");
+  near(slopes[0], 0.4 * g->rack_top, 1e-12, "slope of profile crowning at the tip");
   for (int form = 0; form < 3; form++) { /* every shape reaches its depth and has the slope it says */
     flank.shape = (enum eo_relief_shape)form;
     flank.profile_crowning = 0.2;
     eo_modification_init(&shape, g, EO_PINION, &flank);
     double slope[2], unused[2], h = 1e-8, u = 3e-3;
     near(eo_modification_profile(&shape, g->rack_top, slope), flank.tip_relief, 1e-9,
-         "tip relief at the end of the active profile");
-    near(eo_modification_profile(&shape, g->rack_bottom, slope), flank.root_relief, 1e-9, "root relief at its start");
+         "tip relief at the end of the active profile, m");
+    near(eo_modification_profile(&shape, g->rack_bottom, slope), flank.root_relief, 1e-9,
+         "root relief at its start, m");
     eo_modification_profile(&shape, u, slope);
     near(slope[0],
          (eo_modification_profile(&shape, u + h, unused) - eo_modification_profile(&shape, u - h, unused)) / (2 * h),
-         1e-6, "slope");
+         1e-6, "slope of the profile against differences");
   }
 }
 
@@ -131,8 +134,8 @@ static void test_surface(const struct eo_geometry *g)
       distance = fmax(distance, fabs(1e3 * p.position[k] - rows[i][2 + k]));
       turn = fmax(turn, fabs(p.normal[k] - rows[i][5 + k]));
     }
-    close_to(distance, 0, 1e-8, "surface point of case A, mm");
-    close_to(turn, 0, 1e-8, "surface normal of case A");
+    close_to(distance, 0, 1e-8, "distance of the surface point of case A, mm");
+    close_to(turn, 0, 1e-8, "angle of the surface normal of case A");
   }
 }
 
@@ -152,14 +155,14 @@ static void test_slice_gap(const struct eo_geometry *g)
     close_to(1e6 * eo_slice_gap_at(&table, c[i] * 1e-3, &slope), expected[i], 1.5e-4, "slice gap of case A, um");
     double rate = (eo_slice_gap_at(&table, c[i] * 1e-3 + h, NULL) - eo_slice_gap_at(&table, c[i] * 1e-3 - h, NULL)) /
                   (2 * h);
-    close_to(slope, rate, 1e-6, "its slope");
+    close_to(slope, rate, 1e-6, "slope of the slice gap against differences");
   }
   /* The mirrored pair: the same relief on the gear of an equal pair gives the mirrored gap. */
   struct eo_gear_pair pair = paper_pair();
   struct eo_geometry equal;
   struct eo_slice_gap other;
   pair.teeth[0] = pair.teeth[1] = 30;
-  ok(eo_geometry_init(&equal, &pair, NULL) == EO_OK, "an equal pair");
+  ok(eo_geometry_init(&equal, &pair, NULL) == EO_OK, "a pair of equal members is made");
   eo_modification_init(&shape[0], &equal, EO_PINION, &flank);
   eo_modification_init(&shape[1], &equal, EO_GEAR, &none);
   eo_slice_gap_init(&table, &equal, shape);
@@ -170,7 +173,7 @@ static void test_slice_gap(const struct eo_geometry *g)
        x += 3e-3) { /* there c is the phase of the unmodified member: less by the gap itself */
     double gap = eo_slice_gap_at(&table, x, NULL), shifted = x - gap / cos(equal.base_helix_angle);
     close_to(1e6 * eo_slice_gap_at(&other, -shifted, NULL), 1e6 * gap, 1e-4,
-             "relief on the gear mirrors relief on the pinion, um");
+             "relief on the gear against relief on the pinion, mirrored, um");
   }
 }
 
@@ -264,8 +267,8 @@ static void refused(struct eo_gear_pair pair, const char *pointer)
 {
   struct eo_geometry g;
   struct eo_error error = {0};
-  ok(eo_geometry_init(&g, &pair, &error) == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "refused: %s: %s",
-     error.pointer, error.text);
+  ok(eo_geometry_init(&g, &pair, &error) == EO_ERROR_INPUT && !strcmp(error.pointer, pointer),
+     "the pair is refused: %s: %s", error.pointer, error.text);
 }
 
 static void test_refusals(void)
