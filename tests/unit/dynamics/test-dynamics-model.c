@@ -48,7 +48,7 @@ static void matrices(void)
   ok(!eo_dynamics_model_init(&m, &p, NULL), "a lopsided model is made");
   ok(symmetric(12, m.stiffness) && symmetric(12, m.damping), "K and C are symmetric");
   ok(symmetric(m.oscillator.n, m.oscillator.stiffness) && symmetric(m.oscillator.n, m.oscillator.damping),
-     "so are the reduced ones");
+     "the reduced K and C are symmetric");
   double least = smallest_eigenvalue(12, m.stiffness, &largest);
   ok(least >= -1e-12 * largest, "K is positive semi-definite: %g of %g", least, largest);
   least = smallest_eigenvalue(12, m.damping, &largest);
@@ -85,12 +85,12 @@ static void zero_modes(struct eo_dynamics_parameters p, int expected, const char
   struct eo_error error = {0};
   int failed = eo_dynamics_model_init(&m, &p, &error);
   ok(!failed, "%s: the model is made %s", what, error.text);
-  ok(m.zero_modes == expected && m.oscillator.n + m.zero_modes + m.constraints == m.freedoms, "%s: %d zero modes", what,
-     m.zero_modes);
+  ok(m.zero_modes == expected && m.oscillator.n + m.zero_modes + m.constraints == m.freedoms,
+     "%s: the model has %d zero modes", what, m.zero_modes);
   double found = disturbance(&m);
-  ok(found < 1e-14, "%s: they stretch nothing (%g)", what, found);
+  ok(found < 1e-14, "%s: the zero modes stretch nothing (%g)", what, found);
   eo_dynamics_model_load(&m, 828, EO_IMPACT_PAPER);
-  ok(m.zero_mode_load < 1e-15, "%s: the torques do no work on them (%g)", what, m.zero_mode_load);
+  ok(m.zero_mode_load < 1e-15, "%s: the torques do no work on the zero modes (%g)", what, m.zero_mode_load);
 }
 
 static struct eo_dynamics_parameters single(double helix)
@@ -127,7 +127,7 @@ static void impacts_on_zero_modes(void)
   /* made orthogonal to the two rolling modes, in which pinion and gear turn by 1 / R */
   double overlap = p.inertia[0] * tangent / p.base_radius[0];
   double expected = tan(p.base_helix_angle) * 200 / sqrt(mass - 2 * overlap * overlap / roll);
-  near(unequal, expected, 1e-10, "unequal ones do, by the screw mode");
+  near(unequal, expected, 1e-10, "work of unequal mean impacts on the screw mode");
 }
 
 /* Betti and Maxwell: the response at one mesh to a force at the other is the same both ways. */
@@ -200,7 +200,7 @@ static void modes_and_signs(void)
   const struct eo_dynamics_parameters p = lopsided(1.2e7, 8.4e8);
   eo_dynamics_model_init(&m, &p, NULL);
   ok(!eo_dynamics_model_modes(&m, (double[]){1e9, 1.2e9}, &modes, NULL) && modes.n == 11,
-     "eleven modes with both couplings");
+     "a model with both couplings has eleven modes");
   int stable = 1;
   for (int i = 0; i < 2 * modes.n; i++)
     stable = stable && creal(modes.pole[i]) < 0;
@@ -212,11 +212,11 @@ static void modes_and_signs(void)
   int failed = eo_dynamics_model_printed_pole(&m, (double[]){1e9, 1e9}, &pole, NULL);
   ok(!failed && creal(pole) > 1e4, "the printed signs flutter: %.0f 1/s", creal(pole));
   failed = eo_dynamics_model_modes(&m, (double[]){0, 1e9}, &modes, &error) == EO_ERROR_INPUT;
-  ok(failed, "%s", error.text);
+  ok(failed, "an impossible model is refused: %s", error.text);
   const struct eo_dynamics_parameters one = single(0.3);
   eo_dynamics_model_init(&m, &one, NULL);
   failed = eo_dynamics_model_printed_pole(&m, (double[]){1e9, 1e9}, &pole, &error) == EO_ERROR_INPUT;
-  ok(failed, "%s", error.text);
+  ok(failed, "a model without room is refused: %s", error.text);
 }
 
 static struct eo_dynamics_parameters held(double stiffness, bool coupled)
@@ -273,8 +273,8 @@ static void held_frequencies(bool coupled)
   typed_frequencies(&p, 1.1e9, typed);
   for (int i = 0; i < modes.n; i++)
     worst = fmax(worst, fabs(modes.frequency[i] / typed[12 - modes.n + i] - 1));
-  ok(modes.n == (coupled ? 11 : 10) && worst < 1e-9, "held%s: %d frequencies as of the typed equations (%.1g)",
-     coupled ? ", coupled" : "", modes.n, worst);
+  ok(modes.n == (coupled ? 11 : 10) && worst < 1e-9,
+     "the model held%s has %d frequencies of the typed equations (%.1g)", coupled ? ", coupled" : "", modes.n, worst);
 }
 
 /* With next to no mesh the pinion swings along its axis as one body: k_a / (2 m_p). */
@@ -289,7 +289,7 @@ static void axial_swing(void)
   for (int i = 0; i < modes.n; i++)
     if (fabs(modes.frequency[i] - expected) < fabs(nearest - expected))
       nearest = modes.frequency[i];
-  near(nearest, expected, 1e-7, "axial swing of a held pinion, sqrt(k_a / (2 m_p))");
+  near(nearest, expected, 1e-7, "frequency of the axial swing of a held pinion, sqrt(k_a / (2 m_p))");
 }
 
 /* Springs in series: D (left end more than the mean) = - s (X_L - X_R), k = 4 s sin2(beta_b). */
@@ -304,22 +304,22 @@ static void held_at_rest(void)
   for (int member = 0; member < 2; member++)
     give += c2 * pow(p.base_radius[member], 2) / (2 * p.groove_torsional_stiffness[member]);
   eo_dynamics_model_init(&m, &p, NULL);
-  near(eo_dynamics_model_axial_stiffness(&m), 2 * s2 / give, 1e-9, "the ends' hold at rest: all springs in series");
+  near(eo_dynamics_model_axial_stiffness(&m), 2 * s2 / give, 1e-9, "hold of the ends at rest, all springs in series");
   p.bearing_stiffness[0] = p.bearing_stiffness[1] = p.gear_axial_stiffness[0] = p.gear_axial_stiffness[1] = INFINITY;
   p.groove_torsional_stiffness[0] = p.groove_torsional_stiffness[1] = INFINITY;
   for (int i = 0; i < 2; i++)
     p.bearing_damping[i] = p.gear_axial_damping[i] = p.groove_torsional_damping[i] = 0;
   eo_dynamics_model_init(&m, &p, NULL);
-  near(eo_dynamics_model_axial_stiffness(&m), 3e8, 1e-9, "with all else rigid it is the pinion's own");
+  near(eo_dynamics_model_axial_stiffness(&m), 3e8, 1e-9, "hold of the ends with all else rigid, the pinion's own");
   p.pinion_axial_stiffness = INFINITY;
   eo_dynamics_model_init(&m, &p, NULL);
-  ok(isinf(eo_dynamics_model_axial_stiffness(&m)), "all rigid: both ends one deflection");
+  ok(isinf(eo_dynamics_model_axial_stiffness(&m)), "both ends have one deflection where all is rigid");
   p = held(3e8, false);
   eo_dynamics_model_init(&m, &p, NULL);
   ok(eo_dynamics_model_axial_stiffness(&m) == 0, "ends not coupled in torsion carry their own torque");
   p = held(0, true);
   eo_dynamics_model_init(&m, &p, NULL);
-  ok(eo_dynamics_model_axial_stiffness(&m) == 0, "a floating pinion's ends carry the same");
+  ok(eo_dynamics_model_axial_stiffness(&m) == 0, "the ends of a floating pinion carry the same");
 }
 
 /* Everything rigid but the meshes and the machines' shafts: four inertias in a row, the gear's reduced by nothing. */
@@ -339,10 +339,10 @@ static void driver_and_load(void)
   p.machine_inertia[0] = 0.12, p.machine_inertia[1] = 3.1;
   p.machine_stiffness[0] = 2e5, p.machine_stiffness[1] = 6e5;
   int failed = eo_dynamics_model_init(&m, &p, NULL);
-  ok(!failed && m.freedoms == 14 && m.zero_modes == 1, "driver and load: %d zero mode, of %d freedoms", m.zero_modes,
-     m.freedoms);
+  ok(!failed && m.freedoms == 14 && m.zero_modes == 1, "a model with driver and load has %d zero mode of %d freedoms",
+     m.zero_modes, m.freedoms);
   eo_dynamics_model_load(&m, 828, EO_IMPACT_NONE);
-  ok(m.zero_mode_load < 1e-15, "the torques do no work on it");
+  ok(m.zero_mode_load < 1e-15, "the torques do no work on the zero mode of driver and load");
   eo_dynamics_model_modes(&m, (double[]){mesh, mesh}, &modes, NULL);
   const double inertia[4] = {0.12, 2 * p.inertia[0], 2 * p.inertia[1], 3.1};
   const double direction[3][4] = {{1, -1, 0, 0}, {0, c * p.base_radius[0], -c * p.base_radius[1], 0}, {0, 0, 1, -1}};
@@ -357,12 +357,13 @@ static void driver_and_load(void)
     for (int j = 0; j < modes.n; j++)
       found += fabs(modes.frequency[j] * 2 * M_PI / sqrt(value[i]) - 1) < 1e-6;
   ok(found == 3, "the frequencies of four inertias on three springs are among them (%d)", found);
-  near(modes.frequency[0] * 2 * M_PI, sqrt(value[1]), 1e-7, "the lowest is");
+  near(modes.frequency[0] * 2 * M_PI, sqrt(value[1]), 1e-7, "the lowest frequency with driver and load");
   p = paper_pair();
   p.machine_inertia[0] = 0.12;
   struct eo_error error = {0};
   failed = eo_dynamics_model_init(&m, &p, &error) == EO_ERROR_INPUT;
-  ok(failed && !strcmp(error.pointer, "/supports/driver_stiffness_Nm_per_rad"), "%s", error.text);
+  ok(failed && !strcmp(error.pointer, "/supports/driver_stiffness_Nm_per_rad"),
+     "a driver without an inertia is refused: %s", error.text);
 }
 
 int main(void)

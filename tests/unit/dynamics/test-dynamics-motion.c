@@ -123,17 +123,19 @@ static void contact_loss(bool gated)
      balance.contact_loss[0]);
   check_finite(&balance);
   near(balance.power_supplied, balance.power_dissipated, 1e-6, "power supplied by the mesh is dissipated");
-  ok(balance.power_dissipated > 0, "and there is some");
+  ok(balance.power_dissipated > 0, "the mesh supplies power");
   double complex multiplier[2 * EO_MAX_COORDINATES];
   failed = eo_vibration_stability(solver, &load, multiplier, NULL);
-  ok(!failed && cabs(multiplier[0]) < 1, "the state is stable: %.4f", cabs(multiplier[0]));
+  ok(!failed && cabs(multiplier[0]) < 1, "the state with lost contact is stable: %.4f", cabs(multiplier[0]));
   failed = eo_vibration_integrate(solver, &load, NULL, &integration, NULL, NULL);
   ok(!failed && integration.outcome == EO_VIBRATION_CONTACT_LOST, "time integration settles after %d periods",
      integration.periods);
   near(balance.rms[EO_READING_NORMAL][0], integration.rms[EO_READING_NORMAL][0], 1e-4,
-       "normal, balance against integration");
-  near(balance.rms[EO_READING_TRANSVERSE][0], integration.rms[EO_READING_TRANSVERSE][0], 1e-4, "transverse");
-  near(balance.rms[EO_READING_ROTATIONAL][0], integration.rms[EO_READING_ROTATIONAL][0], 1e-4, "rotational");
+       "normal acceleration, balance against integration");
+  near(balance.rms[EO_READING_TRANSVERSE][0], integration.rms[EO_READING_TRANSVERSE][0], 1e-4,
+       "transverse acceleration, balance against integration");
+  near(balance.rms[EO_READING_ROTATIONAL][0], integration.rms[EO_READING_ROTATIONAL][0], 1e-4,
+       "rotational acceleration, balance against integration");
   close_to(balance.contact_loss[0], integration.contact_loss[0], 1e-3, "share of the cycle out of contact");
   eo_vibration_free(solver);
   eo_law_done(&law);
@@ -149,22 +151,23 @@ static void power_in_contact(void)
   struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
   struct eo_vibration_case load = paper_case(&law, &law);
   eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
-  near(r.power_supplied, r.power_dissipated, 1e-6, "full contact: power balance by harmonic balance");
+  near(r.power_supplied, r.power_dissipated, 1e-6, "power supplied in full contact by harmonic balance");
   eo_vibration_integrate(solver, &load, NULL, &r, NULL, NULL);
-  near(r.power_supplied, r.power_dissipated, 1e-6, "full contact: power balance by time integration");
+  near(r.power_supplied, r.power_dissipated, 1e-6, "power supplied in full contact by time integration");
   load.impact = EO_IMPACT_PAPER;
   load.pulse[0] = (struct eo_pulse){EO_PULSE_HALF_SINE, 300, 0.7, 0.1};
   load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 500, 0.2, 0.15};
   load.axial_order = 1;
   load.axial_motion = float_series;
   eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
-  near(r.power_supplied, r.power_dissipated, 1e-6, "unequal impacts and prescribed float: power balance");
+  near(r.power_supplied, r.power_dissipated, 1e-6, "power supplied under unequal impacts and prescribed float");
   ok(r.impact_drift > 1, "the mean difference of the impacts is reported: %.3g", r.impact_drift);
   struct eo_vibration t;
   eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
   for (int end = 0; end < 2; end++)
     for (int reading = 0; reading < EO_READINGS; reading++)
-      near(r.rms[reading][end], t.rms[reading][end], 4e-4, "impacts and float, 32 harmonics against integration");
+      near(r.rms[reading][end], t.rms[reading][end], 4e-4,
+           "RMS under impacts and float, 32 harmonics against integration");
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -185,11 +188,11 @@ static void constant_float_drops_out(void)
   eo_vibration_solve(solver, &load, EO_START_COLD, &shifted, NULL);
   load.axial_motion = wave;
   eo_vibration_solve(solver, &load, EO_START_COLD, &moving, NULL);
-  near(shifted.rms_pair[0], still.rms_pair[0], 1e-9, "a constant axial float changes nothing");
-  ok(fabs(moving.rms[0][0] / still.rms[0][0] - 1) > 1e-3, "a moving one does: %.4f against %.4f", moving.rms[0][0],
-     still.rms[0][0]);
+  near(shifted.rms_pair[0], still.rms_pair[0], 1e-9, "RMS under a constant axial float, which changes nothing");
+  ok(fabs(moving.rms[0][0] / still.rms[0][0] - 1) > 1e-3, "a moving float changes the RMS: %.4f against %.4f",
+     moving.rms[0][0], still.rms[0][0]);
   ok((moving.rms[0][0] > still.rms[0][0]) != (moving.rms[0][1] > still.rms[0][1]),
-     "in opposite senses at the two ends");
+     "a moving float acts in opposite senses at the two ends");
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -210,7 +213,7 @@ static void convergence(void)
     if (i == 0)
       reference = r.rms_pair[0];
     else
-      ok(error <= error_before, "%d harmonics: RMS off by %.2g", harmonics[i], error);
+      ok(error <= error_before, "with %d harmonics the RMS is off by %.2g", harmonics[i], error);
     error_before = i == 0 ? INFINITY : fmax(error, 1e-10);
     eo_vibration_free(solver);
   }
@@ -235,7 +238,7 @@ static void stagger(void)
   eo_vibration_orders(solver, EO_CHANNEL_NORMAL, 1, right);
   for (int k = 1; k <= HARMONICS; k++)
     worst = fmax(worst, cabs(right[k] - left[k] * (k % 2 ? -1 : 1)) / r.rms[0][0]);
-  ok(worst < 1e-9, "a stagger of half a pitch mirrors in time (%g)", worst);
+  ok(worst < 1e-9, "a stagger of half a pitch mirrors the motion in time (%g)", worst);
   ok(r.rms_of_mean[0] < 0.8 * r.rms_pair[0], "odd harmonics cancel in the mean of both ends: %.2f of %.2f",
      r.rms_of_mean[0], r.rms_pair[0]);
   eo_vibration_free(solver);
@@ -257,10 +260,10 @@ static void single_end(void)
   int failed = eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
   ok(!failed && r.outcome == EO_VIBRATION_CONVERGED, "a single helical pair vibrates at %.3f m/s2", r.rms_pair[0]);
   eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
-  near(r.rms_pair[0], t.rms_pair[0], 1e-4, "single helical, balance against integration");
+  near(r.rms_pair[0], t.rms_pair[0], 1e-4, "RMS of a single helical pair, balance against integration");
   near(r.axial_force_mean[0], 414 / p.base_radius[0] * tan(p.base_helix_angle), 1e-9,
-       "its gear thrust is F_t tan(beta_b)");
-  near(r.bearing_force_mean[EO_PINION][0], -414 / p.base_radius[0], 1e-9, "its pinion bearing carries F_t");
+       "gear thrust of a single helical pair, F_t tan(beta_b)");
+  near(r.bearing_force_mean[EO_PINION][0], -414 / p.base_radius[0], 1e-9, "load of its pinion bearing, F_t");
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -385,7 +388,7 @@ static void trace(void)
   ok(r.outcome == EO_VIBRATION_CONTACT_LOST, "just above the upper fold only the separated state is left");
   load.speed = down * 0.99;
   eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
-  ok(r.outcome == EO_VIBRATION_CONVERGED, "below the lower fold only full contact");
+  ok(r.outcome == EO_VIBRATION_CONVERGED, "below the lower fold only the state of full contact is left");
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -410,8 +413,8 @@ static double held_rms(double stiffness, struct eo_vibration *r)
   if (stiffness != NEARLY_FIXED) {
     struct eo_vibration t;
     eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
-    near(r->rms_pair[0], t.rms_pair[0], 1e-4, "held: balance against integration");
-    near(r->pinion_thrust_max, t.pinion_thrust_max, 1e-3, "held: thrust by balance and integration");
+    near(r->rms_pair[0], t.rms_pair[0], 1e-4, "RMS of a held pinion, balance against integration");
+    near(r->pinion_thrust_max, t.pinion_thrust_max, 1e-3, "thrust of a held pinion, balance against integration");
   }
   eo_vibration_free(solver);
   eo_law_done(&left);
@@ -424,10 +427,12 @@ static void held_limits(void)
   struct eo_vibration floating, soft, middle, stiff, fixed;
   double f = held_rms(0, &floating), s = held_rms(1e-3, &soft), m = held_rms(3e8, &middle),
          h = held_rms(NEARLY_FIXED, &stiff), x = held_rms(INFINITY, &fixed);
-  near(s, f, 1e-9, "k_a towards 0 is floating");
-  near(h, x, 1e-6, "k_a towards infinity is fixed");
-  near(stiff.pinion_thrust_mean, fixed.pinion_thrust_mean, 1e-6, "and so is the thrust");
-  ok(fabs(m / f - 1) > 1e-2 && fabs(m / x - 1) > 1e-2, "between: %.3f, %.3f, %.3f m/s2", f, m, x);
+  near(s, f, 1e-9, "RMS for k_a towards 0, that of a floating pinion");
+  near(h, x, 1e-6, "RMS for k_a towards infinity, that of a fixed pinion");
+  near(stiff.pinion_thrust_mean, fixed.pinion_thrust_mean, 1e-6,
+       "thrust for k_a towards infinity, that of a fixed pinion");
+  ok(fabs(m / f - 1) > 1e-2 && fabs(m / x - 1) > 1e-2, "a spring between both gives another RMS: %.3f, %.3f, %.3f m/s2",
+     f, m, x);
   ok(floating.pinion_thrust_max == 0, "a floating pinion has no thrust");
 }
 
@@ -449,15 +454,15 @@ static void doubled(void)
   int failed = eo_vibration_settle(solver, &load, &r, NULL);
   ok(!failed && balance.outcome == EO_VIBRATION_CONTACT_LOST && r.unstable > 1.1,
      "the state of the balance is not stable (%.3f)", r.unstable);
-  ok(r.outcome == EO_VIBRATION_CONTACT_LOST && r.repeat > 1 && r.states >= 1, "motion repeats after %d periods",
+  ok(r.outcome == EO_VIBRATION_CONTACT_LOST && r.repeat > 1 && r.states >= 1, "the motion repeats after %d periods",
      r.repeat);
   ok(fabs(r.rms_pair[0] / balance.rms_pair[0] - 1) > 1e-3 && r.state[0].rms[0] == r.rms_pair[0],
-     "at %.3f m/s2 and not %.3f", r.rms_pair[0], balance.rms_pair[0]);
+     "the motion that repeats has %.3f m/s2, and the state of the balance %.3f", r.rms_pair[0], balance.rms_pair[0]);
   const struct eo_integration_options options = {1e-9, 1e-6, 1000, 2048, 4};
   struct eo_vibration again;
   eo_vibration_integrate(solver, &load, &options, &again, NULL, NULL);
-  near(r.rms_pair[0], again.rms_pair[0], 1e-3, "as by a finer integration from the static start");
-  ok(again.repeat > 1, "which repeats after %d", again.repeat);
+  near(r.rms_pair[0], again.rms_pair[0], 1e-3, "RMS against a finer integration from the static start");
+  ok(again.repeat > 1, "the finer integration repeats after %d periods", again.repeat);
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -479,8 +484,8 @@ static void settled_in_contact(void)
     eo_vibration_solve(solver, &load, EO_START_COLD, &plain, NULL);
     eo_vibration_stability(solver, &load, multiplier, NULL);
     ok(plain.outcome == EO_VIBRATION_CONVERGED && r.rms_pair[0] == plain.rms_pair[0] && r.periods == 0,
-       "in contact: the answer of the balance, no integration");
-    near(r.multiplier, cabs(multiplier[0]), 1e-4, "multipliers by kicks and by Runge-Kutta");
+       "a solution in contact is that of the balance, without integration");
+    near(r.multiplier, cabs(multiplier[0]), 1e-4, "multipliers by kicks against those by Runge-Kutta");
   }
   eo_vibration_free(solver);
   eo_law_done(&law);

@@ -68,14 +68,14 @@ int main(void)
   double apart[3];
   for (int i = 0; i < 2; i++) {
     double coarse = off(&o, frequency[i], 32, apart), fine = off(&o, frequency[i], 64, apart);
-    ok(fine < 3e-4, "%g rad/s, 64 steps: within %.1e of the frequency response", frequency[i], fine);
-    ok(coarse > 7 * fine, "half the steps: %.1e", coarse);
+    ok(fine < 3e-4, "at %g rad/s 64 steps are within %.1e of the frequency response", frequency[i], fine);
+    ok(coarse > 7 * fine, "half the steps are within %.1e, at least seven times further off", coarse);
   }
   /* Modes are gone within a step, and at last leave no number at all. The motion follows the pushes at once, its
      acceleration their parabola, which has the curvature of a step before. */
   for (double slow = 100; slow >= 1e-3; slow /= 10) {
     off(&o, slow, 64, apart);
-    ok(apart[0] < 1e-3 && apart[1] < 1e-2 && apart[2] < 0.5, "%g rad/s, 64 steps: within %.1e, %.1e, %.1e", slow,
+    ok(apart[0] < 1e-3 && apart[1] < 1e-2 && apart[2] < 0.5, "at %g rad/s 64 steps are within %.1e, %.1e, %.1e", slow,
        apart[0], apart[1], apart[2]);
   }
   struct eo_long_motion motion;
@@ -84,13 +84,13 @@ int main(void)
   static const double weight[1][EO_MAX_COORDINATES] = {{1}};
   bool made = eo_long_motion_still(&o, mean, still) &&
               !eo_long_motion_init(&motion, &o, mesh_damping, mean, 1e-5, 1, weight, &error);
-  ok(made, "the motion is made");
-  close_to(still[0] / (1000 * creal(response(&o, 0))), 1, 1e-12, "at rest under the constant loads");
+  ok(made, "the long motion is made");
+  close_to(still[0] / (1000 * creal(response(&o, 0))), 1, 1e-12, "motion at rest under the constant loads");
   eo_long_motion_rest(&motion, force);
   for (int i = 0; i < 100; i++)
     eo_long_motion_go(&motion, force, force, x, v);
   close_to((x[0] + motion.gain[0][0] * force[0]) / (500 * creal(response(&o, 0))), 1, 1e-11,
-           "a constant push: at rest it stays");
-  ok(fabs(eo_long_motion_read(&motion, 0, force, force)) < 1e-6, "without acceleration");
+           "motion at rest under a constant push");
+  ok(fabs(eo_long_motion_read(&motion, 0, force, force)) < 1e-6, "a motion at rest has no acceleration");
   return tap_done();
 }

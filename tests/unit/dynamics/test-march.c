@@ -34,7 +34,7 @@ static double difference(const struct eo_oscillator *o, const struct eo_cycle *c
   double worst = 0, largest[2] = {0};
   bool settled = !eo_integrate(o, cycle, &options, start, run, NULL, &error) && run->periodic &&
                  !eo_march(o, cycle, &march, start, found, &error) && found->periodic;
-  if (!ok(settled, "both settle, after %d and %d periods", run->periods, found->periods))
+  if (!ok(settled, "both integrations settle, after %d and %d periods", run->periods, found->periods))
     return NAN;
   for (int i = 0; i < 2 * N; i++)
     largest[i / N] = fmax(largest[i / N], fabs(run->state[i]));
@@ -66,9 +66,9 @@ int main(void)
     struct eo_cycle cycle = {.frequency = lost ? 11500 : 7000, .law = {&law}, .mesh_damping = 300, .gated = lost};
     ok(!eo_law_set_stiffness(&law, 1, k, 0, -1, &error), "a law is made");
     double coarse = difference(&o, &cycle, 0.02, &run, &found), fine = difference(&o, &cycle, 0.005, &run, &found);
-    ok(loses_contact(&run) == lost, "teeth %s", lost ? "separate" : "stay in contact");
-    ok(fine < (lost ? 1e-2 : 1e-3), "within %.1e of CVODE", fine);
-    ok(coarse / fine > (lost ? 3 : 12), "a quarter of the step: %.1f times nearer", coarse / fine);
+    ok(loses_contact(&run) == lost, "the teeth %s", lost ? "separate" : "stay in contact");
+    ok(fine < (lost ? 1e-2 : 1e-3), "the march is within %.1e of CVODE", fine);
+    ok(coarse / fine > (lost ? 3 : 12), "a quarter of the step brings the march %.1f times nearer", coarse / fine);
     eo_law_done(&law);
   }
   return tap_done();

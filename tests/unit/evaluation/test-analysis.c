@@ -95,7 +95,7 @@ static void check_names(const char *example, int ends)
 {
   struct subject *s = start(example);
   json_t *result = result_of(s);
-  ok(result && contract_check(result, ends, false) == 0, "%s: every name that is relied on", example);
+  ok(result && contract_check(result, ends, false) == 0, "%s has every name that is relied on", example);
   json_decref(result);
   end(s);
 }
@@ -108,7 +108,7 @@ static void check_memory(void)
   double spent = s->analysis->unmodified_ms;
   struct eo_text again = run(s);
   ok(spent > 0 && s->analysis->unmodified_ms == 0, "the unmodified pair is evaluated once");
-  ok(same(&first, &again), "the same bytes on a second run");
+  ok(same(&first, &again), "a second run gives the same bytes");
   s->design.modification.flank[EO_PINION][EO_LEFT].tip_relief *= 2;
   s->design.alignment.shaft_angle_in_plane = 0;
   s->design.load_cases = 2;
@@ -117,7 +117,7 @@ static void check_memory(void)
   eo_text_done(&other);
   s->design = fresh->design;
   struct eo_text back = run(s), expected = run(fresh);
-  ok(same(&back, &expected), "the same bytes after another design");
+  ok(same(&back, &expected), "another design in between leaves the bytes");
   end(s);
   end(fresh);
 }
@@ -138,7 +138,7 @@ static void check_writing(void)
     eo_json_write(&whole, document, EO_JSON_COMPACT);
     enum eo_code code = eo_result_write(s->analysis, &s->design, NULL, left_out, &parts, &error);
     size_t size = whole.size;
-    ok(!code && same(&whole, &parts), "written by parts: the same %zu bytes", size);
+    ok(!code && same(&whole, &parts), "an answer written by parts has the same %zu bytes", size);
     json_decref(document);
   }
   end(s);
@@ -179,12 +179,12 @@ static void check_lean(void)
   eo_json_write(&text, part, EO_JSON_COMPACT);
   ok(text.size < 60000, "a slider's step takes %zu bytes, at most 60000", text.size);
   json_object_del(full, "timing_ms");
-  ok(differences(full, part) == 0, "and what stands in it is what the full answer says");
+  ok(differences(full, part) == 0, "what stands in a slider's step is what the full answer says");
   for (int k = 0; k < 3; k++) {
     json_t *one = json_array_get(cases, (size_t)k), *lte = json_object_get(one, "lte");
     ok(json_is_array(json_object_get(lte, "pair_um")) == (k == 1) &&
            json_is_number(json_object_get(lte, "peak_to_peak_um")),
-       "load case %d: its numbers, and curves only of number 1", k);
+       "load case %d has its numbers, and curves only if it is number 1", k);
   }
   eo_text_done(&text);
   json_decref(full);
@@ -220,7 +220,7 @@ static void check_threads(void)
     different += !same(&here, &there);
     end(fresh);
   }
-  ok(different == 0, "on two threads, end by end, the same bytes as anew on one");
+  ok(different == 0, "an answer on two threads, end by end, has the bytes of one made anew on one");
   end(s);
 }
 
@@ -229,9 +229,9 @@ static void check_unmodified(void)
   struct subject *s = start("paper");
   json_t *result = result_of(s);
   close_to(eo_json_find_number(result, "objectives/J"), 1, 1e-12, "J of the unmodified pair");
-  close_to(eo_json_find_number(result, "objectives/fitness"), 1, 1e-12, "its fitness");
+  close_to(eo_json_find_number(result, "objectives/fitness"), 1, 1e-12, "fitness of the unmodified pair");
   ok(eo_json_find_number(result, "objectives/f2_N") == eo_json_find_number(result, "objectives/unmodified/f2_N"),
-     "it is its own reference");
+     "the unmodified pair is its own reference");
   json_decref(result);
   end(s);
 }
@@ -256,8 +256,8 @@ static void check_objectives(void)
     near(eo_json_find_number(after, sum[i]), f, 1e-10, sum[i]);
     objective += weight[i] * f / reference;
   }
-  near(eo_json_find_number(after, "J"), objective, 1e-10, "J");
-  near(eo_json_find_number(after, "fitness"), 1 / objective, 1e-10, "fitness");
+  near(eo_json_find_number(after, "J"), objective, 1e-10, "J of the pair");
+  near(eo_json_find_number(after, "fitness"), 1 / objective, 1e-10, "fitness of the pair");
   json_decref(result);
   end(s);
 }
@@ -285,8 +285,9 @@ static void check_columns(void)
     missing = fmax(missing, fabs(sum - 1));
   }
   close_to(worst, 0, 1e-6, "the pair's transmission error is the mean of the ends', um, staggered too");
-  close_to(high - low, eo_json_find_number(c, "lte/peak_to_peak_um"), 1e-6, "its peak to peak, um");
-  close_to(missing, 0, 1e-6, "the shares of the tooth pairs sum to 1");
+  close_to(high - low, eo_json_find_number(c, "lte/peak_to_peak_um"), 1e-6,
+           "peak to peak of the pair's transmission error, um");
+  close_to(missing, 0, 1e-6, "sum of the shares of the tooth pairs");
   const json_t *history = eo_json_find(c, "vibration/left/history/normal_m_per_s2");
   for (size_t i = 0; i < json_array_size(history); i++)
     force += pow(json_number_value(json_array_get(history, i)), 2) / (double)json_array_size(history);
@@ -296,7 +297,8 @@ static void check_columns(void)
   force = 0;
   for (size_t i = 1; i < json_array_size(orders); i++)
     force += pow(json_number_value(json_array_get(orders, i)), 2) / 2;
-  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4, "RMS of its orders");
+  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4,
+       "RMS of the acceleration's orders");
   const json_t *band = eo_json_find(c, "vibration/rms_band_m_per_s2/normal");
   double rms = eo_json_find_number(c, "vibration/rms_m_per_s2/normal");
   ok(json_number_value(json_array_get(band, 0)) <= rms && rms <= json_number_value(json_array_get(band, 1)) &&
@@ -320,10 +322,11 @@ static void check_warnings(void)
   struct subject *s = start("paper");
   s->design.objective.peak_to_peak = 1e-8;
   json_t *result = result_of(s);
-  ok(warns(result, "Edge contact at 828 N m and 2000 rpm, right end"), "edge contact is said, with its place");
-  ok(warns(result, "limit on the peak-to-peak transmission error is exceeded"), "a violated limit is said");
+  ok(warns(result, "Edge contact at 828 N m and 2000 rpm, right end"),
+     "a warning tells of edge contact, with its place");
+  ok(warns(result, "limit on the peak-to-peak transmission error is exceeded"), "a warning tells of a violated limit");
   ok(eo_json_find_number(result, "objectives/violation") > 0 && eo_json_find_number(result, "objectives/fitness") < 1,
-     "and costs fitness");
+     "a violated limit costs fitness");
   json_decref(result);
   s->design.load_cases = 1;
   s->design.load_case[0].torque = 20;
@@ -372,7 +375,8 @@ static void check_robust(void)
   s->design.objective.robust = EO_ROBUST_WORST;
   result = result_of(s);
   ok(eo_json_find_number(result, "objectives/J") > mean, "the worst scenario is worse than the mean");
-  ok(last(result, "vibration/rms_m_per_s2/normal") == rms, "the curves stay those of the nominal alignment");
+  ok(last(result, "vibration/rms_m_per_s2/normal") == rms,
+     "the curves stay those of the nominal alignment under scenarios");
   json_decref(result);
   end(s);
 }
@@ -404,7 +408,7 @@ static void check_rating(void)
        rated(result, "left/sigma_H0_MPa") * rated(result, "left/pinion/Z_BD") *
            sqrt(rated(result, "left/K_gamma") * rated(result, "left/used/K_V") * rated(result, "left/used/K_Hbeta") *
                 rated(result, "left/used/K_Halpha")),
-       1e-9, "sigma_H is made of what stands beside it");
+       1e-9, "sigma_H of the numbers that stand beside it");
   double loss = eo_json_find_number(json_array_get(eo_json_find(result, "tribology/load_cases"), 0), "power_loss_W");
   double power = s->design.load_case[0].torque * s->design.load_case[0].speed;
   ok(loss > 0.001 * power && loss < 0.03 * power, "friction takes %.3g %% of the power", 100 * loss / power);
@@ -414,9 +418,9 @@ static void check_rating(void)
   result = result_of(s);
   double hours = 100. * s->design.load_cases * (s->design.load_cases + 1) / 2;
   near(eo_json_find_number(result, "rating/verdict/required_life_h"), hours, 1e-9,
-       "hours of the load cases are the life");
+       "hours of the load cases, which are the life");
   near(rated(result, "left/pinion/N_L"), 60 * 100 * s->design.load_case[0].speed * 30 / M_PI, 1e-9,
-       "and the load cycles");
+       "load cycles in these hours");
   json_decref(result);
   s->design.rating.member[EO_GEAR].material = EO_THROUGH_HARDENED_ALLOY;
   result = result_of(s);
@@ -442,17 +446,18 @@ static void check_rating_limit(void)
                        eo_json_find_number(free_result, "rating/verdict/S_H_static"));
   double rms = last(free_result, "vibration/rms_m_per_s2/normal");
   ok(json_is_null(eo_json_find(json_array_get(eo_json_find(free_result, "objectives/load_cases"), 0), "flank_safety")),
-     "no safety in the objective where no limit asks for it");
+     "the objective has no safety where no limit asks for it");
   json_decref(free_result);
   s->design.objective.flank_safety = 2 * safety;
   json_t *result = result_of(s);
   const json_t *cases = eo_json_find(result, "objectives/load_cases");
   near(eo_json_find_number(json_array_get(cases, 0), "flank_safety"), safety, 1e-9,
-       "the limited safety is the rated one");
-  ok(json_is_null(json_object_get(json_array_get(cases, 1), "flank_safety")), "once, at the first load case");
-  near(eo_json_find_number(result, "objectives/violation"), 1, 1e-9, "half of what is wanted violates by one");
-  ok(warns(result, "The limit on the flank safety S_H is not reached"), "and is said");
-  ok(last(result, "vibration/rms_m_per_s2/normal") == rms, "the vibration is the same number");
+       "the limited safety against the rated one");
+  ok(json_is_null(json_object_get(json_array_get(cases, 1), "flank_safety")),
+     "the limited safety counts once, at the first load case");
+  near(eo_json_find_number(result, "objectives/violation"), 1, 1e-9, "violation by half of what is wanted");
+  ok(warns(result, "The limit on the flank safety S_H is not reached"), "a warning tells of a safety below its limit");
+  ok(last(result, "vibration/rms_m_per_s2/normal") == rms, "the vibration is the same number beside a limited safety");
   json_decref(result);
   s->design.objective.flank_safety = NAN;
   s->design.objective.film_ratio = 1e-3;

@@ -160,16 +160,19 @@ static void test_coast(void)
   coast.load_case[0].direction = EO_ASTERN;
   struct answer a = solve(&drive), b = solve(&coast);
   ok(a.running.flank == EO_DRIVE_FLANK && b.running.flank == EO_COAST_FLANK, "astern the coast flanks carry");
-  close_to(apart(&a, 0, &b, 0), 0, ROUNDING, "a mirrored design on the coast flank agrees with the drive flank, left");
-  close_to(apart(&a, 1, &b, 1), 0, ROUNDING, "right");
-  close_to(a.impact[0].force, b.impact[0].force, 1e-6 * a.impact[0].force, "its entering impact too");
+  close_to(apart(&a, 0, &b, 0), 0, ROUNDING,
+           "left end of a mirrored design on the coast flank against the drive flank");
+  close_to(apart(&a, 1, &b, 1), 0, ROUNDING,
+           "right end of a mirrored design on the coast flank against the drive flank");
+  close_to(a.impact[0].force, b.impact[0].force, 1e-6 * a.impact[0].force,
+           "entering impact of a mirrored design on the coast flank");
   coast.modification.coast[EO_PINION][EO_LEFT].helix_slope += 5e-6;
   struct answer c = solve(&coast);
   ok(apart(&b, 0, &c, 0) > 1e-7, "the coast flank's own modification counts");
   coast.modification.flank[EO_PINION][EO_LEFT].tip_relief = 30e-6;
   coast.modification.flank[EO_PINION][EO_LEFT].tip_relief_start = 1e-3;
   struct answer d = solve(&coast);
-  close_to(apart(&c, 0, &d, 0), 0, 0, "the drive flank's does not");
+  close_to(apart(&c, 0, &d, 0), 0, 0, "effect of the drive flank's modification on the coast flank");
 }
 
 static void test_leading_apex(void)
@@ -185,7 +188,7 @@ static void test_leading_apex(void)
   }
   coast.load_case[0].direction = EO_ASTERN;
   struct answer a = solve(&drive), b = solve(&coast);
-  close_to(apart(&a, 0, &b, 0), 0, ROUNDING, "aligned coast flanks like symmetric drive flanks are the drive flanks");
+  close_to(apart(&a, 0, &b, 0), 0, ROUNDING, "aligned coast flanks like symmetric drive flanks against these");
   drive.shafts.enabled = coast.shafts.enabled = leading.shafts.enabled = true;
   leading.alignment.apex = EO_APEX_LEADING;
   leading.load_case[0].direction = EO_ASTERN;
@@ -194,7 +197,7 @@ static void test_leading_apex(void)
   struct answer c = solve(&leading);
   ok(apart(&a, 0, &b, 0) > 1e-8, "on elastic shafts the reversed drive is another result, by %.3g um",
      1e6 * apart(&a, 0, &b, 0));
-  close_to(apart(&a, 0, &c, 0), 0, ROUNDING, "and that of a leading apex is the first again");
+  close_to(apart(&a, 0, &c, 0), 0, ROUNDING, "reversed drive under a leading apex against the first");
 }
 
 static void test_driver(void)
@@ -206,9 +209,10 @@ static void test_driver(void)
   gear.load_case[0].driver = EO_GEAR;
   struct answer a = solve(&design), b = solve(&gear);
   ok(b.running.flank == EO_DRIVE_FLANK && b.running.backwards, "a speed increaser runs backwards on its drive flanks");
-  close_to(apart(&a, 0, &b, 0) + apart(&a, 1, &b, 1), 0, 0, "with the same approaches at the same places");
+  close_to(apart(&a, 0, &b, 0) + apart(&a, 1, &b, 1), 0, 0, "approaches of a speed increaser at the same places");
   ok(a.impact[0].touched && b.impact[0].touched && b.impact[0].phase > a.impact[0].phase,
-     "contact enters at the pinion's tip: c %.4g, not %.4g mm", 1e3 * b.impact[0].phase, 1e3 * a.impact[0].phase);
+     "contact of a speed increaser enters at the pinion's tip: c %.4g, not %.4g mm", 1e3 * b.impact[0].phase,
+     1e3 * a.impact[0].phase);
   both.load_cases = 2;
   both.load_case[1] = both.load_case[0];
   both.load_case[0].share = both.load_case[1].share = 0.5;
@@ -233,8 +237,8 @@ static void test_backwards_vibration(void)
       stop(&error);
     rms[driver] = r->load_case[0].vibration.rms_pair[EO_READING_NORMAL];
   }
-  ok(rms[0] > 0 && rms[1] > 0 && fabs(rms[1] / rms[0] - 1) < 0.2, "vibration %.4g forwards, %.4g m/s2 backwards",
-     rms[0], rms[1]);
+  ok(rms[0] > 0 && rms[1] > 0 && fabs(rms[1] / rms[0] - 1) < 0.2,
+     "the pair vibrates alike both ways, with %.4g forwards and %.4g m/s2 backwards", rms[0], rms[1]);
 }
 
 /* Left and right exchanged: flanks change places, both shaft angle errors their sign. */
@@ -252,7 +256,7 @@ static void test_exchange(void)
   other.alignment.shaft_angle_in_plane = -4e-4;
   other.alignment.shaft_angle_out_of_plane = 2e-4;
   struct answer a = solve(&one), b = solve(&other);
-  close_to(apart(&a, 0, &b, 1) + apart(&a, 1, &b, 0), 0, ROUNDING, "left and right exchanged");
+  close_to(apart(&a, 0, &b, 1) + apart(&a, 1, &b, 0), 0, ROUNDING, "left and right under exchanged settings");
 }
 
 static double swing_of(const struct answer *a)
@@ -268,13 +272,14 @@ static void test_apex(void)
   double bb = pair->geometry.base_helix_angle, lean = sin(bb), e = 20e-6;
   offset.alignment.apex_offset[EO_PINION] = e;
   struct answer a = solve(&design), b = solve(&offset);
-  close_to(swing_of(&b), swing_of(&a), ROUNDING, "an apex offset leaves a floating pinion's PPLTE");
-  close_to(b.mean - a.mean, tan(bb) * e / 2, ROUNDING, "moves the mean transmission error by tan(beta_b) e/2");
+  close_to(swing_of(&b), swing_of(&a), ROUNDING, "change of a floating pinion's PPLTE by an apex offset");
+  close_to(b.mean - a.mean, tan(bb) * e / 2, ROUNDING,
+           "change of the mean transmission error by an apex offset, tan(beta_b) e/2");
   double moved = (b.approach[0][0] - b.approach[1][0] - a.approach[0][0] + a.approach[1][0]) / (2 * lean);
-  close_to(moved, -e / 2, ROUNDING, "and the pinion by -e/2");
+  close_to(moved, -e / 2, ROUNDING, "change of the pinion's place by an apex offset, -e/2");
   offset.alignment.apex_offset[EO_GEAR] = e;
   struct answer c = solve(&offset);
-  close_to(apart(&a, 1, &c, 1), 0, 0, "equal offsets of both members do nothing");
+  close_to(apart(&a, 1, &c, 1), 0, 0, "effect of equal offsets of both members");
 }
 
 static void test_stops(void)
@@ -293,8 +298,9 @@ static void test_stops(void)
   narrow.alignment.pinion_axial_clearance = 20e-6;
   tight.alignment.pinion_axial_clearance = 0;
   struct answer a = solve(&floating), b = solve(&wide), c = solve(&spring), d = solve(&tight), e = solve(&narrow);
-  close_to(apart(&a, 0, &b, 0) + apart(&a, 1, &b, 1), 0, 1e-11, "between wide stops the pinion floats");
-  close_to(apart(&c, 0, &d, 0) + apart(&c, 1, &d, 1), 0, 1e-11, "without play it is held as by the spring");
+  close_to(apart(&a, 0, &b, 0) + apart(&a, 1, &b, 1), 0, 1e-11, "pinion between wide stops against a floating one");
+  close_to(apart(&c, 0, &d, 0) + apart(&c, 1, &d, 1), 0, 1e-11,
+           "pinion between stops without play against one on their spring");
   ok(!b.at_stop && e.at_stop && e.load[0][0] > a.load[0][0] + 1 && e.load[0][0] < c.load[0][0] - 1,
      "at a stop it carries some of what the spring would: %.0f N, floating %.0f, held %.0f", e.load[0][0], a.load[0][0],
      c.load[0][0]);
@@ -307,16 +313,18 @@ static void test_thrust(void)
   double lean = sin(pair->geometry.base_helix_angle);
   design.alignment.coupling_thrust = 1000;
   struct answer a = solve(&design);
-  close_to(lean * (a.load[1][0] - a.load[0][0]), -1000, 1e-6, "a thrust to the right presses on the left end");
+  close_to(lean * (a.load[1][0] - a.load[0][0]), -1000, 1e-6,
+           "load of the left end, on which a thrust to the right presses");
   design.alignment.apex = EO_APEX_LEADING;
   struct answer b = solve(&design);
-  close_to(lean * (b.load[1][0] - b.load[0][0]), 1000, 1e-6, "with the apex leading on the right one");
+  close_to(lean * (b.load[1][0] - b.load[0][0]), 1000, 1e-6,
+           "load of the right end, on which it presses with the apex leading");
   struct eo_error error;
   const struct eo_evaluation *r;
   design.alignment.coupling_thrust = 1e5;
   ok(eo_evaluator_contact(evaluator, &design, &r, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/alignment/coupling_thrust_N") == 0,
-     "one that unloads an end is refused: %s", error.text);
+     "a thrust that unloads an end is refused: %s", error.text);
 }
 
 /* A grid sampled from flanks by name. */
@@ -345,7 +353,7 @@ static void test_sampled_grid(void)
   if (eo_flank_grids_put(&sampled.grids, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, &grid, &error))
     stop(&error);
   struct answer a = solve(&named), b = solve(&sampled);
-  close_to(1e9 * apart(&a, 0, &b, 0), 0, 2, "a grid sampled from a flank by name agrees with it, nm");
+  close_to(1e9 * apart(&a, 0, &b, 0), 0, 2, "grid sampled from a flank by name against this flank, nm");
 }
 
 static void test_own_alignment(void)
@@ -360,8 +368,8 @@ static void test_own_alignment(void)
   design.load_case[1].alignment = (struct eo_case_alignment){NAN, NAN, 27e-6, NAN};
   other.alignment.deviation_in_plane = 27e-6;
   struct answer first = solve_case(&design, 0), own = solve_case(&design, 1), alone = solve(&other);
-  near(own.running.in_plane, atan(27e-6 / 55e-3), 1e-9, "27 um over the face width of one end");
-  close_to(apart(&own, 0, &alone, 0), 0, 0, "a load case's own alignment is that of a design that has it");
+  near(own.running.in_plane, atan(27e-6 / 55e-3), 1e-9, "slope of 27 um over the face width of one end");
+  close_to(apart(&own, 0, &alone, 0), 0, 0, "a load case's own alignment against a design that has it");
   ok(apart(&own, 0, &first, 0) > 1e-7 && first.running.in_plane == 0, "the other load case keeps the design's");
 }
 
@@ -390,7 +398,7 @@ static void test_hand_and_rotation(void)
       turned = turning(&design, hands[hand], rotations[clockwise]);
       ok(turned.alignment.apex == (hand == clockwise ? EO_APEX_LEADING : EO_APEX_TRAILING) &&
              eo_design_rotation(&turned) == (clockwise ? 1 : -1) && !*turned.alignment.pinion_rotation,
-         "%s hand, %s: apex %d", hands[hand], rotations[clockwise], turned.alignment.apex);
+         "a %s hand that turns %s has apex %d", hands[hand], rotations[clockwise], turned.alignment.apex);
       design.alignment.apex = turned.alignment.apex;
       derived = turning(&design, "", rotations[clockwise]);
       ok(strcmp(derived.gear_pair.hand, hands[hand]) == 0, "apex and rotation ask for a %s hand", hands[hand]);
@@ -398,7 +406,7 @@ static void test_hand_and_rotation(void)
     }
   turned = turning(&design, "", "");
   ok(strcmp(turned.gear_pair.hand, "right") == 0 && eo_design_rotation(&turned) == -1,
-     "nothing stated: counterclockwise, right-handed");
+     "a pair of which nothing is stated is right-handed and turns counterclockwise");
 }
 
 /* One end on shafts without symmetry: the pinion of the other hand that turns the other way is the mirror image in the
@@ -430,10 +438,11 @@ static void test_mirror(void)
   struct answer a = solve(&design);
   mirrored = turning(&design, "left", "clockwise");
   struct answer b = solve(&mirrored);
-  close_to(apart(&a, 0, &b, 0), 0, 0, "the other hand turning the other way: the same");
+  close_to(apart(&a, 0, &b, 0), 0, 0, "the other hand turning the other way against the pair");
   mirrored = turning(&design, "left", "counterclockwise");
   struct answer c = solve(&mirrored);
-  ok(apart(&a, 0, &c, 0) > 1e-8, "turning the same way: another result, by %.3g um", 1e6 * apart(&a, 0, &c, 0));
+  ok(apart(&a, 0, &c, 0) > 1e-8, "the other hand turning the same way gives another result, by %.3g um",
+     1e6 * apart(&a, 0, &c, 0));
   mirrored.alignment.shaft_angle_in_plane *= -1;
   mirrored.alignment.shaft_angle_out_of_plane *= -1;
   for (int i = 0; i < 2; i++) {
@@ -442,7 +451,7 @@ static void test_mirror(void)
     mirrored.shafts.drive_side[i] = EO_DRIVE_RIGHT;
   }
   struct answer d = solve(&mirrored);
-  close_to(apart(&a, 0, &d, 0), 0, ROUNDING, "and with shafts and errors mirrored too: the same");
+  close_to(apart(&a, 0, &d, 0), 0, ROUNDING, "the other hand with shafts and errors mirrored too against the pair");
   eo_evaluator_free(evaluator);
   eo_pair_free(single);
   pair = two;

@@ -144,8 +144,8 @@ static NOT_INLINE void test_equal_ends(void)
   design.alignment.shaft_angle_in_plane = 1e-200; /* too small to change a bit, but not zero */
   r = run(&design, NULL, 0);
   struct record twice = record_of(r);
-  ok(!r->equal_ends && same(&once, &twice), "and equal computing both to the last bit");
-  ok(finite_record(&once), "without a number that is none");
+  ok(!r->equal_ends && same(&once, &twice), "ends computed once equal computing both to the last bit");
+  ok(finite_record(&once), "an evaluation has no number that is none");
 }
 
 /* A single helical pair under half the torque is one end of the herringbone pair. */
@@ -159,18 +159,19 @@ static NOT_INLINE void test_single_end(void)
   memset(single.modification.flank[EO_PINION] + EO_RIGHT, 0, sizeof(struct eo_flank_modification));
   for (int k = 0; k < single.load_cases; k++)
     single.load_case[k].torque /= 2;
-  ok(eo_geometry_init(&geometry, &single.gear_pair, &error) == EO_OK, "a pair with one end");
+  ok(eo_geometry_init(&geometry, &single.gear_pair, &error) == EO_OK, "a pair with one end is made");
   eo_design_resolve(&single, &geometry);
   struct eo_pair *kept_pair = pair;
   struct eo_evaluator *kept = evaluator;
-  ok(!eo_pair_serves(pair, &single), "needs its own preparation");
+  ok(!eo_pair_serves(pair, &single), "a pair with one end needs its own preparation");
   pair = make_pair(&single);
   evaluator = make_evaluator(pair);
   const struct eo_evaluation *r = run(&single, NULL, 0);
   ok(r->ends == 1 &&
          memcmp(r->load_case[1].end[0].loaded.approach, both.value + both.count / 3, sizeof(double) * POSITIONS) == 0,
-     "its contact is that of one end of the herringbone pair under twice the torque");
-  ok(r->load_case[1].vibration.outcome != EO_VIBRATION_NOT_CONVERGED && r->objective[1].rms > 0, "and it vibrates");
+     "the contact of a single end is that of one end of the herringbone pair under twice the torque");
+  ok(r->load_case[1].vibration.outcome != EO_VIBRATION_NOT_CONVERGED && r->objective[1].rms > 0,
+     "a single end vibrates");
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   evaluator = kept;
@@ -191,11 +192,11 @@ static NOT_INLINE void test_mirror(void)
          force[2] = {r->load_case[1].end[0].impact.force, r->load_case[1].end[1].impact.force};
   double peak = r->load_case[1].peak_to_peak;
   r = run(&mirrored, NULL, 0);
-  near(r->load_case[1].peak_to_peak, peak, 1e-12, "mirrored: transmission error of the pair");
+  near(r->load_case[1].peak_to_peak, peak, 1e-12, "transmission error of the mirrored pair");
   ok(r->load_case[1].end[0].impact.force == force[1] && r->load_case[1].end[1].impact.force == force[0],
-     "impacts exchanged");
-  near(r->load_case[1].vibration.rms[0][0], rms[1], 1e-6, "vibrations exchanged");
-  near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "on both ends");
+     "the mirrored pair has the impacts exchanged");
+  near(r->load_case[1].vibration.rms[0][0], rms[1], 1e-6, "vibration of the mirrored pair's left end");
+  near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "vibration of the mirrored pair's right end");
 }
 
 static NOT_INLINE void test_no_memory(void)
@@ -220,7 +221,7 @@ static NOT_INLINE void test_no_memory(void)
   bool equal = eo_evaluator_contact(evaluator, &a, &r, &error) == EO_OK;
   for (int j = 0; j < POSITIONS; j++)
     equal = equal && r->load_case[0].transmission[j] == first.value[2 * (4 * POSITIONS + 11) + j];
-  ok(equal, "contact alone is the static half of it");
+  ok(equal, "contact alone is the static half of an evaluation");
 }
 
 struct worker {
@@ -255,7 +256,7 @@ static NOT_INLINE void test_threads(void)
     pthread_join(thread[i], NULL);
   for (int i = 0; i < 2; i++) {
     struct record alone = record_of(run(&worker[i].design, NULL, 0));
-    ok(same(&alone, &worker[i].record), "two evaluators on one pair at once: the same bytes as alone");
+    ok(same(&alone, &worker[i].record), "two evaluators on one pair at once give the same bytes as alone");
   }
 }
 
@@ -265,11 +266,12 @@ static NOT_INLINE void test_scenarios(void)
   double mean = run(&plain, NULL, 0)->load_case[0].mean, force = run(&plain, NULL, 0)->load_case[0].end[0].impact.speed;
   const struct eo_evaluation *r = run(&plain, &(struct eo_scenario){NAN, NAN, 1.1, 1}, 0);
   ok(r->load_case[0].mean > 1.09 * mean && r->load_case[0].mean <= 1.1 * mean * (1 + 1e-9),
-     "a tenth more compliance: %.4f of the deflection", r->load_case[0].mean / mean);
+     "a tenth more compliance gives %.4f of the deflection", r->load_case[0].mean / mean);
   r = run(&plain, &(struct eo_scenario){NAN, NAN, 1, 1.2}, 0);
-  near(r->load_case[0].mean, mean, 1e-15, "the running speed leaves the statics alone");
-  near(r->load_case[0].end[0].impact.speed, 1.2 * force, 1e-12, "and scales the impact");
-  near(r->load_case[0].vibration.frequency, 1.2 * plain.load_case[0].speed * 17, 1e-12, "and the mesh frequency");
+  near(r->load_case[0].mean, mean, 1e-15, "mean transmission error at another running speed");
+  near(r->load_case[0].end[0].impact.speed, 1.2 * force, 1e-12, "speed of the impact at another running speed");
+  near(r->load_case[0].vibration.frequency, 1.2 * plain.load_case[0].speed * 17, 1e-12,
+       "mesh frequency at another running speed");
   struct eo_design tilted = plain;
   tilted.alignment.shaft_angle_in_plane = 1e-3;
   tilted.alignment.shaft_angle_out_of_plane = 2e-4;
@@ -277,7 +279,7 @@ static NOT_INLINE void test_scenarios(void)
                 scenario = record_of(run(&plain, &(struct eo_scenario){1e-3, 2e-4, 1, 1}, 0));
   ok(same(&direct, &scenario), "shaft errors of a scenario replace the nominal ones");
   struct record nominal = record_of(run(&tilted, &(struct eo_scenario){NAN, NAN, 1, 1}, 0));
-  ok(same(&direct, &nominal), "or leave them");
+  ok(same(&direct, &nominal), "a scenario without shaft errors leaves the nominal ones");
 }
 
 /* The parts put together are J without penalties, but for what lies between the samples of a curve. */
@@ -291,19 +293,20 @@ static void check_anatomy(const struct eo_design *given, const struct eo_objecti
   const int scenarios = eo_evaluator_scenarios(&design), rows = scenarios * design.load_cases;
   const enum eo_code code = eo_objective_anatomy(&design, scenarios, before, &anatomy, &error);
   if (robust == EO_ROBUST_WORST) {
-    ok(code == EO_OK && anatomy.parts == 0 && anatomy.groups == 0, "the worst of several has no parts");
+    ok(code == EO_OK && anatomy.parts == 0 && anatomy.groups == 0, "the worst of several scenarios has no parts");
     return;
   }
-  ok(code == EO_OK && anatomy.groups == 3 * rows, "%d parts of %d load cases and scenarios", anatomy.parts, rows);
+  ok(code == EO_OK && anatomy.groups == 3 * rows, "the anatomy of J has %d parts of %d load cases and scenarios",
+     anatomy.parts, rows);
   double *part = malloc((size_t)anatomy.parts * sizeof *part);
   eo_objective_parts(raw, rows, part);
-  near(eo_anatomy_sum(&anatomy, part), objective, 0.01, "put together they are J");
+  near(eo_anatomy_sum(&anatomy, part), objective, 0.01, "sum of the parts of J");
   for (int row = 0; row < rows; row++) /* with the whole range in place of the samples' */
     part[row * anatomy.parts / rows] = raw[row].peak_to_peak;
   for (int row = 0; row < rows; row++)
     for (int i = 1; i < EO_OBJECTIVE_SAMPLES; i++)
       part[row * anatomy.parts / rows + i] = 0;
-  near(eo_anatomy_sum(&anatomy, part), objective, 1e-12, "and with the range of the whole curve to the last digit");
+  near(eo_anatomy_sum(&anatomy, part), objective, 1e-12, "sum of the parts with the range of the whole curve");
   free(part);
   free(anatomy.group);
 }
@@ -321,24 +324,25 @@ static NOT_INLINE void test_robust(void)
     design.objective.scenario[s] = unmodified.objective.scenario[s] = (struct eo_scenario){s * 0.8e-3, NAN, 1,
                                                                                            1 + 0.05 * s};
   design.objective.robust = unmodified.objective.robust = EO_ROBUST_MEAN;
-  ok(eo_evaluator_scenarios(&design) == 3, "three scenarios count");
+  ok(eo_evaluator_scenarios(&design) == 3, "a design of three scenarios counts three");
   ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK &&
          eo_evaluator_raw(evaluator, &unmodified, before, &error) == EO_OK,
-     "raw values");
+     "raw values of both modifications are found");
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
   design.objective.robust = EO_ROBUST_WORST;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
   int cases = design.load_cases;
   for (int s = 0; s < 3; s++)
     eo_objective_value(&design.objective, cases, design.load_case, raw + s * cases, before + s * cases, false, &one[s]);
-  near(mean.objective, (one[0].objective + one[1].objective + one[2].objective) / 3, 1e-14, "mean objective");
+  near(mean.objective, (one[0].objective + one[1].objective + one[2].objective) / 3, 1e-14,
+       "mean objective of the scenarios");
   check_anatomy(&design, raw, before, mean.objective, EO_ROBUST_MEAN);
   check_anatomy(&design, raw, before, NAN, EO_ROBUST_WORST);
   near(mean.fitness,
        1 / mean.objective - design.objective.penalty * (one[0].violation + one[1].violation + one[2].violation) / 3,
        1e-14, "fitness of the mean");
-  near(worst.fitness, fmin(one[0].fitness, fmin(one[1].fitness, one[2].fitness)), 0, "worst fitness");
-  ok(one[0].violation > 0 || one[2].violation > 0, "with a constraint that bites");
+  near(worst.fitness, fmin(one[0].fitness, fmin(one[1].fitness, one[2].fitness)), 0, "worst fitness of the scenarios");
+  ok(one[0].violation > 0 || one[2].violation > 0, "a constraint of one scenario bites");
   double j[3] = {one[0].objective, one[1].objective, one[2].objective}, largest = fmax(j[0], fmax(j[1], j[2])),
          middle = j[0] + j[1] + j[2] - largest - fmin(j[0], fmin(j[1], j[2])), centre = (j[0] + j[1] + j[2]) / 3;
   design.objective.robust = EO_ROBUST_PERCENTILE;
@@ -349,7 +353,7 @@ static NOT_INLINE void test_robust(void)
   design.objective.robust_sigmas = 2;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
   near(mean.objective, centre + 2 * sqrt((pow(j[0] - centre, 2) + pow(j[1] - centre, 2) + pow(j[2] - centre, 2)) / 2),
-       1e-12, "mean and two standard deviations");
+       1e-12, "mean and two standard deviations of J");
   ok(mean.violation > 0, "a limit that one scenario does not meet is not met");
   raw[1].failed = true;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
@@ -376,23 +380,23 @@ static NOT_INLINE void test_drawn(void)
     strcpy(design.tolerance.row[i].key, i ? "modification.*.*.tip_relief_um" : "modification.*.*.helix_slope_um");
   }
   ok(eo_design_complete(&design, &geometry, &error) == EO_OK && design.drawn.pairs == 4 && design.drawn.inputs == 8,
-     "four pairs of eight inputs");
-  ok(eo_evaluator_scenarios(&design) == 4, "they count");
+     "four pairs of eight inputs are drawn");
+  ok(eo_evaluator_scenarios(&design) == 4, "an evaluation counts the drawn pairs");
   eo_drawn_pair_apply(&design, 1, &made, &scenario);
   ok(made.modification.flank[EO_PINION][EO_LEFT].tip_relief != design.modification.flank[EO_PINION][EO_LEFT].tip_relief,
-     "a relief scatters");
-  ok(made.modification.flank[EO_GEAR][EO_LEFT].tip_relief == 0, "one that is not made does not");
+     "the relief of a drawn pair scatters");
+  ok(made.modification.flank[EO_GEAR][EO_LEFT].tip_relief == 0, "a relief that is not made does not scatter");
   near(made.modification.flank[EO_GEAR][EO_LEFT].helix_slope, design.drawn.deviation[1][2], 1e-12,
-       "a slope has its deviation");
+       "slope of a drawn pair, its deviation");
   ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK &&
          eo_evaluator_raw(evaluator, &design, again, &error) == EO_OK,
-     "raw values of four pairs");
+     "raw values of four pairs are found");
   ok(memcmp(raw, again, sizeof *raw * 4 * (size_t)design.load_cases) == 0 &&
          raw[0].peak_to_peak != raw[design.load_cases].peak_to_peak,
-     "pairs differ, and are the same each time");
+     "the drawn pairs differ, and are the same each time");
   design.objective.robust = EO_ROBUST_OFF;
   ok(eo_design_complete(&design, &geometry, &error) == EO_OK && design.drawn.pairs == 0,
-     "none where none are asked for");
+     "no pairs are drawn where none are asked for");
 }
 
 static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_solver solver)
@@ -409,11 +413,12 @@ static NOT_INLINE void test_laws(void)
   struct eo_design a = design_of("paper-case-a"), plain = design_of("paper");
   double tangent = rms_with(a, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE),
          table = rms_with(a, EO_LAW_TABLE, EO_SOLVER_HARMONIC_BALANCE);
-  near(table, tangent, 0.02, "table and tangent law in contact, m/s2");
+  near(table, tangent, 0.02, "RMS by the table and the tangent law in contact, m/s2");
   near(rms_with(plain, EO_LAW_SECANT, EO_SOLVER_HARMONIC_BALANCE),
-       rms_with(plain, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), 0.2, "secant and tangent law without gaps, m/s2");
+       rms_with(plain, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), 0.2,
+       "RMS by the secant and the tangent law without gaps, m/s2");
   near(rms_with(a, EO_LAW_TANGENT, EO_SOLVER_TIME_INTEGRATION), tangent, 1e-4,
-       "time integration and harmonic balance, m/s2");
+       "RMS by time integration and harmonic balance, m/s2");
 }
 
 static NOT_INLINE void test_band(void)
@@ -425,9 +430,10 @@ static NOT_INLINE void test_band(void)
   for (int side = 0; side < 2; side++) {
     struct eo_scenario scenario = {NAN, NAN, side ? 1.1 : 0.9, 1};
     near(band[side], run(&design, &scenario, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL], 2e-5,
-         "band of the RMS: the same as a scenario, m/s2");
+         "band of the RMS, in a scenario as in the nominal state, m/s2");
   }
-  ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]), "no band unless asked for");
+  ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]),
+     "an evaluation has no band unless it is asked for");
 }
 
 static NOT_INLINE void test_curves(void)
@@ -450,15 +456,16 @@ static NOT_INLINE void test_root_stress(void)
 {
   struct eo_design design = design_of("paper");
   const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
-  ok(r->objective[1].root_stress > 30e6 && r->objective[1].root_stress < 80e6, "root stress %.1f MPa",
+  ok(r->objective[1].root_stress > 30e6 && r->objective[1].root_stress < 80e6, "the root stress is %.1f MPa",
      1e-6 * r->objective[1].root_stress);
   ok(r->objective[2].root_stress > r->objective[1].root_stress &&
          r->objective[1].root_stress > r->objective[0].root_stress,
-     "grows with the torque");
+     "the root stress grows with the torque");
   r = run(&design, NULL, 0);
-  ok(isnan(r->objective[1].root_stress) && r->load_case[1].end[0].root[0].phases == 0, "not computed unless asked for");
+  ok(isnan(r->objective[1].root_stress) && r->load_case[1].end[0].root[0].phases == 0,
+     "the root stress is not computed unless asked for");
   design.objective.root_stress = 1e9;
-  ok(run(&design, NULL, 0)->objective[1].root_stress > 0, "or constrained");
+  ok(run(&design, NULL, 0)->objective[1].root_stress > 0, "the root stress is computed where it is constrained");
 }
 
 /* Of a tooth under the loads of a mesh position: from the finite elements' own influence, without modes. */
@@ -521,7 +528,7 @@ static NOT_INLINE void test_root_peak(void)
     ok(fabs(end->root[member].maximum / largest - 1) < 1e-3 && difference[1] < 2e-3 * largest,
        "%s: the largest root stress of any position, %.3f MPa, is found: %.3f; histories within %.1e of it",
        member ? "gear" : "pinion", 1e-6 * largest, 1e-6 * end->root[member].maximum, difference[1] / largest);
-    ok(difference[0] < 3e-4 * largest, "%s: and within %.1e of it where other teeth alone carry load",
+    ok(difference[0] < 3e-4 * largest, "%s: the root stress is within %.1e of it where other teeth alone carry load",
        member ? "gear" : "pinion", difference[0] / largest);
   }
   eo_evaluator_free(evaluator);
@@ -597,19 +604,19 @@ static NOT_INLINE void test_axial(void)
   eo_supports_make_rigid(&design.supports);
   r = run(&design, NULL, 0);
   ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 1.5 * fabs(share - 1),
-     "the more so the less bearings and grooves give");
+     "the less bearings and grooves give, the less evenly a fixed pinion shares");
   ok(r->load_case[1].end[0].loaded.approach[3] == r->load_case[1].end[1].loaded.approach[3] ||
          fabs(r->load_case[1].end[0].loaded.approach[3] - r->load_case[1].end[1].loaded.approach[3]) < 1e-12,
-     "rigid ones make one approach of both ends");
+     "rigid bearings and grooves make one approach of both ends");
   design.alignment.shaft_angle_in_plane = 1.7e-3;
   design.resolution.mesh_law = EO_LAW_SECANT;
   r = run(&design, NULL, 0);
   struct record record = record_of(r);
   ok(fmin(r->load_case[1].end[0].loaded.load[0], r->load_case[1].end[1].loaded.load[0]) == 0,
-     "and it bears on one end only under a large shaft error");
+     "a pinion bears on one end only under a large shaft error");
   ok(r->objective[1].failed && r->load_case[1].vibration.outcome == EO_VIBRATION_NOT_CONVERGED,
-     "which has no secant vibration about its load");
-  ok(finite_record(&record), "and no number that is none");
+     "a pinion on one end has no secant vibration about its load");
+  ok(finite_record(&record), "a pinion on one end has no number that is none");
   design.supports = supports;
   design.resolution.mesh_law = EO_LAW_TANGENT;
   design.alignment.shaft_angle_in_plane = 0;
@@ -643,15 +650,15 @@ static NOT_INLINE void test_held_share(void)
         least = fmin(least, load);
         most = fmax(most, load);
       }
-      near(c->vibration.force_mean[end], mean, 3e-3, "held: mean force of the vibration and at rest");
-      near(c->vibration.force_max[end], most, 1e-2, "held: largest");
-      near(c->vibration.force_min[end], least, 1e-2, "held: least");
+      near(c->vibration.force_mean[end], mean, 3e-3, "mean force of the vibration of a held pinion over that at rest");
+      near(c->vibration.force_max[end], most, 1e-2, "largest force of a held pinion");
+      near(c->vibration.force_min[end], least, 1e-2, "least force of a held pinion");
     }
     double uneven = c->vibration.force_mean[0] / c->vibration.force_mean[1];
-    ok(fabs(uneven - 1) > 0.05, "the ends share unevenly: %.3f", uneven);
+    ok(fabs(uneven - 1) > 0.05, "the ends of a held pinion share unevenly: %.3f", uneven);
     near(c->vibration.pinion_thrust_mean,
          -sin(0.39218390684663407) * (c->vibration.force_mean[0] - c->vibration.force_mean[1]), 1e-6,
-         "the pinion's thrust is the difference of the ends'");
+         "thrust of a held pinion, the difference of the ends'");
   }
 }
 
@@ -666,7 +673,7 @@ static NOT_INLINE void test_coupled_law(void)
   design.resolution.mesh_law = EO_LAW_TABLE;
   r = run(&design, NULL, 0);
   for (int k = 0; k < r->cases; k++)
-    near(tangent[k], r->load_case[k].vibration.rms_pair[0], 0.03, "coupled ends: default law against the table");
+    near(tangent[k], r->load_case[k].vibration.rms_pair[0], 0.03, "RMS of coupled ends, default law against the table");
 }
 
 static void ask_again(struct eo_design *design)
@@ -748,7 +755,7 @@ int main(void)
   struct eo_design design = design_of("paper");
   pair = make_pair(&design);
   evaluator = make_evaluator(pair);
-  ok(eo_pair_serves(pair, &design), "a coarse pair, prepared in %.1f s", pair->seconds);
+  ok(eo_pair_serves(pair, &design), "a coarse pair is prepared in %.1f s", pair->seconds);
   test_equal_ends();
   test_single_end();
   test_mirror();

@@ -92,12 +92,12 @@ static void test_eccentricity(void)
   add_row(&made.design, "pitch.pinion.eccentricity_um", EO_SCATTER_UNIFORM, 0, 0, 4);
   run(&made);
   close_to(number(&made, -1, "period_peak_to_peak_um"), number(&made, -1, "peak_to_peak_um"), 1e-6,
-           "teeth alike swing as in one cycle");
+           "swing of teeth alike against that of one cycle");
   close_to(number(&made, -1, "period_rms_m_per_s2") / number(&made, -1, "rms_m_per_s2"), 1, 0.02,
-           "and vibrate so, by steps in time");
+           "RMS of teeth alike, by steps in time");
   ok(number(&made, -1, "pinion_order_um") < 1e-9 && number(&made, -1, "gear_order_um") < 1e-9 &&
          number(&made, -1, "sideband_um") < 1e-9,
-     "without shaft orders");
+     "teeth alike have no shaft orders");
   double largest = 0, least = INFINITY;
   for (int i = 0; i < PAIRS; i++) {
     double e = input_of(&made, i, "pitch.pinion.eccentricity_um"), ratio = number(&made, i, "pinion_order_um") / e;
@@ -106,8 +106,8 @@ static void test_eccentricity(void)
     ok(e > 0 && number(&made, i, "period_peak_to_peak_um") > number(&made, i, "peak_to_peak_um") + e,
        "%.3f um of eccentricity are seen over the period", e);
   }
-  ok(largest < 0.988 && least > 0.982, "order 1 over the eccentricity: %.4f to %.4f, the mesh averages to 0.985", least,
-     largest);
+  ok(largest < 0.988 && least > 0.982, "order 1 over the eccentricity is %.4f to %.4f, as the mesh averages to 0.985",
+     least, largest);
   eo_scatter_run_done(&made.run);
 }
 
@@ -165,12 +165,12 @@ static void test_factors(void)
   run(&made);
   for (int i = 0; i < PAIRS; i++) {
     close_to(number(&made, i, "period_peak_to_peak_um"), number(&made, i, "peak_to_peak_um"), 1e-6,
-             "swing at another compliance");
+             "swing over the period at another compliance");
     close_to(number(&made, i, "period_rms_m_per_s2") / number(&made, i, "rms_m_per_s2"), 1, 0.02,
-             "RMS at another speed");
+             "RMS over the period at another speed");
   }
   ok(fabs(number(&made, 0, "peak_to_peak_um") - number(&made, -1, "peak_to_peak_um")) > 0.01,
-     "which are not those of the design");
+     "the numbers of another speed are not those of the design");
   eo_scatter_run_done(&made.run);
 }
 
@@ -200,15 +200,15 @@ static void test_worst(void)
       eo_analysis_run(analysis, &read, EO_WANT_PITCH, &error))
     stop(&error);
   close_to(1e6 * analysis->pitch.load_case[0].peak_to_peak, number(&made, report->worst, "period_peak_to_peak_um"),
-           1e-4, "which swings as it did");
+           1e-4, "swing of the worst pair alone against that in the analysis");
   const struct eo_output_report *found = NULL;
   for (int i = 0; i < report->outputs; i++)
     if (strcmp(report->output[i].scalar->key, "period_peak_to_peak_um") == 0)
       found = &report->output[i].report;
-  ok(found && found->inputs == made.scatter.inputs - 2 && isfinite(found->r2), "seeds decide nothing: %d of %d inputs",
-     found ? found->inputs : 0, made.scatter.inputs);
+  ok(found && found->inputs == made.scatter.inputs - 2 && isfinite(found->r2),
+     "the seeds decide nothing and are left out: %d of %d inputs", found ? found->inputs : 0, made.scatter.inputs);
   ok(isnan(number(&made, 0, "period_rms_m_per_s2")) && isfinite(number(&made, 0, "tooth_load_N")),
-     "no vibration where it is not asked for");
+     "no vibration is made where it is not asked for");
   json_decref(document);
   eo_analysis_free(analysis);
   eo_tolerance_report_free(report);
@@ -271,7 +271,8 @@ static void test_followed(const struct made *few)
     ok(off < numbers[i].most, "%s of contact that is followed is %.2g of that solved at every instant off",
        numbers[i].key, off);
   }
-  ok(off_solved(few, &solved, "period_rms_m_per_s2") > 1e-9, "which is another way");
+  ok(off_solved(few, &solved, "period_rms_m_per_s2") > 1e-9,
+     "contact that is followed gives other bytes than solved contact");
   eo_scatter_run_done(&solved.run);
 }
 
@@ -294,7 +295,7 @@ static void test_coarse_first(void)
   int full = eo_scatter_full_pairs(&few.run), worst = 0, swing = eo_scalar_find(numbers[0].key);
   ok(few.run.coarse && full >= 16 && full < MANY / 2 + 8, "%d of %d pairs are in full", full, MANY);
   ok(memcmp(few.run.output, again.run.output, sizeof(double) * MANY * (size_t)few.run.outputs) == 0,
-     "the same bytes with 3 threads, where nothing is asked for, and with rows from before");
+     "the bytes are the same with 3 threads, where nothing is asked for, and with rows from before");
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
     int output = eo_scalar_find(numbers[i].key);
     double largest = 0, least = INFINITY;

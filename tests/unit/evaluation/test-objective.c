@@ -47,15 +47,15 @@ static void test_sums(void)
   eo_objective_sum(3, load_case, after, &sums);
   near(sums.f[0], (0.2 * 0.77e-6 + 0.5 * 0.71e-6 + 0.3 * 0.57e-6) / 3, 1e-14,
        "f1: peak-to-peak weighted by the shares, over three, m");
-  near(sums.f[1], (0.2 * 700 + 0.5 * 800 + 0.3 * 900) / 3, 1e-14, "f2: impacts, N");
-  near(sums.f[2], (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / 3, 1e-14, "f3: accelerations, m/s2");
-  ok(!sums.failed, "nothing failed");
+  near(sums.f[1], (0.2 * 700 + 0.5 * 800 + 0.3 * 900) / 3, 1e-14, "f2: impacts weighted by the shares, N");
+  near(sums.f[2], (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / 3, 1e-14, "f3: accelerations weighted by the shares, m/s2");
+  ok(!sums.failed, "no load case counts as failed");
   eo_objective_sum(1, load_case, after, &sums);
-  near(sums.f[2], 0.2 * 22.2, 1e-14, "one load case divides by one");
+  near(sums.f[2], 0.2 * 22.2, 1e-14, "f1 of one load case, divided by one");
   struct eo_objective_case backward = after[0];
   backward.impact = -700;
   eo_objective_sum(1, load_case, &backward, &sums);
-  near(sums.f[1], 0.2 * 700, 1e-14, "the size of an impact counts, not its sign");
+  near(sums.f[1], 0.2 * 700, 1e-14, "f2 of a negative impact, whose size counts");
 }
 
 static void test_objective(void)
@@ -67,14 +67,15 @@ static void test_objective(void)
   double f3 = (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / (0.2 * 62 + 0.5 * 66 + 0.3 * 68);
   near(v.objective, 0.4 * f1 + 0.3 * f2 + 0.3 * f3, 1e-13, "J against the unmodified pair");
   near(v.fitness, 1 / v.objective, 1e-14, "fitness without violations");
-  near(same.objective, 1, 1e-14, "the unmodified pair itself has J = 1");
+  near(same.objective, 1, 1e-14, "J of the unmodified pair itself");
   objective.weight[0] = objective.weight[1] = 0;
   objective.weight[2] = 2;
-  near(value_of(&objective, after, false).objective, 2 * f3, 1e-13, "one objective alone");
+  near(value_of(&objective, after, false).objective, 2 * f3, 1e-13, "J of one objective alone");
   objective = plain();
   objective.normalise = EO_NORMALISE_NONE;
   v = value_of(&objective, after, false);
-  near(v.objective, 0.4 * v.sums.f[0] + 0.3 * v.sums.f[1] + 0.3 * v.sums.f[2], 1e-14, "not normalised, as printed");
+  near(v.objective, 0.4 * v.sums.f[0] + 0.3 * v.sums.f[1] + 0.3 * v.sums.f[2], 1e-14,
+       "J that is not normalised, as printed");
 }
 
 static void test_constraints(void)
@@ -94,11 +95,11 @@ static void test_constraints(void)
     struct eo_objective objective = plain();
     double *limit = (double *)(void *)((char *)&objective + row[i].offset);
     double free_fitness = value_of(&objective, after, false).fitness;
-    ok(value_of(&objective, after, false).violation == 0, "%s: off by default", row[i].what);
+    ok(value_of(&objective, after, false).violation == 0, "%s is free by default", row[i].what);
     *limit = row[i].limit;
     struct eo_objective_value v = value_of(&objective, after, false);
     near(v.violation, row[i].excess, 1e-12, row[i].what);
-    near(v.fitness, free_fitness - 10 * row[i].excess, 1e-12, "lowers the fitness");
+    near(v.fitness, free_fitness - 10 * row[i].excess, 1e-12, "fitness less the penalty of the violation");
     *limit = 1e12;
     ok(value_of(&objective, after, false).violation == 0, "%s: a generous limit is kept", row[i].what);
   }
@@ -114,15 +115,15 @@ static void test_shortfall(void)
   rated[0].flank_safety = 0.8;
   rated[0].contact_temperature = 150;
   ok(!eo_objective_wants_rating(&objective) && value_of(&objective, rated, false).violation == 0,
-     "safety: off by default");
+     "the safety is free by default");
   objective.flank_safety = 1.2;
   ok(eo_objective_wants_rating(&objective), "a limit on it asks for the rating");
-  near(value_of(&objective, rated, false).violation, 0.5, 1e-12, "1.2 wanted, 0.8 there");
+  near(value_of(&objective, rated, false).violation, 0.5, 1e-12, "violation by a safety of 0.8 where 1.2 is wanted");
   objective.contact_temperature = 120;
-  near(value_of(&objective, rated, false).violation, 0.75, 1e-12, "and too hot by a quarter");
+  near(value_of(&objective, rated, false).violation, 0.75, 1e-12, "violation by a gear that is too hot by a quarter");
   rated[0].flank_safety = 1.3;
   objective.contact_temperature = 160;
-  ok(value_of(&objective, rated, false).violation == 0, "what is kept violates nothing");
+  ok(value_of(&objective, rated, false).violation == 0, "limits on the rating that are kept violate nothing");
 }
 
 static void test_no_worse(void)
@@ -130,12 +131,13 @@ static void test_no_worse(void)
   struct eo_objective objective = plain();
   struct eo_objective_case worse[3] = {after[0], after[1], after[2]};
   objective.no_worse_than_unmodified = true;
-  ok(value_of(&objective, after, false).violation == 0, "better everywhere: no violation");
+  ok(value_of(&objective, after, false).violation == 0, "a pair that is better everywhere violates nothing");
   worse[2].rms = 1.25 * before[2].rms;
   worse[0].peak_to_peak = 1.5 * before[0].peak_to_peak;
-  near(value_of(&objective, worse, false).violation, 0.75, 1e-12, "worse at single load cases");
+  near(value_of(&objective, worse, false).violation, 0.75, 1e-12,
+       "violation by a pair that is worse at single load cases");
   objective.no_worse_than_unmodified = false;
-  ok(value_of(&objective, worse, false).violation == 0, "off by default");
+  ok(value_of(&objective, worse, false).violation == 0, "a pair that is worse at single load cases is free by default");
 }
 
 static void test_relief(void)
@@ -149,17 +151,17 @@ static void test_relief(void)
   m.flank[EO_GEAR][EO_RIGHT] = (struct eo_flank_modification){
       .tip_relief = 1e-6, .tip_relief_start = 5.6e-3, .root_relief = 1e-6, .root_relief_start = 5.0e-3};
   ok(!eo_objective_relief_outside(&m, bottom, top),
-     "relief that starts inside: the gear's tip meets the pinion's root");
+     "a relief that starts inside reaches the gear's tip at the pinion's root");
   m.flank[EO_GEAR][EO_RIGHT].root_relief_start = 5.2e-3;
-  ok(eo_objective_relief_outside(&m, bottom, top), "root relief of the gear beyond the pinion's tip");
+  ok(eo_objective_relief_outside(&m, bottom, top), "root relief of the gear may lie beyond the pinion's tip");
   m.flank[EO_GEAR][EO_RIGHT].root_relief = 0;
-  ok(!eo_objective_relief_outside(&m, bottom, top), "a start without relief says nothing");
+  ok(!eo_objective_relief_outside(&m, bottom, top), "a start without relief lies nowhere outside");
   m.flank[EO_PINION][EO_LEFT].tip_relief_start = 5.1e-3;
-  ok(eo_objective_relief_outside(&m, bottom, top), "a relief that starts at the very end");
-  ok(value_of(&objective, after, true).violation == 0, "is allowed unless forbidden");
+  ok(eo_objective_relief_outside(&m, bottom, top), "a relief that starts at the very end lies outside");
+  ok(value_of(&objective, after, true).violation == 0, "a relief outside is allowed unless it is forbidden");
   objective.relief_inside_active_flank = true;
   ok(value_of(&objective, after, true).violation == 1 && value_of(&objective, after, false).violation == 0,
-     "then it counts as one violation");
+     "a relief outside that is forbidden counts as one violation");
 }
 
 static void test_failures(void)
@@ -173,7 +175,7 @@ static void test_failures(void)
   bad[1] = after[1];
   bad[1].rms = NAN;
   v = value_of(&objective, bad, false);
-  ok(v.sums.failed && v.fitness == EO_FITNESS_WORST, "so does a number that is none");
+  ok(v.sums.failed && v.fitness == EO_FITNESS_WORST, "a number that is none spoils the design");
   bad[1] = after[1];
   bad[1].root_stress = NAN;
   objective.root_stress = 1e9;
@@ -194,11 +196,11 @@ static void test_zero_baseline(void)
      v.objective);
   double without = v.objective;
   eo_objective_value(&objective, 3, load_case, after, perfect, false, &v);
-  near(v.objective, without + 0.3, 1e-12, "one that was zero and is not counts fully");
+  near(v.objective, without + 0.3, 1e-12, "J of an objective that was zero and is not");
   for (int k = 0; k < 3; k++)
     quiet[k] = (struct eo_objective_case){0};
   eo_objective_value(&objective, 3, load_case, quiet, before, false, &v);
-  ok(v.fitness == EO_FITNESS_WORST, "all objectives at zero cannot be: no infinite fitness");
+  ok(v.fitness == EO_FITNESS_WORST, "objectives that are all zero give no infinite fitness");
 }
 
 /* Eleven states whose order_1_um is 1 .. 11 um at load case 2, the others 5 um; the unmodified pair has 10. */
@@ -232,24 +234,24 @@ static void test_terms(void)
   struct eo_objective_case missing[3] = {state[0][0], state[0][1], state[0][2]};
   missing[1].scalar[output] = NAN;
   struct eo_objective_value v = value_of(&objective, missing, false);
-  ok(v.sums.failed && isnan(v.objective), "a number that is missing: no J");
+  ok(v.sums.failed && isnan(v.objective), "a number that is missing leaves no J");
   eo_objective_value(&objective, 3, load_case, state[3], bare[0], false, &v);
-  near(v.objective, without + 2 * 11 / 10.0, 1e-13, "a term over the unmodified pair's");
-  near(v.term[0], 11, 1e-14, "in the unit of its key");
+  near(v.objective, without + 2 * 11 / 10.0, 1e-13, "J of a term over the unmodified pair's");
+  near(v.term[0], 11, 1e-14, "J of a term in the unit of its key");
   objective.term[0].scale = 4;
   eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
-  near(v.objective, without + 2 * 1 / 4.0, 1e-13, "over a stated scale");
+  near(v.objective, without + 2 * 1 / 4.0, 1e-13, "J of a term over a stated scale");
   objective.term[0].load_case = 0;
   eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
-  near(v.term[0], 0.2 * 5 + 0.5 * 1 + 0.3 * 5, 1e-14, "without a load case the mean by share");
+  near(v.term[0], 0.2 * 5 + 0.5 * 1 + 0.3 * 5, 1e-14, "J of a term without a load case, the mean by share");
   objective.terms = 0;
   objective.limits = 1;
   objective.limit[0] = (struct eo_objective_limit){.output = output, .most = 4, .percent = NAN};
   eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
-  near(v.violation, 0.5, 1e-13, "a limit of 4 where two load cases have 5 and one 1");
+  near(v.violation, 0.5, 1e-13, "violation of a limit of 4 where two load cases have 5 and one 1");
   objective.limit[0].load_case = 2;
   eo_objective_value(&objective, 3, load_case, state[0], bare[0], false, &v);
-  near(v.violation, 0, 1e-13, "... at one load case");
+  near(v.violation, 0, 1e-13, "violation of the limit at the one load case that keeps it");
 }
 
 static void test_percentiles(void)
@@ -282,12 +284,13 @@ static void test_percentiles(void)
                             after, false)
                        .objective;
   eo_evaluator_combine(&design, &geometry, state[0], bare[0], &v);
-  near(v.objective, without + 10 / 10.0, 1e-13, "90 % of 1 .. 11 is 10: a percentile beside the mean of J");
-  near(v.term[0], 10, 1e-13, "... in the unit of its key");
+  near(v.objective, without + 10 / 10.0, 1e-13,
+       "80 % of the pairs have 9 or less, and what is above the limit of 8 violates");
+  near(v.term[0], 10, 1e-13, "J by a percentile in the unit of its key");
   near(v.violation, 9.0 / 8 - 1, 1e-13, "80 % of them are 9 or less, where 8 is the limit");
   design.objective.weight[0] = design.objective.weight[1] = design.objective.weight[2] = 0;
   eo_evaluator_combine(&design, &geometry, state[0], bare[0], &v);
-  near(v.objective, 1, 1e-13, "a percentile alone");
+  near(v.objective, 1, 1e-13, "J of a percentile alone");
   ok(isnan(v.nominal), "no nominal pair where no front asks for it");
 }
 

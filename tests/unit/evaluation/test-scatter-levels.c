@@ -117,10 +117,11 @@ static struct found run(int method, response_function *swing)
   eo_sort_numbers(PAIRS, sorted[0]);
   eo_sort_numbers(PAIRS, sorted[1]);
   struct found found = {eo_percentile(PAIRS, sorted[0], 95), eo_percentile(PAIRS, sorted[1], 95), bench.in_full};
-  ok(bench.twice == 0 && bench.in_full == eo_scatter_full_pairs(&rows), "%d in full, none twice, in %d stages",
-     bench.in_full, bench.stages);
-  ok(rows.full[PAIRS - 1] || method != EO_SCATTER_FULL, "full means all");
-  close_to(sorted[0][PAIRS - 1], sorted[1][PAIRS - 1], swing == half_known ? 1 : 1e-12, "the largest is computed");
+  ok(bench.twice == 0 && bench.in_full == eo_scatter_full_pairs(&rows),
+     "%d pairs are computed in full, none twice, in %d stages", bench.in_full, bench.stages);
+  ok(rows.full[PAIRS - 1] || method != EO_SCATTER_FULL, "all pairs are in full where full is asked for");
+  close_to(sorted[0][PAIRS - 1], sorted[1][PAIRS - 1], swing == half_known ? 1 : 1e-12,
+           "largest number, which is computed in full");
   eo_scatter_run_done(&rows);
   return found;
 }
@@ -130,18 +131,20 @@ static void test_rounds(void)
   struct found found = run(EO_SCATTER_FULL, linear);
   close_to(found.percentile, 10 + 2 * 1.6448536269514722, 0.05, "95 % of a normal");
   found = run(EO_SCATTER_COARSE_FIRST, linear);
-  close_to(found.percentile, found.of_all, 1e-12, "the same from a coarse level that knows all");
-  ok(found.in_full <= 70, "with %d in full", found.in_full);
+  close_to(found.percentile, found.of_all, 1e-12, "95th percentile from a coarse level that knows all");
+  ok(found.in_full <= 70, "a coarse level that knows all leaves %d in full", found.in_full);
   int few = found.in_full;
   found = run(EO_SCATTER_AUTO, half_known);
   ok(fabs(found.percentile / found.of_all - 1) < 0.025 && found.in_full > few,
-     "half known: %.3f, of all %.3f, %d in full", found.percentile, found.of_all, found.in_full);
+     "a coarse level that knows half gives %.3f, of all %.3f, with %d in full", found.percentile, found.of_all,
+     found.in_full);
   found = run(EO_SCATTER_AUTO, unknown);
   ok(fabs(found.percentile / found.of_all - 1) < 0.025 && found.in_full > PAIRS / 2,
-     "a coarse level that knows nothing: %.3f, of all %.3f, %d in full", found.percentile, found.of_all, found.in_full);
+     "a coarse level that knows nothing gives %.3f, of all %.3f, with %d in full", found.percentile, found.of_all,
+     found.in_full);
   found = run(EO_SCATTER_AUTO, broken);
-  close_to(found.percentile, found.of_all, 1e-12, "pairs without a coarse number are computed");
-  ok(found.in_full <= 76, "with %d in full", found.in_full);
+  close_to(found.percentile, found.of_all, 1e-12, "95th percentile where some pairs have no coarse number");
+  ok(found.in_full <= 76, "pairs without a coarse number leave %d in full", found.in_full);
 }
 
 static void test_method(void)
@@ -149,19 +152,20 @@ static void test_method(void)
   struct eo_design design = design_of(EO_SCATTER_AUTO), coarse;
   ok(eo_scatter_is_coarse_first(&design), "600 pairs are coarse first");
   design.resolution.positions = 32;
-  ok(!eo_scatter_is_coarse_first(&design), "on a grid that is hardly finer all are in full");
+  ok(!eo_scatter_is_coarse_first(&design), "all pairs are in full on a grid that is hardly finer");
   design.resolution.positions = 64;
   design.tolerance.pairs = EO_COARSE_FIRST_FROM - 1;
-  ok(!eo_scatter_is_coarse_first(&design), "fewer are in full");
+  ok(!eo_scatter_is_coarse_first(&design), "fewer pairs are in full from the first");
   design.tolerance.method = EO_SCATTER_COARSE_FIRST;
-  ok(eo_scatter_is_coarse_first(&design), "unless it is asked for");
+  ok(eo_scatter_is_coarse_first(&design), "fewer pairs are coarse first where it is asked for");
   design.tolerance.root_stress = true;
-  ok(!eo_scatter_is_coarse_first(&design), "root stress is computed in full");
+  ok(!eo_scatter_is_coarse_first(&design), "pairs with root stress are in full from the first");
   design.tolerance.root_stress = false;
   design.gear_pair.right_face_width = 0.9 * design.gear_pair.face_width;
-  ok(!eo_scatter_is_coarse_first(&design), "halves that differ as well");
+  ok(!eo_scatter_is_coarse_first(&design), "pairs whose halves differ are in full from the first");
   eo_scatter_make_coarse(&coarse, &design);
-  ok(coarse.resolution.positions == 24 && coarse.resolution.cells_per_line == 10, "a third of the positions and cells");
+  ok(coarse.resolution.positions == 24 && coarse.resolution.cells_per_line == 10,
+     "the coarse level has a third of the positions and cells");
 }
 
 int main(void)

@@ -205,10 +205,11 @@ static void test_floating_coast(void)
   mirror(&drive, &coast, ASTERN);
   struct eo_pair *pair = prepare(&drive);
   struct answer a = solve(pair, &drive), b = solve(pair, &coast);
-  ok((a.ahead - b.ahead) % POSITIONS != 0, "a groove of 30 mm: %d and %d positions ahead", a.ahead, b.ahead);
+  ok((a.ahead - b.ahead) % POSITIONS != 0, "a groove of 30 mm puts the right half %d and %d positions ahead", a.ahead,
+     b.ahead);
   for (int end = 0; end < 2; end++)
     close_to(worst(a.approach[end], b.approach[end]), 0, ROUNDING,
-             "each floating end is that of the mirrored drive, m");
+             "approach of each floating end against that of the mirrored drive, m");
   eo_pair_free(pair);
 }
 
@@ -264,9 +265,9 @@ static void test_held(void)
   double apart = 0, l = pair->geometry.base_helix_angle, r = pair->right->geometry.base_helix_angle;
   for (int j = 0; j < POSITIONS; j++)
     apart = fmax(apart, fabs(a.approach[0][j] / cos(l) - a.approach[1][beside(&a, j)] / cos(r)));
-  close_to(apart, 0, 1e-10, "held: both ends turn alike, m");
+  close_to(apart, 0, 1e-10, "difference between both ends of a held pinion, m");
   close_to(worst(a.approach[0], b.approach[0]) + worst(a.approach[1], b.approach[1]), 0, 0,
-           "held: a thrust of 5000 N changes nothing, m");
+           "effect of a thrust of 5000 N on a held pinion, m");
   eo_pair_free(pair);
 }
 
@@ -289,9 +290,9 @@ static void test_between(void)
       shift[i] += ((with.load[0][j] - without.load[0][j]) * sin(l) - (with.load[1][j] - without.load[1][j]) * sin(r)) /
                   POSITIONS;
   }
-  close_to(shift[0], 900, 1e-2, "a spring of 100 N/m leaves all of 900 N to the teeth, N");
-  ok(shift[1] > 50 && shift[1] < 850, "one of 100 N/um a part: %.4g N", shift[1]);
-  close_to(shift[2], 0, 1e-2, "one of 1e15 N/m nothing, N");
+  close_to(shift[0], 900, 1e-2, "load that a spring of 100 N/m leaves to the teeth, of 900 N");
+  ok(shift[1] > 50 && shift[1] < 850, "a spring of 100 N/um leaves a part to the teeth: %.4g N", shift[1]);
+  close_to(shift[2], 0, 1e-2, "load that a spring of 1e15 N/m leaves to the teeth, N");
   eo_pair_free(pair);
 }
 
@@ -341,9 +342,12 @@ static void test_sampled(void)
   json_decref(modification);
   eo_text_done(&text);
   struct answer a = solve(pair, &named), b = solve(pair, &sampled);
-  close_to(1e9 * worst(a.approach[0], b.approach[0]), 0, 2, "flanks exported and read as grids, left, nm");
-  close_to(1e9 * worst(a.approach[1], b.approach[1]), 0, 2, "right, nm");
-  close_to(1e9 * worst(a.transmission, b.transmission), 0, 2, "their transmission error, nm");
+  close_to(1e9 * worst(a.approach[0], b.approach[0]), 0, 2,
+           "left flanks exported and read as grids against the pair, nm");
+  close_to(1e9 * worst(a.approach[1], b.approach[1]), 0, 2,
+           "right flanks exported and read as grids against the pair, nm");
+  close_to(1e9 * worst(a.transmission, b.transmission), 0, 2,
+           "transmission error of flanks exported and read as grids, nm");
   eo_pair_free(pair);
 }
 
@@ -367,7 +371,8 @@ static void test_too_much(void)
       if (!code)
         code = eo_evaluator_contact(evaluator, &design, &result, &error);
       ok(more ? code == EO_ERROR_INPUT && strcmp(error.pointer, "/alignment/coupling_thrust_N") == 0 : !code,
-         "%.6g N of at most %.6g N: %s", design.alignment.coupling_thrust, most[i], code ? error.text : "");
+         "a thrust of %.6g N beside a most of %.6g N is judged: %s", design.alignment.coupling_thrust, most[i],
+         code ? error.text : "");
     }
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);

@@ -90,23 +90,25 @@ static void test_section(void)
   const struct eo_geometry *left = &pair->geometry, *right = &pair->right->geometry;
   double alpha = atan(tan(20 * degree) / cos(24 * degree));
   near(tan(right->base_helix_angle), tan(28 * degree) * cos(alpha), 1e-14, "base helix of the right half");
-  near(tan(left->base_helix_angle), tan(24 * degree) * cos(alpha), 1e-14, "and of the left one");
-  near(right->normal_module, 6e-3 / cos(24 * degree) * cos(28 * degree), 1e-14, "its own normal module");
-  near(right->transverse_pressure_angle, alpha, 1e-14, "one transverse pressure angle");
+  near(tan(left->base_helix_angle), tan(24 * degree) * cos(alpha), 1e-14, "base helix of the left half");
+  near(right->normal_module, 6e-3 / cos(24 * degree) * cos(28 * degree), 1e-14, "normal module of the right half");
+  near(right->transverse_pressure_angle, alpha, 1e-14, "transverse pressure angle of the right half, that of the left");
   for (int i = 0; i < 2; i++) {
-    near(right->base_radius[i], left->base_radius[i], 1e-14, "one base circle");
-    ok(right->tip_radius[i] == left->tip_radius[i], "one tip, to the last bit");
-    near(right->root_radius[i], left->root_radius[i], 1e-14, "one root");
+    near(right->base_radius[i], left->base_radius[i], 1e-14, "base circle of the right half, that of the left");
+    ok(right->tip_radius[i] == left->tip_radius[i], "both halves have one tip circle, to the last bit");
+    near(right->root_radius[i], left->root_radius[i], 1e-14, "root circle of the right half, that of the left");
     near(eo_geometry_half_angle(right, i, right->working_radius[i]),
-         eo_geometry_half_angle(left, i, left->working_radius[i]), 1e-13, "one thickness");
+         eo_geometry_half_angle(left, i, left->working_radius[i]), 1e-13,
+         "tooth thickness of the right half, that of the left");
   }
-  near(right->transverse_contact_ratio, left->transverse_contact_ratio, 1e-12, "one transverse contact ratio");
+  near(right->transverse_contact_ratio, left->transverse_contact_ratio, 1e-12,
+       "transverse contact ratio of the right half, that of the left");
   near(right->overlap_ratio, 55e-3 * tan(28 * degree) / (M_PI * right->transverse_module), 1e-13,
-       "its own overlap: b tan beta / (pi m_t)");
+       "overlap ratio of the right half: b tan beta / (pi m_t)");
   double lead = pair->right->grid->position[0].phase - pair->grid->position[0].phase +
                 pair->ahead[0] * left->transverse_base_pitch / POSITIONS;
   near(lead, 52.5e-3 * cos(alpha) * (tan(28 * degree) - tan(24 * degree)), 1e-12,
-       "helices that meet in the middle of the groove, m of roll");
+       "place where the helices meet in the middle of the groove, m of roll");
   eo_pair_free(pair);
 }
 
@@ -121,8 +123,8 @@ static void test_shares(void)
   double l = pair->geometry.base_helix_angle, r = pair->right->geometry.base_helix_angle,
          tangential = c->load_case.torque / pair->geometry.base_radius[0];
   const double *load[2] = {c->end[0].loaded.load, c->end[1].loaded.load};
-  near(load[0][0], tangential * sin(r) / sin(l + r), 1e-12, "the flatter half carries more, N");
-  near(load[1][0], tangential * sin(l) / sin(l + r), 1e-12, "the steeper one less");
+  near(load[0][0], tangential * sin(r) / sin(l + r), 1e-12, "load of the flatter half, which carries more, N");
+  near(load[1][0], tangential * sin(l) / sin(l + r), 1e-12, "load of the steeper half, which carries less, N");
   for (int end = 0; end < 2; end++) {
     struct eo_design alone = half_of(&design, end);
     double share = load[end][0] * cos(end ? r : l) / tangential;
@@ -130,14 +132,14 @@ static void test_shares(void)
     half[end] = prepare(&alone);
     const struct eo_end_result *of = &evaluate(half[end], &alone, &other[end])->load_case[0].end[end],
                                *own = &c->end[end];
-    near(of->loaded.load[0], load[end][0], 1e-12, "its load in a pair of two like it, N");
-    near(mean(own->loaded.approach), mean(of->loaded.approach), 2e-4, "its mean Z, m");
-    near(mean(own->stiffness), mean(of->stiffness), 2e-4, "its mesh stiffness, N/m");
-    near(own->max_pressure, of->max_pressure, 0.02, "its pressure, Pa");
-    near(own->impact.force, of->impact.force, 0.02, "its entering impact, N");
+    near(of->loaded.load[0], load[end][0], 1e-12, "load of a half in a pair of two like it, N");
+    near(mean(own->loaded.approach), mean(of->loaded.approach), 2e-4, "mean Z of a half in a pair of two like it, m");
+    near(mean(own->stiffness), mean(of->stiffness), 2e-4, "mesh stiffness of a half in a pair of two like it, N/m");
+    near(own->max_pressure, of->max_pressure, 0.02, "pressure of a half in a pair of two like it, Pa");
+    near(own->impact.force, of->impact.force, 0.02, "entering impact of a half in a pair of two like it, N");
     near(half[end]->geometry.transverse_contact_ratio + half[end]->geometry.overlap_ratio,
          eo_pair_half(pair, end)->geometry.transverse_contact_ratio + eo_pair_half(pair, end)->geometry.overlap_ratio,
-         1e-11, "its contact ratio");
+         1e-11, "contact ratio of a half in a pair of two like it");
   }
   double worst = 0;
   for (int j = 0; j < POSITIONS; j++) {
@@ -145,9 +147,10 @@ static void test_shares(void)
     double z = (c->end[0].loaded.approach[j] * sin(r) + c->end[1].loaded.approach[at] * sin(l)) / sin(l + r);
     worst = fmax(worst, fabs(c->transmission[j] - z));
   }
-  close_to(worst, 0, 1e-15, "the rotation that no axial displacement is part of, m");
+  close_to(worst, 0, 1e-15, "rotation that no axial displacement is part of, m");
   const struct eo_vibration *v = &c->vibration;
-  ok(v->outcome != EO_VIBRATION_NOT_CONVERGED && v->rms_pair[0] > 0, "it vibrates: %.3g m/s2", v->rms_pair[0]);
+  ok(v->outcome != EO_VIBRATION_NOT_CONVERGED && v->rms_pair[0] > 0,
+     "the pair of unlike halves vibrates with %.3g m/s2", v->rms_pair[0]);
   for (int end = 0; end < 2; end++)
     near(v->force_mean[end], load[end][0], 1e-6, "mean mesh force of the vibration, N");
   for (int end = 0; end < 2; end++) {
@@ -171,15 +174,18 @@ static void test_swapped(void)
   struct eo_evaluator *evaluator[2];
   const struct eo_case_result *a = &evaluate(pair, &design, &evaluator[0])->load_case[0],
                               *b = &evaluate(other, &turned, &evaluator[1])->load_case[0];
-  near(other->right->geometry.normal_module, 6e-3, 1e-11, "the right half is the former left one");
-  near(a->mean, b->mean, 1e-4, "mean LTE, m");
-  near(a->peak_to_peak, b->peak_to_peak, 0.02, "PPLTE, m");
+  near(other->right->geometry.normal_module, 6e-3, 1e-11,
+       "the right half of the exchanged pair is the former left one");
+  near(a->mean, b->mean, 1e-4, "mean LTE of the exchanged pair, m");
+  near(a->peak_to_peak, b->peak_to_peak, 0.02, "PPLTE of the exchanged pair, m");
   for (int end = 0; end < 2; end++) {
-    near(a->end_force[end], b->end_force[1 - end], 1e-12, "loads change ends, N");
-    near(mean(a->end[end].loaded.approach), mean(b->end[1 - end].loaded.approach), 2e-4, "and approaches, m");
-    near(a->end[end].impact.force, b->end[1 - end].impact.force, 0.02, "and impacts, N");
+    near(a->end_force[end], b->end_force[1 - end], 1e-12, "loads of the exchanged pair's ends, N");
+    near(mean(a->end[end].loaded.approach), mean(b->end[1 - end].loaded.approach), 2e-4,
+         "mean approaches of the exchanged pair's ends, m");
+    near(a->end[end].impact.force, b->end[1 - end].impact.force, 0.02,
+         "entering impacts of the exchanged pair's ends, N");
   }
-  near(a->vibration.rms_pair[0], b->vibration.rms_pair[0], 0.03, "vibration, m/s2");
+  near(a->vibration.rms_pair[0], b->vibration.rms_pair[0], 0.03, "vibration of the exchanged pair, m/s2");
   for (int i = 0; i < 2; i++)
     eo_evaluator_free(evaluator[i]);
   eo_pair_free(pair);
@@ -196,10 +202,10 @@ static void test_limit(void)
   struct eo_evaluator *evaluator[2];
   const struct eo_case_result *a = &evaluate(pair[0], &equal, &evaluator[0])->load_case[0],
                               *b = &evaluate(pair[1], &nearly, &evaluator[1])->load_case[0];
-  ok(!pair[0]->right && pair[1]->right, "one half and two");
+  ok(!pair[0]->right && pair[1]->right, "the one pair has one half and the other two");
   near(a->peak_to_peak, b->peak_to_peak, 1e-5, "PPLTE on elastic shafts, m");
-  near(a->mean, b->mean, 1e-7, "mean LTE, m");
-  near(a->vibration.rms_pair[0], b->vibration.rms_pair[0], 1e-3, "vibration, m/s2");
+  near(a->mean, b->mean, 1e-7, "mean LTE on elastic shafts, m");
+  near(a->vibration.rms_pair[0], b->vibration.rms_pair[0], 1e-3, "vibration on elastic shafts, m/s2");
   for (int i = 0; i < 2; i++) {
     eo_evaluator_free(evaluator[i]);
     eo_pair_free(pair[i]);
@@ -227,11 +233,11 @@ static void test_held(void)
     torque = fmax(torque, fabs((left->load[j] * cos(l) + right->load[at] * cos(r)) * pair->geometry.base_radius[0] -
                                c->load_case.torque));
   }
-  close_to(worst, 0, 1e-10, "held fast, both ends turn alike, m");
-  close_to(torque, 0, 1e-8, "and carry the torque, N m");
+  close_to(worst, 0, 1e-10, "difference between both ends of a pair held fast, m");
+  close_to(torque, 0, 1e-8, "torque that both ends of a pair held fast carry, N m");
   ok(mean(c->end[0].loaded.load) * sin(l) > 1.02 * mean(c->end[1].loaded.load) * sin(r) ||
          mean(c->end[0].loaded.load) * sin(l) < 0.98 * mean(c->end[1].loaded.load) * sin(r),
-     "with a thrust on the support: %.5g and %.5g N", mean(c->end[0].loaded.load) * sin(l),
+     "a pair held fast leaves a thrust on the support: %.5g and %.5g N", mean(c->end[0].loaded.load) * sin(l),
      mean(c->end[1].loaded.load) * sin(r));
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
@@ -242,7 +248,8 @@ static void test_held(void)
   pair = prepare(&design);
   c = &evaluate(pair, &design, &evaluator)->load_case[0];
   for (int end = 0; end < 2; end++)
-    near(c->vibration.force_mean[end], mean(c->end[end].loaded.load), 1e-3, "sprung: at rest and in motion, N");
+    near(c->vibration.force_mean[end], mean(c->end[end].loaded.load), 1e-3,
+         "force of a sprung pinion at rest and in motion, N");
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
 }
@@ -268,17 +275,17 @@ static void test_rest(void)
     stop(&error);
   double left = 2 * sin(r) * cos(l) / sin(l + r), right = 2 * sin(l) * cos(r) / sin(l + r);
   near(eo_dynamics_model_axial_rest(&model), -cos(l) * cos(l) * (1 / k[0] + 1 / k[1]) * (left - right), 1e-7,
-       "unlike bearing forces part the ends, m/N");
+       "stiffness to which unlike bearing forces part the ends, m/N");
   parameters.pinion_axial_stiffness = 0;
   parameters.groove_torsional_stiffness[0] = parameters.groove_torsional_stiffness[1] = 0;
   parameters.gear_axial_stiffness[0] = parameters.gear_axial_stiffness[1] = 2e8;
   if (eo_dynamics_model_init(&model, &parameters, &error))
     stop(&error);
   eo_dynamics_model_load(&model, 1000, EO_IMPACT_NONE);
-  ok(model.zero_modes == 3 && model.zero_mode_load < 1e-12, "floating: %d rigid motions, no work on them: %.1e",
-     model.zero_modes, model.zero_mode_load);
+  ok(model.zero_modes == 3 && model.zero_mode_load < 1e-12,
+     "a floating pair has %d rigid motions, and no work on them: %.1e", model.zero_modes, model.zero_mode_load);
   near(eo_dynamics_mesh_load(&parameters, 1000, 0) * sin(l), eo_dynamics_mesh_load(&parameters, 1000, 1) * sin(r),
-       1e-14, "thrusts in balance");
+       1e-14, "thrusts of a floating pair, in balance");
 }
 
 /* Angle of the drive flank at the pitch radius, carried on to the middle of the groove. */
@@ -317,7 +324,7 @@ static void test_export(double right_helix, double right_width)
     close_to(remainder(angle_at_groove(&design, &geometry, member, EO_LEFT) -
                            angle_at_groove(&design, &geometry, member, EO_RIGHT),
                        pitch),
-             0, 1e-9, "exported flanks of both halves meet in the middle of the groove, rad");
+             0, 1e-9, "exported flanks of both halves in the middle of the groove, rad");
   }
 }
 
@@ -330,7 +337,7 @@ static void refuse(double left, double right, int ends, const char *pointer, con
   design.gear_pair.helix_angle = left * degree;
   design.gear_pair.right_helix_angle = right * degree;
   ok(eo_design_complete(&design, &geometry, &error) && strcmp(error.pointer, pointer) == 0 && strstr(error.text, words),
-     "%g and %g deg: %s", left, right, error.text);
+     "helix angles of %g and %g deg are refused: %s", left, right, error.text);
 }
 
 static void test_refusals(void)
@@ -339,7 +346,7 @@ static void test_refusals(void)
   struct eo_geometry geometry;
   struct eo_error error = {0};
   ok(!eo_design_complete(&design, &geometry, &error) && isnan(design.gear_pair.right_helix_angle),
-     "a right helix like the left one is not stated");
+     "a right helix like the left one is not written");
   refuse(12, 20, 1, "/gear_pair/right_helix_angle_deg", "one end");
   refuse(0, 20, 2, "/gear_pair/right_helix_angle_deg", "no thrust to balance");
 }

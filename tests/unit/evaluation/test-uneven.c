@@ -97,15 +97,15 @@ static void test_published(void)
   const struct eo_evaluation *e = evaluate(pair, &design, &evaluator);
   double lag = pair->right->grid->position[0].phase - pair->grid->position[0].phase +
                pair->ahead[0] * pair->geometry.transverse_base_pitch / 64;
-  close_to(1e3 * lag, -3.102075946542652, 1e-9, "the right half is behind, mm of roll");
+  close_to(1e3 * lag, -3.102075946542652, 1e-9, "stagger of the right half, mm of roll");
   for (int k = 0; k < 3; k++) {
     const struct eo_case_result *c = &e->load_case[k];
-    near(1e6 * c->peak_to_peak, swings[k], 0.005, "PPLTE, um");
-    near(1e6 * c->mean, means[k], 0.002, "mean LTE, um");
+    near(1e6 * c->peak_to_peak, swings[k], 0.005, "PPLTE of halves of uneven width, um");
+    near(1e6 * c->mean, means[k], 0.002, "mean LTE of halves of uneven width, um");
     near(mean(64, c->end[EO_LEFT].loaded.load), left[k], 0.003, "mean load of the wide half, N");
-    near(mean(64, c->end[EO_RIGHT].loaded.load), right[k], 0.003, "and of the narrow one");
+    near(mean(64, c->end[EO_RIGHT].loaded.load), right[k], 0.003, "mean load of the narrow half, N");
     for (int end = 0; end < 2; end++)
-      near(1e-6 * c->end[end].max_pressure, pressure[end][k], 0.01, "largest pressure, MPa");
+      near(1e-6 * c->end[end].max_pressure, pressure[end][k], 0.01, "largest pressure of a half, MPa");
   }
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
@@ -124,22 +124,24 @@ static void test_each_half(void)
                              *other = evaluate(narrow, &both, &evaluator[1]);
   const struct eo_case_result *c = &e->load_case[1], *n = &other->load_case[1];
   const double *right = c->end[EO_RIGHT].loaded.approach;
-  ok(!e->equal_ends && c->end[EO_LEFT].loaded.load[0] == c->end[EO_RIGHT].loaded.load[0], "each carries half");
-  near(mean(POSITIONS, right), mean(POSITIONS, n->end[EO_RIGHT].loaded.approach), 1e-4, "the narrow half's mean Z, m");
-  near(swing(POSITIONS, right), swing(POSITIONS, n->end[EO_RIGHT].loaded.approach), 0.05, "and its swing");
-  near(c->end[EO_RIGHT].max_pressure, n->end[EO_RIGHT].max_pressure, 0.01, "its pressure");
-  near(c->end[EO_RIGHT].impact.force, n->end[EO_RIGHT].impact.force, 0.01, "its entering impact");
+  ok(!e->equal_ends && c->end[EO_LEFT].loaded.load[0] == c->end[EO_RIGHT].loaded.load[0],
+     "each half of a floating pinion carries half");
+  near(mean(POSITIONS, right), mean(POSITIONS, n->end[EO_RIGHT].loaded.approach), 1e-4, "mean Z of the narrow half, m");
+  near(swing(POSITIONS, right), swing(POSITIONS, n->end[EO_RIGHT].loaded.approach), 0.05, "swing of the narrow half");
+  near(c->end[EO_RIGHT].max_pressure, n->end[EO_RIGHT].max_pressure, 0.01, "pressure of the narrow half");
+  near(c->end[EO_RIGHT].impact.force, n->end[EO_RIGHT].impact.force, 0.01, "entering impact of the narrow half");
   double worst = 0, normal = cos(pair->geometry.base_helix_angle);
   for (int j = 0; j < POSITIONS; j++) {
     int at = (j + pair->ahead[0] + POSITIONS) % POSITIONS;
     worst = fmax(worst, fabs(c->transmission[j] - (c->end[EO_LEFT].loaded.approach[j] + right[at]) / 2 / normal));
   }
-  close_to(worst, 0, 1e-15, "the pair's transmission error is the mean at the phases that meet, m");
-  ok(c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED && c->vibration.rms_pair[0] > 0, "it vibrates: %.3g m/s2",
-     c->vibration.rms_pair[0]);
+  close_to(worst, 0, 1e-15, "transmission error of the pair, the mean at the phases that meet, m");
+  ok(c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED && c->vibration.rms_pair[0] > 0,
+     "the pair of uneven halves vibrates with %.3g m/s2", c->vibration.rms_pair[0]);
   ok(design.supports.right_mass[0] < design.supports.mass[0] && design.supports.right_mass[0] > 0,
-     "the narrow half is lighter: %.4g and %.4g kg", design.supports.mass[0], design.supports.right_mass[0]);
-  near(design.supports.right_mass[0], both.supports.mass[0], 1e-12, "by what its cylinder is");
+     "the narrow half of the pinion is lighter: %.4g and %.4g kg", design.supports.mass[0],
+     design.supports.right_mass[0]);
+  near(design.supports.right_mass[0], both.supports.mass[0], 1e-12, "mass of the narrow half, of its cylinder");
   for (int i = 0; i < 2; i++)
     eo_evaluator_free(evaluator[i]);
   eo_pair_free(pair);
@@ -160,13 +162,13 @@ static void test_follows(void)
   design.shafts.enabled = true;
   const struct eo_evaluation *e = evaluate(pair, &design, &evaluator);
   ok(e->load_case[0].contact_failures == 0 && e->load_case[0].body_iterations > 0 && e->load_case[0].mean > stiff,
-     "elastic bodies give more: %.4g um, not %.4g um", 1e6 * e->load_case[0].mean, 1e6 * stiff);
+     "elastic bodies give more way: %.4g um, not %.4g um", 1e6 * e->load_case[0].mean, 1e6 * stiff);
   eo_evaluator_free(evaluator);
   design.shafts.enabled = false;
   design.load_case[0].flank = EO_COAST_FLANK;
   e = evaluate(pair, &design, &evaluator);
   ok(e->load_case[0].running.inwards && e->load_case[0].contact_failures == 0 && pair->ahead[1] == -pair->ahead[0],
-     "on the coast flanks the other half is ahead: %d and %d positions", pair->ahead[0], pair->ahead[1]);
+     "the other half is ahead on the coast flanks: %d and %d positions", pair->ahead[0], pair->ahead[1]);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
 }
@@ -179,11 +181,11 @@ static void test_refusals(void)
   eo_example_build("paper", &design);
   design.gear_pair.right_face_width = 55e-3;
   ok(!eo_design_complete(&design, &geometry, &error) && isnan(design.gear_pair.right_face_width),
-     "a right half like the left one is not stated");
+     "a right half like the left one is not written");
   eo_example_build("single", &design);
   design.gear_pair.right_face_width = 20e-3;
   ok(eo_design_complete(&design, &geometry, &error) && strcmp(error.pointer, "/gear_pair/right_face_width_mm") == 0,
-     "one end has no right half: %s", error.text);
+     "a pair with one end is refused a right half: %s", error.text);
 }
 
 int main(void)

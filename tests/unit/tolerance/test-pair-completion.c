@@ -75,15 +75,17 @@ static void test_linear(void)
   double worst = 0;
   draw(1);
   set(20, linear, linear_coarse);
-  ok(eo_completion_fill(&completion, 0, &completed, &error) == EO_OK && completed.rows == 20, "20 rows in full");
+  ok(eo_completion_fill(&completion, 0, &completed, &error) == EO_OK && completed.rows == 20,
+     "20 rows are completed in full");
   for (int i = 0; i < PAIRS; i++)
     worst = fmax(worst, fabs(output[i][0] - all[i]));
-  close_to(worst, 0, 1e-12, "a linear relation is found");
-  close_to(completed.error, 0, 1e-12, "and said to be one");
+  close_to(worst, 0, 1e-12, "error of completed rows of a linear relation");
+  close_to(completed.error, 0, 1e-12, "stated error of completed rows of a linear relation");
   eo_completion_doubt(&completion, 0, 95, &doubt, NULL, &error);
-  close_to(doubt.value, 3 + 2 * 1.6448536269514722, 0.02, "95 % of a normal");
-  close_to(doubt.deviation, 0, 1e-12, "nothing is open");
-  close_to(doubt.rows, PAIRS, 1e-9, "as good as all in full");
+  close_to(doubt.value, 3 + 2 * 1.6448536269514722, 0.02,
+           "95 % of a normal distribution lies below the completed percentile");
+  close_to(doubt.deviation, 0, 1e-12, "stated deviation of a percentile of which nothing is open");
+  close_to(doubt.rows, PAIRS, 1e-9, "completed percentile over that of all in full");
   ok(output[PAIRS - 1][1] == -1e9, "another output is left alone");
 }
 
@@ -136,11 +138,11 @@ static void test_noise(void)
     beside += completed.error / DRAWS;
     within += fabs(off) <= 2 * doubt.deviation;
   }
-  ok(sqrt(squares) < 1.2 * sqrt(said) && sqrt(squares) > 0.4 * sqrt(said), "off by %.3f, said %.3f", sqrt(squares),
-     sqrt(said));
-  ok(within >= 0.9 * DRAWS, "%d of %d within twice what is said", within, DRAWS);
+  ok(sqrt(squares) < 1.2 * sqrt(said) && sqrt(squares) > 0.4 * sqrt(said),
+     "completed percentiles are off by %.3f and said to be by %.3f", sqrt(squares), sqrt(said));
+  ok(within >= 0.9 * DRAWS, "%d of %d percentiles lie within twice what is said", within, DRAWS);
   close_to(spread, sqrt(1.09), 0.01, "deviation of the completed values");
-  close_to(beside, 0.3, 0.02, "error of the coarse level");
+  close_to(beside, 0.3, 0.02, "error of the coarse level against its rows in full");
 }
 
 /* Chi-square of one degree: the relation is bent, so the line is far off, but those nearest are not. */
@@ -154,14 +156,15 @@ static void test_quadratic(void)
   set(128, quadratic, size);
   eo_completion_fill(&completion, 0, &completed, &error);
   eo_completion_doubt(&completion, 0, 95, &doubt, NULL, &error);
-  ok(fabs(doubt.value - percentile_of_all(95)) <= 2 * doubt.deviation + 1e-12, "95 %% %.4f, of all %.4f, open %.4f",
-     doubt.value, percentile_of_all(95), doubt.deviation);
-  close_to(doubt.value, 3.841458820694124, 0.15, "95 % of chi-square");
+  ok(fabs(doubt.value - percentile_of_all(95)) <= 2 * doubt.deviation + 1e-12,
+     "the completed 95 %% percentile is %.4f, of all %.4f, open %.4f", doubt.value, percentile_of_all(95),
+     doubt.deviation);
+  close_to(doubt.value, 3.841458820694124, 0.15, "95 % of a chi-square distribution lies below the percentile");
   eo_completion_doubt(&completion, 0, 50, &doubt, NULL, &error);
-  close_to(doubt.value, 0.454936423119572, 0.03, "its median");
+  close_to(doubt.value, 0.454936423119572, 0.03, "median of a chi-square distribution");
   eo_completion_share(&completion, 0, 3.841458820694124, &doubt, &error);
   ok(fabs(doubt.value - 0.95) < 0.01 && doubt.rows < PAIRS && doubt.rows > 100,
-     "share below it: %.3f, as of %.0f pairs", doubt.value, doubt.rows);
+     "the share below a limit is %.3f, as of %.0f pairs", doubt.value, doubt.rows);
 }
 
 /* The interval of a report has in it what is open, and is that of the ranks when all are in full. */
@@ -181,13 +184,13 @@ static void test_report(void)
   eo_output_report_make(&report[2], PAIRS, 1, x, output[0], OUTPUTS, NULL, 1, NULL, &error);
   const struct eo_report_percentile *wide = &report[0].percentile[7], *narrow = &report[1].percentile[7],
                                     *ranked = &report[2].percentile[7];
-  ok(report[0].full == 64 && report[1].full == PAIRS && report[2].full == PAIRS, "pairs in full are counted");
+  ok(report[0].full == 64 && report[1].full == PAIRS && report[2].full == PAIRS, "the pairs in full are counted");
   ok(wide->high - wide->low > 1.2 * (narrow->high - narrow->low), "64 in full leave more open than all");
-  close_to(narrow->low, ranked->low, 1e-12, "all in full: the interval of the ranks");
-  close_to(narrow->high, ranked->high, 1e-12, "and its other end");
+  close_to(narrow->low, ranked->low, 1e-12, "lower end of the interval where all are in full, that of the ranks");
+  close_to(narrow->high, ranked->high, 1e-12, "upper end of the interval where all are in full");
   ok(report[0].mean_interval[1] - report[0].mean_interval[0] > report[1].mean_interval[1] - report[1].mean_interval[0],
-     "the mean as well");
-  ok(report[0].largest < 64, "the largest is one in full");
+     "64 pairs in full leave more of the mean open than all");
+  ok(report[0].largest < 64, "the largest pair is one in full");
   for (int k = 0; k < 3; k++)
     eo_output_report_done(&report[k]);
 }
@@ -203,17 +206,17 @@ static void test_missing(void)
   coarse[500][0] = NAN;
   output[3][0] = NAN;
   eo_completion_fill(&completion, 0, &completed, &error);
-  ok(isnan(output[500][0]) && isnan(output[3][0]) && completed.rows == 19, "what has no number is not made up");
+  ok(isnan(output[500][0]) && isnan(output[3][0]) && completed.rows == 19, "an output without a number is not made up");
   double before = output[700][0];
   output[700][0] = 0;
   eo_completion_fill(&completion, 0, &completed, &error);
-  ok(output[700][0] == before, "the same again");
+  ok(output[700][0] == before, "a second completion gives the same");
   for (int i = 0; i < 20; i++)
     output[i][0] = NAN;
   eo_completion_fill(&completion, 0, &completed, &error);
   eo_completion_doubt(&completion, 0, 95, &doubt, NULL, &error);
   ok(completed.rows == 0 && isnan(completed.error) && isnan(output[700][0]) && isnan(doubt.value),
-     "without any in full there is nothing");
+     "a completion without any pair in full gives nothing");
 }
 
 int main(void)

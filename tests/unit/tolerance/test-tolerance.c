@@ -20,8 +20,8 @@ static void test_normal(void)
   for (int i = 1; i < 2000; i++)
     worst = fmax(worst, fabs(eo_normal_probability(eo_normal_quantile(i / 2000.)) - i / 2000.));
   close_to(worst, 0, 2e-15, "probability of a quantile");
-  close_to(eo_normal_quantile(0.975), 1.959963984540054, 1e-14, "97.5 %");
-  close_to(eo_normal_quantile(1e-12), -7.034483825301131, 1e-11, "far in the tail");
+  close_to(eo_normal_quantile(0.975), 1.959963984540054, 1e-14, "quantile of 97.5 %");
+  close_to(eo_normal_quantile(1e-12), -7.034483825301131, 1e-11, "quantile of 1e-12, far in the tail");
 }
 
 /* Moments against the quantile function, by the midpoint rule. */
@@ -37,7 +37,7 @@ static void test_moments(const struct eo_distribution *d, double within, const c
   }
   ok(fabs(sum[1]) < within && fabs(sum[2] - 1) < within && fabs(sum[3] - m.third) < 10 * within &&
          fabs(sum[4] - m.fourth) < 10 * within,
-     "%s: moments %.6g %.6g %.6g, kurtosis %.6g", what, sum[1], sum[2], sum[3], m.fourth);
+     "%s: the moments are %.6g %.6g %.6g, the kurtosis %.6g", what, sum[1], sum[2], sum[3], m.fourth);
 }
 
 /* |z|: mean sqrt(2/pi), variance 1 - 2/pi, skewness and kurtosis of the half normal distribution. */
@@ -47,14 +47,14 @@ static void test_half_normal(void)
   struct eo_distribution cut = whole;
   struct eo_moments moments = eo_distribution_moments(&whole);
   close_to(moments.mean, 1 + 2 * sqrt(2 / M_PI), 1e-12, "mean of a half normal");
-  close_to(moments.deviation, 2 * sqrt(1 - 2 / M_PI), 1e-12, "its deviation");
-  close_to(moments.third, 0.99527174643115, 1e-9, "its skewness");
-  close_to(moments.fourth, 3.86917730362, 1e-9, "its kurtosis");
-  close_to(eo_distribution_quantile(&whole, 0.5), 1 + 2 * 0.674489750196082, 1e-9, "its median");
+  close_to(moments.deviation, 2 * sqrt(1 - 2 / M_PI), 1e-12, "deviation of a half normal");
+  close_to(moments.third, 0.99527174643115, 1e-9, "skewness of a half normal");
+  close_to(moments.fourth, 3.86917730362, 1e-9, "kurtosis of a half normal");
+  close_to(eo_distribution_quantile(&whole, 0.5), 1 + 2 * 0.674489750196082, 1e-9, "median of a half normal");
   cut.cut = 2;
   test_moments(&cut, 1e-6, "half normal, cut at 2 sigma");
   ok(eo_distribution_quantile(&cut, 1e-9) >= 1 && eo_distribution_quantile(&cut, 1 - 1e-9) <= 5,
-     "sizes from 0 to the cut");
+     "sizes of a cut half normal go from 0 to the cut");
 }
 
 static void test_distributions(void)
@@ -76,7 +76,7 @@ static void test_sequence(void)
   struct eo_error error;
   bool filled = true;
   int box[SIDE][SIDE] = {{0}};
-  ok(eo_sobol_sequence_init(&sequence, DIMENSIONS, &error) == EO_OK, "96 dimensions");
+  ok(eo_sobol_sequence_init(&sequence, DIMENSIONS, &error) == EO_OK, "a sequence of 96 dimensions is made");
   for (int d = 0; d < DIMENSIONS; d++) {
     bool seen[POINTS] = {false};
     for (uint32_t i = 0; i < POINTS; i++)
@@ -84,18 +84,18 @@ static void test_sequence(void)
     for (int i = 0; i < POINTS; i++)
       filled = filled && seen[i];
   }
-  ok(filled, "one point in each 256th of every dimension");
+  ok(filled, "each 256th of every dimension holds one point");
   for (uint32_t i = 0; i < POINTS; i++)
     box[(int)(SIDE * eo_sobol_sequence_at(&sequence, 7, i, 0))]
        [(int)(SIDE * eo_sobol_sequence_at(&sequence, 7, i, 1))]++;
   filled = true;
   for (int i = 0; i < SIDE * SIDE; i++)
     filled = filled && box[i / SIDE][i % SIDE] == 1;
-  ok(filled, "one point in each box of the plane");
+  ok(filled, "each box of the plane holds one point");
   ok(eo_sobol_sequence_at(&sequence, 7, 5, 3) != eo_sobol_sequence_at(&sequence, 8, 5, 3),
-     "another seed, other points");
+     "another seed gives other points");
   eo_sobol_sequence_done(&sequence);
-  ok(eo_sobol_sequence_init(&sequence, 0, &error) == EO_ERROR_INPUT, "no dimension is refused");
+  ok(eo_sobol_sequence_init(&sequence, 0, &error) == EO_ERROR_INPUT, "a sequence of no dimension is refused");
   eo_sobol_sequence_done(&sequence);
 }
 
@@ -116,7 +116,7 @@ static void test_samplers(void)
   }
   for (int i = 0; i < INPUTS * POINTS; i++)
     filled = filled && seen[i / POINTS][i % POINTS] == 1;
-  ok(filled, "Latin: one point in each hundredth of every dimension");
+  ok(filled, "each hundredth of every dimension holds one point of a latin hypercube");
   eo_sampler_at(random, 17, u);
   eo_sampler_at(random, 3, again);
   eo_sampler_at(random, 17, again);
@@ -124,27 +124,28 @@ static void test_samplers(void)
   eo_sampler_free(latin);
   eo_sampler_free(random);
   eo_sampler_free(NULL);
-  ok(eo_sampler_new(&latin, EO_SAMPLING_SOBOL, 1, 0, 1, &error) == EO_ERROR_INPUT, "no point is refused");
+  ok(eo_sampler_new(&latin, EO_SAMPLING_SOBOL, 1, 0, 1, &error) == EO_ERROR_INPUT, "a sampler of no point is refused");
 }
 
 static void test_intervals(void)
 {
   struct eo_rank_interval ranks = eo_order_statistic_ranks(200, 0.95, 0.95);
-  ok(ranks.low == 184 && ranks.high == 197, "ranks of the 95 %% percentile of 200: %d .. %d", ranks.low, ranks.high);
-  close_to(ranks.coverage, 0.9671521638567255, 1e-12, "coverage");
+  ok(ranks.low == 184 && ranks.high == 197, "the ranks of the 95 %% percentile of 200 are %d .. %d", ranks.low,
+     ranks.high);
+  close_to(ranks.coverage, 0.9671521638567255, 1e-12, "coverage of these ranks");
   ranks = eo_order_statistic_ranks(20, 0.99, 0.95);
   ok(ranks.high == 21, "20 values do not bound the 99 %% percentile from above");
   /* Newcombe (1998), table II: 81 of 263, 15 of 148, 0 of 20 */
   struct eo_share_interval share = eo_wilson(81, 263, 0.95);
-  close_to(share.low, 0.2553, 5e-5, "Wilson 81/263 from");
-  close_to(share.high, 0.3662, 5e-5, "Wilson 81/263 to");
+  close_to(share.low, 0.2553, 5e-5, "lower Wilson limit of 81/263");
+  close_to(share.high, 0.3662, 5e-5, "upper Wilson limit of 81/263");
   share = eo_wilson(0, 20, 0.95);
-  close_to(share.high, 0.1611, 5e-5, "Wilson 0/20 to");
+  close_to(share.high, 0.1611, 5e-5, "upper Wilson limit of 0/20");
   share = eo_clopper_pearson(15, 148, 0.95);
-  close_to(share.low, 0.0578, 5e-5, "Clopper-Pearson 15/148 from");
-  close_to(share.high, 0.1617, 5e-5, "Clopper-Pearson 15/148 to");
+  close_to(share.low, 0.0578, 5e-5, "lower Clopper-Pearson limit of 15/148");
+  close_to(share.high, 0.1617, 5e-5, "upper Clopper-Pearson limit of 15/148");
   share = eo_clopper_pearson(0, 20, 0.95);
-  close_to(share.high, 0.1684, 5e-5, "Clopper-Pearson 0/20 to");
+  close_to(share.high, 0.1684, 5e-5, "upper Clopper-Pearson limit of 0/20");
 }
 
 static void test_statistics(void)
@@ -153,16 +154,16 @@ static void test_statistics(void)
   const double tied[] = {3, 1, 3, 2}, percent = 50;
   int count[2];
   struct eo_error error;
-  close_to(eo_percentile(4, sorted, 95), 7.4, 1e-12, "type 7: rank 1 + 3 * 0.95");
-  close_to(eo_summary_of(4, sorted).deviation, sqrt(28.75 / 3), 1e-12, "deviation, divisor n - 1");
+  close_to(eo_percentile(4, sorted, 95), 7.4, 1e-12, "percentile of type 7, rank 1 + 3 * 0.95");
+  close_to(eo_summary_of(4, sorted).deviation, sqrt(28.75 / 3), 1e-12, "deviation with the divisor n - 1");
   eo_ranks(4, tied, rank, &error);
   ok(rank[0] == 3.5 && rank[1] == 1 && rank[2] == 3.5 && rank[3] == 2, "equal values share their rank");
   eo_histogram(4, sorted, 1, 8, 2, count);
-  ok(count[0] == 3 && count[1] == 1, "histogram");
+  ok(count[0] == 3 && count[1] == 1, "the histogram counts every value in its bin");
   struct eo_bootstrap bootstrap = {.percentile = interval};
   eo_bootstrap_run(&bootstrap, 4, sorted, 1, &percent, 0.95, 500, 1, &error);
   ok(bootstrap.mean[0] < 3.75 && bootstrap.mean[1] > 3.75 && interval[0][0] >= 1 && interval[0][1] <= 8,
-     "bootstrap holds the mean: %.3g .. %.3g", bootstrap.mean[0], bootstrap.mean[1]);
+     "the bootstrap's interval holds the mean: %.3g .. %.3g", bootstrap.mean[0], bootstrap.mean[1]);
 }
 
 /* y = 2 + z0 + 0.5 z0^2 + 2 z1 z2 of standard normals: V = 1 + 0.5 + 4. */
@@ -199,23 +200,25 @@ static void test_surface(void)
   eo_sampler_free(sampler);
   for (int d = 0; d < INPUTS; d++)
     moments[d] = d < 3 ? eo_distribution_moments(&normal) : (struct eo_moments){.mean = 5, .fourth = 3};
-  ok(eo_surface_fit(&surface, ROWS, INPUTS, moments, input[0], output, &error) == EO_OK, "surface of 200 rows");
-  close_to(surface.q2, 1, 1e-9, "it carries a quadratic response");
+  ok(eo_surface_fit(&surface, ROWS, INPUTS, moments, input[0], output, &error) == EO_OK,
+     "a surface is fitted to 200 rows");
+  close_to(surface.q2, 1, 1e-9, "part of a quadratic response that the surface carries");
   eo_surface_indices(&surface, first, total);
   close_to(first[0], 1.5 / 5.5, 1e-9, "first index of z0");
   close_to(total[1], 4 / 5.5, 1e-9, "total index of z1");
   close_to(first[1], 0, 1e-9, "first index of z1");
-  ok(first[3] == 0 && total[3] == 0, "what does not vary has none");
+  ok(first[3] == 0 && total[3] == 0, "an input that does not vary has no index");
   eo_surface_done(&surface);
   eo_sobol_indices(quadratic_of_unit, &normal, 3, 2048, 1, first, total, &error);
-  close_to(first[0], 1.5 / 5.5, 0.02, "the same sampled");
-  close_to(total[2], 4 / 5.5, 0.02, "the same sampled");
+  close_to(first[0], 1.5 / 5.5, 0.02, "first index of z0, sampled");
+  close_to(total[2], 4 / 5.5, 0.02, "total index of z2, sampled");
   struct eo_regression regression = {.coefficient = coefficient};
   ok(eo_regression_run(&regression, ROWS, INPUTS, input[0], output, &error) == EO_OK && isnan(coefficient[3]),
      "regression passes over what does not vary");
-  ok(eo_regression_run(&regression, 5, INPUTS, input[0], output, &error) == EO_ERROR_NUMERIC, "too few rows");
+  ok(eo_regression_run(&regression, 5, INPUTS, input[0], output, &error) == EO_ERROR_NUMERIC,
+     "a regression of too few rows is refused");
   ok(eo_surface_fit(&surface, 9, INPUTS, moments, input[0], output, &error) == EO_ERROR_NUMERIC,
-     "too few for a surface");
+     "a surface of too few rows is refused");
   eo_surface_done(&surface);
 }
 
@@ -266,7 +269,7 @@ static void test_scatter(void)
   scatter.input[2].target = EO_TARGET_COMPLIANCE;
   scatter.input[2].nominal = 1;
   scatter.input[2].least = 0.1;
-  ok(eo_scatter_settle(&scatter, &error) == EO_OK && scatter.dimensions == 3, "three inputs");
+  ok(eo_scatter_settle(&scatter, &error) == EO_OK && scatter.dimensions == 3, "three inputs are settled");
   ok(!eo_scatter_is_independent(&scatter), "a fixed sum ties two of them");
   eo_sampler_new(&sampler, EO_SAMPLING_SOBOL, 3, PAIRS, 1, &error);
   for (int i = 0; i < PAIRS; i++) {
@@ -278,11 +281,12 @@ static void test_scatter(void)
     eo_scatter_apply(&scatter, value, member, &compliance, &speed);
   }
   eo_sampler_free(sampler);
-  close_to(over, 0, 1e-12, "the sum stays");
-  close_to(eo_summary_of(PAIRS, column[0]).deviation, 2.4, 0.03, "deviation under a fixed sum");
-  close_to(eo_scatter_moments(&scatter, 1).deviation, 2.4, 1e-12, "of the other one, stated");
-  close_to(member[0], 1e-3 * column[0][PAIRS - 1], 1e-15, "the value stands in the struct");
-  ok(member[2] == 7 && speed == 1 && compliance >= 0.1 && bounded > 500, "a factor has its bound: %d times", bounded);
+  close_to(over, 0, 1e-12, "sum of the two inputs, less the stated one");
+  close_to(eo_summary_of(PAIRS, column[0]).deviation, 2.4, 0.03, "deviation of an input under a fixed sum");
+  close_to(eo_scatter_moments(&scatter, 1).deviation, 2.4, 1e-12, "deviation of the other input of the sum, as stated");
+  close_to(member[0], 1e-3 * column[0][PAIRS - 1], 1e-15, "value of a drawn pair in the struct");
+  ok(member[2] == 7 && speed == 1 && compliance >= 0.1 && bounded > 500,
+     "a drawn factor keeps within its bound: %d times", bounded);
 }
 
 /* A phase about 0 lies on both sides of it: -0.1 of a cycle is 0.9. */
