@@ -63,8 +63,8 @@ static void test_involute(int count)
                   fmax(radius - geometry.tip_radius[plain[i].member], geometry.start_radius[plain[i].member] - radius));
   }
   ok(arm < 1e-10, "normals touch the base cylinder: %.2g m", arm);
-  ok(tilt < 1e-9 && length < 1e-9, "their inclination is the base helix angle, their length one");
-  ok(inside < 1e-10, "from the start of the active profile to the tip: %.2g m", inside);
+  ok(tilt < 1e-9 && length < 1e-9, "the normals' inclination is the base helix angle and their length one");
+  ok(inside < 1e-10, "the points go from the start of the active profile to the tip, within %.2g m", inside);
 }
 
 static void turn(const double position[3], double angle, double turned[3])
@@ -105,7 +105,7 @@ static void test_mesh(int count)
     }
   }
   ok(apart < 1e-6, "pinion and gear touch at every point: %.2g mm apart", apart);
-  ok(opposed < 1e-8, "with opposite normals: %.2g", opposed);
+  ok(opposed < 1e-8, "pinion and gear touch with opposite normals, off by %.2g", opposed);
 }
 
 /* Angle of the unmodified flank of a herringbone pair at a radius and the place of a point on the face, from +y towards
@@ -139,7 +139,8 @@ static void test_modified(int count)
     most = fmax(most, modified[i].removed);
   }
   ok(most > 20 && plain_part < 2e-3, "%.1f um are taken off at most; crowning is there to %.2g um", most, plain_part);
-  ok(excess < 2e-3 && lack < 0.3, "relief is there but for the second order, at most %.0f %%", 100 * lack);
+  ok(excess < 2e-3 && lack < 0.3, "the relief is there but for the second order, which lacks %.0f %% at most",
+     100 * lack);
 }
 
 static int count_lines(const char *format)
@@ -176,9 +177,9 @@ static void test_charts(void)
   struct eo_flank_chart c;
   load("paper-case-a", false);
   eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, false);
-  close_to(nominal_at(&c, c.active[0]), -17e-6, 0.02e-6, "root relief at d_Nf");
-  close_to(nominal_at(&c, c.active[1]), -14e-6, 1e-12, "tip relief at the tip");
-  close_to(nominal_at(&c, c.relief[1]), 0, 0.02e-6, "nothing where the tip relief begins");
+  close_to(nominal_at(&c, c.active[0]), -17e-6, 0.02e-6, "root relief at d_Nf, m");
+  close_to(nominal_at(&c, c.active[1]), -14e-6, 1e-12, "tip relief at the tip, m");
+  close_to(nominal_at(&c, c.relief[1]), 0, 0.02e-6, "relief where the tip relief begins, m");
   close_to(hypot(c.active[1], geometry.base_radius[EO_PINION]), geometry.tip_radius[EO_PINION], 1e-12,
            "the roll length at the tip");
   close_to(hypot(c.active[0], geometry.base_radius[EO_PINION]), geometry.start_radius[EO_PINION], 1e-12,
@@ -194,11 +195,12 @@ static void test_charts(void)
     wide = fmax(wide, c.band[i][0] - c.band[i][1]);
   }
   ok(rising && low == c.range[0] && high == c.range[1], "the band covers the evaluation range and nothing else");
-  close_to(high - low, 0.92 * (c.active[1] - c.active[0]), 1e-12, "92 % of the active length");
+  close_to(high - low, 0.92 * (c.active[1] - c.active[0]), 1e-12,
+           "length of the evaluation range, 92 % of the active one");
   close_to(wide, 13e-6, 1e-12, "F_alpha of d 111.65 mm, m_n 6 mm, grade 6");
   eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_GEAR, EO_RIGHT, true);
-  close_to(c.band[60][0] - c.band[60][1], 15e-6, 1e-12, "F_beta of the gear");
-  close_to(c.range[1] - c.range[0], 49.5e-3, 1e-12, "the face less 5 % at each end");
+  close_to(c.band[60][0] - c.band[60][1], 15e-6, 1e-12, "F_beta of the gear, m");
+  close_to(c.range[1] - c.range[0], 49.5e-3, 1e-12, "length of the band over the face, less 5 % at each end");
   design.gear_pair.face_width = 1e-3;
   eo_flank_chart_find(&c, &design, &geometry, EO_DRIVE_FLANK, EO_GEAR, EO_RIGHT, true);
   ok(isnan(c.band[60][0]) && *c.note, "a face that ISO 1328-1 does not cover has no band: %s", c.note);
@@ -222,8 +224,8 @@ static void test_tolerances(void)
 {
   load("paper", true);
   design.rating.accuracy_grade = 6;
-  close_to(tolerance("F_alpha"), 13, 1e-9, "F_alpha, um");
-  close_to(tolerance("f_Hbeta"), 10, 1e-9, "f_Hbeta, um");
+  close_to(tolerance("F_alpha"), 13, 1e-9, "F_alpha of the other edition, um");
+  close_to(tolerance("f_Hbeta"), 10, 1e-9, "f_Hbeta of the other edition, um");
   design.rating.edition = EO_ISO6336_2019;
   ok(isnan(tolerance("F_alpha")) && tolerance("F_alphaT") > 5, "the other edition has symbols of its own");
 }
@@ -258,23 +260,25 @@ static void test_dimensions(void)
          shift = geometry.profile_shift[EO_PINION], z = geometry.teeth[EO_PINION];
   double transverse = atan(tan(alpha) / cos(geometry.helix_angle));
   double nominal = dimension("pinion", "s_n", "mm", "nominal", note);
-  close_to(dimension("pinion", "d", "mm", "", note), z * module / cos(geometry.helix_angle), 1e-7, "d, mm");
-  close_to(nominal, module * (M_PI / 2 + 2 * shift * tan(alpha)), 1e-8, "s_n, mm");
+  close_to(dimension("pinion", "d", "mm", "", note), z * module / cos(geometry.helix_angle), 1e-7,
+           "reference diameter d, mm");
+  close_to(nominal, module * (M_PI / 2 + 2 * shift * tan(alpha)), 1e-8, "tooth thickness s_n, mm");
   close_to(dimension("pinion", "s_n", "mm", "lower allowance", note), nominal + 1e3 * allowance[1], 1e-8,
-           "s_n with A_sni, mm");
+           "tooth thickness s_n with A_sni, mm");
   double k = dimension("pinion", "k", "", "", note);
   double span = module * cos(alpha) * (M_PI * (k - 0.5) + z * (tan(transverse) - transverse)) +
                 2 * shift * module * sin(alpha) + 1e3 * allowance[0] * cos(alpha);
-  close_to(dimension("pinion", "W_k", "mm", "upper allowance", note), span, 1e-7, "W_k with A_sne, mm");
+  close_to(dimension("pinion", "W_k", "mm", "upper allowance", note), span, 1e-7, "span W_k with A_sne, mm");
   double smallest = dimension("pair", "j_bn", "um", "smallest", note),
          largest = dimension("pair", "j_bn", "um", "largest", note), sum = 0;
   for (int i = 0; i < 2; i++)
     sum += design.gear_pair.thickness_allowance[i][0] - design.gear_pair.thickness_allowance[i][1];
   double apart = 4 * design.gear_pair.centre_distance_allowance * sin(geometry.working_pressure_angle) *
                  cos(geometry.base_helix_angle);
-  close_to(largest - smallest, 1e6 * (sum * cos(alpha) + apart), 1e-6, "range of j_bn, um");
+  close_to(largest - smallest, 1e6 * (sum * cos(alpha) + apart), 1e-6, "range of the backlash j_bn, um");
   geometry.member_width[EO_GEAR] = 1e-3;
-  ok(isnan(dimension("gear", "W_k", "mm", "nominal", note)) && strstr(note, "face"), "no span: %s", note);
+  ok(isnan(dimension("gear", "W_k", "mm", "nominal", note)) && strstr(note, "face"),
+     "a gear without a span says why: %s", note);
 }
 
 static void test_grid(void)
@@ -283,41 +287,45 @@ static void test_grid(void)
   struct eo_error error;
   int lines = 0;
   load("single", false);
-  ok(!eo_export_write(eo_export_find("topography"), &design, &geometry, 5, 7, &text, &error), "a grid of 5 by 7");
+  ok(!eo_export_write(eo_export_find("topography"), &design, &geometry, 5, 7, &text, &error),
+     "a grid of 5 by 7 is exported");
   for (const char *c = text.data; (c = strchr(c, '\n')); c++)
     lines++;
-  ok(lines == 1 + 2 * 5 * 7, "has a row for each of its points on each flank: %d", lines - 1);
+  ok(lines == 1 + 2 * 5 * 7, "the exported grid has a row for each of its points on each flank: %d", lines - 1);
   ok(eo_export_write(eo_export_find("k-chart"), &design, &geometry, 5, 7, &text, &error) == EO_ERROR_INPUT,
-     "what has no grid refuses one: %s", error.text);
+     "a format without a grid refuses one: %s", error.text);
   eo_text_done(&text);
 }
 
 int main(void)
 {
-  ok(load("paper", true), "the paper's pair");
+  ok(load("paper", true), "the paper's pair is loaded");
   int count = read_points(plain);
-  ok(count == MOST_POINTS, "%d points", count);
+  ok(count == MOST_POINTS, "the paper's pair has %d points", count);
   test_involute(count);
   test_mesh(count);
-  ok(load("paper-case-a", false) && read_points(modified) == count, "its optimum");
+  ok(load("paper-case-a", false) && read_points(modified) == count,
+     "the paper's optimum is loaded and has as many points");
   test_modified(count);
-  ok(count_lines("modification-chart") == 1 + 4 * 2 * 61 && count_lines("topography") == 1 + count, "charts");
+  ok(count_lines("modification-chart") == 1 + 4 * 2 * 61 && count_lines("topography") == 1 + count,
+     "the charts of the optimum have all of their lines");
   test_name("Paper pair, Case \"A\"/../x", "paper-pair-case-a-x-topography.csv");
   test_name("\xc3\xa4\xc3\xb6", "topography.csv");
   test_name("", "topography.csv");
   test_name("a name that is much longer than any file's name ought to be, really",
             "a-name-that-is-much-longer-than-any-file-s-n-topography.csv");
-  ok(load("paper", true), "the paper's pair, one end behind the other");
+  ok(load("paper", true), "the pair with one end behind the other is loaded");
   design.alignment.stagger = 0.5;
   test_mesh(read_points(plain));
-  ok(load("shifted", true), "a pair with profile shift");
+  ok(load("shifted", true), "a pair with profile shift is loaded");
   count = read_points(plain);
   test_involute(count);
   test_mesh(count);
-  ok(load("single", true), "a pair with one end");
-  ok(read_points(plain) == MOST_POINTS / 2, "has half the points");
+  ok(load("single", true), "a pair with one end is loaded");
+  ok(read_points(plain) == MOST_POINTS / 2, "a pair with one end has half the points");
   test_mesh(MOST_POINTS / 2);
-  ok(!eo_export_find("picture") && !eo_export_at(9) && eo_export_at(0), "formats");
+  ok(!eo_export_find("picture") && !eo_export_at(9) && eo_export_at(0),
+     "the formats are found by name and number, and no others");
   test_charts();
   test_grid();
   test_tolerances();

@@ -34,7 +34,7 @@ static void refuse(const char *what, const char *modification, const char *point
 {
   struct eo_design design;
   bool good = read_text(modification, &design);
-  ok(!good && faults.count > 0 && strcmp(faults.fault[0].pointer, pointer) == 0, "%s: %s: %s", what,
+  ok(!good && faults.count > 0 && strcmp(faults.fault[0].pointer, pointer) == 0, "the decoder refuses %s: %s: %s", what,
      faults.count ? faults.fault[0].pointer : "", faults.count ? faults.fault[0].text : "");
 }
 
@@ -69,7 +69,7 @@ static void test_kinds(void)
        "a grid is %s %s", word ? word : "measured where nothing is said", faults.count ? faults.fault[0].text : "");
     ok(eo_design_is_unmodified(&design) == (stated[i].kind == EO_GRID_MEASURED) &&
            eo_design_unmodified(&design).flank[EO_PINION][EO_LEFT].grid_gain == -(int)stated[i].kind,
-       "and the unmodified pair has it, or not");
+       "the unmodified pair has a measured grid alone");
     eo_design_problem(&design, &spec, hash[i], &error);
     json_decref(document);
   }
@@ -82,7 +82,7 @@ static void test_kinds(void)
                "\"delta_um\":[[1,2],[3,4]]}}}}",
                &design) &&
          !eo_design_is_unmodified(&design),
-     "more of a measured grid is a modification");
+     "a gain on a measured grid is a modification");
 }
 
 int main(void)

@@ -43,7 +43,7 @@ static void check(const char *document, const char *expected)
 {
   char text[800];
   read(document, text, sizeof text);
-  ok(strcmp(text, expected) == 0, "%s: %s", document, text);
+  ok(strcmp(text, expected) == 0, "%s is read as %s", document, text);
 }
 
 static void check_taken(void)
@@ -105,7 +105,7 @@ static void check_round_trip(const char *document)
   json_t *again = eo_table_encode(&eo_asked_layout_table, request);
   struct eo_text text = {0};
   eo_json_write(&text, again, EO_JSON_COMPACT);
-  ok(faults->count == 0 && written && json_equal(written, again), "written and read again: %s", text.data);
+  ok(faults->count == 0 && written && json_equal(written, again), "a layout is written and read again: %s", text.data);
   eo_text_done(&text);
   json_decref(json);
   json_decref(written);

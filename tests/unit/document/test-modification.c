@@ -67,13 +67,13 @@ static void test_starts(void)
              way[i].value);
     ok(read_text(text, "", &design, NULL), "the start by %s is read %s", way[i].key, faults.fault[0].text);
     double u = eo_relief_start_at(&geometry, EO_PINION, &design.modification.flank[EO_PINION][EO_LEFT], EO_TIP_SIDE);
-    close_to(1e3 * u, 1.5, 2e-5, "and is 1.5 mm on the rack");
+    close_to(1e3 * u, 1.5, 2e-5, "start on the rack by every other key, mm");
   }
   struct eo_profile_place place = eo_profile_place_at(&geometry, EO_PINION, 1.5e-3);
-  close_to(1e3 * place.diameter, 114.690, 5e-4, "diameter of 1.5 mm");
-  close_to(place.roll_angle * 180 / M_PI, 27.035, 5e-4, "its roll angle");
-  close_to(1e3 * place.roll_length, 24.471, 5e-4, "its roll length");
-  close_to(1e3 * place.length[EO_TIP_SIDE], 9.187, 5e-4, "its length of relief from the tip");
+  close_to(1e3 * place.diameter, 114.690, 5e-4, "diameter of 1.5 mm on the rack, mm");
+  close_to(place.roll_angle * 180 / M_PI, 27.035, 5e-4, "roll angle of 1.5 mm on the rack, deg");
+  close_to(1e3 * place.roll_length, 24.471, 5e-4, "roll length of 1.5 mm on the rack, mm");
+  close_to(1e3 * place.length[EO_TIP_SIDE], 9.187, 5e-4, "length of relief from the tip of 1.5 mm on the rack");
   double worst = 0;
   for (int member = 0; member < 2; member++)
     for (int side = 0; side < 2; side++)
@@ -85,14 +85,14 @@ static void test_starts(void)
         (&flank.place[side].diameter)[form] = form_value[form];
         worst = fmax(worst, fabs(eo_relief_start_at(&geometry, member, &flank, side) - u));
       }
-  close_to(1e6 * worst, 0, 1e-9, "there and back on both members and sides, um");
+  close_to(1e6 * worst, 0, 1e-9, "starts there and back on both members and sides, um");
 }
 
 static void refuse(const char *what, const char *modification, const char *more, const char *pointer)
 {
   struct eo_design design;
   bool good = read_text(modification, more, &design, NULL);
-  ok(!good && faults.count > 0 && strcmp(faults.fault[0].pointer, pointer) == 0, "%s: %s: %s", what,
+  ok(!good && faults.count > 0 && strcmp(faults.fault[0].pointer, pointer) == 0, "the decoder refuses %s: %s: %s", what,
      faults.count ? faults.fault[0].pointer : "", faults.count ? faults.fault[0].text : "");
 }
 
@@ -160,7 +160,7 @@ static void test_gain(void)
              b = eo_modification_profile(&slice[1], 1e-3 * i, other);
       worst = fmax(worst, fmax(fabs(a - b), 1e-3 * fabs(slope[0] - other[0])));
     }
-  close_to(1e6 * worst, 0, 1e-9, "a gain of a half lays on half as much again, um");
+  close_to(1e6 * worst, 0, 1e-9, "delta of a grid under a gain of a half, half as much again, um");
   for (int i = 0; i < 2; i++)
     eo_flank_spline_free(spline[i]);
   refuse("a gain of no grid", "{\"pinion\":{\"left\":{\"grid_gain\":0.5}}}", "", "/modification/pinion/left/grid_gain");
@@ -193,12 +193,12 @@ static void test_fold(void)
   flank->root_relief = 80e-6;
   const char *text = fold_found(&folded), *most = text ? strstr(text, "Up to ") : NULL;
   double amount = most ? 1e-6 * strtod(most + 6, NULL) : 0;
-  ok(amount > 1e-6 && amount < 80e-6 && strstr(text, "The flank folds between the diameters 104."), "a fold: %s",
-     text ? text : "not found");
+  ok(amount > 1e-6 && amount < 80e-6 && strstr(text, "The flank folds between the diameters 104."),
+     "a steep relief folds: %s", text ? text : "not found");
   flank->root_relief = 0.99 * amount;
-  ok(!fold_found(&folded), "a little less than that does not fold");
+  ok(!fold_found(&folded), "a little less relief does not fold");
   flank->root_relief = 1.01 * amount;
-  ok(fold_found(&folded) != NULL, "a little more does");
+  ok(fold_found(&folded) != NULL, "a little more relief folds");
 }
 
 /* deviations by name against the formulas of their definition. */
@@ -227,14 +227,14 @@ static void test_terms(void)
                      9e-6 * pow(fmax(0, leading), 3) + 11e-6 * pow(fmax(0, corner), 2);
       worst = fmax(worst, fabs(eo_modification_at(&shape, u, y) - delta));
     }
-  close_to(1e6 * worst, 0, 1e-9, "terms by name are their formulas, um");
+  close_to(1e6 * worst, 0, 1e-9, "difference between the terms by name and their formulas, um");
   eo_modification_complete(&shape, NULL, true);
   near(eo_modification_at(&shape, 1e-3, 20e-3), ({
          struct eo_modification_shape plain;
          eo_modification_init(&plain, &geometry, EO_GEAR, &flank);
          eo_modification_at(&plain, 1e-3, -20e-3);
        }),
-       1e-12, "on a coast flank y runs against eta");
+       1e-12, "terms of a coast flank, whose y runs against eta");
 }
 
 /* What makes a surface smooth: knots met, slope and curvature continuous, straight at the border, constant beyond. */
@@ -252,11 +252,11 @@ static void test_spline(void)
     for (int j = 0; j < Y; j++)
       delta[i * Y + j] = 1e-6 * sin(i * 1.7 + j * 0.9);
   struct eo_flank_grid grid = {.u_knots = U, .y_knots = Y, .u = u, .y = y, .delta = delta};
-  ok(eo_flank_spline_new(&spline, &grid, &error) == EO_OK, "a spline");
+  ok(eo_flank_spline_new(&spline, &grid, &error) == EO_OK, "a spline is laid through a grid");
   for (int i = 0; i < U; i++)
     for (int j = 0; j < Y; j++)
       worst = fmax(worst, fabs(eo_flank_spline_at(spline, u[i], y[j], NULL) - delta[i * Y + j]));
-  close_to(1e6 * worst, 0, 1e-12, "goes through its knots, um");
+  close_to(1e6 * worst, 0, 1e-12, "difference of the spline from its knots, um");
   double h = 1e-7, kink = 0, bend = 0;
   for (int i = 1; i < U - 1; i++) {
     eo_flank_spline_at(spline, u[i], 7e-3, slope);
@@ -265,14 +265,15 @@ static void test_spline(void)
     kink = fmax(kink, fabs(slope[1] - slope[0]));
     bend = fmax(bend, fabs(after[0] - 2 * slope[0] + before[0]));
   }
-  close_to(kink, 0, 0, "without a kink at any knot");
-  close_to(bend, 0, 1e-9, "and without a jump of the curvature");
+  close_to(kink, 0, 0, "kink of the spline at its knots");
+  close_to(bend, 0, 1e-9, "jump of its curvature at its knots");
   eo_flank_spline_at(spline, u[0], 0, slope);
   eo_flank_spline_at(spline, u[0] + h, 0, after);
   eo_flank_spline_at(spline, u[1], 0, before);
-  ok(fabs(after[0] - slope[1]) < 1e-3 * fabs(before[0] - slope[1]), "straight at the border");
-  close_to(eo_flank_spline_at(spline, u[0] - 1e-3, y[2], slope), delta[2], 1e-18, "constant beyond it");
-  ok(slope[0] == 0 && slope[1] == 0, "with no slope");
+  ok(fabs(after[0] - slope[1]) < 1e-3 * fabs(before[0] - slope[1]), "the spline is straight at the border");
+  close_to(eo_flank_spline_at(spline, u[0] - 1e-3, y[2], slope), delta[2], 1e-18,
+           "value of the spline beyond the border, m");
+  ok(slope[0] == 0 && slope[1] == 0, "the spline has no slope beyond the border");
   double across = 0;
   for (int i = 0; i < 20; i++) {
     double place = y[0] + (y[Y - 1] - y[0]) * (i + 0.5) / 20;
@@ -281,8 +282,8 @@ static void test_spline(void)
                                 eo_flank_spline_at(spline, u[2] * 1.1, place - h, NULL)) /
                                    (2 * h)));
   }
-  close_to(across, 0, 1e-9, "its derivative over the face");
-  ok(eo_flank_spline_across(spline, u[2], y[0] - 1e-9) == 0, "which is none beyond the border");
+  close_to(across, 0, 1e-9, "difference of the spline's slope over the face from its values");
+  ok(eo_flank_spline_across(spline, u[2], y[0] - 1e-9) == 0, "the spline has no slope over the face beyond the border");
   eo_flank_spline_free(spline);
 }
 
@@ -306,7 +307,7 @@ static void test_slopes_at_border(void)
   for (int side = -1; side <= 1; side += 2) {
     eo_surface_relief(&shape, end[1] - 1e-3 + side * 1e-8, y / cosine, slope);
     close_to(slope[0], side > 0 ? 5e-3 : 0, 1e-15, "slope along the profile 10 nm from a border");
-    close_to(slope[1], side > 0 ? 2e-3 * cosine : 0, 1e-15, "and over the face");
+    close_to(slope[1], side > 0 ? 2e-3 * cosine : 0, 1e-15, "slope over the face 10 nm from a border");
   }
 }
 
@@ -321,7 +322,7 @@ static void test_grid_document(void)
   ok(read_text(csv, "", &design, NULL), "a table with decimal commas is read %s", faults.fault[0].text);
   struct eo_flank_grid grid = eo_flank_grid_at(&design.grids, EO_DRIVE_FLANK, EO_PINION, EO_LEFT);
   ok(grid.u_knots == 3 && grid.y_knots == 3 && grid.y[2] == 20.5e-3 && grid.u[2] == 2.25e-3 && grid.delta[6] == -1e-6,
-     "with its numbers");
+     "a table with decimal commas gives its numbers");
   json_t *document = eo_design_encode(&design);
   ok(document && json_object_get(json_object_get(json_object_get(json_object_get(json_object_get(document, "modificati"
                                                                                                            "on"),
@@ -329,7 +330,7 @@ static void test_grid_document(void)
                                                                  "right"),
                                                  "coast"),
                                  "grid"),
-     "and the coast flank's");
+     "a grid of the coast flank is written to the document");
   faults.count = 0;
   ok(document && eo_design_decode(document, &back, NULL, &faults) && !eo_design_complete(&back, &geometry, &error) &&
          eo_flank_grids_equal(&design.grids, &back.grids),
@@ -338,7 +339,8 @@ static void test_grid_document(void)
   struct eo_text text = {0};
   eo_flank_grid_to_text(&grid, &text);
   json_t *again = eo_flank_grid_from_text(text.data, &error);
-  ok(again && json_array_size(json_object_get(again, "delta_um")) == 3, "and as text: %.30s", text.data);
+  ok(again && json_array_size(json_object_get(again, "delta_um")) == 3,
+     "a grid is written as text and read again: %.30s", text.data);
   json_decref(again);
   eo_text_done(&text);
   char hash[2][EO_HASH_LENGTH + 1];
@@ -363,16 +365,17 @@ static void test_export(void)
   ok(read_text("{\"gear\":{\"left\":{\"coast\":{\"tip_relief_um\":9,\"twist_um\":8,\"lead_crowning_um\":4}}}}", "",
                &design, NULL) &&
          !eo_export_write(eo_export_find("flank-grids"), &design, &geometry, 15, 9, &text, &error),
-     "flanks as tables");
+     "a pair's flanks are exported as tables");
   char *from = text.data ? strstr(text.data, "# gear, left, coast") : NULL,
        *to = from ? strstr(from + 1, "\n# ") : NULL;
-  if (!ok(from && to, "one for each"))
+  if (!ok(from && to, "the export holds one table for each flank"))
     return;
   *to = 0;
   json_t *csv = json_pack("{s:s}", "csv", from),
          *dumped = json_pack("{s:{s:{s:{s:o}}}}", "gear", "left", "coast", "grid", csv);
   char *written = json_dumps(dumped, JSON_COMPACT);
-  ok(read_text(written, "", &back, NULL), "its table is a grid %s", faults.count ? faults.fault[0].text : "");
+  ok(read_text(written, "", &back, NULL), "the exported table is read as a grid %s",
+     faults.count ? faults.fault[0].text : "");
   eo_modification_init(&shape, &geometry, EO_GEAR, &design.modification.coast[EO_GEAR][EO_LEFT]);
   eo_flank_shape(&back, &geometry, EO_COAST_FLANK, EO_GEAR, EO_LEFT, &again, &spline);
   eo_active_profile(&geometry, EO_GEAR, end);
@@ -383,7 +386,7 @@ static void test_export(void)
       double u = end[0] + (end[1] - end[0]) * i / 14, y = geometry.face_width * (j / 8. - 0.5);
       worst = fmax(worst, fabs(eo_modification_at(&shape, u, y) - eo_modification_at(&again, u, y)));
     }
-  close_to(1e6 * worst, 0, 1e-4, "and takes off the same at its knots, um");
+  close_to(1e6 * worst, 0, 1e-4, "difference of the exported grid from its flank at the knots, um");
   eo_flank_spline_free(spline);
   free(written);
   json_decref(dumped);
@@ -400,20 +403,22 @@ static void test_migration(void)
                &design, &warnings),
      "an older document is read %s", faults.fault[0].text);
   near(design.modification.flank[EO_PINION][EO_LEFT].helix_slope, 6e-6, 1e-12,
-       "lead_slope_um 3 is helix_slope_um 6: the same flank");
-  ok(warnings.count == 1 && strstr(warnings.text[0], "helix_slope_um"), "with a note: %s", warnings.text[0]);
+       "slope of lead_slope_um 3 over that of helix_slope_um 6");
+  ok(warnings.count == 1 && strstr(warnings.text[0], "helix_slope_um"), "a warning tells of the older name: %s",
+     warnings.text[0]);
   ok(strcmp(eo_variable_parameters[design.optimization.list[0].parameter], "helix_slope_um") == 0 &&
          design.optimization.list[0].bounds.low == -8 && design.optimization.list[0].bounds.high == 10,
-     "and so is the variable of its search");
+     "the older variable of a search is read by its new name");
   struct eo_modification_shape shape;
   double slope;
   eo_modification_init(&shape, &geometry, EO_PINION, &design.modification.flank[EO_PINION][EO_LEFT]);
-  near(eo_modification_lead(&shape, shape.half_width, &slope), 3e-6, 1e-12, "3 um at the face end, as it was");
+  near(eo_modification_lead(&shape, shape.half_width, &slope), 3e-6, 1e-12,
+       "lead slope of an older document at the face end, m");
   struct eo_modification read;
   struct eo_error error;
   ok(!eo_modification_read("{\"gear\":{\"right\":{\"lead_slope_um\":-2}}}", &read, &error) &&
          fabs(read.flank[EO_GEAR][EO_RIGHT].helix_slope + 4e-6) < 1e-18,
-     "rows of an older history likewise");
+     "rows of an older history are read by the new name");
 }
 
 static void test_hours(void)
@@ -443,8 +448,9 @@ static void test_space(void)
                "{\"parameter\":\"root_relief_diameter_mm\",\"bounds\":[104.8,111.5]},"
                "{\"flank\":\"both\",\"parameter\":\"twist_um\",\"bounds\":[-5,5]}]}",
                &design, NULL),
-     "a search over diameters %s", faults.count ? faults.fault[0].text : "");
-  ok(eo_study_space_init(&space, &design, &geometry, &error) == EO_OK && space.count == 6, "has its variables");
+     "a search over diameters is read %s", faults.count ? faults.fault[0].text : "");
+  ok(eo_study_space_init(&space, &design, &geometry, &error) == EO_OK && space.count == 6,
+     "a search over diameters has its variables");
   const double wanted[6] = {14e-6, 17e-6, 12e-6, 1.6e-3, -3.5e-3, 2e-6};
   double x[6] = {14. / 40,
                  17. / 40,
@@ -466,13 +472,13 @@ static void test_space(void)
     near(got[i], wanted[i], 1e-6, "a variable of case A");
   ok(eo_study_space_locate(&space, &design.modification, &m, back) && fabs(back[3] - x[3]) < 1e-12 &&
          fabs(back[5] - 0.7) < 1e-12,
-     "there and back");
+     "a row of the search is found again from its modification");
   struct eo_text text = {0};
   struct eo_modification read;
   ok(!eo_modification_write(&m, 2, &text, &error) && !eo_modification_read(text.data, &read, &error) &&
          eo_modification_equal(&read.flank[EO_PINION][EO_LEFT], &m.flank[EO_PINION][EO_LEFT]) &&
          eo_modification_equal(&read.coast[EO_PINION][EO_RIGHT], &m.coast[EO_PINION][EO_RIGHT]),
-     "as a row of the history too");
+     "a row of the history is read as one of the search");
   eo_text_done(&text);
 }
 
