@@ -127,8 +127,9 @@ static void check_round_trip(const char *name, int version, enum eo_rexs_form fo
   struct eo_text text = write_file(version, form, true);
   struct eo_import import = read_file(&text);
   json_t *expected = eo_design_encode(&design), *found = complete(import.design);
-  ok(found && json_equal(expected, found), "%s, %d, %s: the same design", name, version, forms[form]);
-  ok(import.faults == 0 && json_array_size(import.refused) == 0, "%s: nothing is refused", name);
+  ok(found && json_equal(expected, found), "%s in REXS, %d, %s comes back as the same design", name, version,
+     forms[form]);
+  ok(import.faults == 0 && json_array_size(import.refused) == 0, "%s: no word of it is refused", name);
   json_decref(expected);
   json_decref(found);
   eo_import_done(&import);
@@ -148,7 +149,7 @@ static void check_plain(const char *name, int version)
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     close_to(found ? difference(json_object_get(expected, parts[i]), json_object_get(found, parts[i])) : 1, 0, 1e-9,
              parts[i]);
-  ok(strstr(text.data, "custom_easeoff_design") == NULL, "%s: in REXS's own words", name);
+  ok(strstr(text.data, "custom_easeoff_design") == NULL, "%s is written in REXS's own words", name);
   json_decref(expected);
   json_decref(found);
   eo_import_done(&import);
@@ -161,8 +162,8 @@ static void check_design(const char *name)
   for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
     struct eo_rexs_model model = {0};
     eo_rexs_export(&design, &geometry, versions[i], true, &model);
-    ok(check_model(&model, versions[i]) == 0, "%s as %s: types, units, ranges, words and roles of the schema", name,
-       model.version);
+    ok(check_model(&model, versions[i]) == 0,
+       "%s in REXS %s keeps to types, units, ranges, words and roles of the schema", name, model.version);
     eo_rexs_done(&model);
   }
   for (int form = 0; form < 3; form++) {
@@ -192,7 +193,7 @@ static void check_hands(void)
     json_t *found = complete(import.design), *expected = eo_design_encode(&design);
     ok(found && json_equal(eo_json_find(found, "gear_pair/hand"), eo_json_find(expected, "gear_pair/hand")) &&
            json_equal(eo_json_find(found, "alignment/apex"), eo_json_find(expected, "alignment/apex")),
-       "%s, %s hand, apex %d: out and in", names[i & 1], hands[i >> 1 & 1], i >> 2);
+       "%s with %s hand and apex %d comes back as it was", names[i & 1], hands[i >> 1 & 1], i >> 2);
     static const char *const parts[] = {"shafts/pinion_left_bearing_mm", "shafts/pinion_right_bearing_mm",
                                         "modification/pinion/left/helix_slope_um"};
     for (int k = 0; k < 3; k++)
@@ -218,15 +219,16 @@ static void check_edited(void)
   build("paper-case-b");
   struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, true);
   char *depth = strstr(text.data, ">0.013");
-  if (!ok(depth != NULL, "a relief of 13 um is in the file"))
+  if (!ok(depth != NULL, "the relief of 13 um is written to the file"))
     return;
   memcpy(depth, ">0.015", 6);
   struct eo_import import = read_file(&text);
   const json_t *flank = json_object_get(
       json_object_get(json_object_get(json_object_get(import.design, "modification"), "pinion"), "left"),
       "tip_relief_um");
-  ok(says(import.notes, "says something else by now"), "an edited file: its own design is left");
-  close_to(json_number_value(flank), 15, 1e-9, "an edited file: the relief is the edited one");
+  ok(says(import.notes, "says something else by now"),
+     "the design inside a file is not taken once the file was edited");
+  close_to(json_number_value(flank), 15, 1e-9, "relief of an edited file, um");
   eo_import_done(&import);
   eo_text_done(&text);
 }
@@ -265,14 +267,14 @@ static void check_empty(void)
   struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
   char *value = strstr(text.data, "\"minimum_normal_backlash\"");
   value = value ? strchr(value, '>') : NULL;
-  if (!ok(value != NULL, "a backlash is in the file"))
+  if (!ok(value != NULL, "the backlash is written to the file"))
     return;
   char *end = strchr(value, '<');
   memmove(value + 1, end, strlen(end) + 1);
   text.size -= (size_t)(end - value - 1);
   struct eo_import import = read_file(&text);
   ok(import.design && import.faults == 0, "an attribute without a value is not stated");
-  ok(says(import.notes, "minimum_normal_backlash has no value"), "... and named");
+  ok(says(import.notes, "minimum_normal_backlash has no value"), "an attribute without a value is named");
   eo_import_done(&import);
   eo_text_done(&text);
 }
@@ -281,7 +283,7 @@ static void check_empty(void)
 static bool replace(struct eo_text *text, const char *old, const char *new)
 {
   char *at = strstr(text->data, old);
-  if (!ok(at != NULL, "the file says %s", old))
+  if (!ok(at != NULL, "the file holds the text to be edited: %s", old))
     return false;
   struct eo_text made = {0};
   eo_text_print(&made, "%.*s%s%s", (int)(at - text->data), text->data, new, at + strlen(old));
@@ -301,8 +303,8 @@ static void check_name(void)
   if (replace(&text, "cylindrical_stage\" name=\"mesh", name)) {
     struct eo_import import = read_file(&text);
     json_t *answer = eo_import_encode(&import);
-    ok(import.pairs == 1 && answer && strstr(import.pair[0].label, "\xC3\xA4..."), "the stage's name, shortened: %s",
-       import.pairs ? import.pair[0].label : "no pair");
+    ok(import.pairs == 1 && answer && strstr(import.pair[0].label, "\xC3\xA4..."),
+       "a long name of a stage is shortened: %s", import.pairs ? import.pair[0].label : "no pair");
     json_decref(answer);
     eo_import_done(&import);
   }
@@ -319,7 +321,7 @@ static void check_impossible(void)
     json_t *answer = eo_import_encode(&import), *fault = json_array_get(json_object_get(answer, "faults"), 0);
     ok(import.faults == 1 && strcmp(import.fault[0].kind, "not_a_pair") == 0 && json_object_size(fault) == 3 &&
            json_is_string(json_object_get(fault, "key")),
-       "a pair that cannot be made: %s", import.faults ? import.fault[0].text : "no fault");
+       "a pair that cannot be made is refused: %s", import.faults ? import.fault[0].text : "no fault");
     json_decref(answer);
     eo_import_done(&import);
   }
@@ -334,17 +336,19 @@ static void check_generated(void)
   const double shift[2] = {design.gear_pair.profile_shift[0] - 0.05, design.gear_pair.profile_shift[1] + 0.03};
   design.gear_pair.generating_offset[0] = -0.05;
   design.gear_pair.generating_offset[1] = 0.03;
-  ok(!eo_design_complete(&design, &geometry, &error), "roots of their own shift");
+  ok(!eo_design_complete(&design, &geometry, &error), "a pair with roots of their own shift is completed");
   struct eo_text text = write_file(EO_REXS_EXPORT_VERSION, EO_REXS_XML, false);
   struct eo_import import = read_file(&text);
   close_to(eo_json_find_number(import.design, "gear_pair/pinion_generating_shift"), shift[0], 1e-9,
-           "x_E of the pinion");
-  close_to(eo_json_find_number(import.design, "gear_pair/gear_generating_shift"), shift[1], 1e-9, "x_E of the gear");
-  ok(!says(import.not_used, "root_diameter"), "their root circles are those of the file");
+           "generating shift x_E of the pinion");
+  close_to(eo_json_find_number(import.design, "gear_pair/gear_generating_shift"), shift[1], 1e-9,
+           "generating shift x_E of the gear");
+  ok(!says(import.not_used, "root_diameter"), "the root circles are those of the file");
   eo_import_done(&import);
   if (replace(&text, "\"root_diameter\" unit=\"mm\">", "\"root_diameter\" unit=\"mm\">1")) {
     import = read_file(&text);
-    ok(import.design && says(import.not_used, "root_diameter of cylindrical_gear"), "a root circle that contradicts");
+    ok(import.design && says(import.not_used, "root_diameter of cylindrical_gear"),
+       "a root circle that contradicts is named and not used");
     eo_import_done(&import);
   }
   eo_text_done(&text);
@@ -381,7 +385,7 @@ static void check_units(void)
       struct eo_import import = read_file(&text);
       ok(rows[i].fault ? import.faults && strcmp(import.fault[0].kind, rows[i].fault) == 0
                        : import.design && says(import.notes, "It was taken as that"),
-         "%s for %s is %s %s", rows[i].given, rows[i].written, rows[i].fault ? "a fault," : "taken and said",
+         "%s for %s is read as %s %s", rows[i].given, rows[i].written, rows[i].fault ? "a fault," : "taken and said",
          import.faults ? import.fault[0].kind : "");
       eo_import_done(&import);
     }
@@ -404,8 +408,8 @@ static void check_topography(void)
     grids += eo_rexs_is(&model.component[i], "topographical_modification");
     reliefs += eo_rexs_is(&model.component[i], "tip_relief");
   }
-  ok(grids == 1 && reliefs == 1, "%d topography beside %d relief of the other end", grids, reliefs);
-  ok(check_model(&model, EO_REXS_EXPORT_VERSION) == 0, "a topography by the schema");
+  ok(grids == 1 && reliefs == 1, "the file holds %d topography beside %d relief of the other end", grids, reliefs);
+  ok(check_model(&model, EO_REXS_EXPORT_VERSION) == 0, "a topography keeps to the schema");
   eo_rexs_done(&model);
 }
 
@@ -453,16 +457,17 @@ static struct eo_text make_bomb(size_t size)
 static void check_hostile(void)
 {
   struct eo_text bomb = make_bomb((size_t)200 << 20);
-  ok(bomb.size < 1 << 20, "200 MB of blanks in an archive of %zu KB", bomb.size >> 10);
-  ok(refuses(bomb.data, bomb.size, "too_large"), "an archive that grows without measure");
+  ok(bomb.size < 1 << 20, "200 MB of blanks in an archive of %zu KB are refused", bomb.size >> 10);
+  ok(refuses(bomb.data, bomb.size, "too_large"), "an archive that grows without measure is refused");
   eo_text_done(&bomb);
   static const char entity[] = "<?xml version=\"1.0\"?><!DOCTYPE model SYSTEM \"file:///etc/passwd\"><model/>";
-  ok(refuses(entity, sizeof entity - 1, "document_type"), "a document type of another file");
+  ok(refuses(entity, sizeof entity - 1, "document_type"), "a document type of another file is refused");
   static const char other[] = "<html><body/></html>";
-  ok(refuses(other, sizeof other - 1, "not_rexs"), "XML of another kind");
+  ok(refuses(other, sizeof other - 1, "not_rexs"), "XML of another kind is refused");
   static const char huge[] = "<model version=\"1.7\"><components><component id=\"99999999999\" type=\"shaft\"/>";
-  ok(refuses(huge, sizeof huge - 1, "wrong_id"), "an id beyond all numbers");
-  ok(refuses("PK\003\004", 4, "not_well_formed") || refuses("PK\003\004xx", 6, "damaged_archive"), "half an archive");
+  ok(refuses(huge, sizeof huge - 1, "wrong_id"), "an id beyond all numbers is refused");
+  ok(refuses("PK\003\004", 4, "not_well_formed") || refuses("PK\003\004xx", 6, "damaged_archive"),
+     "half an archive is refused");
 }
 
 /* Numbers in Base64, in both forms. */
@@ -481,7 +486,7 @@ static void check_coded(void)
     struct eo_rexs_problem problem;
     bool read = eo_rexs_read(&model, text[i], strlen(text[i]), &problem);
     const struct eo_rexs_attribute *a = read ? eo_rexs_attribute(&model.component[0], "support_vector") : NULL;
-    ok(a && a->count == 2 && a->value[0] == 1 && a->value[1] == -2, "numbers in Base64: 1 and -2");
+    ok(a && a->count == 2 && a->value[0] == 1 && a->value[1] == -2, "numbers in Base64 are read as 1 and -2");
     eo_rexs_done(&model);
   }
 }

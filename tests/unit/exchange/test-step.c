@@ -130,12 +130,13 @@ static void check_file(const char *name, int faces, int shells)
   struct eo_text text = {0};
   build(name);
   eo_step_write(&design, &geometry, EO_PINION, false, &text);
-  ok(!text.failed && strstr(text.data, "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"), "%s: a file of AP242", name);
+  ok(!text.failed && strstr(text.data, "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"),
+     "%s is written as a file of AP242", name);
   struct listing l = list_instances(text.data);
-  ok(l.wrong == 0, "%s: %d instances in order, each reference to one before", name, l.instances);
-  ok(check_splines(&l) == 0, "%s: knots and multiplicities", name);
-  ok(l.faces == faces && l.shells == shells, "%s: %d faces in %d shells, expected %d in %d", name, l.faces, l.shells,
-     faces, shells);
+  ok(l.wrong == 0, "%s: %d instances stand in order, each reference to one before", name, l.instances);
+  ok(check_splines(&l) == 0, "%s: the knots of every spline agree with its multiplicities", name);
+  ok(l.faces == faces && l.shells == shells, "%s: the file has %d faces in %d shells, expected %d in %d", name, l.faces,
+     l.shells, faces, shells);
   free(l.at);
   eo_text_done(&text);
 }
@@ -175,7 +176,8 @@ static void check_frame(const char *name, bool coast)
     compared++;
   }
   ok(compared > 200 && largest < 1e-7 && (coasts > 0) == coast,
-     "%s: %d points as flank-points has them, within %.1g mm, %d of coast flanks", name, compared, largest, coasts);
+     "%s: %d points lie where flank-points has them, within %.1g mm, %d of coast flanks", name, compared, largest,
+     coasts);
   eo_text_done(&text);
 }
 
@@ -199,8 +201,8 @@ static void check_coast_slope(void)
         for (int i = 0; i < 3; i++)
           off[side] += (at[i] - moved[i]) * normal[i];
       }
-      close_to(1e6 * off[1], 20, 0.5, "off the outer end of a coast flank, um");
-      close_to(1e6 * off[0], -20, 0.5, "and on at the inner one");
+      close_to(1e6 * off[1], 20, 0.5, "material off the outer end of a coast flank, um");
+      close_to(1e6 * off[0], -20, 0.5, "material on at its inner end, um");
       design.modification.coast[member][end].helix_slope = 0;
     }
 }
@@ -229,7 +231,7 @@ static void check_hand(const char *name, const char *left_hand, enum eo_apex wan
       wrong += !(-normal[0] * rotation > 0);
       wrong += member == EO_PINION && !((angle[1] - angle[0]) * rotation * first > 0);
     }
-  ok(wrong == 0, "%s, %s hand, apex %s: helix, flank and first face of every end", name, left_hand,
+  ok(wrong == 0, "%s, %s hand, apex %s: helix, flank and first face of every end agree", name, left_hand,
      wanted == EO_APEX_LEADING ? "leading" : "trailing");
   check_frame(name, true);
   hand = "";
@@ -277,8 +279,8 @@ static void check_tooth(const char *name)
                       (M_PI / 2 + 2 * geometry.profile_shift[member] * tan(geometry.normal_pressure_angle));
     thickness = fmax(thickness, fabs(angle * geometry.reference_radius[member] - expected));
   }
-  close_to(gap, 0, 1e-9, "flanks, roots and tip land meet, m");
-  close_to(thickness, 0, 1e-9, "thickness at the reference circle, m");
+  close_to(gap, 0, 1e-9, "gap between flanks, roots and tip land, m");
+  close_to(thickness, 0, 1e-9, "tooth thickness at the reference circle, m");
 }
 
 /* OpenCASCADE: */
@@ -317,8 +319,8 @@ static void check_loaded(const char *name, int member)
   if (mesh)
     fclose(mesh);
   remove_mesh(folder);
-  ok(nodes > 100 && largest <= allowed, "%s: OpenCASCADE meshes it; %d nodes within %.2g nm of the exact surface", name,
-     nodes, 1e9 * largest);
+  ok(nodes > 100 && largest <= allowed,
+     "%s: OpenCASCADE meshes the tooth; %d nodes lie within %.2g nm of the exact surface", name, nodes, 1e9 * largest);
 }
 
 /* Pieces of a flank with kinks lie on the surface that eo_tooth_point() has, what corners of the rack sweep between
@@ -363,12 +365,12 @@ static void check_pieces(const char *what, bool folds, bool begins_behind)
       }
       eo_tooth_done(&tooth);
     }
-  ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, within %.2g nm of the exact flank", what, pieces, swept,
+  ok(largest < 1e-9, "%s: %d pieces, %d swept by a corner, lie within %.2g nm of the exact flank", what, pieces, swept,
      1e9 * largest);
   ok((behind > 0) == begins_behind, "%s: %d rows begin behind a fold at the root", what, behind);
   ok(off_circle < 1e-9, "%s: the flank ends on the tip circle, within %.2g nm", what, 1e9 * off_circle);
-  ok(rest < 2e-9, "%s: pieces are what the rack leaves, within %.2g nm", what, 1e9 * rest);
-  ok(gap < allowed / 2, "%s: pieces meet within %.2g nm, normal", what, 1e9 * gap);
+  ok(rest < 2e-9, "%s: the pieces are what the rack leaves, within %.2g nm", what, 1e9 * rest);
+  ok(gap < allowed / 2, "%s: the pieces meet within %.2g nm, along the normal", what, 1e9 * gap);
   for (int member = 0; member < 2; member++) {
     struct eo_text text = {0};
     eo_step_write(&design, &geometry, member, false, &text);
@@ -377,8 +379,8 @@ static void check_pieces(const char *what, bool folds, bool begins_behind)
     int wrong = check_loops(&l);
     ok(wrong == 0, "%s: %d of %d faces are lines", what, wrong, l.faces);
     free(l.at);
-    ok(!text.failed && text.size < 1500000 && !word, "%s: %zu bytes, every spline within 5 nm %.60s", what, text.size,
-       word ? word : "");
+    ok(!text.failed && text.size < 1500000 && !word,
+       "%s: the file has %zu bytes, and every spline is within 5 nm %.60s", what, text.size, word ? word : "");
     eo_text_done(&text);
   }
 }
@@ -459,7 +461,8 @@ static void check_stl(const char *name, const char *format, double low, double h
   eo_exports_find(format)->write(&design, &geometry, &text);
   uint32_t count;
   memcpy(&count, text.data + 80, sizeof count);
-  ok(text.size == 84 + 50 * (size_t)count && strncmp(text.data, "solid", 5) != 0, "%s: %u triangles", format, count);
+  ok(text.size == 84 + 50 * (size_t)count && strncmp(text.data, "solid", 5) != 0, "%s: the file holds %u triangles",
+     format, count);
   for (uint32_t i = 0; i < count; i++) {
     double v[3][3], cross[3];
     for (int k = 0; k < 9; k++)
@@ -472,8 +475,9 @@ static void check_stl(const char *name, const char *format, double low, double h
     }
     area += sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]) / 2;
   }
-  close_to((fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2])) / area, 0, 1e-6, "closed: sum of areas times normals");
-  ok(volume > low && volume < high, "%s: volume %.6g mm3, expected %.4g .. %.4g", format, volume, low, high);
+  close_to((fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2])) / area, 0, 1e-6,
+           "sum of areas times normals, 0 for a closed body");
+  ok(volume > low && volume < high, "%s: the volume is %.6g mm3, expected %.4g .. %.4g", format, volume, low, high);
   eo_text_done(&text);
 }
 

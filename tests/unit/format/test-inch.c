@@ -52,7 +52,7 @@ static void test_sentences(void)
     struct eo_text text = {0};
     eo_inch_sentence(&text, pair[i].metric);
     const char *made = text.data ? text.data : "";
-    ok(strcmp(made, pair[i].inch) == 0, "a sentence: %s", made);
+    ok(strcmp(made, pair[i].inch) == 0, "a sentence is said in inches: %s", made);
     eo_text_done(&text);
   }
 }
@@ -70,9 +70,10 @@ static void test_places(void)
   ok(strcmp(fault.pointer, "/gear_pair/face_width_in") == 0 &&
          strstr(fault.text, "7000 is outside 0.019685 .. 196.85 in."),
      "a fault stands at the key as it was stated: %s: %s", fault.pointer, fault.text);
-  ok(strcmp(other.pointer, "/gear_pair/groove_width_mm") == 0 && strstr(other.text, "2 mm"), "one in mm stays");
-  ok(strcmp(listed.pointer, "/cases/0/shift_thou") == 0 && strstr(listed.text, "0.1 thou"), "one in a list: %s",
-     listed.pointer);
+  ok(strcmp(other.pointer, "/gear_pair/groove_width_mm") == 0 && strstr(other.text, "2 mm"),
+     "a fault at a key in mm stays as it is");
+  ok(strcmp(listed.pointer, "/cases/0/shift_thou") == 0 && strstr(listed.text, "0.1 thou"),
+     "a fault at a key within a list is said in inches: %s", listed.pointer);
   json_decref(document);
 }
 
@@ -89,8 +90,8 @@ int main(void)
       "\"crowning_per_um\":2.0,\"groove_width_in\":null,\"name\":\"a_mm\",\"teeth\":17}";
   json_t *document = parse(metric), *other = eo_inch_from_mm(document), *back = eo_inch_to_mm(other, &faults);
   ok(is(other, inches), "lengths alone are spelt in inches");
-  ok(faults.count == 0 && is(back, metric), "and come back as they were");
-  ok(eo_inch_is_used(other) && !eo_inch_is_used(document), "which of both a document is can be told");
+  ok(faults.count == 0 && is(back, metric), "lengths that were spelt in inches come back as they were");
+  ok(eo_inch_is_used(other) && !eo_inch_is_used(document), "a document in inches can be told from one in mm");
   json_decref(document);
   json_decref(other);
   json_decref(back);
@@ -109,12 +110,13 @@ int main(void)
   other = eo_inch_from_mm(document);
   ok(is(other, "{\"warnings\":[\"At 1 in.\"],\"findings\":[{\"text\":\"0.2 thou\"}],\"name\":\"25.4 mm\","
                "\"span_reason\":\"A face of 2 in.\",\"unchecked\":[\"above 1 thou\"]}"),
-     "so are the sentences, and no name");
+     "sentences in rows are said in inches, and names are not");
   json_decref(document);
   json_decref(other);
   document = parse("{\"least_film_um\":{\"left\":25.4,\"right\":[2.54,null]}}");
   other = eo_inch_from_mm(document);
-  ok(is(other, "{\"least_film_thou\":{\"left\":1.0,\"right\":[0.1,null]}}"), "one per end");
+  ok(is(other, "{\"least_film_thou\":{\"left\":1.0,\"right\":[0.1,null]}}"),
+     "numbers of both ends are spelt in inches");
   json_decref(document);
   json_decref(other);
   test_sentences();
@@ -122,7 +124,7 @@ int main(void)
 
   document = parse("{\"gear_pair\":{\"face_width_mm\":50,\"face_width_in\":2}}");
   json_decref(eo_inch_to_mm(document, &faults));
-  ok(faults.count == 1 && strstr(faults.fault[0].text, "face_width_in"), "both at once is a fault: %s",
+  ok(faults.count == 1 && strstr(faults.fault[0].text, "face_width_in"), "a length stated in both units is a fault: %s",
      faults.fault[0].text);
   json_decref(document);
   return tap_done();

@@ -59,8 +59,8 @@ static void test_syntax(void)
       {"single quotes", "{'a': 1}", "Line 1"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
-    ok(refused(bad[i].text, strlen(bad[i].text), bad[i].says), "%s: %.80s", bad[i].what, error.text);
-  ok(refused("{\"a\": \"x\0y\"}", 12, "Line 1"), "a NUL byte: %.80s", error.text);
+    ok(refused(bad[i].text, strlen(bad[i].text), bad[i].says), "%s is refused: %.80s", bad[i].what, error.text);
+  ok(refused("{\"a\": \"x\0y\"}", 12, "Line 1"), "a NUL byte is refused: %.80s", error.text);
 }
 
 static char *repeat(const char *piece, size_t count, const char *before, const char *after)
@@ -77,10 +77,10 @@ static char *repeat(const char *piece, size_t count, const char *before, const c
 static void test_depth(void)
 {
   char *text = repeat("[", 10 << 20, "", "");
-  ok(refused(text, 10 << 20, "brackets within brackets"), "10 MB of brackets: %s", error.text);
+  ok(refused(text, 10 << 20, "brackets within brackets"), "10 MB of brackets are refused: %s", error.text);
   free(text);
   text = repeat("{\"a\":", 2 << 20, "", "");
-  ok(refused(text, strlen(text), "column 161"), "10 MB of objects: %s", error.text);
+  ok(refused(text, strlen(text), "column 161"), "10 MB of objects are refused: %s", error.text);
   free(text);
   text = repeat("[", 5000, "{\"a\": \"\\\"", "\"}");
   json_t *value = eo_json_parse(text, strlen(text), &error);
@@ -88,7 +88,7 @@ static void test_depth(void)
   json_decref(value);
   free(text);
   text = repeat("]", 100000, "{\"a\":", "}");
-  ok(refused(text, strlen(text), "Line 1"), "closing brackets without opening ones");
+  ok(refused(text, strlen(text), "Line 1"), "closing brackets without opening ones are refused");
   free(text);
 }
 
@@ -122,8 +122,8 @@ static void test_damage(void)
     json_decref(value);
     text.data[i] = kept;
   }
-  ok(said + survived == (int)text.size && said > 100, "%d of %zu single damages are reported, the rest are documents",
-     said, text.size);
+  ok(said + survived == (int)text.size && said > 100,
+     "%d of %zu single damages are reported, and the rest are documents", said, text.size);
   eo_text_done(&text);
 }
 
@@ -206,7 +206,7 @@ static void check_short_numbers(void)
                !is_written_as_by_printf(ldexp(1, (int)(bits >> 40) % 120 - 60));
   }
   ok(rounded == 0, "60000 numbers of every size, ties among them, are rounded as printf rounds them");
-  ok(written == 0, "and written as it writes them");
+  ok(written == 0, "numbers are written as printf writes them");
   ok(ready == 0, "arrays that are text from the start are the same text");
 }
 
@@ -214,10 +214,10 @@ static void test_writer(void)
 {
   ok(writes("{\"b\": [1, 2.5, null], \"a\": {\"z\": true, \"y\": \"\\u00e4\\n\\\"\\\\\"}}", EO_JSON_CANONICAL,
             "{\"a\":{\"y\":\"\xc3\xa4\\u000a\\\"\\\\\",\"z\":true},\"b\":[1,2.5,null]}"),
-     "canonical: sorted, no blanks");
+     "canonical JSON is sorted and has no blanks");
   ok(writes("{\"b\": 1, \"a\": []}", EO_JSON_PRETTY, "{ \"b\": 1, \"a\": [] }\n"),
-     "pretty: in order, short values on one line");
-  ok(writes("{}", EO_JSON_COMPACT, "{}"), "an empty object");
+     "pretty JSON is in order, with short values on one line");
+  ok(writes("{}", EO_JSON_COMPACT, "{}"), "an empty object is written as one");
   static const struct {
     double value;
     const char *text;
@@ -259,7 +259,7 @@ static void test_writer(void)
   const double column[] = {1, NAN, 2.0000000000001, INFINITY};
   json_t *array = eo_json_reals(4, column, 1, &eo_unit_mm, 9);
   ok(written_alike(array, eo_json_reals(4, column, 1, &eo_unit_mm, 9 | EO_DIGITS_READY)),
-     "as text from the start too, with its unit and nulls");
+     "numbers that are text from the start read back equal, with their unit and nulls");
   char *dumped = json_dumps(array, JSON_COMPACT | JSON_REAL_PRECISION(9));
   ok(strcmp(dumped, "[1000.0,null,2000.0,null]") == 0, "not finite numbers are null, curves are rounded: %s", dumped);
   free(dumped);
@@ -270,11 +270,11 @@ static void test_text(void)
 {
   char clean[16];
   eo_text_clean(clean, sizeof clean, "a\nb\x7f");
-  ok(strcmp(clean, "a?b?") == 0, "control characters are replaced");
+  ok(strcmp(clean, "a?b?") == 0, "control characters of a text are replaced");
   eo_text_clean(clean, sizeof clean, "0123456789\xe2\x82\xac\xe2\x82\xac\xe2\x82\xac");
-  ok(strcmp(clean, "0123456789...") == 0, "no character is cut in two: %s", clean);
+  ok(strcmp(clean, "0123456789...") == 0, "a text that is cut has no character in two: %s", clean);
   eo_text_clean(clean, sizeof clean, "012345678901234");
-  ok(strcmp(clean, "012345678901234") == 0, "what fits stays");
+  ok(strcmp(clean, "012345678901234") == 0, "a text that fits stays as it is");
   struct eo_text escaped = {0};
   eo_text_add_escaped(&escaped, "a<b> & \"c\"\t\n\x01\x1f\xc3\xa4");
   ok(!strcmp(escaped.data, "a&lt;b&gt; &amp; &quot;c&quot;\t\n  \xc3\xa4"),
@@ -297,9 +297,9 @@ static void test_sheet(void)
   eo_text_table_csv(&sheet, &csv);
   eo_text_table_print(&sheet, 1, &text);
   ok(strcmp(csv.data, "name,speed_rpm,note\r\n\"\xc3\xa4, \"\"x\"\"\",2000,\r\nb,,\"two\nlines\"\r\n") == 0,
-     "CSV as RFC 4180 wants it");
+     "CSV is written as RFC 4180 wants it");
   const char *aligned = " name    speed_rpm  note\n \xc3\xa4, \"x\"       2000  \n";
-  ok(strncmp(text.data, aligned, strlen(aligned)) == 0, "columns are aligned");
+  ok(strncmp(text.data, aligned, strlen(aligned)) == 0, "columns of a table are aligned");
   eo_text_table_done(&sheet);
   eo_text_done(&text);
   eo_text_done(&csv);
@@ -310,16 +310,16 @@ static void test_files(void)
   char folder[] = "eo-test-XXXXXX", path[64];
   struct eo_text text = {0}, back = {0};
   if (!mkdtemp(folder)) {
-    ok(0, "a temporary folder");
+    ok(0, "a temporary folder is made");
     return;
   }
   snprintf(path, sizeof path, "%s/file", folder);
   eo_text_add(&text, "first");
   ok(eo_text_save(&text, path, &error) == EO_OK && eo_text_read(&back, path, 100, &error) == EO_OK &&
          strcmp(back.data, "first") == 0,
-     "saved and read");
+     "a text is saved and read again");
   ok(eo_text_read(&back, path, 4, &error) == EO_ERROR_INPUT && strstr(error.text, "larger than the limit"),
-     "larger than the limit: %s", error.text);
+     "a file larger than the limit is refused: %s", error.text);
   ok(strcmp(back.data, "first") == 0, "a failed reading leaves the text alone");
   text.failed = true;
   ok(eo_text_save(&text, path, &error) == EO_ERROR_MEMORY, "an incomplete text is not written");
@@ -331,9 +331,9 @@ static void test_files(void)
     fclose(full);
   }
   snprintf(path, sizeof path, "%s/none/file", folder);
-  ok(eo_text_save(&text, path, &error) == EO_ERROR_FILE, "no folder: %s", error.text);
-  ok(eo_text_read(&back, path, 100, &error) == EO_ERROR_INPUT, "no file: %s", error.text);
-  ok(eo_text_read(&back, folder, 100, &error) == EO_ERROR_INPUT, "a folder is no file: %s", error.text);
+  ok(eo_text_save(&text, path, &error) == EO_ERROR_FILE, "a text in no folder is not saved: %s", error.text);
+  ok(eo_text_read(&back, path, 100, &error) == EO_ERROR_INPUT, "a file that is not there is not read: %s", error.text);
+  ok(eo_text_read(&back, folder, 100, &error) == EO_ERROR_INPUT, "a folder is not read as a file: %s", error.text);
   snprintf(path, sizeof path, "%s/file", folder);
   unlink(path);
   ok(rmdir(folder) == 0, "no temporary file is left behind");
@@ -354,7 +354,7 @@ static void test_whole(void)
        "%.17g stays what it is", number[i].value);
     json_decref(value);
   }
-  ok(!eo_json_whole(NAN), "and what is not a number has no document");
+  ok(!eo_json_whole(NAN), "a value that is not a number has no document");
 }
 
 int main(void)

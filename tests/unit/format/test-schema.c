@@ -90,9 +90,9 @@ static void check_examples(const json_t *input, const json_t *output)
     eo_example_build(eo_example_at(i)->name, &design);
     json_t *open = eo_design_encode(&design);
     ok(count_wrong(input, open, "input") == 0, "%s obeys the schema of what is read", eo_example_at(i)->name);
-    ok(eo_design_complete(&design, &geometry, NULL) == EO_OK, "it is complete");
+    ok(eo_design_complete(&design, &geometry, NULL) == EO_OK, "the example can be completed");
     json_t *resolved = eo_design_encode(&design);
-    ok(count_wrong(output, resolved, "output") == 0, "with every default it obeys that of what is written");
+    ok(count_wrong(output, resolved, "output") == 0, "the completed example obeys the schema of what is written");
     json_decref(open);
     json_decref(resolved);
   }
@@ -127,7 +127,7 @@ static void check_refusals(const json_t *input)
     json_t *document = json_loads(wrong[i], 0, NULL);
     ok(document && !eo_design_decode(document, &design, NULL, &faults) &&
            count_wrong(input, document, "as it should be") > 0,
-       "both refuse design %zu: %s", i + 1, faults.fault[0].text);
+       "decoder and schema both refuse design %zu: %s", i + 1, faults.fault[0].text);
     json_decref(document);
   }
 }
@@ -250,7 +250,7 @@ static void check_required_keys(void)
   }
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     json_t *object = take_keys(bad[i]);
-    ok(!object, "\"%s\" has not", bad[i]);
+    ok(!object, "\"%s\" has not what the outline names", bad[i]);
     json_decref(object);
   }
 }
@@ -263,7 +263,8 @@ static void check_shape(const char *shape, const char *expected)
   json_t *schemas = json_object(), *wanted = expected ? json_loads(expected, 0, NULL) : NULL;
   bool good = eo_outline_add_schemas(&outline, schemas);
   const json_t *properties = json_object_get(json_object_get(schemas, "Shape"), "properties");
-  ok(expected ? good && wanted && json_equal(json_object_get(properties, "a"), wanted) : !good, "the shape %s", shape);
+  ok(expected ? good && wanted && json_equal(json_object_get(properties, "a"), wanted) : !good,
+     "the shape %s becomes its JSON Schema, or is refused", shape);
   json_decref(schemas);
   json_decref(wanted);
 }
@@ -284,7 +285,8 @@ static void check_outline_schema(void)
          "\"description\":\"included\",\"x-unit\":\"mm\"},"
          "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"}},\"required\":[\"b\"]}}",
          0, NULL);
-  ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected), "an outline as JSON Schema");
+  ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected),
+     "an outline becomes a JSON Schema");
   json_decref(schemas);
   json_decref(expected);
   check_shape("[text", NULL);
@@ -301,7 +303,7 @@ static void check_taking(void)
   json_t *whole = json_loads("{\"x\":1,\"a\":2,\"b\":3,\"d\":{\"b\":4,\"y\":5}}", 0, NULL),
          *wanted = json_loads("{\"a\":2,\"b\":3,\"d\":{\"b\":4}}", 0, NULL);
   json_t *part = eo_outline_take(&outer, whole);
-  ok(json_equal(part, wanted), "what an outline names of a longer document");
+  ok(json_equal(part, wanted), "an outline takes what it names of a longer document");
   json_decref(part);
   json_decref(wanted);
   json_decref(whole);
@@ -442,7 +444,7 @@ static void check_curves(void)
     eo_json_write(&text, document, EO_JSON_COMPACT);
   ok(text.data && strcmp(text.data, "{\"cycle_um\":[null,1.33,0.333,0.667],\"map\":[[1,2],[null,4]],\"left_out\":null,"
                                     "\"made\":\"made\"}") == 0,
-     "curves, maps and what others made: %s", text.data ? text.data : "nothing");
+     "an outline writes curves, maps and what others made: %s", text.data ? text.data : "nothing");
   json_decref(document);
   eo_text_done(&text);
   curves = (struct curves){.here = true, .not_there = json_object()};
@@ -462,7 +464,7 @@ int main(void)
   check_form();
   json_t *sweep = eo_table_json_schema(&eo_sweep_request_table, true),
          *request = json_loads("{\"torque_Nm\":{\"from\":1,\"to\":2,\"points\":3}}", 0, NULL);
-  ok(sweep && count_wrong(sweep, request, "sweep") == 0, "a sweep's request has a schema too");
+  ok(sweep && count_wrong(sweep, request, "sweep") == 0, "a sweep's request obeys its schema");
   json_decref(sweep);
   json_decref(request);
   json_decref(input);

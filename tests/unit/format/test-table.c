@@ -66,18 +66,18 @@ static int unsound(const struct eo_table *table, const char *around)
 static void test_tables(void)
 {
   ok(unsound(&eo_design_table, "") == 0,
-     "design tables: unique keys, units in the suffix, defaults within ranges, help");
-  ok(unsound(&eo_geometry_table, "") == 0, "geometry table likewise");
+     "the design's tables have unique keys, units in the suffix, defaults within ranges, and help");
+  ok(unsound(&eo_geometry_table, "") == 0, "the geometry's table has them too");
   const struct eo_stage *const stage[] = {
       &eo_stage_geometry,    &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,       &eo_stage_tca,
       &eo_stage_flexibility, &eo_stage_hertz,        &eo_stage_contact, &eo_stage_impact,    &eo_stage_root_stress,
       &eo_stage_iso6336,     &eo_stage_dynamics,     &eo_stage_sdof,    &eo_stage_objective, &eo_stage_evaluation};
   for (size_t i = 0; i < sizeof stage / sizeof *stage; i++)
-    ok(unsound(stage[i]->input, "") + unsound(stage[i]->output, "") == 0, "tables of the stage %s likewise",
+    ok(unsound(stage[i]->input, "") + unsound(stage[i]->output, "") == 0, "the tables of the stage %s have them too",
        stage[i]->name);
   for (int i = 0; eo_routes[i]; i++)
     for (const struct eo_route *route = eo_routes[i]; route->pattern; route++)
-      ok(!route->order || unsound(route->order, "") == 0, "the table of what %s takes likewise", route->name);
+      ok(!route->order || unsound(route->order, "") == 0, "the table of what %s takes has them too", route->name);
 }
 
 /* An object that may be absent, with a series in it, alone and in a list. */
@@ -126,11 +126,11 @@ static int read_outer(const char *input, const char *expected)
 static void test_optional(void)
 {
   ok(read_outer("{}", "{\"maybe\":null,\"rows\":[]}") == 0, "an optional object may be absent");
-  ok(read_outer("{\"maybe\":null}", "{\"maybe\":null,\"rows\":[]}") == 0, "or null");
+  ok(read_outer("{\"maybe\":null}", "{\"maybe\":null,\"rows\":[]}") == 0, "an optional object may be null");
   ok(read_outer("{\"maybe\":{\"number\":1,\"series_mm\":[2,3]}}",
                 "{\"maybe\":{\"number\":1,\"series_mm\":[2,3]},\"rows\":[]}") == 0,
-     "or there");
-  ok(read_outer("{\"maybe\":{}}", NULL) == 1, "when it is there, what it requires is required");
+     "an optional object may be there");
+  ok(read_outer("{\"maybe\":{}}", NULL) == 1, "an optional object that is there requires what it says");
   ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2}]}",
                 "{\"maybe\":null,\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2,\"series_mm\":[]}]}") == 0,
      "rows with series");
@@ -238,8 +238,8 @@ static void test_units(void)
   ok(unsettled == 0, "any SI double settles at once, at most one rounding away");
   ok(eo_unit_in(&eo_unit_mm, 6) == 0.006 && eo_unit_in(&eo_unit_um, 14) == 14e-6 && eo_unit_in(&eo_unit_MPa, 1) == 1e6,
      "6 mm, 14 um and 1 MPa are the nearest doubles");
-  close_to(eo_unit_in(&eo_unit_rpm, 2000), 209.43951023931953, 1e-12, "2000 rpm in rad/s");
-  close_to(eo_unit_in(&eo_unit_N_per_mm_um, 20), 2e10, 0, "20 N/(mm um) in Pa");
+  close_to(eo_unit_in(&eo_unit_rpm, 2000), 209.43951023931953, 1e-12, "2000 rpm, in rad/s");
+  close_to(eo_unit_in(&eo_unit_N_per_mm_um, 20), 2e10, 0, "20 N/(mm um), in Pa");
 }
 
 static bool same_bits(const void *a, const void *b, size_t size)
@@ -350,7 +350,7 @@ static void test_examples(void)
        "%s: completing the resolved document changes nothing, the geometry's bits included", example->name);
     ok(!eo_design_hash(&complete, hash, &error) && !eo_design_hash(&again, hash_again, &error) &&
            strcmp(hash, hash_again) == 0 && strlen(hash) == 64,
-       "%s: hash %.8s", example->name, hash);
+       "%s has the hash %.8s before and after", example->name, hash);
   }
 }
 
@@ -476,7 +476,7 @@ static void test_random_designs(void)
     json_decref(document);
   }
   ok(refused == 0, "%d random documents within the ranges are read", count);
-  ok(wrong == 0, "and survive encoding and decoding bit for bit");
+  ok(wrong == 0, "random documents survive encoding and decoding bit for bit");
 }
 
 int main(void)

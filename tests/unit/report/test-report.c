@@ -153,14 +153,14 @@ static void test_words(void)
   bool all = json_array_size(unchecked) > 0;
   for (size_t i = 0; i < json_array_size(unchecked); i++)
     all = all && holds(&page, json_string_value(json_array_get(unchecked, i)));
-  ok(all, "everything that is unchecked is said");
+  ok(all, "the report says of everything that it is unchecked");
   ok(holds(&page, "ISO 6336-3:2006") && holds(&page, "Dowson and Higginson") && holds(&page, "S_Hmin"),
-     "standards and formulae by name and edition");
-  ok(holds(&page, warnings.text[0]), "warnings, with their special characters");
-  ok(!eo_design_hash(&s->design, hash, NULL) && holds(&page, hash), "the design's hash");
-  ok(page.size == again.size && memcmp(page.data, again.data, page.size) == 0, "the same bytes a second time");
+     "the report names standards and formulae by name and edition");
+  ok(holds(&page, warnings.text[0]), "the report has the warnings, with their special characters");
+  ok(!eo_design_hash(&s->design, hash, NULL) && holds(&page, hash), "the report has the design's hash");
+  ok(page.size == again.size && memcmp(page.data, again.data, page.size) == 0, "a second report has the same bytes");
   ok(!strstr(page.data, "http://") || strstr(page.data, "http://www.w3.org/2000/svg") == strstr(page.data, "http://"),
-     "nothing is fetched from elsewhere");
+     "the report fetches nothing from elsewhere");
   json_decref(result);
   eo_text_done(&page);
   eo_text_done(&again);
@@ -168,7 +168,7 @@ static void test_words(void)
   s->design.rating.edition = EO_ISO6336_2019;
   page = report_of(s, NULL);
   ok(strstr(page.data, "Not rated: ") && holds(&page, "ISO 6336-3:2019") && strstr(page.data, "min_film_um"),
-     "what is not rated says why, and has the rest");
+     "the report says why something is not rated, and has the rest");
   eo_text_done(&page);
   end(s);
 }
@@ -197,17 +197,17 @@ static void test_inches(void)
   struct eo_text metric = report_of(s, &warnings), inch = report_in(s, &warnings, true);
   json_t *result = result_of(s);
   double module = eo_json_find_number(result, "geometry/normal_module_mm") / 25.4;
-  ok(count_word(metric.data, "mm") > 100 && count_word(metric.data, "um") > 60, "in mm by itself");
+  ok(count_word(metric.data, "mm") > 100 && count_word(metric.data, "um") > 60, "a report is in mm by itself");
   ok(count_word(inch.data, "mm") == 0 && count_word(inch.data, "um") == 0 && count_word(inch.data, "in") > 100 &&
          count_word(inch.data, "thou") > 60,
-     "in inches: %d mm and %d um are left", count_word(inch.data, "mm"), count_word(inch.data, "um"));
-  ok(has_line(inch.data, "/geometry/normal_module_in", module), "the module: %.6g in", module);
-  ok(strstr(inch.data, "taken as 2 in, 1 thou less") != NULL, "a warning");
+     "a report in inches leaves %d mm and %d um", count_word(inch.data, "mm"), count_word(inch.data, "um"));
+  ok(has_line(inch.data, "/geometry/normal_module_in", module), "the report in inches has the module: %.6g in", module);
+  ok(strstr(inch.data, "taken as 2 in, 1 thou less") != NULL, "the report in inches has its warning in inches");
   ok(strstr(inch.data, ">roll length, in<") && strstr(inch.data, ">deviation, thou<") &&
          strstr(inch.data, ">thou, transverse<"),
-     "axes of charts and figures");
+     "the report in inches has its axes in inches");
   ok(!strstr(inch.data, "<svg></svg>") && count_word(inch.data, "path") == count_word(metric.data, "path"),
-     "with every curve of the one in mm");
+     "the report in inches has every curve of the one in mm");
   json_decref(result);
   eo_text_done(&metric);
   eo_text_done(&inch);

@@ -25,7 +25,7 @@ static json_t *run(int threads)
 static enum eo_code take_result(void *context, const struct eo_stored_job *job, struct eo_error *fault)
 {
   (void)fault;
-  ok(job->state == EO_JOB_DONE, "the job is done");
+  ok(job->state == EO_JOB_DONE, "the reproduction's job is done");
   eo_text_add(context, job->result);
   return EO_OK;
 }
@@ -36,11 +36,11 @@ static void check_files(const struct eo_text *result)
   bool good = !eo_reproduction_job_files(result, &files, &error) && files.count > 8;
   ok(good && strcmp(files.file[files.count - 1].name, "reproduction.html") == 0 &&
          strstr(files.file[files.count - 1].text.data, "</html>"),
-     "its files: tables and a page");
+     "the job's files are its tables and a page");
   eo_file_set_done(&files);
   const struct eo_text other = {.data = "[]", .size = 2};
   struct eo_file_set none = {0};
-  ok(eo_reproduction_job_files(&other, &none, &error) == EO_ERROR_INPUT, "no files of another document");
+  ok(eo_reproduction_job_files(&other, &none, &error) == EO_ERROR_INPUT, "a document of another kind has no files");
   eo_file_set_done(&none);
 }
 
@@ -64,7 +64,7 @@ static json_t *run_job(int threads)
     code = eo_reproduction_job_run(&job, &error);
   if (!code)
     code = eo_queue_find(store, job.job, take_result, &result, &outcome, &error);
-  if (!ok(!code, "a job of the queue"))
+  if (!ok(!code, "a reproduction is put into the queue"))
     printf("# %s\n", error.text);
   else {
     check_files(&result);
@@ -173,12 +173,12 @@ static void test_agreement(const json_t *document)
   near(at_828,
        eo_json_find_number(json_array_get(json_object_get(json_array_get(results, 1), "load_cases"), 1),
                            "peak_to_peak_um"),
-       1e-6, "case A at 828 N m in figure 8 and in the table, um");
+       1e-6, "case A at 828 N m in figure 8 over that in the table, um");
   const json_t *base = json_array_get(json_object_get(document, "sensitivity"), 0);
   near(
       json_number_value(json_array_get(json_object_get(base, "rms_case_a_m_per_s2"), 2)),
       eo_json_find_number(json_array_get(json_object_get(json_array_get(results, 1), "load_cases"), 2), "rms_m_per_s2"),
-      1e-10, "the first row of the assumptions is the table's, m/s2");
+      1e-10, "first row of the assumptions over that of the table, m/s2");
 }
 
 static void test_output(const json_t *document)
@@ -194,10 +194,11 @@ static void test_output(const json_t *document)
   int svg = 0;
   for (const char *c = page.data; (c = strstr(c, "<svg")); c++)
     svg++;
-  ok(svg == (int)json_array_size(json_object_get(document, "figures")), "it has %d plots", svg);
-  ok(!strstr(page.data, "nan") && !strstr(page.data, "inf\""), "no number in it is missing");
-  ok(!bundle.failed && bundle.count == 7 + svg, "%d files of comma-separated values", bundle.count);
-  ok(!summary.failed && strstr(summary.data, "trends and"), "a summary");
+  ok(svg == (int)json_array_size(json_object_get(document, "figures")), "the page has %d plots", svg);
+  ok(!strstr(page.data, "nan") && !strstr(page.data, "inf\""), "the page lacks none of its numbers");
+  ok(!bundle.failed && bundle.count == 7 + svg, "the reproduction has %d files of comma-separated values",
+     bundle.count);
+  ok(!summary.failed && strstr(summary.data, "trends and"), "the reproduction has a summary");
   eo_text_done(&page);
   eo_text_done(&summary);
   eo_file_set_done(&bundle);
@@ -208,12 +209,12 @@ static void test_made(const json_t *document)
 {
   const json_t *made = json_object_get(document, "as_made"), *designs = json_object_get(made, "designs");
   ok(json_integer_value(json_object_get(made, "pairs")) == 5 && json_array_size(designs) == 5,
-     "four designs beside the unmodified pair on five pairs as made");
+     "four designs stand beside the unmodified pair on five pairs as made");
   const json_t *bare = json_array_get(json_object_get(json_array_get(designs, 0), "numbers"), 0);
-  near(eo_json_find_number(bare, "mean"), 1, 1e-12, "J of the unmodified pair is 1 in every pair");
+  near(eo_json_find_number(bare, "mean"), 1, 1e-12, "J of the unmodified pair in every pair as made");
   ok(eo_json_find_number(bare, "deviation") < 1e-12 &&
          eo_json_find_number(json_array_get(designs, 0), "worse_J/fraction") == 0,
-     "... and never worse than itself");
+     "the unmodified pair is never worse than itself");
 }
 
 static void test_plot(void)
@@ -224,19 +225,19 @@ static void test_plot(void)
   struct eo_text text = {0};
   eo_plot_svg(&plot, &text);
   ok(strstr(text.data, "a &lt; b &amp; &quot;c&quot;") && !strstr(text.data, "nan"),
-     "a plot with a gap and marks in its title");
+     "a plot with a gap and marks in its title is drawn");
   int moves = 0;
   for (const char *c = strstr(text.data, "d=\""); c && *c && *c != '/'; c++)
     moves += *c == 'M';
-  ok(moves == 2, "the line is interrupted where there is no point");
+  ok(moves == 2, "the line of a plot is interrupted where there is no point");
   eo_text_done(&text);
   plot.line[0].y = same;
   eo_plot_svg(&plot, &text);
-  ok(!strstr(text.data, "nan") && !strstr(text.data, "inf"), "a constant");
+  ok(!strstr(text.data, "nan") && !strstr(text.data, "inf"), "a plot of a constant has numbers alone");
   eo_text_done(&text);
   plot.line[0].y = none;
   eo_plot_svg(&plot, &text);
-  ok(!strstr(text.data, "nan") && !strstr(text.data, "inf"), "nothing to draw");
+  ok(!strstr(text.data, "nan") && !strstr(text.data, "inf"), "a plot of nothing has numbers alone");
   eo_text_done(&text);
 }
 
@@ -247,7 +248,7 @@ int main(void)
   coarse_design(&design, "ga", 1);
   order.resolution = design.resolution;
   json_t *document = run(1);
-  if (!ok(document != NULL, "runs"))
+  if (!ok(document != NULL, "the reproduction runs"))
     return tap_done();
   test_printed(document);
   test_verdicts(document);
@@ -259,7 +260,7 @@ int main(void)
   json_t *again = run_job(2);
   json_object_del(document, "run");
   json_object_del(again, "run");
-  ok(equal_as_text(document, again), "once more, as a queued job with another number of threads: the same");
+  ok(equal_as_text(document, again), "a queued job with another number of threads gives the same document");
   json_decref(document);
   json_decref(again);
   empty_folder();
