@@ -88,7 +88,7 @@ static void refuse(const char *words, const char *what)
 {
   struct eo_error error;
   struct eo_recording *r = take(NULL, &error);
-  ok(!r && strstr(error.text, words), "%s: %s", what, r ? "was read" : error.text);
+  ok(!r && strstr(error.text, words), "the reader refuses %s: %s", what, r ? "was read" : error.text);
   eo_recording_free(r);
 }
 

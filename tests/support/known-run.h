@@ -76,8 +76,8 @@ __attribute__((unused)) static void right(FILE *file, const struct eo_layout_cho
   struct eo_error error = {0};
   struct eo_recording *r = find(file, choice, &tracks, &notes, &error);
   double most = r ? worst(r, &tracks) : NAN;
-  ok(r && eo_recording_rows(r) > ROWS / 2 && most < tolerance && (!note || noted(&notes, note)), "%s: %.2g rad%s%s",
-     what, most, r ? "" : ": ", r ? "" : error.text);
+  ok(r && eo_recording_rows(r) > ROWS / 2 && most < tolerance && (!note || noted(&notes, note)),
+     "%s: the angles come out to %.2g rad%s%s", what, most, r ? "" : ": ", r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -89,7 +89,7 @@ __attribute__((unused)) static void asked(FILE *file, const struct eo_layout_cho
   struct eo_notes notes;
   struct eo_error error = {0};
   struct eo_recording *r = find(file, choice, &tracks, &notes, &error);
-  ok(!r && !strcmp(error.pointer, pointer) && strstr(error.text, words), "%s: %s %s", what,
+  ok(!r && !strcmp(error.pointer, pointer) && strstr(error.text, words), "the layout asks about %s: %s %s", what,
      r ? "was found" : error.pointer, r ? "" : error.text);
   eo_recording_free(r);
 }

@@ -67,7 +67,7 @@ __attribute__((unused)) static int refused(const char *words, const char *what)
   struct eo_error error;
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   int right = !r && error.code == EO_ERROR_INPUT && strstr(error.text, words);
-  ok(right, "%s: %s", what, r ? "was read" : error.text);
+  ok(right, "the reader refuses %s: %s", what, r ? "was read" : error.text);
   eo_recording_free(r);
   return right;
 }

@@ -50,7 +50,7 @@ static void test_times(void)
   struct eo_layout_choice chosen = {.time_scale = 1e-3};
   f = begin("Time [s];Pinion [deg];Gear [deg]\n");
   table(f, 1e-3, 0, "%.2f");
-  right(f, &chosen, 1e-6, "steps of 0.00025 s", "and the answer to it");
+  right(f, &chosen, 1e-6, "steps of 0.00025 s", "milliseconds by the answer to the question");
   f = begin("Time [s];Pinion [deg];Gear [deg]\n");
   table(f, 1, 0, "%.3f");
   right(f, NULL, 2e-3, "the rows count", "times that only tell milliseconds");
@@ -60,8 +60,8 @@ static void test_times(void)
   struct eo_notes notes;
   struct eo_error error = {0};
   struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
-  ok(r && fabs(tracks.interval / 2.5e-4 - 1) < 1e-6 && noted(&notes, "in days"), "days of a spreadsheet: %.9g s%s",
-     r ? tracks.interval : NAN, r ? "" : error.text);
+  ok(r && fabs(tracks.interval / 2.5e-4 - 1) < 1e-6 && noted(&notes, "in days"),
+     "days of a spreadsheet are read in steps of %.9g s%s", r ? tracks.interval : NAN, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -72,7 +72,7 @@ static void test_units(void)
   asked(f, NULL, "/unit", "\"foo\"", "a unit that is stated and not known");
   f = begin("t [s];Pinion [V];Gear [V]\n");
   table(f, 1, 0, "%.6f");
-  asked(f, NULL, "/unit", "no angle", "a voltage is no angle");
+  asked(f, NULL, "/unit", "no angle", "a voltage in place of an angle");
 }
 
 static void test_columns(void)
@@ -92,10 +92,10 @@ static void test_columns(void)
   struct eo_error error = {0};
   struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
   ok(r && tracks.channel[0].column[0] == 5 && tracks.channel[1].column[0] == 6,
-     "two columns turn in the ratio of the teeth");
+     "two columns that turn in the ratio of the teeth are the encoders");
   ok(r && tracks.torque[0].column == 1 && tracks.torque[0].scale == 1 && !tracks.torque[0].stated &&
          tracks.torque[1].column == 2 && tracks.speed[0].column == 3 && tracks.speed[1].scale == 0,
-     "torque and speed beside them");
+     "torque and speed are found beside the encoders");
   eo_recording_free(r);
 }
 
@@ -118,7 +118,7 @@ static void test_counters(void)
   f = begin("t [s];Pinion [counts];Gear [counts]\n");
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%.6f;%.0f;%.0f\n", i / 4000.0, floor(pinion(i / 4000.0) * lines), floor(gear(i / 4000.0) * lines));
-  asked(f, NULL, "/lines", "counts per turn", "counts without it");
+  asked(f, NULL, "/lines", "counts per turn", "counts without counts per turn");
 }
 
 static void squares_of(FILE *f, double rate, int tracks, const char *low, const char *high)
@@ -153,7 +153,7 @@ static void test_headings(void)
                   gear = r ? eo_recording_clock(r, 1) : (struct eo_clock){0};
   ok(r && fabs(pinion.interval * 4000 - 1) < 1e-12 && pinion.start == 0 && fabs(gear.interval * 3990.7 - 1) < 1e-12 &&
          gear.start == 0.0123 && !strcmp(eo_recording_unit(r, 1), "deg"),
-     "rates and starts of the channels in a heading with a column of keys: %.9g s from %.9g s%s", gear.interval,
+     "rates and starts of channels are read from a heading with a column of keys: %.9g s from %.9g s%s", gear.interval,
      gear.start, error.text);
   eo_recording_free(r);
 }
@@ -211,7 +211,7 @@ static void check_changes(void)
     worst = fmax(worst, fabs(row[0] - (double)(2 * i + 1) * first));
   }
   ok(r && tracks.channel[0].track == EO_TRACK_PULSES && worst < 1e-9 && noted(&notes, "logic analysers"),
-     "changes of two tracks are edges at their times: %.3g s off%s", worst, r ? "" : error.text);
+     "changes of two tracks are edges at their times, %.3g s off%s", worst, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -235,8 +235,8 @@ static void test_squares(void)
     double turns = r ? (double)eo_recording_length(r, 0) / tracks.channel[0].lines : NAN;
     ok(r && tracks.channel[0].track == EO_TRACK_PULSES && tracks.channel[0].lines == (k == 1 ? 60 : 240) &&
            fabs(turns - SPEED * 0.5 / (2 * M_PI)) < 0.05,
-       "square waves of %d track%s, in %s: %.4g turns%s", k, k == 1 ? "" : "s", i < 2 ? "volts" : "words", turns,
-       r ? "" : error.text);
+       "square waves of %d track%s, in %s, come out to %.4g turns%s", k, k == 1 ? "" : "s", i < 2 ? "volts" : "words",
+       turns, r ? "" : error.text);
     eo_recording_free(r);
   }
   check_changes();
@@ -270,7 +270,7 @@ static void pulses_are_right_until(FILE *f, int count, double tolerance, const c
       shift = k || m ? shift : off;
       most = isnan(off) ? INFINITY : fmax(most, fabs(off - shift));
     }
-  ok(r && most < tolerance, "%s: %.2g s off%s", what, most, r ? "" : error.text);
+  ok(r && most < tolerance, "%s: the times are %.2g s off%s", what, most, r ? "" : error.text);
   eo_recording_free(r);
 }
 

@@ -75,7 +75,7 @@ static void test_pairs(void)
         "\"Enc2\" and \"Enc3\" (columns 3 and 4) as well", "two shafts that turn alike");
   struct eo_layout_choice chosen = {.column = {{"Enc2"}, {"Enc3"}}};
   right(table("t [s];Enc1 [deg];Enc2 [deg];Enc3 [deg]\n", 3, three_shafts), &chosen, 1e-7, "\"Enc2\" is taken as",
-        "and the answer to it");
+        "two shafts by the answer to the question");
   asked(table("t [s];pinion_run1;gear_run2;gear_run1;pinion_run2\n", 4, two_runs), NULL, "/columns",
         "\"pinion_run1\" and \"gear_run1\"", "two runs beside each other, each in itself");
   right(table("t [s];enc_a [deg];enc_a [rad];enc_b [deg]\n", 3, two_units), NULL, 1e-7, one,
@@ -105,7 +105,8 @@ static void beside(const char *heads, int torque, int torque_of_gear, int speed,
   bool good = r != NULL;
   for (int i = 0; good && i < 4; i++)
     good = (is[i]->scale != 0) == (expected[i] >= 0) && (expected[i] < 0 || is[i]->column == expected[i]);
-  ok(good && (torque >= 0 || torque_of_gear >= 0 || noted(&notes, "left out")), "%s%s", heads, r ? "" : error.text);
+  ok(good && (torque >= 0 || torque_of_gear >= 0 || noted(&notes, "left out")),
+     "%s finds torque and speed of each member%s", heads, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -135,7 +136,7 @@ static void scaled(FILE *file, const struct eo_layout_pair *run, double scale, c
   enum eo_code code = r ? eo_layout_find(&r, NULL, run, NULL, &tracks, &notes, &error) : error.code;
   ok(!code && fabs(tracks.channel[0].scale / scale - 1) < 1e-9 && fabs(tracks.channel[1].scale / scale - 1) < 1e-9 &&
          tracks.time_scale == 1 && noted(&notes, note),
-     "%s%s", what, code ? error.text : "");
+     "the angles come out at the scale of %s%s", what, code ? error.text : "");
   eo_recording_free(r);
 }
 
@@ -224,9 +225,9 @@ static void test_times(void)
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
     right(timed(known[i].name, known[i].unit), NULL, 1e-6, "is taken as time", known[i].name);
   asked(timed("t [frames]", 1e-3), NULL, "/time_unit", "\"frames\" as the unit of \"t\"", "a unit of time not known");
-  asked(timed("t [jiffies]", 1e-3), NULL, "/time_unit", "\"jiffies\"", "nor is this one guessed");
+  asked(timed("t [jiffies]", 1e-3), NULL, "/time_unit", "\"jiffies\"", "a unit of time that is not guessed");
   asked(timed("timestamp (80 MHz clock)", 1 / 80e6), NULL, "/time_unit", "times away",
-        "what a name says of its unit is not passed over");
+        "a unit that a name says and nobody knows");
 }
 
 static void test_marks(void)

@@ -35,7 +35,7 @@ static void test_random(const char *format, const char *what)
     snprintf(text, sizeof text, format, x);
     wrong += !same(text);
   }
-  ok(wrong == 0, "100000 random numbers of %s", what);
+  ok(wrong == 0, "100000 random numbers of %s are read as strtod reads them", what);
 }
 
 static void test_digits(void)
@@ -47,7 +47,7 @@ static void test_digits(void)
     snprintf(text, sizeof text, "%llue%d", (unsigned long long)(next_random() >> (next_random() % 60)), exponent);
     wrong += !same(text);
   }
-  ok(wrong == 0, "200000 random mantissas with exponents -32 to 31");
+  ok(wrong == 0, "200000 random mantissas with exponents -32 to 31 are read as strtod reads them");
 }
 
 static void test_edges(void)
@@ -87,30 +87,31 @@ static void test_edges(void)
   int wrong = 0;
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     wrong += !same(texts[i]);
-  ok(wrong == 0, "ties, subnormals, long mantissas");
+  ok(wrong == 0, "ties, subnormals and long mantissas are read as strtod reads them");
 }
 
 static void test_forms(void)
 {
   double value;
   const char *text = "-1,25e2;";
-  ok(eo_decimal_read(text, ',', &value) == text + 7 && value == -125, "decimal comma");
+  ok(eo_decimal_read(text, ',', &value) == text + 7 && value == -125, "a number with a decimal comma is read");
   text = "12,\n";
-  ok(eo_decimal_read(text, ',', &value) == text + 2 && value == 12, "a comma without a digit behind it is none");
+  ok(eo_decimal_read(text, ',', &value) == text + 2 && value == 12,
+     "a comma without a digit behind it is no decimal comma");
   text = "1.5D-3 ";
-  ok(eo_decimal_read(text, '.', &value) == text + 6 && value == 1.5e-3, "exponent of Fortran");
+  ok(eo_decimal_read(text, '.', &value) == text + 6 && value == 1.5e-3, "an exponent of Fortran is read");
   text = "0,12345678901234567890123456789 ";
   ok(eo_decimal_read(text, ',', &value) == text + 31 && value == 0.12345678901234567890123456789,
-     "long mantissa with a comma");
+     "a long mantissa with a comma is read");
   text = "3e ";
   ok(eo_decimal_read(text, '.', &value) == text + 1 && value == 3, "an e alone is no exponent");
   ok(!eo_decimal_read("-", '.', &value) && !eo_decimal_read(".", '.', &value) && !eo_decimal_read("e5", '.', &value) &&
          !eo_decimal_read("", '.', &value) && !eo_decimal_read("nan", '.', &value),
-     "no numbers");
+     "signs, points and exponents alone are no numbers");
   eo_decimal_read("1e999999999999", '.', &value);
-  ok(isnan(value), "beyond all doubles");
+  ok(isnan(value), "a number beyond all doubles is none");
   eo_decimal_read("-0.0", '.', &value);
-  ok(value == 0, "minus zero");
+  ok(value == 0, "minus zero is read as 0");
 }
 
 int main(void)

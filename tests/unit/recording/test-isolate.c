@@ -73,7 +73,8 @@ static void check_end(const char *how)
   struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
   struct eo_reader_options options = {.max_bytes = 1 << 30};
   enum eo_code code = eo_isolate_read(end_early, how, &options, &sink, NULL, &error);
-  ok(code == EO_ERROR_INPUT && strstr(error.text, "damaged"), "a reader that ends with \"%s\": %s", how, error.text);
+  ok(code == EO_ERROR_INPUT && strstr(error.text, "damaged"), "a reader that ends with \"%s\" is told of: %s", how,
+     error.text);
   eo_recording_free(recorder.recording);
 }
 
@@ -85,17 +86,17 @@ int main(void)
   struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
   struct eo_reader_options options = {.max_bytes = 1 << 30};
   ok(!eo_isolate_read(good, "here", &options, &sink, &notes, &error) && eo_recording_rows(recorder.recording) == ROWS,
-     "rows arrive");
+     "the rows of a reader on its own arrive");
   double row[2];
   ok(!eo_recording_read(recorder.recording, ROWS - 1, 1, row, &error) && row[0] == ROWS - 1 &&
          row[1] == 2 * (ROWS - 1) && !strcmp(eo_recording_name(recorder.recording, 1), "two"),
-     "values and names");
-  ok(notes.count == 1 && !strcmp(notes.text[0], "Read from here."), "notes");
+     "the values and names of a reader on its own arrive");
+  ok(notes.count == 1 && !strcmp(notes.text[0], "Read from here."), "the notes of a reader on its own arrive");
   eo_recording_free(recorder.recording);
   recorder.recording = NULL;
   ok(eo_isolate_read(refuse, "it", &options, &sink, NULL, &error) == EO_ERROR_INPUT &&
          !strcmp(error.text, "it is wrong at byte 7."),
-     "its error");
+     "the error of a reader on its own arrives");
   check_end("crash");
   check_end("+crash");
   check_end("abort");
@@ -105,6 +106,6 @@ int main(void)
   struct eo_progress progress = {stop, &asked};
   options.progress = &progress;
   ok(eo_isolate_read(end_early, "hang", &options, &sink, NULL, &error) == EO_ERROR_CANCELLED && asked == 2,
-     "one that hangs can be cancelled");
+     "a reader that hangs can be cancelled");
   return tap_done();
 }

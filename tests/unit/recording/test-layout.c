@@ -101,7 +101,7 @@ static void check(struct eo_recording *r, const struct eo_layout_choice *choice,
   }
   for (int i = 0; i < notes.count; i++)
     printf("# %s\n", notes.text[i]);
-  ok(right && noted(&notes, note), "%s%s%s", what, code ? ": " : "", code ? error.text : "");
+  ok(right && noted(&notes, note), "a layout is found for %s%s%s", what, code ? ": " : "", code ? error.text : "");
   eo_recording_free(r);
 }
 
@@ -111,8 +111,8 @@ static void unclear(struct eo_recording *r, const struct eo_layout_choice *choic
   struct eo_error error;
   struct eo_tracks found;
   enum eo_code code = eo_layout_find(&r, choice, NULL, NULL, &found, NULL, &error);
-  ok(code == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "%s: %s %s", what, code ? error.pointer : "was found",
-     code ? error.text : "");
+  ok(code == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "the layout asks about %s: %s %s", what,
+     code ? error.pointer : "was found", code ? error.text : "");
   eo_recording_free(r);
 }
 
@@ -227,11 +227,11 @@ static void test_two_files(void)
   struct eo_recording *a = make("t [s],angle [deg]\n", pinion_alone, RATE, 0, ROWS), *both = NULL;
   struct eo_recording *b = make("t [s],angle [deg]\n", gear_alone, RATE, 0, ROWS);
   ok(!eo_layout_combine(a, b, NULL, NULL, &both, &notes, &error) && eo_recording_rows(both) == ROWS,
-     "two files with equal times");
+     "two files with equal times are combined");
   struct eo_tracks t = {.time_column = 0,
                         .time_scale = 1,
                         .channel = {{.column = {1}, .scale = M_PI / 180}, {.column = {3}, .scale = M_PI / 180}}};
-  check(both, NULL, &t, "\"angle gear\" is taken as the angle of the gear", "and which file is which is kept");
+  check(both, NULL, &t, "\"angle gear\" is taken as the angle of the gear", "two files, of which one is the gear's");
   eo_recording_free(b);
   both = NULL;
   b = make("t [s],angle [deg]\n", gear_alone, 20011, -0.01, ROWS);
@@ -244,7 +244,7 @@ static void test_two_files(void)
   for (int i = 0; i < eo_recording_rows(both); i++)
     most = fmax(most, fabs(cell_of(both, i, 2) - gear(cell_of(both, i, 0)) * 180 / M_PI - offset));
   double order = 1e-6 * 180 / M_PI; /* the eighth mesh order, 4.4 rows per period */
-  ok(most < 5e-4 * order, "interpolated to %.2g deg, %.2g of the highest order", most, most / order);
+  ok(most < 5e-4 * order, "two files are interpolated to %.2g deg, %.2g of the highest order", most, most / order);
   eo_recording_free(both);
   both = NULL;
   eo_recording_free(b);
@@ -252,7 +252,7 @@ static void test_two_files(void)
   ok(!eo_layout_combine(a, b, NULL, NULL, &both, &notes, &error) &&
          eo_layout_find(&both, NULL, NULL, NULL, &found, &notes, &error) == EO_ERROR_INPUT &&
          strstr(error.text, "overlap"),
-     "no overlap: %s", error.text);
+     "two files without overlap are refused: %s", error.text);
   eo_recording_free(both);
   both = NULL;
   eo_recording_free(b);
@@ -263,7 +263,7 @@ static void test_two_files(void)
   b = read_fixture(NULL, NULL, &error);
   ok(!eo_layout_combine(a, b, NULL, NULL, &both, &notes, &error) && eo_recording_length(both, 0) == 4 &&
          eo_recording_length(both, 1) == 2 && isnan(cell_of(both, 2, 1)) && cell_of(both, 3, 0) == 3.5,
-     "two files of pulse times");
+     "two files of pulse times are combined");
   eo_recording_free(a);
   eo_recording_free(b);
   eo_recording_free(both);

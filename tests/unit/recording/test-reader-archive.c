@@ -37,8 +37,8 @@ static void test_zip(void)
   add("__MACOSX/._data.csv", "x");
   finish();
   struct eo_recording *r = take(&notes, &error);
-  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "run/data.csv"), "one file in a zip%s",
-     r ? "" : error.text);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "run/data.csv"),
+     "one file in a zip is read%s", r ? "" : error.text);
   eo_recording_free(r);
   add("README.txt", "Recorded on the rig in March.\n");
   add("pinion.csv", "t;deg\n0;1.5\n1;2.5\n2;3.5\n");
@@ -50,9 +50,9 @@ static void test_zip(void)
          cell_of(r, 3, 3) == 4 && strstr(eo_recording_name(r, 1), "pinion") &&
          strstr(eo_recording_name(r, 3), "gear") && eo_recording_clock(r, 3).column == 2 &&
          eo_recording_length(r, 1) == 3,
-     "a file for each channel: side by side, each with its times%s", r ? "" : error.text);
+     "a file for each channel is read side by side, each with its times%s", r ? "" : error.text);
   ok(noted(&notes, "\"README.txt\" in the archive was left out") && noted(&notes, "do not all state when they began"),
-     "what was left out is said, and that each file may count from its own start");
+     "a note says what was left out, and that each file may count from its own start");
   eo_recording_free(r);
   for (int run = 0; run < 2; run++) {
     char text[4096] = "t;pinion;gear\n", *end = text + strlen(text);
@@ -78,8 +78,8 @@ static void is_run(const char *what)
   struct eo_error error;
   struct eo_notes notes = {0};
   struct eo_recording *r = take(&notes, &error);
-  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "data.csv"), "%s%s", what,
-     r ? "" : error.text);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "data.csv"),
+     "the run is read from %s%s", what, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -94,14 +94,14 @@ static void test_inner(void)
   nest("a.zip");
   nest("b.zip");
   finish();
-  refuse("in an archive in an archive", "and in another one");
+  refuse("in an archive in an archive", "a zip in a zip in a zip");
   add_tar("folder/data.csv", run);
   write_bytes(bytes, size + 1024);
   is_run("a tar file");
   gzFile file = gzopen(fixture_path, "wb");
   if (!file || gzwrite(file, bytes, (unsigned)size + 1024) <= 0 || gzclose(file))
     exit(99);
-  is_run("in gzip");
+  is_run("a tar file in gzip");
   bytes[148] ^= 1;
   write_bytes(bytes, size + 1024);
   size = 0;
@@ -113,7 +113,7 @@ static void test_inner(void)
   struct eo_error error;
   struct eo_recording *r = take(NULL, &error);
   ok(r && eo_recording_columns(r) == 4 && cell_of(r, 2, 1) == 3.5 && cell_of(r, 2, 3) == 3,
-     "a file for each channel in a tar file%s", r ? "" : error.text);
+     "a file for each channel in a tar file is read%s", r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -126,7 +126,7 @@ static void test_names(void)
                                          {"DEWESoft raw", "DEWESoft"}, {"DXD of version 7", "DEWESoft"}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     write_text(kinds[i][0]);
-    refuse(kinds[i][1], "a kind that is not read is called by its name");
+    refuse(kinds[i][1], "a kind that is not read");
   }
 }
 

@@ -77,12 +77,13 @@ static void test_channels(void)
   int wrong = !r || eo_recording_columns(r) != 3 || eo_recording_rows(r) != COUNT;
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += cell_of(r, i, 0) != t[i] || cell_of(r, i, 1) != pinion[i] || cell_of(r, i, 2) != gear[i];
-  ok(!wrong, "three data sets of one length, one compressed, one of the other byte order%s", r ? "" : error.text);
+  ok(!wrong, "three data sets of one length are read, one compressed, one of the other byte order%s",
+     r ? "" : error.text);
   ok(r && !strcmp(eo_recording_unit(r, 0), "s") && !strcmp(eo_recording_unit(r, 1), "deg") &&
          !strcmp(eo_recording_name(r, 2), "rear gear"),
-     "names and units");
+     "names and units of the data sets are read");
   ok(r && eo_recording_clock(r, 0).interval == 5e-5 && noted(&notes, "\"settings\" with 3 values"),
-     "sampling rate, and what was left out");
+     "the sampling rate is read, and a note says what was left out");
   eo_recording_free(r);
 }
 
@@ -101,7 +102,7 @@ static void test_table(void)
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && eo_recording_columns(r) == 2 && cell_of(r, 4321, 0) == 4321 && cell_of(r, 4321, 1) == -12963 &&
          !strcmp(eo_recording_name(r, 1), "counts 2"),
-     "a table of integers%s", r ? "" : error.text);
+     "a table of integers is read%s", r ? "" : error.text);
   eo_recording_free(r);
   free(table);
 }
@@ -122,12 +123,12 @@ static void test_texts(void)
   }
   H5Fclose(file);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12, "a rate with its unit in a text%s",
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12, "a rate with its unit in a text is read%s",
      r ? "" : error.text);
   ok(r && eo_recording_clock(r, 0).epoch - eo_recording_clock(r, 1).epoch == 50000000,
      "starts that are texts are 50 ms apart");
   ok(r && !strcmp(eo_recording_unit(r, 0), "deg") && cell_of(r, 10, 0) == 0.5 * trunc(pinion[10]),
-     "a scale that is a text, with the unit of the product; one in dB is none");
+     "a scale that is a text is read with the unit of the product, and one in dB is not");
   eo_recording_free(r);
 }
 
@@ -178,7 +179,7 @@ static void test_moments(int variable)
   ok(r && eo_recording_columns(r) == 2 && !strcmp(eo_recording_unit(r, 0), "s") &&
          eo_recording_clock(r, 1).column == 0 && fabs(cell_of(r, 4999, 0) - 86402.999) < 1e-9 &&
          isnan(cell_of(r, 7, 0)),
-     "times that are texts of %s length are seconds, over midnight as well%s", variable ? "variable" : "fixed",
+     "times that are texts of %s length are read as seconds, over midnight as well%s", variable ? "variable" : "fixed",
      r ? "" : error.text);
   eo_recording_free(r);
 }
@@ -199,7 +200,7 @@ static void test_flat(void)
   H5Dclose(put(file, "both", 3, two, H5T_NATIVE_DOUBLE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
   H5Fclose(file);
   r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 3, 1) == pinion[23], "1 x 2 x N values are two%s",
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 3, 1) == pinion[23], "1 x 2 x N values are two channels%s",
      r ? "" : error.text);
   eo_recording_free(r);
 }
@@ -234,7 +235,7 @@ static void test_habits(void)
   ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12,
      "a variable of Octave is what its group is called%s", r ? "" : error.text);
   ok(r && !strcmp(eo_recording_name(r, 1), "pinion") && !strcmp(eo_recording_name(r, 0), "index"),
-     "a pickled None is no name, but that of an index");
+     "a pickled None is no name, and an index has its own");
   eo_recording_free(r);
 }
 
@@ -283,8 +284,9 @@ static void test_one_chunk(void)
   double many = time_to_read(&rows);
   write_long(LONG);
   double one = time_to_read(&same);
-  ok(rows == LONG && same == LONG, "%d rows, in chunks and in one", LONG);
-  ok(one < 3 * many + 0.2, "one chunk takes %.2f s of a processor, chunks of 10000 rows %.2f s", one, many);
+  ok(rows == LONG && same == LONG, "%d rows are read in chunks and in one", LONG);
+  ok(one < 3 * many + 0.2, "chunks cost no time: one takes %.2f s of a processor, chunks of 10000 rows %.2f s", one,
+     many);
 }
 
 static size_t pass_on(unsigned flags, size_t count, const unsigned values[], size_t bytes, size_t *room, void **data)
@@ -335,7 +337,7 @@ static void test_hostile(void)
   file = open_file();
   H5Dclose(put(file, "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
   H5Fclose(file);
-  ok(!truncate(fixture_path, 20000), "cut");
+  ok(!truncate(fixture_path, 20000), "a file of HDF5 is cut off");
   refused("cut off at byte 20000", "a file that is cut off");
   static unsigned char bytes[1 << 17];
   file = open_file();
@@ -354,7 +356,7 @@ static void test_hostile(void)
     answers += r || error.code == EO_ERROR_INPUT;
     eo_recording_free(r);
   }
-  ok(answers == 100, "damaged in 100 places: a recording or an error each time");
+  ok(answers == 100, "a file that is damaged in 100 places is a recording or an error each time");
 }
 
 /* Every group holds every other one, and a list of references refers to itself. */

@@ -81,13 +81,13 @@ static void test_vectors(enum mat_ft version, enum matio_compression compression
   struct eo_reader_options options = {.spool_directory = fixture_directory};
   struct eo_recording *r = read_fixture(&options, &notes, &error);
   int c = column_of(r, "counts");
-  ok(r && eo_recording_rows(r) == COUNT && eo_recording_columns(r) == (version == MAT_FT_MAT4 ? 3 : 4), "%s%s", what,
-     r ? "" : error.text);
+  ok(r && eo_recording_rows(r) == COUNT && eo_recording_columns(r) == (version == MAT_FT_MAT4 ? 3 : 4), "%s is read%s",
+     what, r ? "" : error.text);
   ok(r && column_of(r, "t") >= 0 && !wrong_values(r, column_of(r, "t"), t) &&
          !wrong_values(r, column_of(r, "phi1"), pinion) && !wrong_values(r, column_of(r, "phi2"), gear),
-     "values");
+     "the values of the vectors are read");
   ok(r && (c < 0 || cell_of(r, 65999, c) == counts[65999]) && fabs(eo_recording_clock(r, 0).interval - 5e-5) < 1e-18,
-     "integers, sampling rate");
+     "integers and the sampling rate are read");
   eo_recording_free(r);
 }
 
@@ -105,7 +105,7 @@ static void test_matrix(enum mat_ft version, enum matio_compression compression,
     struct eo_recording *r = read_fixture(NULL, NULL, &error);
     ok(r && eo_recording_columns(r) == 3 && !wrong_values(r, 0, t) && !wrong_values(r, 1, pinion) &&
            !wrong_values(r, 2, gear) && !strcmp(eo_recording_name(r, 2), "data 3"),
-       "%s, channels in %s%s", what, k ? "rows" : "columns", r ? "" : error.text);
+       "%s with channels in %s is read%s", what, k ? "rows" : "columns", r ? "" : error.text);
     eo_recording_free(r);
   }
   free(wide);
@@ -130,7 +130,7 @@ static void test_struct(enum mat_ft version, enum matio_compression compression,
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && eo_recording_columns(r) == 3 && column_of(r, "phi2") >= 0 && !wrong_values(r, column_of(r, "t"), t) &&
          !wrong_values(r, column_of(r, "phi2"), gear),
-     "%s%s", what, r ? "" : error.text);
+     "%s is read%s", what, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -154,9 +154,9 @@ static void test_gzip(void)
   free(bytes);
   struct eo_reader_options options = {.spool_directory = fixture_directory};
   struct eo_recording *r = read_fixture(&options, NULL, &error);
-  ok(r && !wrong_values(r, 0, pinion), "a gzip file of it");
+  ok(r && !wrong_values(r, 0, pinion), "a gzip file of a struct is read");
   eo_recording_free(r);
-  refused("without gzip", "but not without a folder");
+  refused("without gzip", "a gzip file without a folder");
 }
 
 /* A file with bytes cut off or set: an error or a recording, never the end of this process. */
@@ -183,7 +183,8 @@ static void test_damage(enum mat_ft version, enum matio_compression compression,
     failed += r == NULL && error.code == EO_ERROR_INPUT;
     eo_recording_free(r);
   }
-  ok(read + failed == 120 && failed > 0, "damaged %s: %d read, %d refused", what, read, failed);
+  ok(read + failed == 120 && failed > 0, "every damage of %s is read or refused: %d read, %d refused", what, read,
+     failed);
 }
 
 static void test_cut_off(enum matio_compression compression, const char *what)
@@ -196,7 +197,7 @@ static void test_cut_off(enum matio_compression compression, const char *what)
   fseek(plain, 0, SEEK_END);
   long size = ftell(plain);
   fclose(plain);
-  ok(!truncate(fixture_path, size - 20), "cut");
+  ok(!truncate(fixture_path, size - 20), "a file of MATLAB is cut off");
   refused("it is cut off", what);
 }
 
@@ -260,8 +261,8 @@ static void interval_of(struct fact first, struct fact second, double interval, 
   const struct fact facts[3] = {first, second};
   struct eo_recording *r = read_channels(NULL, facts, facts, NULL);
   struct eo_clock clock = clock_of(r, "pinion");
-  ok(fabs(clock.interval - interval) < 1e-12 && fabs(clock.other - other) < 1e-12, "%s: %g and %g s", what,
-     clock.interval, clock.other);
+  ok(fabs(clock.interval - interval) < 1e-12 && fabs(clock.other - other) < 1e-12, "%s: the intervals are %g and %g s",
+     what, clock.interval, clock.other);
   eo_recording_free(r);
 }
 
@@ -302,8 +303,8 @@ static void test_starts(void)
   ok(fabs(later(one, two, NULL, NULL) - 0.05) < 1e-9, "starts that are texts are 50 ms apart");
   ok(fabs(later((struct fact){"t0", "08:59:59.250", 0}, (struct fact){"t0", "08:59:59.300", 0}, NULL, NULL) - 0.05) <
          1e-9,
-     "so are those with the time of day alone");
-  ok(fabs(later(one, two, t, NULL) - 0.05) < 1e-9, "so are those of times that begin with the recording");
+     "starts with the time of day alone are 50 ms apart");
+  ok(fabs(later(one, two, t, NULL) - 0.05) < 1e-9, "starts of times that begin with the recording are 50 ms apart");
   ok(later(one, two, since_1970, NULL) == 0, "times since 1970 are not moved by the start beside them");
   ok(later((struct fact){"created", "2024-03-05 08:59:59", 0}, (struct fact){"created", "2024-03-05 09:00:02", 0}, NULL,
            NULL) == 0,
@@ -383,8 +384,8 @@ static void test_big_endian(void)
   write_bytes(bytes, size);
   struct eo_error error;
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && column_of(r, "g") >= 0 && cell_of(r, 99, column_of(r, "g")) == gear[99], "version 4, the high byte first%s",
-     r ? "" : error.text);
+  ok(r && column_of(r, "g") >= 0 && cell_of(r, 99, column_of(r, "g")) == gear[99],
+     "a file of version 4 with the high byte first is read%s", r ? "" : error.text);
   eo_recording_free(r);
 }
 

@@ -290,7 +290,8 @@ static void test_storage(const char *what, const int *packing, const size_t *par
   end_file(put_data_group(0, group, root, 0));
   struct eo_error error;
   struct eo_recording *r = read_fixture(&spooled, NULL, &error);
-  ok(holds_plain(r, ROWS), "%s: %s", what, r ? "times, values, names, units, clocks" : error.text);
+  ok(holds_plain(r, ROWS), "data in %s give all of it: %s", what,
+     r ? "times, values, names, units, clocks" : error.text);
   eo_recording_free(r);
 }
 
@@ -350,11 +351,13 @@ static void test_columns(void)
   struct eo_error error;
   put_columns(1);
   struct eo_recording *r = read_fixture(&spooled, NULL, &error);
-  ok(holds_plain(r, ROWS), "column by column: %s", r ? "times of another group" : error.text);
+  ok(holds_plain(r, ROWS), "values that stand column by column give all of it: %s",
+     r ? "times of another group" : error.text);
   eo_recording_free(r);
   put_columns(1u << 31);
   r = read_fixture(&spooled, NULL, &error);
-  ok(!r && strstr(error.text, "save the file as MDF 4.1"), "invalidation bits apart: %s", r ? "read" : error.text);
+  ok(!r && strstr(error.text, "save the file as MDF 4.1"), "invalidation bits that stand apart are refused: %s",
+     r ? "read" : error.text);
   eo_recording_free(r);
 }
 
@@ -398,7 +401,7 @@ static void test_unsorted(int number)
   int right = r && eo_recording_columns(r) == 4 && eo_recording_length(r, 3) == ROWS / 3;
   for (int i = 0; right && i < ROWS / 3; i++)
     right = cell_of(r, i, 3) == 15 * i && cell_of(r, i, 1) == 100 + 0.5 * raw_pinion(i) && cell_of(r, i, 2) == gear(i);
-  ok(right, "unsorted records behind numbers of %d bytes: %s", number, r ? "sorted" : error.text);
+  ok(right, "unsorted records behind numbers of %d bytes are sorted: %s", number, r ? "sorted" : error.text);
   eo_recording_free(r);
 }
 
@@ -433,7 +436,7 @@ static void test_integers(void)
         right = right && reads_as(&c, raw, value);
         tried++;
       }
-  ok(right, "integers of 1 to 64 bits, from any bit, both signs and byte orders: %d", tried);
+  ok(right, "integers of 1 to 64 bits are read from any bit, in both signs and byte orders: %d", tried);
 }
 
 static void test_floats(void)
@@ -446,7 +449,7 @@ static void test_floats(void)
     const uint64_t half_bits[2] = {0xe0d3, 0x2000}, single_bits[2] = {bits_of(value[0], 32), bits_of(value[1], 32)},
                    full_bits[2] = {bits_of(value[0], 64), bits_of(value[1], 64)};
     ok(reads_as(&half, half_bits, value) && reads_as(&single, single_bits, value) && reads_as(&full, full_bits, value),
-       "floating values of 16, 32 and 64 bits, %s byte first", big ? "high" : "low");
+       "floating values of 16, 32 and 64 bits are read, %s byte first", big ? "high" : "low");
   }
 }
 
@@ -472,7 +475,7 @@ static void test_conversion(const char *what, int kind, int terms, const double 
   int right = r != NULL;
   for (int i = 0; right && i < 2; i++)
     right = isnan(y[i]) ? isnan(cell_of(r, i, 0)) : fabs(cell_of(r, i, 0) - y[i]) < 1e-12;
-  ok(right, "%s: %s", what, r ? "converted" : error.text);
+  ok(right, "a conversion is made, %s: %s", what, r ? "converted" : error.text);
   eo_recording_free(r);
 }
 
@@ -519,10 +522,11 @@ static void test_facts(void)
   if (!right)
     return;
   struct eo_clock clock = eo_recording_clock(r, 0);
-  ok(clock.column == -1 && fabs(clock.interval - 2e-4) < 1e-15 && clock.start == 0.5, "but a clock");
-  ok(isnan(cell_of(r, 1, 1)) && cell_of(r, 2, 1) == 6, "an invalidation bit takes its value away, and no other");
-  ok(eo_recording_turn(r, 0) == 3600, "counts per turn stand in the comment");
-  ok(!strcmp(eo_recording_unit(r, 0), "<counts>"), "the unit stands in XML");
+  ok(clock.column == -1 && fabs(clock.interval - 2e-4) < 1e-15 && clock.start == 0.5,
+     "times that are counted are a clock");
+  ok(isnan(cell_of(r, 1, 1)) && cell_of(r, 2, 1) == 6, "an invalidation bit takes its own value away alone");
+  ok(eo_recording_turn(r, 0) == 3600, "counts per turn are read from the comment");
+  ok(!strcmp(eo_recording_unit(r, 0), "<counts>"), "a unit is read from XML");
   ok(!strcmp(eo_recording_name(r, 0), "pinion angle") && !strcmp(eo_recording_name(r, 2), "gear angle"),
      "channels of one name are told apart by their groups");
   eo_recording_free(r);
@@ -545,8 +549,8 @@ static void test_unfinished(void)
     if (gaps & 8)
       refused("was not finalised", "gaps that only the writer can close");
     else
-      ok(holds_plain(r, 500) && noted(&notes, "not finalised"), "not finalised, gaps %d: %s", gaps,
-         r ? "records are counted" : error.text);
+      ok(holds_plain(r, 500) && noted(&notes, "not finalised"),
+         "a file that was not finalised, with gaps %d, is read: %s", gaps, r ? "records are counted" : error.text);
     eo_recording_free(r);
   }
 }
@@ -584,7 +588,7 @@ static void test_damage(void)
   refused("more than its block holds", "a conversion with too many numbers");
   begin_file("MDF     ", "3.30    ", 0);
   end_file(0);
-  refused("version 3.30", "an older version is named");
+  refused("version 3.30", "an older version");
   begin_file("MDF     ", "4.10    ", 0);
   end_file(0);
   refused("no channel with numbers", "a file without channels");
@@ -592,7 +596,7 @@ static void test_damage(void)
   struct eo_error error;
   struct eo_notes notes = {0};
   struct eo_recording *r = read_fixture(NULL, &notes, &error);
-  ok(holds_plain(r, 500) && noted(&notes, "cut off"), "fewer records than stated: what is there, with a word");
+  ok(holds_plain(r, 500) && noted(&notes, "cut off"), "a file of fewer records than stated is read with a note");
   eo_recording_free(r);
 }
 
@@ -603,7 +607,7 @@ static void test_circle(void)
   uint64_t channels = put_plain_channels(), data = put_data(records, 500 * RECORD, 0, 0);
   set_at(channels + 24, channels, 8);
   end_file(put_data_group(0, put_group(0, channels, NULL, 0, 500, 0, RECORD, 0), data, 0));
-  refused("in a circle", "a list that leads in a circle ends");
+  refused("in a circle", "a list that leads in a circle");
 }
 
 /* What may cost a reader far more than its bytes: one block in many lists, rows wider than their block, texts of
@@ -673,7 +677,7 @@ static void test_layout(void)
   int right = !code;
   for (int i = 10; right && i < 2000; i += 13)
     right = fabs(cell_of(r, i, 2) + cell_of(r, i, 1) * 17 / 44) < 1e-7 * 360;
-  ok(right, "two encoders with times of their own: %s", code ? error.text : "on one clock");
+  ok(right, "two encoders with times of their own come onto one clock: %s", code ? error.text : "on one clock");
   eo_recording_free(r);
 }
 
@@ -700,7 +704,8 @@ static void test_every_byte(void)
         eo_recording_free(r);
       }
   }
-  ok(read > 0 && failed > 0, "bytes set at random: %d files read, %d refused", read, failed);
+  ok(read > 0 && failed > 0, "bytes set at random leave a recording or an error: %d files read, %d refused", read,
+     failed);
 }
 
 int main(void)

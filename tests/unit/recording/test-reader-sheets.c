@@ -77,8 +77,9 @@ static void test_facts_beside(bool workbook, bool first)
   write_book(workbook, first ? facts : table, first ? table : facts);
   struct eo_recording *r = take(&notes, &error);
   ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 7 && !strcmp(eo_recording_name(r, 1), "Gear"),
-     "%s with a sheet of facts %s the table: its rows%s", kind, where, r ? "" : error.text);
-  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-15, "and its rate");
+     "%s with a sheet of facts %s the table gives its rows%s", kind, where, r ? "" : error.text);
+  ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-15,
+     "the sampling rate is read from the sheet of facts");
   ok(noted(&notes, first ? "\"two\"" : "\"one\""), "the sheet is called by its name");
   eo_recording_free(r);
 }
@@ -96,11 +97,11 @@ static void test_short_rows(bool workbook)
   struct eo_recording *r = take(&notes, &error);
   ok(r && eo_recording_rows(r) == 60 && eo_recording_columns(r) == 4 && cell_of(r, 59, 1) == 2598 &&
          cell_of(r, 29, 3) == 494 && isnan(cell_of(r, 30, 3)) && !noted(&notes, "instead of 4"),
-     "%s with a shorter table beside the first: all rows of both%s", book_kind[!workbook], r ? "" : error.text);
+     "%s with a shorter table beside the first gives all rows of both%s", book_kind[!workbook], r ? "" : error.text);
   eo_recording_free(r);
   write_book(workbook, "Note;a;b;c;d\nx;1;2;3;4\ny;1;2;3;4\nt;deg\n0;1\n1;2\n2;4\n3;8\n4;16\n5;32\n6;64\n", "");
   r = take(NULL, &error);
-  ok(r && eo_recording_rows(r) == 7 && eo_recording_columns(r) == 2, "below a wider table the next keeps its width%s",
+  ok(r && eo_recording_rows(r) == 7 && eo_recording_columns(r) == 2, "a table below a wider one keeps its width%s",
      r ? "" : error.text);
   eo_recording_free(r);
   write_book(workbook, "Report;;;;;page 3\nt;pinion\ns;rad\n0;1\n1;2\n2;4\n3;8\n", "");
@@ -110,7 +111,7 @@ static void test_short_rows(bool workbook)
   eo_recording_free(r);
   write_book(workbook, "t;pinion;remark\ns;deg\n0;1\n1;2;knock\n2;4\n3;8;knock\n", "");
   r = take(NULL, &error);
-  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 1, 1) == 2, "names without a unit below them do%s",
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 1, 1) == 2, "names without a unit below them widen the table%s",
      r ? "" : error.text);
   eo_recording_free(r);
 }
@@ -124,11 +125,12 @@ static void test_comma_texts(bool workbook)
   struct eo_recording *r = take(NULL, &error);
   ok(r && eo_recording_columns(r) == 2 && cell_of(r, 1, 0) == 0.5 && cell_of(r, 0, 1) == 0.25 &&
          cell_of(r, 2, 1) == 12.125,
-     "%s with numbers beside texts with a decimal comma%s", book_kind[!workbook], r ? "" : error.text);
+     "%s with numbers beside texts with a decimal comma is read%s", book_kind[!workbook], r ? "" : error.text);
   eo_recording_free(r);
   write_book(workbook, "t;Pinion\n0;1,250\n0.5;1,500\n1;12,125\n1.5;13,750\n", "");
   r = take(NULL, &error);
-  ok(r && cell_of(r, 1, 0) == 0.5 && cell_of(r, 2, 1) == 12125, "and with marks of thousands%s", r ? "" : error.text);
+  ok(r && cell_of(r, 1, 0) == 0.5 && cell_of(r, 2, 1) == 12125, "texts with marks of thousands are read%s",
+     r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -141,7 +143,7 @@ static void test_formulas(bool workbook)
   ok(r && eo_recording_rows(r) == 4 &&
          noted(&notes, "4 cells of the sheet \"one\" hold formulas that were never computed") &&
          noted(&notes, "save it once"),
-     "formulas without a value in %s are said, with the remedy%s", book_kind[!workbook], r ? "" : error.text);
+     "formulas without a value in %s are noted, with the remedy%s", book_kind[!workbook], r ? "" : error.text);
   eo_recording_free(r);
   write_book(workbook, "", "");
   refuse("No sheet of the spreadsheet holds anything", book_kind[!workbook]);
@@ -152,14 +154,15 @@ static void test_flat(void)
   struct eo_error error;
   write_text(book_content(false, "t;deg\n0;1\n1;2\n2;4\n3;8\n", ""));
   struct eo_recording *r = take(NULL, &error);
-  ok(r && eo_recording_rows(r) == 4 && cell_of(r, 3, 1) == 8, "a flat OpenDocument spreadsheet%s", r ? "" : error.text);
+  ok(r && eo_recording_rows(r) == 4 && cell_of(r, 3, 1) == 8, "a flat OpenDocument spreadsheet is read%s",
+     r ? "" : error.text);
   eo_recording_free(r);
   write_text("<?xml version=\"1.0\"?>\n<other/>\n");
   refuse("The file is XML", "another file of XML");
   add("[Content_Types].xml", "<Types/>");
   add("xl/workbook.bin", "x");
   finish();
-  refuse("(.xlsb); open it", "a binary workbook is called by its name, with the way to convert it");
+  refuse("(.xlsb); open it", "a binary workbook");
 }
 
 static void test_workbook(void)
@@ -185,9 +188,9 @@ static void test_workbook(void)
   int last = r ? eo_recording_columns(r) - 1 : 0;
   ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, last) == 75.5 && fabs(cell_of(r, 1, 0) - 43200.5) < 1e-3 &&
          eo_recording_clock(r, 0).epoch == 1709596800000000000,
-     "a workbook: the larger sheet, dates as dates%s", r ? "" : error.text);
+     "a workbook is read: the larger sheet, dates as dates%s", r ? "" : error.text);
   ok(r && !strcmp(eo_recording_name(r, last), "Pinion") && !strcmp(eo_recording_unit(r, last), "deg"),
-     "and its heading");
+     "the heading of the larger sheet is read");
   eo_recording_free(r);
 }
 
@@ -229,7 +232,7 @@ static void test_opendocument(void)
   finish();
   struct eo_recording *r = take(NULL, &error);
   ok(r && eo_recording_rows(r) == 2 && cell_of(r, 0, 1) == 1.25 && cell_of(r, 1, 0) == 2.5 && cell_of(r, 1, 1) == 2.5,
-     "an OpenDocument spreadsheet%s", r ? "" : error.text);
+     "an OpenDocument spreadsheet is read%s", r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -256,7 +259,7 @@ static void test_repeated_rows(void)
     }
     struct eo_recording *r = take(NULL, &error);
     ok(r && eo_recording_rows(r) == 5 && cell_of(r, 3, 0) == 8 && cell_of(r, 4, 0) == 9,
-       "a row of an OpenDocument spreadsheet that is repeated is as many rows%s", r ? "" : error.text);
+       "a repeated row of an OpenDocument spreadsheet is as many rows%s", r ? "" : error.text);
     eo_recording_free(r);
   }
 }
@@ -301,7 +304,7 @@ static void test_sheets(bool workbook)
   for (int c = 1; right && c < 4; c += 2)
     right = cell_of(r, 109, c) == 109 * (strstr(eo_recording_name(r, c), "pinion") ? 44 : 17) + 1 &&
             eo_recording_clock(r, c).column == c - 1;
-  ok(right && strcmp(eo_recording_name(r, 1), eo_recording_name(r, 3)) != 0, "a sheet for each channel, %s%s%s",
+  ok(right && strcmp(eo_recording_name(r, 1), eo_recording_name(r, 3)) != 0, "a sheet for each channel is read, %s%s%s",
      workbook ? "in a workbook" : "in an OpenDocument spreadsheet", r ? "" : ": ", r ? "" : error.text);
   eo_recording_free(r);
 }

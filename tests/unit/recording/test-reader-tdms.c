@@ -152,12 +152,12 @@ static void test_kind(int toc, const char *what)
   put_file(toc);
   write_bytes(w.bytes, w.size);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && !wrong_rows(r, 350), "%s%s", what, r ? "" : error.text);
+  ok(r && !wrong_rows(r, 350), "a file is read, %s%s", what, r ? "" : error.text);
   ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"),
-     "name and unit");
+     "name and unit of a channel are read");
   ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.25 &&
          eo_recording_line(r, 3) == 0,
-     "sampling interval and start");
+     "sampling interval and start of a channel are read");
   eo_recording_free(r);
 }
 
@@ -179,7 +179,7 @@ static void check_typed(double first, double second, const char *what)
   end_segment();
   write_bytes(w.bytes, w.size);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && cell_of(r, 0, 0) == first && cell_of(r, 1, 0) == second, "%s%s", what, r ? "" : error.text);
+  ok(r && cell_of(r, 0, 0) == first && cell_of(r, 1, 0) == second, "values are read: %s%s", what, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -304,12 +304,12 @@ static void test_damage(void)
   write_bytes(w.bytes, whole - 40);
   struct eo_recording *r = read_fixture(NULL, &notes, &error);
   ok(r && eo_recording_rows(r) >= 300 && noted(&notes, "was not closed or is cut off"),
-     "what is there of a last chunk that is cut off is kept");
+     "the values that are there of a last chunk that is cut off are kept");
   eo_recording_free(r);
   put_file(INTERLEAVED);
   write_bytes(w.bytes, w.size - 40);
   r = read_fixture(NULL, NULL, &error);
-  ok(r && !wrong_rows(r, 347), "of an interleaved one whole rows are kept");
+  ok(r && !wrong_rows(r, 347), "whole rows of an interleaved chunk that is cut off are kept");
   eo_recording_free(r);
   write_bytes(w.bytes, 100);
   refused("cut off in its metadata", "metadata that are cut off");
@@ -352,7 +352,7 @@ static void test_damage(void)
   end_metadata();
   end_segment();
   write_bytes(w.bytes, w.size);
-  refused("no channel with numbers", "no channel");
+  refused("no channel with numbers", "a file without a channel");
 }
 
 /* Two channels, the first with this path of size bytes. */
@@ -410,7 +410,8 @@ static void test_every_byte(void)
       failed += r == NULL;
       eo_recording_free(r);
     }
-  ok(read > 0 && failed > 0, "bytes set at random: %d files read, %d refused", read, failed);
+  ok(read > 0 && failed > 0, "bytes set at random leave a recording or an error: %d files read, %d refused", read,
+     failed);
 }
 
 /* Two channels of 100 values with up to three properties, the texts among them as texts. */
@@ -455,7 +456,7 @@ static void interval_of(struct fact first, struct fact second, double interval, 
   struct eo_recording *r = read_facts(facts, facts, &notes);
   struct eo_clock clock = r ? eo_recording_clock(r, 0) : (struct eo_clock){.interval = NAN};
   ok(fabs(clock.interval - interval) < 1e-12 && fabs(clock.other - other) < 1e-12 && (!words || noted(&notes, words)),
-     "%s: %g and %g s", what, clock.interval, clock.other);
+     "%s: the intervals are %g and %g s", what, clock.interval, clock.other);
   eo_recording_free(r);
 }
 
@@ -464,7 +465,7 @@ static void test_facts(void)
   const struct fact step = {"wf_increment", NULL, 2.5e-4}, rate = {"SampleRate", NULL, 8000};
   static const char said[] = "states a rate of 8000 Hz beside the step of its values (wf_increment), which is 4000 Hz";
   interval_of(step, rate, 2.5e-4, 0, said, "the step of the values before a rate of the hardware");
-  interval_of(rate, step, 2.5e-4, 0, said, "in either order");
+  interval_of(rate, step, 2.5e-4, 0, said, "a rate of the hardware before the step of the values");
   interval_of(step, (struct fact){"decimation", NULL, 10}, 2.5e-4, 0, NULL,
               "the step of the values is that after a decimation");
   interval_of((struct fact){"wf_increment", NULL, 1}, rate, 1, 1.25e-4, NULL, "a step that nobody set is no better");

@@ -21,7 +21,7 @@ static struct eo_recording *table(const char *text, const char *what)
   for (int row = 0; !wrong && row < 4; row++)
     for (int c = 0; c < 3; c++)
       wrong += cell_of(r, row, c) != expected[row][c];
-  ok(!wrong, "%s%s%s", what, r ? "" : ": ", r ? "" : error.text);
+  ok(!wrong, "a table is read, %s%s%s", what, r ? "" : ": ", r ? "" : error.text);
   return r;
 }
 
@@ -41,34 +41,34 @@ static void test_ways(void)
             "0.000100,18.35439856,63.49082088\n0.000150,18.95457267,-63.72262965\n",
             "commas");
   ok(named(r, 0, "t", "s") && named(r, 1, "angle1", "deg") && named(r, 2, "angle2", "deg"),
-     "names with units behind underscores");
-  ok(r && eo_recording_line(r, 0) == 2 && eo_recording_line(r, 3) == 5, "rows know their lines");
+     "names are read with units behind underscores");
+  ok(r && eo_recording_line(r, 0) == 2 && eo_recording_line(r, 3) == 5, "the rows know their lines");
   eo_recording_free(r);
   r = table("Zeit;Winkel Ritzel;Winkel "
             "Rad\r\ns;\xb0;\xb0\r\n0,000000;17,15407647;63,02719913\r\n0,000050;17,75422650;63,25901205\r\n"
             "0,000100;18,35439856;63,49082088\r\n0,000150;18,95457267;-63,72262965\r\n",
             "semicolons, decimal comma, CRLF");
-  ok(named(r, 1, "Winkel Ritzel", "\xc2\xb0"), "a row of units, in Latin 1");
+  ok(named(r, 1, "Winkel Ritzel", "\xc2\xb0"), "a row of units in Latin 1 is read");
   eo_recording_free(r);
   r = table("\xef\xbb\xbf\"Time [s]\"\t\"Pinion (deg)\"\t\"Gear "
             "(deg)\"\n0,0\t17,15407647\t63,02719913\n5e-5\t1,775422650E+01\t63,25901205\n"
             "1E-04\t18,35439856\t63,49082088\n1,5e-004\t18,95457267\t-63,72262965",
             "tabs, decimal comma, exponents, byte order mark, no last line end");
-  ok(named(r, 0, "Time", "s") && named(r, 2, "Gear", "deg"), "quoted names with units in brackets");
+  ok(named(r, 0, "Time", "s") && named(r, 2, "Gear", "deg"), "quoted names with units in brackets are read");
   eo_recording_free(r);
   r = table("# rig 3, run 12\n# t   phi1   phi2\n# [s] [rad] [rad]\n   0.0  17.15407647   63.02719913 \n\n  5e-5 "
             "17.75422650 63.25901205\n"
             "% pause\n  1e-4\t18.35439856\t63.49082088\n// end\n  1.5e-4 18.95457267  -63.72262965\n",
             "blanks, comments, blank lines");
-  ok(named(r, 0, "t", "s") && named(r, 1, "phi1", "rad"), "names and units in comments");
+  ok(named(r, 0, "t", "s") && named(r, 1, "phi1", "rad"), "names and units are read from comments");
   ok(r && eo_recording_line(r, 0) == 4 && eo_recording_line(r, 1) == 6 && eo_recording_line(r, 2) == 8 &&
          eo_recording_line(r, 3) == 10,
-     "lines with gaps");
+     "rows between gaps know their lines");
   eo_recording_free(r);
   r = table("t,a,b\r0,17.15407647,63.02719913\r5e-5,17.75422650,63.25901205\r1e-4,18.35439856,63.49082088\r1.5e-4,18."
             "95457267,-63.72262965\r",
             "lines that end with CR alone");
-  ok(r && eo_recording_line(r, 3) == 5, "and are counted");
+  ok(r && eo_recording_line(r, 3) == 5, "lines that end with CR alone are counted");
   eo_recording_free(r);
   eo_recording_free(table("\"0\",\"17,15407647\",\"63,02719913\"\n\"0,00005\",\"17,7542265\",\"63,25901205\"\n"
                           "\"0,0001\",\"18,35439856\",\"63,49082088\"\n\"0,00015\",\"18,95457267\",\"-63,72262965\"\n",
@@ -85,7 +85,8 @@ static void test_ways(void)
             "5e-5;run 2;17.7542265;63.25901205\n1e-4;run 3;18.35439856;63.49082088\n1.5e-4;run 4;18."
             "95457267;-63.72262965\n",
             "a block of header, a column of text");
-  ok(named(r, 1, "a", "") && r && fabs(eo_recording_clock(r, 0).interval - 5e-5) < 1e-18, "and its sampling rate");
+  ok(named(r, 1, "a", "") && r && fabs(eo_recording_clock(r, 0).interval - 5e-5) < 1e-18,
+     "the sampling rate of the header is read");
   eo_recording_free(r);
 }
 
@@ -94,19 +95,20 @@ static void test_one_column(void)
   struct eo_error error;
   write_text("pulse times\n0,0012\n0,0112\n0,0212\n0,0313\n");
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 3, 0) == 0.0313, "one column with decimal commas");
+  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 3, 0) == 0.0313, "one column with decimal commas is read");
   eo_recording_free(r);
   write_text("1,2\n3,4\n5,6\n");
   struct eo_reader_options options = {.text = {.point = ',', .separator = ';'}};
   r = read_fixture(&options, NULL, &error);
-  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 2, 0) == 5.6, "separator and point as chosen");
+  ok(r && eo_recording_columns(r) == 1 && cell_of(r, 2, 0) == 5.6, "separator and point are taken as chosen");
   eo_recording_free(r);
   options = (struct eo_reader_options){.text = {.first_line = 3}};
   r = read_fixture(&options, NULL, &error);
-  ok(r && eo_recording_rows(r) == 1 && cell_of(r, 0, 1) == 6, "first row as chosen");
+  ok(r && eo_recording_rows(r) == 1 && cell_of(r, 0, 1) == 6, "the first row is taken as chosen");
   eo_recording_free(r);
   options.text.first_line = 30;
-  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "line 30"), "first row past the end: %s", error.text);
+  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "line 30"), "a first row past the end is refused: %s",
+     error.text);
 }
 
 /* rows lines of a table, the one at `odd` replaced. */
@@ -133,9 +135,9 @@ static void test_odd_row(const char *line, const char *words, int missing)
     found += isnan(cell_of(r, 6000, c)) != 0;
   ok(r && eo_recording_rows(r) == 10000 && found == missing && cell_of(r, 6001, 2) == 12002.25 &&
          eo_recording_line(r, 6001) == 6003,
-     "\"%s\": %d cells are missing, the rows around it are not", line, missing);
+     "the row \"%s\" misses %d cells, and the rows around it none", line, missing);
   if (words)
-    ok(noted(&notes, words), "noted as \"%s\"", words);
+    ok(noted(&notes, words), "the notes say \"%s\"", words);
   eo_recording_free(r);
 }
 
@@ -158,7 +160,7 @@ static void test_faults(void)
   write_text("t,a\n0,1\n1,2\n2,3\n3,4\n4");
   notes.count = 0;
   r = read_fixture(NULL, &notes, &error);
-  ok(r && eo_recording_rows(r) == 4 && noted(&notes, "line 6, is cut off"), "a last row that is cut off");
+  ok(r && eo_recording_rows(r) == 4 && noted(&notes, "line 6, is cut off"), "a last row that is cut off is left out");
   eo_recording_free(r);
   FILE *file = fopen(fixture_path, "w");
   for (int i = 0; i < 5000; i++)
@@ -187,7 +189,7 @@ static void test_wide(void)
     write_bytes(wide, n);
     struct eo_recording *r = read_fixture(NULL, NULL, &error);
     ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == -3.5 && named(r, 1, "a", ""),
-       "UTF-16, %s first, %s mark%s%s", big ? "high" : "low", mark ? "with" : "without", r ? "" : ": ",
+       "UTF-16 is read, %s byte first, %s mark%s%s", big ? "high" : "low", mark ? "with" : "without", r ? "" : ": ",
        r ? "" : error.text);
     eo_recording_free(r);
   }
@@ -225,9 +227,9 @@ static void test_refusals(void)
   write_text("Dear colleague,\nplease find attached the measurement.\n");
   refused("No table of numbers", "a letter");
   write_bytes("\x01\x02\x03\0\0\0\0\0\0\0\0\0", 12);
-  refused("byte 3 is 0", "some binary file");
+  refused("byte 3 is 0", "a binary file of no kind");
   write_text("PAR1 and more");
-  refused("Parquet", "a table of another kind is called by its name");
+  refused("Parquet", "a table of another kind");
   FILE *file = fopen(fixture_path, "w");
   for (int i = 0; i < 1000; i++)
     fprintf(file, "%d,%d\n", i, i);
@@ -243,19 +245,21 @@ static void test_refusals(void)
   refused("300 cells", "too many columns");
   struct eo_error error;
   struct eo_recording *r = NULL;
-  ok(eo_reader_read("/nonexistent/file", NULL, &r, NULL, &error) == EO_ERROR_FILE && !r, "no file: %s", error.text);
-  ok(eo_reader_read(fixture_directory, NULL, &r, NULL, &error) == EO_ERROR_FILE && !r, "a folder: %s", error.text);
+  ok(eo_reader_read("/nonexistent/file", NULL, &r, NULL, &error) == EO_ERROR_FILE && !r,
+     "a file that is not there is refused: %s", error.text);
+  ok(eo_reader_read(fixture_directory, NULL, &r, NULL, &error) == EO_ERROR_FILE && !r, "a folder is refused: %s",
+     error.text);
   struct eo_reader_options options = {.max_bytes = 1000000};
   write_rows(200000, -1, "");
-  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "more than the 0 MB"), "a file beyond the limit: %s",
-     error.text);
+  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "more than the 0 MB"),
+     "a file beyond the limit is refused: %s", error.text);
 }
 
 static int stop(void *context, const char *what, double fraction)
 {
   double *last = context;
   (void)what;
-  ok(fraction >= *last && fraction <= 1, "progress %.2f", fraction);
+  ok(fraction >= *last && fraction <= 1, "the progress ascends to %.2f", fraction);
   *last = fraction;
   return fraction > 0.5;
 }
@@ -267,8 +271,8 @@ static void test_progress(void)
   struct eo_progress progress = {stop, &last};
   struct eo_reader_options options = {.progress = &progress};
   write_rows(200000, -1, "");
-  ok(!read_fixture(&options, NULL, &error) && error.code == EO_ERROR_CANCELLED && last > 0.5, "cancelled: %s",
-     error.text);
+  ok(!read_fixture(&options, NULL, &error) && error.code == EO_ERROR_CANCELLED && last > 0.5,
+     "a reading that is cancelled ends so: %s", error.text);
 }
 
 static void write_gzip(const char *text, int times)
@@ -284,7 +288,7 @@ static void test_gzip(void)
   struct eo_error error;
   write_gzip("0.5,1.25\n1.5,2.25\n", 100000);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_rows(r) == 200000 && cell_of(r, 199999, 1) == 2.25, "a gzip file");
+  ok(r && eo_recording_rows(r) == 200000 && cell_of(r, 199999, 1) == 2.25, "a gzip file is read");
   eo_recording_free(r);
   FILE *file = fopen(fixture_path, "ab");
   gzFile more = gzdopen(dup(fileno(file)), "ab");
@@ -292,9 +296,10 @@ static void test_gzip(void)
   gzclose(more);
   fclose(file);
   r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_rows(r) == 200001 && cell_of(r, 200000, 1) == 8, "two gzip members after each other");
+  ok(r && eo_recording_rows(r) == 200001 && cell_of(r, 200000, 1) == 8, "two gzip members after each other are read");
   eo_recording_free(r);
-  ok(truncate(fixture_path, 1000) == 0 && refused("cut off", "a gzip file that is cut off"), "cut off");
+  ok(truncate(fixture_path, 1000) == 0 && refused("cut off", "a gzip file that is cut off"),
+     "the gzip file is cut off and refused");
   unsigned char bytes[1000];
   file = fopen(fixture_path, "rb");
   size_t size = fread(bytes, 1, sizeof bytes, file);
@@ -328,20 +333,20 @@ static void test_octave(void)
   struct eo_recording *r = read_fixture(NULL, &notes, &error);
   ok(r && eo_recording_columns(r) == 3 && eo_recording_rows(r) == 4 && named(r, 0, "pinion", "deg") &&
          named(r, 1, "gear 1", "deg") && cell_of(r, 3, 0) == 4 && isnan(cell_of(r, 2, 0)) && cell_of(r, 3, 1) == 8,
-     "the members of a struct of Octave, with their unit%s", r ? "" : error.text);
+     "the members of a struct of Octave are read with their unit%s", r ? "" : error.text);
   ok(r && fabs(eo_recording_clock(r, 0).interval - 2.5e-4) < 1e-12 && cell_of(r, 3, 2) == 0.75 &&
          eo_recording_clock(r, 0).column == 2 && noted(&notes, "1 variable is no channel"),
-     "its rate, a range, and what was left out");
+     "its rate and a range are read, and a note says what was left out");
   eo_recording_free(r);
   snprintf(text, sizeof text, "%s# name: both\n# type: matrix\n# rows: 3\n# columns: 2\n 1 4\n 2 5\n 3 6\n\n\n", first);
   write_text(text);
   r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 2, 0) == 3 && cell_of(r, 0, 1) == 4, "a matrix of Octave%s",
-     r ? "" : error.text);
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 2, 0) == 3 && cell_of(r, 0, 1) == 4,
+     "a matrix of Octave is read%s", r ? "" : error.text);
   eo_recording_free(r);
   text[strlen(text) - 7] = '\0';
   write_text(text);
-  refused("\"both\" end early", "one that is cut off");
+  refused("\"both\" end early", "a matrix of Octave that is cut off");
   snprintf(text, sizeof text, "%s# name: t\n# type: range\n# base, limit, increment\n0 1e9 1e-9\n", first);
   write_text(text);
   refused("no channel", "a range without end");

@@ -88,7 +88,7 @@ static struct eo_recording *read_back(struct eo_notes *notes, const char *what)
   struct eo_error error;
   write_bytes(w.bytes, w.size);
   struct eo_recording *r = read_fixture(NULL, notes, &error);
-  ok(r != NULL, "%s%s%s", what, r ? "" : ": ", r ? "" : error.text);
+  ok(r != NULL, "records are read, %s%s%s", what, r ? "" : ": ", r ? "" : error.text);
   return r;
 }
 
@@ -98,10 +98,10 @@ static void check_even(const char *what)
   int wrong = !r || eo_recording_columns(r) != 2 || eo_recording_rows(r) != COUNT;
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += cell_of(r, i, 0) != pinion(i) || cell_of(r, i, 1) != gear(i);
-  ok(!wrong, "values");
+  ok(!wrong, "the values of the records are read");
   ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.5 &&
          !strcmp(eo_recording_name(r, 0), "Pinion 12:3") && !strcmp(eo_recording_unit(r, 1), "deg"),
-     "interval, start, name and unit");
+     "interval, start, name and unit of a record are read");
   eo_recording_free(r);
 }
 
@@ -114,7 +114,7 @@ static void check_uneven(const char *what)
              cell_of(r, i, 3) != gear(i);
   ok(!wrong && eo_recording_clock(r, 1).column == 0 && eo_recording_clock(r, 3).column == 2 &&
          !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_unit(r, 0), "s"),
-     "a column of time for each set, and values");
+     "each uneven set has a column of time and its values");
   eo_recording_free(r);
 }
 
@@ -196,7 +196,8 @@ static void test_faults(void)
   unsigned char *at = memmem(w.bytes, w.size, "Spectrum", 8);
   memcpy(memmem(at, w.size - (size_t)(at - w.bytes), "    1         0    0", 20), "   12", 5);
   struct eo_recording *r = read_back(&notes, "a spectrum beside a record");
-  ok(r && eo_recording_columns(r) == 1 && noted(&notes, "1 data set that is no real record"), "is left out");
+  ok(r && eo_recording_columns(r) == 1 && noted(&notes, "1 data set that is no real record"),
+     "a spectrum beside a record is left out");
   eo_recording_free(r);
   w.size = 0;
   put_text_set("Pinion", pinion, 4, 1);
@@ -233,7 +234,7 @@ static void test_faults(void)
   put_line("    15");
   put_line("    -1");
   write_bytes(w.bytes, w.size);
-  refused("no channel with numbers", "no data set 58");
+  refused("no channel with numbers", "a file without data set 58");
   w.size = 0;
   put_line("    -1");
   put_line("    58");

@@ -34,9 +34,10 @@ static void test_parts_of_time(void)
         NULL, 1e-7, note, "seconds and nanoseconds as robots log them");
   right(parts_of_time("tv_sec,tv_usec,pinion [deg],gear [deg]\n", "%lld,%lld", 0, 0.8, 1000000), NULL, 1e-7, note,
         "seconds and microseconds from 0");
-  right(parts_of_time("", "%lld,%lld", EPOCH, 0.8, 1000000000), NULL, 1e-7, note, "without names");
+  right(parts_of_time("", "%lld,%lld", EPOCH, 0.8, 1000000000), NULL, 1e-7, note,
+        "seconds and nanoseconds without names");
   right(parts_of_time("epoch_s,fraction,pinion [deg],gear [deg]\n", "%lld,0.%06lld", EPOCH, 0.8, 1000000), NULL, 1e-7,
-        note, "a fraction below 1");
+        note, "a fraction of a second in a column");
   for (int way = 0; way < 2; way++) {
     double start = way ? 86399.5 : 32399.5;
     FILE *f = begin(way ? "hour,minute,second,microsecond,pinion [deg],gear [deg]\n"
@@ -66,7 +67,7 @@ static void test_steps(void)
     t += step * 1e-3;
     fprintf(f, "%.12g;%.12g;%.12g\n", step, degrees(pinion(t)), degrees(gear(t)));
   }
-  right(f, NULL, 1e-7, "steps of time", "steps that differ");
+  right(f, NULL, 1e-7, "steps of time", "steps of time that differ");
   f = begin("micros;pinion [deg];gear [deg]\n");
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%d;%.12g;%.12g\n", 250 * i, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
@@ -80,7 +81,7 @@ static void test_steps(void)
       fprintf(f, "%g;%.12g;%.12g\n", kind ? 7e-3 : 0.25, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
     }
     if (kind)
-      right(f, NULL, 1e-7, "\"t\" is taken as time", "steps beside times do not count");
+      right(f, NULL, 1e-7, "\"t\" is taken as time", "steps beside times, which do not count");
     else
       asked(f, NULL, "/time", "call the column dt", "a time that stands still");
   }
@@ -110,22 +111,23 @@ static FILE *arcs(const char *header, const char *format, double sign)
 
 static void test_arcs(void)
 {
-  right(arcs("t_s;pinion;gear\n", "%s%d°%02d'%02d.%06d\"", 1), NULL, 1e-7, "in degrees", "12°34'56.7\"");
+  right(arcs("t_s;pinion;gear\n", "%s%d°%02d'%02d.%06d\"", 1), NULL, 1e-7, "in degrees", "angles as 12°34'56.7\"");
   right(arcs("t_s;pinion;gear\n", "%s%d\xb0 %02d' %02d.%06d''", 1), NULL, 1e-7, "in degrees",
-        "in Latin 1, with blanks");
-  right(arcs("t_s;pinion;gear\n", "%s%d° %02d′ %02d.%06d″", 1), NULL, 1e-7, "in degrees", "with primes");
-  right(arcs("t_s;pinion;gear\n", "\"%s%d°%02d'%02d.%06d\"\"\"", 1), NULL, 1e-7, "in degrees", "in quotes");
-  right(arcs("t_s;pinion;gear\n", "%s%dd%02dm%02d.%06ds", 1), NULL, 1e-7, "in degrees", "with letters");
-  right(arcs("t_s;pinion [deg];gear [deg]\n", "%s%d:%02d:%02d.%06d", 1), NULL, 1e-7, "in degrees", "with colons");
+        "angles in Latin 1, with blanks");
+  right(arcs("t_s;pinion;gear\n", "%s%d° %02d′ %02d.%06d″", 1), NULL, 1e-7, "in degrees", "angles with primes");
+  right(arcs("t_s;pinion;gear\n", "\"%s%d°%02d'%02d.%06d\"\"\"", 1), NULL, 1e-7, "in degrees", "angles in quotes");
+  right(arcs("t_s;pinion;gear\n", "%s%dd%02dm%02d.%06ds", 1), NULL, 1e-7, "in degrees", "angles with letters");
+  right(arcs("t_s;pinion [deg];gear [deg]\n", "%s%d:%02d:%02d.%06d", 1), NULL, 1e-7, "in degrees",
+        "angles with colons");
   right(arcs("t_s;p_deg;p_min;p_sec;g_deg;g_min;g_sec\n", "%s%d;%d;%d.%06d", 1), NULL, 1e-7, "parts of one angle",
-        "in columns");
+        "angles in columns");
   right(arcs("t;pinion;;;gear;;\ns;deg;arcmin;arcsec;deg;arcmin;arcsec\n", "%s%d;%d;%d.%06d", 1), NULL, 1e-7,
-        "parts of one angle", "in columns with units below");
+        "parts of one angle", "angles in columns with units below");
   FILE *f = begin("t_s;turn;pinion [deg];gear [deg]\n");
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%.9g;%d;%.12g;%.12g\n", i / RATE, (int)(degrees(pinion(i / RATE)) / 360), degrees(pinion(i / RATE)),
             degrees(gear(i / RATE)));
-  right(f, NULL, 1e-7, "in degrees", "whole turns beside angles are no part of them");
+  right(f, NULL, 1e-7, "in degrees", "whole turns beside angles, which are no part of them");
 }
 
 /* Below 0 minutes count down from 0 with the degrees, or up from them; "-0" is a degree of its own. */
@@ -148,7 +150,7 @@ static void test_negative_arcs(void)
     r = read_fixture(NULL, NULL, &error);
     for (int i = 0; r && i < 200; i++)
       most = fmax(most, fabs(cell_of(r, i, 0) - (9.97 - 0.1 * i)));
-    ok(r && eo_recording_columns(r) == 1 && most < 1e-9, "degrees below 0 whose minutes count %s: %.2g",
+    ok(r && eo_recording_columns(r) == 1 && most < 1e-9, "degrees below 0 whose minutes count %s are read to %.2g",
        way ? "up" : "down", most);
     eo_recording_free(r);
   }
@@ -171,12 +173,13 @@ static void test_channels_in_rows(void)
   static const char *const plain[2] = {"pinion", "gear"}, *const odd[2] = {"ENC1", "ENC2"},
                            *const number[2] = {"0x101", "0x102"};
   right(rows_of_channels("time [s],channel,value [deg]\n", "%.9f,%s,%.12g\n", plain, 0), NULL, 1e-7, "side by side",
-        "a column of names");
+        "rows with a column of names");
   right(rows_of_channels("time [s];Kanal;Wert;Einheit\n", "%.9f;%s;%.12g;deg\n", odd, 1e-4), NULL, 1e-7,
-        "times of their own", "a column of names, one of units, times of their own");
+        "times of their own", "rows with a column of names, one of units, times of their own");
   right(rows_of_channels("time [s];id;angle [deg]\n", "%.9f;%s;%.12g\n", number, 1e-4), NULL, 1e-7,
-        "times of their own", "a column of numbers");
-  right(rows_of_channels("", "%.9f,%s,%.12g\n", plain, 0), NULL, 1e-3, "side by side", "without a heading");
+        "times of their own", "rows with a column of numbers");
+  right(rows_of_channels("", "%.9f,%s,%.12g\n", plain, 0), NULL, 1e-3, "side by side",
+        "rows with a column of names without a heading");
   FILE *f = begin("name;t_s;deg\n");
   for (int m = 1; m >= 0; m--)
     for (int i = 0; i < ROWS; i++) {
@@ -207,7 +210,7 @@ static void test_channels_in_rows(void)
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%.9f;%s;%.12g;%.12g;%d\n", i / RATE, i % 50 ? "OK" : "WARN", degrees(pinion(i / RATE)),
             degrees(gear(i / RATE)), i % 2);
-  right(f, NULL, 1e-7, "in degrees", "words and numbers beside both encoders are no channels");
+  right(f, NULL, 1e-7, "in degrees", "words and numbers beside both encoders, which are no channels");
 }
 
 /* Tables one below the other; first, second: what stands above each. */
@@ -243,9 +246,9 @@ static void test_stacked(void)
                 false, RATE),
         NULL, 1e-7, "in degrees", "a rate next to the rows");
   right(stacked("Sample rate: 4000 Hz\npinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, 1e-7, "side by side",
-        "one rate for both");
+        "one rate for both blocks");
   asked(stacked("pinion_deg\n", "gear_deg\n", "%.12g\n", false, RATE), NULL, "/sample_rate_Hz", "give one",
-        "no rate at all");
+        "blocks without a rate");
   for (int way = 0; way < 2; way++) {
     FILE *f = begin("Table: run 1\nt_s,pinion_deg,gear_deg\n");
     for (int i = 0; i < ROWS; i++) {
@@ -254,7 +257,7 @@ static void test_stacked(void)
       fprintf(f, "%.9f,%.12g,%.12g\n", i / RATE, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
     }
     if (way)
-      right(f, NULL, 1e-7, "left empty", "a remark between rows begins no table");
+      right(f, NULL, 1e-7, "left empty", "a remark between rows, which begins no table");
     else
       asked(f, NULL, "", "run 1 (2000 rows), run 2 (2000 rows)", "two tables with both encoders");
   }

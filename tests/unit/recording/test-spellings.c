@@ -32,7 +32,7 @@ static void test_names(void)
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     right(named("", rows[i].format), NULL, 1e-7, note, rows[i].what);
   right(named("Encoder logger 1.2\nReady: yes\nPins: 2\n", "t=%.9g,pinion=%.12g,gear=%.12g\n"), NULL, 1e-7, note,
-        "behind a banner");
+        "rows with names behind a banner");
   FILE *f = begin("");
   for (int i = 0; i < ROWS; i++) {
     double t = i / RATE;
@@ -44,7 +44,7 @@ static void test_names(void)
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && eo_recording_columns(r) == 2 && !strcmp(eo_recording_name(r, 1), "Ritzel") &&
          fabs(cell_of(r, 1000, 1) - degrees(pinion(0.25))) < 1e-6,
-     "decimal commas: %.9g%s", r ? cell_of(r, 1000, 1) : NAN, r ? "" : error.text);
+     "rows with names and decimal commas are read: %.9g%s", r ? cell_of(r, 1000, 1) : NAN, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -72,7 +72,7 @@ static void test_places(void)
   }
   ok(r && !wrong && eo_recording_rows(r) == 200 && noted(&notes, "instead of 3") && isnan(cell_of(r, 50, 0)) &&
          isnan(cell_of(r, 60, 2)),
-     "names tell the places, %d rows are wrong%s", wrong, r ? "" : error.text);
+     "names in rows tell the places, %d rows are wrong%s", wrong, r ? "" : error.text);
   eo_recording_free(r);
   write_text("Rate=4000\nRows=3\nRig=2\nTorque=400\nSpeed=600\nDate=5\n");
   refused("No table", "facts below each other are no rows");
@@ -96,11 +96,11 @@ static void test_overflows(void)
   right(wrapped("micros,pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p32, 500000, 0), NULL, 1e-6, note,
         "micros() after 2^32");
   right(wrapped("micros,pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p32, 500000, -0x1p31), NULL, 1e-6, note,
-        "the same with a sign");
+        "micros() after 2^32 with a sign");
   right(wrapped("millis,pinion [deg],gear [deg]\n", 1000, 1e-3, 0x1p32, 500, 0), NULL, 1e-3, note,
         "millis() after 2^32");
   right(wrapped("time [us],pinion [deg],gear [deg]\n", RATE, 1e-6, 0x1p16, 5000, 0), NULL, 1e-7, note,
-        "16 bits, 15 times");
+        "times of 16 bits that start again 15 times");
   right(wrapped("Timer clock: 10 MHz\nticks,pinion [deg],gear [deg]\n", RATE, 1e-7, 0x1p16, 5000, 0), NULL, 1e-7, note,
         "ticks of a stated clock");
   right(wrapped("ms,pinion [deg],gear [deg]\n", RATE, 1e-3, 0x1p16, 500, 0), NULL, 1e-3, note,
@@ -109,9 +109,9 @@ static void test_overflows(void)
   for (int i = 0; i < ROWS; i++)
     fprintf(f, "%.6f,%.17g,%.17g\n", fmod(i / RATE + 0x1p32 * 1e-6 - 0.3, 0x1p32 * 1e-6),
             degrees(pinion(i / RATE + 0x1p32 * 1e-6 - 0.3)), degrees(gear(i / RATE + 0x1p32 * 1e-6 - 0.3)));
-  right(f, NULL, 1e-3, note, "in seconds");
+  right(f, NULL, 1e-3, note, "ms in seconds that stand for four rows");
   asked(wrapped("time [us],pinion [deg],gear [deg]\n", RATE, 1e-6, 70000, 5000, 0), NULL, "/time", "go back in",
-        "what no counter has");
+        "times that start again as no counter does");
 }
 
 static FILE *told(const char *sentence)
@@ -320,7 +320,7 @@ static void test_arcs(void)
     int first = files[i].timed && !last;
     double expected = files[i].sign * fmod(degrees(gear(1000 / RATE)), files[i].turn);
     ok(r && strcmp(eo_recording_unit(r, first + 1), "deg") == 0 && fabs(cell_of(r, 1000, first + 1) - expected) < 1e-7,
-       "%s: %.9g, expected %.9g%s", files[i].what, r ? cell_of(r, 1000, first + 1) : NAN, expected,
+       "%s: the value is %.9g, expected %.9g%s", files[i].what, r ? cell_of(r, 1000, first + 1) : NAN, expected,
        r ? "" : error.text);
     eo_recording_free(r);
   }
@@ -332,7 +332,7 @@ static void test_arcs(void)
   fclose(f);
   struct eo_error error;
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(!r || strcmp(eo_recording_unit(r, 0), "s") == 0, "with nothing that tells the time they may be times of pulses");
+  ok(!r || strcmp(eo_recording_unit(r, 0), "s") == 0, "times alone may be times of pulses");
   eo_recording_free(r);
 }
 

@@ -13,7 +13,7 @@ static void moment(const char *text, int64_t day, double seconds)
   struct eo_moment m;
   bool read = eo_moment_read(text, strlen(text), &m);
   ok(read && (day < 0 ? !m.has_day : m.has_day && m.day == day) && fabs(m.seconds - seconds) < 1e-9,
-     "%s: day %lld, %.9g s", text, read ? (long long)m.day : -99, read ? m.seconds : NAN);
+     "%s is read as day %lld, %.9g s", text, read ? (long long)m.day : -99, read ? m.seconds : NAN);
 }
 
 static void no_moment(const char *text)
@@ -28,7 +28,7 @@ static void number(const char *text, double value, const char *unit)
   char own[32];
   bool good = eo_stated_read_number(text, &read, own, sizeof own);
   ok(good == isfinite(value) && (!good || (fabs(read - value) < 1e-12 && !strcmp(own, unit))),
-     "\"%s\" as a number: %g %s", text, good ? read : NAN, good ? own : "");
+     "\"%s\" is judged as a number: %g %s", text, good ? read : NAN, good ? own : "");
 }
 
 static void test_numbers(void)
@@ -47,7 +47,7 @@ static void test_numbers(void)
   struct eo_moment m;
   ok(eo_stated_moment("start_time", "2024-03-05 08:59:59.5", &m) && m.has_day && m.seconds == 32399.5,
      "a text under \"start_time\" states when the recording began");
-  ok(!eo_stated_moment("created", "2024-03-05 08:59:59.5", &m), "one under \"created\" does not");
+  ok(!eo_stated_moment("created", "2024-03-05 08:59:59.5", &m), "a text under \"created\" does not state it");
   ok(fabs(eo_stated_read("resolution_deg_per_count", 0.25, "").value - 1440) < 1e-9 &&
          fabs(eo_stated_read("resolution", 0.25, "deg/count").value - 1440) < 1e-9,
      "the angle of a count states the counts per turn");
@@ -67,7 +67,7 @@ static void test_moments(void)
   const int64_t day = 19787; /* 2024-03-05, by `date -d 2024-03-05 +%s` / 86400 */
   const double time = 32399.5;
   ok(eo_moment_day(1970, 1, 1) == 0 && eo_moment_day(2000, 2, 29) == 11016 && eo_moment_day(2024, 3, 5) == day,
-     "days of the calendar");
+     "days of the calendar are counted from 1970");
   moment("2024-03-05T08:59:59.5Z", day, time);
   moment("2024-03-05 08:59:59,5", day, time);
   moment("2024-03-05T09:59:59.5+01:00", day, time);
@@ -91,7 +91,8 @@ static void test_moments(void)
   moment("133541027995000000", day, time);
   moment("638452259995000000", day, time);
   struct eo_moment m;
-  ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000, "as an epoch");
+  ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000,
+     "a moment is read as an epoch");
   no_moment("12.5");
   no_moment("05.13.2024");
   no_moment("2024-02-30");
@@ -107,7 +108,8 @@ static void unit(const char *text, enum eo_quantity quantity, double expected)
 {
   double factor;
   enum eo_quantity found = eo_unit_find(text, &factor);
-  ok(found == quantity && fabs(factor / expected - 1) < 1e-12, "unit %s: %d, %.9g", text, (int)found, factor);
+  ok(found == quantity && fabs(factor / expected - 1) < 1e-12, "the unit %s has the quantity %d and the factor %.9g",
+     text, (int)found, factor);
 }
 
 static void test_units(void)
@@ -154,7 +156,7 @@ static void test_units(void)
   unit("foo", EO_QUANTITY_NONE, 1);
   char name[32], text[32];
   eo_unit_split("Winkel in Grad", name, sizeof name, text, sizeof text);
-  ok(!strcmp(name, "Winkel") && !strcmp(text, "Grad"), "split at \"in\"");
+  ok(!strcmp(name, "Winkel") && !strcmp(text, "Grad"), "a name is split from its unit at \"in\"");
   eo_unit_split("Pinion (encoder 1)", name, sizeof name, text, sizeof text);
   ok(!strcmp(name, "Pinion (encoder 1)") && !*text, "a name in brackets is no unit");
   eo_unit_split("Pinion [foo]", name, sizeof name, text, sizeof text);
@@ -164,8 +166,8 @@ static void test_units(void)
 static void stated(const char *key, double number, const char *unit, enum eo_stated_kind kind, double value)
 {
   struct eo_stated s = eo_stated_read(key, number, unit);
-  ok(s.kind == kind && (!kind || fabs(s.value / value - 1) < 1e-12), "%s %g %s: %d, %.9g", key, number, unit,
-     (int)s.kind, s.value);
+  ok(s.kind == kind && (!kind || fabs(s.value / value - 1) < 1e-12),
+     "the statement %s %g %s is of kind %d and says %.9g", key, number, unit, (int)s.kind, s.value);
 }
 
 static void test_stated(void)
@@ -234,8 +236,9 @@ static void test_stated(void)
   stated("Resolution", 16, "bit", EO_STATED_NOTHING, 0); /* of an analogue input */
   stated("Encoder resolution", 64, "bit", EO_STATED_NOTHING, 0);
   ok(eo_stated_read("Rate gear", 1, "Hz").member == 1 && eo_stated_read("fs_pinion", 1, "Hz").member == 0,
-     "whose it is");
-  ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"), "when it began");
+     "a rate says whose it is by its name");
+  ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"),
+     "a start is told from a duration by its name");
 }
 
 /* What an encoder's turn has, by the words on either side of the number. */
@@ -267,10 +270,10 @@ static void test_turns(void)
   stated("Interpolation", 4096, "", EO_STATED_FOLD, 4096);
   stated("Interpolation order", 3, "", EO_STATED_NOTHING, 0);
   ok(eo_stated_read("CPR1", 9e6, "").number == 1 && eo_stated_read("CPR0", 9e6, "").kind == EO_STATED_TURN,
-     "CPR with the number of its channel");
-  ok(eo_stated_read("Strichzahl Rad", 9000, "").member == 1, "a wheel that is a unit, too");
+     "CPR is read with the number of its channel");
+  ok(eo_stated_read("Strichzahl Rad", 9000, "").member == 1, "a wheel that is a unit is read, too");
   ok(eo_stated_read("Line count", 9000, "").lines && !eo_stated_read("CPR", 9000, "").lines,
-     "lines may be multiplied, counts may not");
+     "lines may be multiplied, and counts may not");
 }
 
 int main(void)
