@@ -63,7 +63,8 @@ static bool record(const struct eo_design *rig, bool unmodified, double torque, 
 static void test_share(void)
 {
   /* 0.879 is the share that the reference recording states for the paper's pair. */
-  close_to(eo_prediction_pinion_share(&design.supports, &geometry), 0.879, 1e-3, "the pinion's share of the vibration");
+  close_to(eo_prediction_pinion_share(&design.supports, &geometry), 0.879, 1e-3,
+           "share of the pinion in the vibration");
 }
 
 static void test_comparison(void)
@@ -77,12 +78,12 @@ static void test_comparison(void)
   for (int i = 0; i < POINTS; i++)
     good = record(&design, i % 2 == 0, torque[i], rpm[i], i == 5 ? 2.5 : 1, (uint64_t)i + 1, &measured[i]) && good;
   if (!ok(good && !eo_comparison_run(&c, evaluator, &design, POINTS, measured, NULL, &error),
-          "six recordings compared"))
+          "six recordings are compared"))
     return;
   for (int i = 0; i < POINTS - 1; i++) {
     const struct eo_compared *p = &c.point[i];
-    ok(fabs(p->ratio - 1) < 0.01 && p->likeness > 0.999 && !p->outlier, "%s: %.4f times the prediction, likeness %.5f",
-       measured[i].name, p->ratio, p->likeness);
+    ok(fabs(p->ratio - 1) < 0.01 && p->likeness > 0.999 && !p->outlier,
+       "%s: the vibration is %.4f times the prediction, likeness %.5f", measured[i].name, p->ratio, p->likeness);
     eo_comparison_curves(&measured[i], p, 64, mine, theirs);
     for (int k = 0; k < 64; k++) {
       worst = fmax(worst, fabs(mine[k] - theirs[k]));
@@ -92,11 +93,11 @@ static void test_comparison(void)
   ok(worst < 0.03 * size, "the curves lie on each other: %.3g of %.3g um", 1e6 * worst, 1e6 * size);
   ok(c.point[5].outlier && fabs(c.point[5].ratio - 2.5) < 0.03 && *c.point[5].reason,
      "the one that is 2.5 times too large is named: %s", c.point[5].reason);
-  close_to(c.ratio, 1, 0.01, "median ratio");
-  ok(c.reductions == 3 && c.reduction[0].unmodified == 1, "a reduction for each modified recording: %d", c.reductions);
+  close_to(c.ratio, 1, 0.01, "median ratio of measured to predicted");
+  ok(c.reductions == 3 && c.reduction[0].unmodified == 1, "every modified recording has a reduction: %d", c.reductions);
   ok(fabs(c.reduction[1].measured - c.reduction[1].predicted) < 3 * c.reduction[1].measured_sigma &&
          c.reduction[1].measured_sigma < 0.02,
-     "828 N m: the modification takes %.2f +- %.2f %%, predicted %.2f %%", 100 * c.reduction[1].measured,
+     "the modification takes %.2f +- %.2f %% at 828 N m, predicted %.2f %%", 100 * c.reduction[1].measured,
      100 * c.reduction[1].measured_sigma, 100 * c.reduction[1].predicted);
   eo_comparison_done(&c);
 }
@@ -118,15 +119,15 @@ static void test_least_squares(void)
   for (int i = 0; i < 10; i++)
     target[i] = exp(-3 * 0.7 * i / 10) + 0.25;
   enum eo_code code = eo_least_squares(bent_line, target, 2, 10, &options, x, jacobian, &report, &error);
-  ok(!code && report.converged, "a fit of two unknowns: %d evaluations", report.evaluations);
-  close_to(x[0], 0.7, 1e-6, "first");
-  close_to(x[1], 0.25, 1e-6, "second");
+  ok(!code && report.converged, "a fit finds two unknowns in %d evaluations", report.evaluations);
+  close_to(x[0], 0.7, 1e-6, "the first unknown of the fit");
+  close_to(x[1], 0.25, 1e-6, "the second unknown of the fit");
   for (int i = 0; i < 10; i++)
     target[i] = exp(-3 * 0.7 * i / 10) - 0.1;
   ok(!eo_least_squares(bent_line, target, 2, 10, &options, x, jacobian, &report, &error) && x[1] == 0 && x[0] > 0.7,
-     "the second would have to be negative: it stays at its bound");
+     "an unknown that would have to be negative stays at its bound");
   ok(eo_least_squares(bent_line, target, 0, 10, &options, x, jacobian, &report, &error) == EO_ERROR_INPUT,
-     "no unknowns");
+     "a fit of no unknowns is refused");
 }
 
 static bool record_some(const struct eo_design *rig, int count, struct eo_measured *measured)
@@ -149,18 +150,19 @@ static void test_updating(void)
       .range = {{EO_UNKNOWN_PINION_BEARING, 2e8, 3e9}, {EO_UNKNOWN_MESH_DAMPING, 0.02, 0.2}}};
   rig.supports.bearing_stiffness[EO_PINION] = 4.5e8;
   rig.supports.mesh_damping_ratio = 0.11;
-  if (!ok(record_some(&rig, POINTS, measured), "six recordings of a rig with other bearings and damping"))
+  if (!ok(record_some(&rig, POINTS, measured), "six recordings of a rig with other bearings and damping are made"))
     return;
   enum eo_code code = eo_update_run(&u, pair, &design, POINTS, measured, &settings, &found, NULL, &error);
   ok(code == EO_OK && u.converged && u.after < 1.5 && u.before > 5 * u.after,
-     "found: misfit %.2f -> %.3f in %d evaluations", u.before, u.after, u.evaluations);
+     "the fit finds them: misfit %.2f -> %.3f in %d evaluations", u.before, u.after, u.evaluations);
   for (int i = 0; i < 2; i++) {
     double truth = eo_unknown_get(&rig, settings.range[i].unknown);
     ok(fabs(u.unknown[i].value / truth - 1) < 0.03 && u.unknown[i].confidence[0] < truth &&
            truth < u.unknown[i].confidence[1] && !u.unknown[i].undetermined,
-       "%s: %.4g (%.4g .. %.4g), in truth %.4g", eo_unknown_name(settings.range[i].unknown), u.unknown[i].value,
-       u.unknown[i].confidence[0], u.unknown[i].confidence[1], truth);
-    ok(eo_unknown_get(&found, settings.range[i].unknown) == u.unknown[i].value, "the design returned has it");
+       "the fit finds %s: %.4g (%.4g .. %.4g), in truth %.4g", eo_unknown_name(settings.range[i].unknown),
+       u.unknown[i].value, u.unknown[i].confidence[0], u.unknown[i].confidence[1], truth);
+    ok(eo_unknown_get(&found, settings.range[i].unknown) == u.unknown[i].value,
+       "the design that comes with the fit has the unknown");
   }
 
   /* An impact patch acts nowhere when impacts are no part of the dynamics. */
@@ -168,15 +170,15 @@ static void test_updating(void)
   settings.starts = 4;
   code = eo_update_run(&u, pair, &design, 2, measured, &settings, NULL, NULL, &error);
   ok(code == EO_OK && u.unknown[1].undetermined && !u.unknown[0].undetermined,
-     "what the data do not tell is said: %s between %.3g and %.3g mm", eo_unknown_name(u.unknown[1].unknown),
+     "the fit says what the data do not tell: %s between %.3g and %.3g mm", eo_unknown_name(u.unknown[1].unknown),
      1e3 * u.unknown[1].confidence[0], 1e3 * u.unknown[1].confidence[1]);
 
   settings.range[1].unknown = EO_UNKNOWN_PINION_BEARING;
   ok(eo_update_run(&u, pair, &design, 2, measured, &settings, NULL, NULL, &error) == EO_ERROR_INPUT,
-     "the same unknown twice: %s", error.text);
+     "a fit of the same unknown twice is refused: %s", error.text);
   settings.unknowns = 0;
-  ok(eo_update_run(&u, pair, &design, 2, measured, &settings, NULL, NULL, &error) == EO_ERROR_INPUT, "no unknown: %s",
-     error.text);
+  ok(eo_update_run(&u, pair, &design, 2, measured, &settings, NULL, NULL, &error) == EO_ERROR_INPUT,
+     "a fit of no unknown of a rig is refused: %s", error.text);
 }
 
 int main(void)

@@ -182,10 +182,13 @@ static void check_truth(int recordings)
   ok(t.refused == 0, "no sound recording is refused or cut short (%d of %d)", t.refused, recordings);
   ok(two >= 93 - slack[1] && two <= 98 + slack[1],
      "the true RMS stands within two stated standard deviations in %.1f %% of %d recordings", two, recordings);
-  ok(one >= 62 - slack[0] && one <= 75 + slack[0], "within one in %.1f %%", one);
-  ok(sigma[recordings / 2] <= 0.015, "their median is %.2f %% of the value", 100 * sigma[recordings / 2]);
+  ok(one >= 62 - slack[0] && one <= 75 + slack[0],
+     "the true RMS stands within one stated standard deviation in %.1f %%", one);
+  ok(sigma[recordings / 2] <= 0.015, "the median of the stated standard deviations is %.2f %% of the value",
+     100 * sigma[recordings / 2]);
   ok(t.lines_inside >= 0.95 * t.lines,
-     "%d of %d amplitudes of orders within two standard deviations of their noise and 0.3 %%", t.lines_inside, t.lines);
+     "%d of %d amplitudes of orders stand within two standard deviations of their noise and 0.3 %%", t.lines_inside,
+     t.lines);
 }
 
 static void check_clean(const struct eo_synthetic *s, const char *what)
@@ -193,8 +196,8 @@ static void check_clean(const struct eo_synthetic *s, const char *what)
   const struct eo_measurement *m = measure(s);
   int worse = eo_findings_worst(&m->findings) > EO_SEVERITY_NOTE;
   double truth = eo_synthetic_rms(s, 8);
-  ok(!worse && fabs(m->transmission.rms / truth - 1) < 2e-3, "%s: RMS %.4f, truth %.4f, nothing to complain of", what,
-     m->transmission.rms, truth);
+  ok(!worse && fabs(m->transmission.rms / truth - 1) < 2e-3,
+     "%s: the RMS is %.4f, truth %.4f, with nothing to complain of", what, m->transmission.rms, truth);
   if (worse)
     show(m);
 }
@@ -279,10 +282,12 @@ static void check_limits(void)
 {
   struct eo_synthetic s = usual(), raw = s;
   s.turns = 2.5;
-  ok(measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_TOO_SHORT), "2.5 turns are too few");
+  ok(measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_TOO_SHORT),
+     "2.5 turns are refused as too few");
   s = usual();
   s.turns = 9;
-  ok(!measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_TOO_SHORT), "9 turns are few");
+  ok(!measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_TOO_SHORT),
+     "9 turns are warned of as few");
   s = usual();
   s.drift = 0.08;
   ok(!measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_UNSTEADY),
@@ -294,7 +299,8 @@ static void check_limits(void)
          measurement.transmission.harmonics == 4,
      "6 kHz carry four mesh orders at 2000 rpm");
   s.sample_rate = 1000;
-  ok(measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_SAMPLE_RATE), "1 kHz carry none");
+  ok(measure(&s)->refused && eo_findings_find(&measurement.findings, EO_FINDING_SAMPLE_RATE),
+     "1 kHz carry no mesh order and are refused");
   show(&measurement);
   s = usual();
   ok(eo_findings_find(&measure_stated(&s, 1500 * M_PI / 30)->findings, EO_FINDING_SPEED) != NULL,
@@ -310,13 +316,13 @@ static void check_limits(void)
     tracks += m->findings.finding[i].kind == EO_FINDING_TRACK && m->findings.finding[i].severity == EO_SEVERITY_WARNING;
   ok(tracks == 8 && fabs(m->transmission.rms / eo_synthetic_rms(&raw, 8) - 1) < 2e-3,
      "amplitude, ratio and phase of raw tracks beyond their limits: %d warnings, and corrected", tracks);
-  close_to(m->ellipse[1].skew, 0.3, 1e-5, "phase of the tracks");
-  close_to(m->ellipse[1].amplitude[0] / m->ellipse[1].amplitude[1], 1.4, 1e-5, "ratio of the tracks");
+  close_to(m->ellipse[1].skew, 0.3, 1e-5, "phase of corrected raw tracks");
+  close_to(m->ellipse[1].amplitude[0] / m->ellipse[1].amplitude[1], 1.4, 1e-5, "ratio of corrected raw tracks");
   raw = usual();
   raw.output = EO_SYNTHETIC_SINE_COSINE;
   raw.lines[0] = raw.lines[1] = 250;
   raw.fault = EO_FAULT_SATURATED;
-  ok(eo_findings_find(&measure(&raw)->findings, EO_FINDING_SATURATED) != NULL, "tracks that are cut off");
+  ok(eo_findings_find(&measure(&raw)->findings, EO_FINDING_SATURATED) != NULL, "tracks that are cut off are told");
 }
 
 /* (24) as printed pairs the radii the wrong way round: the signal is plausible and wrong. */
@@ -334,7 +340,7 @@ static void check_printed_radii(void)
   eo_measurement_run(&measurement, recording, &tracks, &settings, NULL, &error);
   close_to(measurement.transmission.rms / eo_synthetic_rms(&s, 8),
            0.879 * radius[1] / radius[0] + 0.121 * radius[0] / radius[1], 2e-3,
-           "times the true RMS with the radii exchanged, as their shares say");
+           "RMS with the radii exchanged over the true one, as their shares say");
   eo_recording_free(recording);
 }
 
@@ -344,7 +350,7 @@ static void check_speed(const char *what, struct eo_synthetic s, double toleranc
   double truth = eo_synthetic_rms(&s, 8);
   ok(!m->refused && fabs(m->transmission.rms / truth - 1) < tolerance &&
          (eo_findings_find(&m->findings, EO_FINDING_UNSTEADY) != NULL) == said,
-     "%s: RMS %.4f, truth %.4f%s", what, m->transmission.rms, truth, said ? ", and it is said" : "");
+     "%s: the RMS is %.4f, truth %.4f%s", what, m->transmission.rms, truth, said ? ", and it is said" : "");
   if (said || m->refused)
     show(m);
 }
@@ -374,7 +380,7 @@ static void check_speeds(void)
   for (int i = 0; i < t->tracks; i++)
     worst = fmax(worst, fabs(cabs(t->track[i].amplitude[0]) / cabs(s.order[0]) - 1));
   ok(t->tracks >= 8 && worst < 0.02 && t->track[t->tracks - 1].speed > 3 * t->track[0].speed,
-     "its first order in %d stretches from %.0f to %.0f rpm: within %.2g of the truth", t->tracks,
+     "the first order stands in %d stretches from %.0f to %.0f rpm within %.2g of the truth", t->tracks,
      30 / M_PI * t->track[0].speed, 30 / M_PI * t->track[t->tracks - 1].speed, worst);
   s = usual();
   s.rest[0] = 0.2;
@@ -386,11 +392,11 @@ static void check_speeds(void)
   s.sample_rate *= 2;
   check_speed("a run-up from rest to a long steady state", s, 2e-3, true);
   ok(measurement.transmission.revolutions[EO_PINION] < 37 && measurement.transmission.revolutions[EO_PINION] > 30,
-     "of which %.1f turns are measured", measurement.transmission.revolutions[EO_PINION]);
+     "the steady state alone is measured, %.1f turns", measurement.transmission.revolutions[EO_PINION]);
   s = usual();
   s.turn_back = true;
   check_speed("there and back", s, 1e-3, true);
-  ok(measurement.transmission.parts.count == 2, "two parts");
+  ok(measurement.transmission.parts.count == 2, "a run there and back has two parts");
 }
 
 /* Run-out of the gears turns both shafts: neither may smear the high orders. */
@@ -406,7 +412,8 @@ static void check_run_out(void)
   s.run_out = true;
   const struct eo_measurement *m = measure(&s);
   double off = m->transmission.rms / eo_synthetic_rms(&s, 8) - 1;
-  ok(m->transmission.harmonics == 8 && fabs(off) < 1e-4, "run-out of 60 um in the gear: RMS off by %.2g of it", off);
+  ok(m->transmission.harmonics == 8 && fabs(off) < 1e-4,
+     "a run-out of 60 um in the gear puts the RMS off by %.2g of it", off);
 }
 
 /* Orders that a slower encoder of the gear cannot carry are left out with a word. */
@@ -463,14 +470,14 @@ static void check_parts(void)
   settings.transmission.part.part = 2;
   const struct eo_measurement *m = measure_with(&s, &settings);
   ok(!m->refused && m->transmission.parts.used == 1 && m->transmission.parts.measured.from > 1,
-     "the second part when it is asked for: from %.3f s", m->transmission.parts.measured.from);
+     "the second part is measured when it is asked for, from %.3f s", m->transmission.parts.measured.from);
   settings.transmission.part.part = 3;
-  ok(measure_with(&s, &settings)->refused, "there is no third");
+  ok(measure_with(&s, &settings)->refused, "a third part that is not there is refused");
   settings.transmission.part = (struct eo_part_choice){.from = 0.1, .to = 0.8};
   m = measure_with(&s, &settings);
   ok(!m->refused && fabs(m->transmission.parts.measured.from - 0.1) < 0.01 &&
          fabs(m->transmission.parts.measured.to - 0.8) < 0.01,
-     "from 0.1 to 0.8 s when that is asked for");
+     "the time from 0.1 to 0.8 s is measured when that is asked for");
   s = usual();
   s.fault = EO_FAULT_SLIP;
   s.row = 13000;
@@ -478,11 +485,11 @@ static void check_parts(void)
   settings.transmission.part = (struct eo_part_choice){.to = 12900 / s.sample_rate};
   m = measure_with(&s, &settings);
   double off = m->transmission.rms / eo_synthetic_rms(&s, 8) - 1;
-  ok(!m->refused && fabs(off) < 0.01, "times without the row that was lost: RMS off by %.2g of it", off);
+  ok(!m->refused && fabs(off) < 0.01, "times without the row that was lost put the RMS off by %.2g of it", off);
   settings.transmission.part.to = 13100 / s.sample_rate;
-  ok(measure_with(&s, &settings)->refused, "times with it are refused");
+  ok(measure_with(&s, &settings)->refused, "times with the row that was lost are refused");
   settings.transmission.part = (struct eo_part_choice){.from = 1e4};
-  ok(measure_with(&s, &settings)->refused, "times after the end");
+  ok(measure_with(&s, &settings)->refused, "times after the end are refused");
 }
 
 static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum eo_severity severity)
@@ -542,7 +549,7 @@ static void check_resampled(void)
                       right[] = {0.5, 0.618, 0.83, 1.37, 1.9, 2.3, 5}, open[] = {0.95, 0.98, 1.02, 1.05, 1.1};
   struct eo_synthetic s = usual();
   double truth = eo_synthetic_rms(&s, 8);
-  ok(!measure_resampled(&s, s.sample_rate, false, 0)->refused, "the rows as they are");
+  ok(!measure_resampled(&s, s.sample_rate, false, 0)->refused, "rows that are as they were recorded are measured");
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
     ok(measure_resampled(&s, lines[i] * s.sample_rate, false, 0)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
@@ -551,17 +558,18 @@ static void check_resampled(void)
     const struct eo_measurement *m = measure_resampled(&s, right[i] * s.sample_rate, true, 0);
     double known = eo_synthetic_rms(&s, m->transmission.harmonics);
     ok(!m->refused && fabs(m->transmission.rms - known) < 3 * m->transmission.rms_sigma,
-       "by the last value at %.3g times their rate: RMS %.4f, truth %.4f", right[i], m->transmission.rms, known);
+       "rows by the last value at %.3g times their rate are measured: RMS %.4f, truth %.4f", right[i],
+       m->transmission.rms, known);
   }
   for (size_t i = 0; i < sizeof open / sizeof *open; i++)
     ok(measure_resampled(&s, open[i] * s.sample_rate, true, 0)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
-       "by the last value at %.3g times it: rows at even distances are there twice, or not", open[i]);
+       "rows by the last value at %.3g times their rate are judged by whether even ones are there twice", open[i]);
   s.noise = 0;
-  ok(measure_resampled(&s, 1.37 * s.sample_rate, false, 0)->refused, "straight lines show without noise, too");
+  ok(measure_resampled(&s, 1.37 * s.sample_rate, false, 0)->refused, "straight lines are told without noise, too");
   s.interpolation = 64;
   const struct eo_measurement *m = measure(&s);
-  ok(!m->refused, "steps of an encoder are none: RMS %.4f +- %.4f, truth %.4f", m->transmission.rms,
+  ok(!m->refused, "steps of an encoder are no straight lines: RMS %.4f +- %.4f, truth %.4f", m->transmission.rms,
      m->transmission.rms_sigma, truth);
 }
 
@@ -575,7 +583,7 @@ static void check_folded_orders(void)
     bool told = false;
     for (int i = 0; i < m->findings.count; i++)
       told = told || strstr(m->findings.finding[i].text, "looks like order");
-    ok(told == !off, "%.4g rows to the turn: orders that are folded in are %s", s.sample_rate * 2 * M_PI / s.speed,
+    ok(told == !off, "orders that are folded in at %.4g rows to the turn are %s", s.sample_rate * 2 * M_PI / s.speed,
        off ? "not there" : "named");
   }
 }
@@ -586,12 +594,13 @@ static void check_resampled_orders(void)
   static const double places[] = {0.75, 1.37, 1.5};
   struct eo_synthetic s = usual();
   for (int orders = 1; orders <= 3; orders += 2) {
-    ok(!measure_resampled(&s, s.sample_rate, false, orders)->refused, "the rows as they are, with %d orders", orders);
+    ok(!measure_resampled(&s, s.sample_rate, false, orders)->refused,
+       "rows that are as they were recorded are measured, with %d orders", orders);
     ok(fabs(measurement.transmission.rms - eo_synthetic_rms(&s, orders)) < 3 * measurement.transmission.rms_sigma,
-       "their RMS is that of %d", orders);
+       "the RMS of these rows is that of %d orders", orders);
     ok(measure_resampled(&s, 1.37 * s.sample_rate, false, orders)->refused &&
            said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
-       "on straight lines they are refused");
+       "rows brought onto straight lines are refused");
   }
   s.sample_rate = 8000; /* 1.8 rows per period of the eighth order */
   for (size_t i = 0; i < sizeof places / sizeof *places; i++)
@@ -611,7 +620,7 @@ static void check_resampled_by_turns(void)
       s.sample_rate *= few ? 0.9 : 1.2;
       const struct eo_measurement *m = measure_resampled_from(&s, places[i], s.sample_rate / 1.5, false, 0);
       ok(m->refused && said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED),
-         "two rows of three from the place %.2g on, %.3g to the turn: refused (RMS %.4f, truth %.4f)", places[i],
+         "two rows of three from the place %.2g on, %.3g to the turn, are refused (RMS %.4f, truth %.4f)", places[i],
          s.sample_rate / 1.5 * 2 * M_PI / s.speed, m->transmission.rms, eo_synthetic_rms(&s, 8));
     }
 }
@@ -642,15 +651,16 @@ static void check_alike_neighbours(void)
     s.seed = 11 + loud;
     const struct eo_measurement *m = measure_resampled_from(&s, 0.5, s.sample_rate, false, 0);
     ok(said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING),
-       "so are those of a noise of %.2g rad: RMS %.4f, truth %.4f", s.noise, m->transmission.rms,
+       "rows on the middle with a noise of %.2g rad are a question: RMS %.4f, truth %.4f", s.noise, m->transmission.rms,
        eo_synthetic_rms(&s, 8));
     m = measure(&s);
-    ok(!m->refused && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "and as they were recorded they are none");
+    ok(!m->refused && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING),
+       "rows with noise as they were recorded are no question");
   }
   s = usual();
   s.interpolation = 4;
   s.lines[EO_PINION] = 2048;
-  ok(!said(measure(&s), EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "the steps of a coarse encoder are none");
+  ok(!said(measure(&s), EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING), "the steps of a coarse encoder are no question");
 }
 
 /* A recording whose rows a program wrote in its own way: time and both angles. NULL on an error. */
@@ -696,7 +706,7 @@ static void check_half_precision(void)
   s.wrapped = true;
   s.sample_rate = 12012.3;
   const struct eo_measurement *m = measure_rewritten(&s, halve_precision);
-  ok(m && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED), "half precision is no straight line");
+  ok(m && !said(m, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_REFUSED), "rows of half precision are no straight line");
 }
 
 /* Angles that were computed have no noise of which neighbours could be means: all digits, or twelve decimals of a turn.
@@ -754,7 +764,7 @@ static void check_restarted_clock(void)
   double truth = measure(&s)->transmission.rms;
   const struct eo_measurement *m = measure_rewritten(&s, restart_clock);
   ok(!m->refused && said(m, EO_FINDING_TIME, EO_SEVERITY_REPAIRED) && fabs(m->transmission.rms / truth - 1) < 0.01,
-     "times that stand for five rows and start again: the rows count, at their own rate (%.4g of %.4g m/s2)",
+     "the rows count at their own rate where times stand for five rows and start again (%.4g of %.4g m/s2)",
      m->transmission.rms, truth);
   show(m);
 }
@@ -882,8 +892,8 @@ static void check_starts(void)
   struct eo_synthetic s = usual();
   double truth = eo_synthetic_rms(&s, 8);
   const struct eo_measurement *m = measure_rewritten(&s, halve_turns);
-  ok(m && !m->refused && fabs(m->transmission.rms / truth - 1) < 0.03, "angles that start again at 180: %.4f of %.4f",
-     m ? m->transmission.rms : NAN, truth);
+  ok(m && !m->refused && fabs(m->transmission.rms / truth - 1) < 0.03,
+     "angles that start again at 180 are measured: %.4f of %.4f", m ? m->transmission.rms : NAN, truth);
   counted = 0;
   m = measure_rewritten(&s, zero_both);
   ok(m && !m->refused && said(m, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED) && m->transmission.parts.count == 3 &&
@@ -920,8 +930,8 @@ static void check_few_lines(void)
       double truth = eo_synthetic_rms(&s, t->harmonics);
       ok(!measurement.refused && t->harmonics == (most < 8 ? most : 8) && fabs(t->rms - truth) < 3 * t->rms_sigma &&
              (most >= 8 || said(&measurement, EO_FINDING_SAMPLE_RATE, EO_SEVERITY_WARNING)),
-         "%d and %d lines, %g of the vibration the pinion's: RMS %.4f +- %.4f of %d orders, truth %.4f", lines[i][0],
-         lines[i][1], s.pinion_share, t->rms, t->rms_sigma, t->harmonics, truth);
+         "lines of %d and %d with %g of the vibration the pinion's give RMS %.4f +- %.4f of %d orders, truth %.4f",
+         lines[i][0], lines[i][1], s.pinion_share, t->rms, t->rms_sigma, t->harmonics, truth);
     }
 }
 
@@ -935,13 +945,14 @@ static void check_load(void)
   const struct eo_measurement *m = measure_with(&s, &settings);
   ok(fabs(m->load.pinion_torque - 700) < 1e-6 && fabs(m->load.speed[0].mean / m->transmission.speed - 1) < 1e-3 &&
          eo_findings_worst(&m->findings) == EO_SEVERITY_NOTE,
-     "a torque of %.3f N m and a speed in columns", m->load.pinion_torque);
+     "a torque of %.3f N m and a speed are read from columns", m->load.pinion_torque);
   settings.stated_torque = 828;
-  ok(said(measure_with(&s, &settings), EO_FINDING_TORQUE, EO_SEVERITY_WARNING), "it is not the stated 828 N m");
+  ok(said(measure_with(&s, &settings), EO_FINDING_TORQUE, EO_SEVERITY_WARNING),
+     "a torque in a column that is not the stated 828 N m is told");
   settings.stated_torque = 700;
   s.torque_change = 0.4;
   ok(said(measure_with(&s, &settings), EO_FINDING_TORQUE, EO_SEVERITY_WARNING) && !measurement.refused,
-     "a torque that changes");
+     "a torque that changes is told");
   show(&measurement);
   s.torque = 0;
   s.shows_speed = false;
@@ -949,10 +960,11 @@ static void check_load(void)
   ok(measure_with(&s, &settings)->refused && said(&measurement, EO_FINDING_SPEED, EO_SEVERITY_REFUSED),
      "a speed that no load case comes near is a question");
   settings.stated_speed = s.speed;
-  ok(!measure_with(&s, &settings)->refused, "unless it is stated");
+  ok(!measure_with(&s, &settings)->refused, "a speed far from all load cases is no question where it is stated");
   settings.stated_speed = NAN;
   s.shows_speed = true;
-  ok(!measure_with(&s, &settings)->refused, "or a column tells it too");
+  ok(!measure_with(&s, &settings)->refused,
+     "a speed far from all load cases is no question where a column tells it too");
 }
 
 /* A column of speed without a unit is read as rpm unless the encoder says that it is another one; a unit that is stated
@@ -974,7 +986,7 @@ static void check_open_speed(void)
       bool right = !stated && i < 3;
       ok((eo_findings_worst(&findings) == EO_SEVERITY_REFUSED) == !right &&
              fabs(load.speed[0].mean - (right ? known.measured : mean)) < 1e-9,
-         "a speed of which one is %.4g rpm, its unit %s: %s", of_rpm[i], stated ? "stated" : "open",
+         "a speed of which one is %.4g rpm, its unit %s, is judged: %s", of_rpm[i], stated ? "stated" : "open",
          findings.count ? findings.finding[0].text : "nothing is said");
     }
 }
@@ -1011,7 +1023,8 @@ static void check_slow_load(void)
   enum eo_code code = eo_load_read(&load, r, &tracks, 1.95, 3.05, &error);
   ok(!code && fabs(load.torque[0].mean - 150) < 1e-9 && fabs(load.torque[0].high - 200) < 1e-9,
      "a torque of another rate that begins 1 s later is read at its own times: %.6g N m", load.torque[0].mean);
-  ok(fabs(load.speed[0].mean - 75) < 1e-9, "and a speed with times of its own: %.6g rad/s", load.speed[0].mean);
+  ok(fabs(load.speed[0].mean - 75) < 1e-9, "a speed with times of its own is read at these: %.6g rad/s",
+     load.speed[0].mean);
   eo_recording_free(r);
 }
 

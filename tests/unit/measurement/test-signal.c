@@ -24,27 +24,27 @@ static void test_ellipse(void)
     eo_ellipse_add(&sums, truth.offset[0] + truth.amplitude[0] * sin(a),
                    truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew));
   }
-  ok(eo_ellipse_fit(&sums, &found), "an ellipse is fitted");
-  close_to(found.offset[0], truth.offset[0], 1e-12, "offset of the sine");
-  close_to(found.offset[1], truth.offset[1], 1e-12, "offset of the cosine");
-  close_to(found.amplitude[0], truth.amplitude[0], 1e-12, "amplitude of the sine");
-  close_to(found.amplitude[1], truth.amplitude[1], 1e-12, "amplitude of the cosine");
-  close_to(found.skew, truth.skew, 1e-12, "phase beyond 90 degrees");
+  ok(eo_ellipse_fit(&sums, &found), "an ellipse is fitted to tracks");
+  close_to(found.offset[0], truth.offset[0], 1e-12, "offset of the sine, by the ellipse");
+  close_to(found.offset[1], truth.offset[1], 1e-12, "offset of the cosine, by the ellipse");
+  close_to(found.amplitude[0], truth.amplitude[0], 1e-12, "amplitude of the sine, by the ellipse");
+  close_to(found.amplitude[1], truth.amplitude[1], 1e-12, "amplitude of the cosine, by the ellipse");
+  close_to(found.skew, truth.skew, 1e-12, "phase beyond 90 degrees, by the ellipse");
   for (int i = -99; i < 100; i++) {
     double a = M_PI * i / 100;
     worst = fmax(worst, fabs(eo_ellipse_angle(&found, truth.offset[0] + truth.amplitude[0] * sin(a),
                                               truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew)) -
                              a));
   }
-  ok(worst < 1e-11, "angles on it: %.2g rad", worst);
+  ok(worst < 1e-11, "the angles on the ellipse are right to %.2g rad", worst);
   eo_ellipse_start(&sums, (double[]){0, 0}, 1);
   for (int i = 0; i < 200; i++)
     eo_ellipse_add(&sums, 0.01 * i, 0.02 * i);
-  ok(!eo_ellipse_fit(&sums, &found), "a line is none");
+  ok(!eo_ellipse_fit(&sums, &found), "a line is no ellipse");
   eo_ellipse_start(&sums, (double[]){0, 0}, 1);
   for (int i = 0; i < 200; i++)
     eo_ellipse_add(&sums, 0.3, 0.2);
-  ok(!eo_ellipse_fit(&sums, &found), "a point is none");
+  ok(!eo_ellipse_fit(&sums, &found), "a point is no ellipse");
 }
 
 /* What an eccentric encoder shows leads back to the angle; what it costs an order is a Bessel function. */
@@ -63,8 +63,8 @@ static void test_axis(void)
     worst = fmax(worst, fabs(eo_axis_angle(&axis, -(theta + swing)) - theta));
     line += cexp(136 * I * swing) / ROWS;
   }
-  ok(worst < 1e-8, "the angle behind a swing of 1e-3 rad: within %.2g rad", worst);
-  close_to(eo_axis_loss(&axis, 136, axis.share), cabs(line), 1e-6, "what is left of order 136");
+  ok(worst < 1e-8, "the angle behind a swing of 1e-3 rad is right to %.2g rad", worst);
+  close_to(eo_axis_loss(&axis, 136, axis.share), cabs(line), 1e-6, "part of order 136 that is left");
   static const char *const rows[] = {"even rows", "rows that jitter", "rows whose times jitter"};
   struct eo_random random = eo_random_at(8, 0, 0, 0);
   for (int kind = 0; kind < 3; kind++) {
@@ -75,7 +75,8 @@ static void test_axis(void)
                         0.01 * t + 1e-7 * t * t + (i > 5000) + 3e-6 * eo_random_normal(random, (uint64_t)i));
     }
     double sigma = eo_axis_noise_sigma(noise);
-    ok(fabs(sigma - 3e-6) < 1e-7, "noise of readings, %s, with a change of speed and a gap: %.3g", rows[kind], sigma);
+    ok(fabs(sigma - 3e-6) < 1e-7, "the noise of readings, %s, with a change of speed and a gap, is %.3g", rows[kind],
+       sigma);
     free(noise);
   }
 }
@@ -95,12 +96,12 @@ static void test_interpolation(void)
   for (int i = 0; i < EO_INTERPOLATION_UNEVEN; i++)
     left += weight[i] * cexp(I * phase * i) / cexp(I * phase * (7 + x));
   double complex gain = eo_interpolation_gain(&between, phase);
-  ok(cabs(gain - 0.5 - 0.5 * left) < 1e-12 && creal(gain) < 0.999, "values between samples: %.4f of a wave is left",
+  ok(cabs(gain - 0.5 - 0.5 * left) < 1e-12 && creal(gain) < 0.999, "values between samples keep %.4f of a wave",
      creal(gain));
   between.points = EO_INTERPOLATION_EVEN;
-  ok(cabs(eo_interpolation_gain(&between, phase) - 1) < cabs(gain - 1) / 3, "more of it by a longer polynomial");
+  ok(cabs(eo_interpolation_gain(&between, phase) - 1) < cabs(gain - 1) / 3, "a longer polynomial keeps more of a wave");
   between.step = 0;
-  ok(eo_interpolation_gain(&between, phase) == 1, "all where nothing is interpolated");
+  ok(eo_interpolation_gain(&between, phase) == 1, "a wave is kept where nothing is interpolated");
 }
 
 static void test_nearest(void)
@@ -108,12 +109,12 @@ static void test_nearest(void)
   const int teeth[2] = {17, 44};
   int found[2];
   ok(eo_orientation_nearest(17.0 / 43, 1e-5, teeth, found) && found[0] == 17 && found[1] == 43,
-     "one tooth of the gear too few");
+     "a gear of one tooth too few is told");
   ok(eo_orientation_nearest(19.0 / 44, 1e-5, teeth, found) && found[0] == 19 && found[1] == 44,
-     "two teeth of the pinion too many");
+     "a pinion of two teeth too many is told");
   ok(eo_orientation_nearest(23.0 / 59, 1e-6, teeth, found) && found[0] == 23 && found[1] == 59,
-     "other teeth altogether");
-  ok(!eo_orientation_nearest(M_PI / 8, 1e-9, teeth, found), "no ratio of teeth");
+     "teeth of another pair are told");
+  ok(!eo_orientation_nearest(M_PI / 8, 1e-9, teeth, found), "a ratio of no teeth is told");
 }
 
 /* Noise of known size: its standard deviation per amplitude is s sqrt(2 / n). */
@@ -131,7 +132,7 @@ static void test_noise(void)
     for (int h = 0; h < 8; h++)
       sum += eo_beside_sigma(beside, h, 1e-7) / (1e-7 * sqrt(2.0 / ROWS)) / 80;
   }
-  ok(sum > 0.95 && sum < 1.1, "white noise: %.3f of its standard deviation on average", sum);
+  ok(sum > 0.95 && sum < 1.1, "the band of white noise is %.3f of its standard deviation on average", sum);
   eo_beside_init(beside, teeth, 8, 20);
   for (int i = 0; i < ROWS; i++) {
     double theta = 40 * M_PI * i / ROWS;
@@ -139,7 +140,7 @@ static void test_noise(void)
   }
   double complex sideband = eo_beside_sideband(beside, 0, EO_PINION, 1);
   ok(cabs(sideband - 1e-6 * cexp(-0.4 * I)) < 1e-12 && cabs(eo_beside_sideband(beside, 0, EO_PINION, -1)) < 1e-12,
-     "a sideband one turn above the first mesh order");
+     "a sideband one turn above the first mesh order is named");
   free(beside);
 }
 
@@ -164,8 +165,10 @@ static void test_rms(void)
     rms = eo_transmission_rms(weak, 8, 200, &sigma);
     small_inside += fabs(rms - sqrt(weak_truth)) <= 2 * sigma;
   }
-  ok(inside >= 940, "RMS above the noise: the truth within two standard deviations in %.1f %%", inside / 10.0);
-  ok(small_inside >= 940, "RMS below the noise: in %.1f %%", small_inside / 10.0);
+  ok(inside >= 940, "the truth stands within two standard deviations of an RMS above the noise in %.1f %%",
+     inside / 10.0);
+  ok(small_inside >= 940, "the truth stands within two standard deviations of an RMS below the noise in %.1f %%",
+     small_inside / 10.0);
 }
 
 static void check_train(const double *time, int count, int64_t kept, enum eo_severity worst, const char *words,
@@ -182,7 +185,7 @@ static void check_train(const double *time, int count, int64_t kept, enum eo_sev
     eo_pulse_train_judge(&train, 0, &findings);
   ok(made && train.count == kept && findings.count > 0 && findings.finding[0].severity == worst &&
          strstr(findings.finding[0].text, words),
-     "%s: %lld pulses, %s", what, (long long)train.count, findings.count ? findings.finding[0].text : "");
+     "%s: the train has %lld pulses, %s", what, (long long)train.count, findings.count ? findings.finding[0].text : "");
   eo_pulse_train_done(&train);
   eo_recording_free(recording);
 }
@@ -223,8 +226,8 @@ static void test_zeroed_turns(void)
     made = !eo_recording_append(recording, row, 1, &error);
   }
   made = made && !eo_scan_run(scan, recording, &tracks, NULL, &error);
-  close_to(made ? eo_scan_period(&scan->column[0][0], 360) : NAN, 360, 1e-9, "the turn of an angle that was zeroed");
-  ok(made && isnan(eo_scan_period(&scan->column[1][0], 360)), "an angle that goes on has none");
+  close_to(made ? eo_scan_period(&scan->column[0][0], 360) : NAN, 360, 1e-9, "turn of an angle that was zeroed");
+  ok(made && isnan(eo_scan_period(&scan->column[1][0], 360)), "an angle that goes on has no turn");
   eo_recording_free(recording);
   free(scan);
 }

@@ -105,7 +105,7 @@ static void test_coverage(int rigs, int first)
   double covered = 100.0 * t.covered / t.intervals, slack = rigs < SLOW ? 300 * sqrt(0.05 * 0.95 / t.intervals) : 0;
   printf("# %d rigs, %d with several minima within reach, %d evaluations each\n", t.rigs, t.several,
          t.evaluations / (t.rigs ? t.rigs : 1));
-  ok(t.rigs == rigs, "%d rigs drawn, measured and fitted", rigs);
+  ok(t.rigs == rigs, "%d rigs are drawn, measured and fitted", rigs);
   ok(covered >= 91 - slack && covered <= 99 + slack, "the 95 %% intervals cover the truth in %.1f %% of %d", covered,
      t.intervals);
   ok(t.determined >= 0.9 * t.rigs, "the inputs are determined in %d of %d rigs", t.determined, t.rigs);
