@@ -110,18 +110,18 @@ static void test_overtaking(void)
   wait_until(&book.held, 1);
   ok(push(lane, 1, "a", 0, 0, &closed) && push(lane, 2, "b", 0, 0, &closed) && push(lane, 3, "", 0, 0, &closed) &&
          push(lane, 4, "", 0, 0, &closed),
-     "four wait");
-  ok(!push(lane, 5, "c", 0, 0, &closed) && !closed, "the lane is full");
+     "four tasks wait in the lane");
+  ok(!push(lane, 5, "c", 0, 0, &closed) && !closed, "a full lane takes no other task");
   ok(push(lane, 6, "a", 0, 0, &closed) && eo_lane_waiting(lane) == 4,
-     "a newer one of the same token takes a place, not another one");
+     "a newer task of the same token takes a place in a full lane");
   set_gate(true);
   wait_until(&book.told, 6);
-  ok(told(0, 0, EO_LANE_RUN) && !book.marked, "what has begun is not overtaken");
-  ok(told(1, 1, EO_LANE_OVERTAKEN), "what waited is told so at once");
-  ok(told(2, 6, EO_LANE_RUN) && told(3, 2, EO_LANE_RUN), "and the newer one has its place in the queue");
-  ok(told(4, 3, EO_LANE_RUN) && told(5, 4, EO_LANE_RUN), "without a token nobody overtakes");
+  ok(told(0, 0, EO_LANE_RUN) && !book.marked, "a task that has begun is not overtaken");
+  ok(told(1, 1, EO_LANE_OVERTAKEN), "a task that waits is told at once that it is overtaken");
+  ok(told(2, 6, EO_LANE_RUN) && told(3, 2, EO_LANE_RUN), "the newer task has its place in the queue");
+  ok(told(4, 3, EO_LANE_RUN) && told(5, 4, EO_LANE_RUN), "tasks without a token overtake nobody");
   eo_lane_free(lane);
-  ok(book.released == book.told, "each task is released once");
+  ok(book.released == book.told, "each overtaken task is released once");
 }
 
 static void test_running(void)
@@ -134,7 +134,7 @@ static void test_running(void)
   push(lane, 2, "a", 0, 0, &closed);
   set_gate(true);
   wait_until(&book.told, 3);
-  ok(book.marked, "where it is wanted, what runs sees that it is overtaken");
+  ok(book.marked, "a task that runs sees that it is overtaken where it wants to");
   eo_lane_free(lane);
 }
 
@@ -151,14 +151,15 @@ static void test_waiting(void)
   push(lane, 5, "d", 0, 0, &closed);
   wait_until(&book.told, 3);
   double waited = eo_clock_milliseconds() - start;
-  ok(told(0, 4, EO_LANE_OVERTAKEN) && told(1, 5, EO_LANE_RUN), "who waits for a job is overtaken too");
-  ok(told(2, 3, EO_LANE_EXPIRED) && waited >= 49, "patience ends after %.0f ms", waited);
+  ok(told(0, 4, EO_LANE_OVERTAKEN) && told(1, 5, EO_LANE_RUN), "a task that waits for a job is overtaken too");
+  ok(told(2, 3, EO_LANE_EXPIRED) && waited >= 49, "a task's patience ends after %.0f ms", waited);
   eo_lane_wake(lane, 12, NULL);
   wait_until(&book.told, 4);
-  ok(told(3, 2, EO_LANE_RUN) && book.code[3] == EO_OK, "the job is done: its turn");
+  ok(told(3, 2, EO_LANE_RUN) && book.code[3] == EO_OK, "a task has its turn when its job is done");
   eo_lane_wake(lane, 11, &failed);
   wait_until(&book.told, 5);
-  ok(told(4, 1, EO_LANE_RUN) && book.code[4] == EO_ERROR_INPUT, "the job failed: its turn, with the reason");
+  ok(told(4, 1, EO_LANE_RUN) && book.code[4] == EO_ERROR_INPUT,
+     "a task has its turn when its job failed, with the reason");
   eo_lane_free(lane);
 }
 
@@ -171,11 +172,11 @@ static void test_stop(void)
   push(lane, 1, "", 0, 0, &closed);
   push(lane, 2, "", 11, 1e5, &closed);
   eo_lane_stop(lane);
-  ok(!push(lane, 3, "", 0, 0, &closed) && closed, "a lane that stops takes nothing");
+  ok(!push(lane, 3, "", 0, 0, &closed) && closed, "a lane that has stopped takes nothing");
   set_gate(true);
   eo_lane_free(lane);
   ok(book.told == 3 && book.marked && told(1, 1, EO_LANE_STOPPED) && told(2, 2, EO_LANE_STOPPED),
-     "and tells everybody who waits");
+     "a lane that stops tells everybody who waits");
 }
 
 static struct {
@@ -217,32 +218,33 @@ static void test_events(void)
   start = eo_events_newest(events);
   ok(start > 1600000000000 && eo_events_reach(events, start) && !eo_events_reach(events, start - 1) &&
          !eo_events_reach(events, start + 1),
-     "numbers begin above those of any run before: %lld", (long long)start);
+     "numbers of events begin above those of any run before: %lld", (long long)start);
   publish(events, 7);
   eo_events_subscribe(events, 0, start, NULL, 0, hear, NULL, &all, &error);
   ok(heard.count == 1 && heard.number[0] == start + 1 && strcmp(heard.last, "job 7") == 0,
-     "what came before is told first");
+     "a new listener is told first what came before");
   publish(events, 8);
-  ok(heard.count == 2 && consecutive(start + 1) && heard.job[1] == 8, "then what comes");
+  ok(heard.count == 2 && consecutive(start + 1) && heard.job[1] == 8, "a listener is told then what comes");
   heard.count = 0;
   eo_events_subscribe(events, 8, start, NULL, 0, hear, NULL, &one, &error);
-  ok(heard.count == 1 && heard.job[0] == 8, "one job alone");
-  ok(eo_events_subscribers(events) == 2, "two listen");
+  ok(heard.count == 1 && heard.job[0] == 8, "a listener to one job hears of this one alone");
+  ok(eo_events_subscribers(events) == 2, "both listeners are counted");
   eo_events_unsubscribe(events, all);
   publish(events, 7);
-  ok(heard.count == 1, "who has left hears nothing");
+  ok(heard.count == 1, "a listener who has left hears nothing");
   eo_events_unsubscribe(events, one);
   eo_events_unsubscribe(events, one);
   for (int i = 0; i < 2 * EO_EVENTS_KEPT; i++)
     publish(events, i);
   int64_t newest = eo_events_newest(events);
   ok(newest == start + 3 + 2 * EO_EVENTS_KEPT && eo_events_published(events) == 3 + 2 * EO_EVENTS_KEPT,
-     "all are counted");
+     "all events are counted");
   ok(!eo_events_reach(events, newest - EO_EVENTS_KEPT - 1) && eo_events_reach(events, newest - EO_EVENTS_KEPT),
-     "the last %d are kept", EO_EVENTS_KEPT);
+     "the last %d events are kept", EO_EVENTS_KEPT);
   heard.count = 0;
   eo_events_subscribe(events, 0, newest - EO_EVENTS_KEPT, NULL, 0, hear, NULL, &all, &error);
-  ok(heard.count == EO_EVENTS_KEPT && consecutive(newest - EO_EVENTS_KEPT + 1), "and told without a gap");
+  ok(heard.count == EO_EVENTS_KEPT && consecutive(newest - EO_EVENTS_KEPT + 1),
+     "the events that are kept are told without a gap");
   eo_events_unsubscribe(events, all);
   struct eo_service_event first[2] = {{.job = 1, .text = "{}", .size = 2}, {.job = 2, .text = "{}", .size = 2}};
   heard.count = 0;

@@ -58,28 +58,30 @@ static void test_analysis(void)
   struct answered answered = {0};
   int64_t job = 0, again = 0;
   ok(ask(service, &design, "", 0, &answered, &job) == EO_ADMISSION_PREPARING && job, "a new pair is prepared by a job");
-  ok(!eo_service_is_prepared(service, &design), "and is not there yet");
+  ok(!eo_service_is_prepared(service, &design), "a new pair is not there before its job ends");
   ok(ask(service, &design, "", 0, &answered, &again) == EO_ADMISSION_PREPARING && again == job,
-     "by one job, whoever asks");
-  ok(ask(service, &design, "", 60, &answered, &again) == EO_ADMISSION_ACCEPTED, "who wants to wait waits");
+     "one job prepares the pair, whoever asks");
+  ok(ask(service, &design, "", 60, &answered, &again) == EO_ADMISSION_ACCEPTED,
+     "a question that wants to wait is taken");
   wait_for_answers(&answered, 1);
-  ok(answered.last.kind == EO_ANSWER_DONE && wait_for(service, job, "done"), "for the answer %s",
+  ok(answered.last.kind == EO_ANSWER_DONE && wait_for(service, job, "done"), "a question that waits is answered %s",
      answered.last.error.text);
   char *by_hand = analyse_by_hand(&design), *text = lasting_text(answered.last.text.data);
-  ok(strcmp(by_hand, text) == 0, "which is that of an analysis made by hand, %zu bytes", strlen(text));
+  ok(strcmp(by_hand, text) == 0, "the answer is that of an analysis made by hand, %zu bytes", strlen(text));
   free(text);
   struct eo_design changed = design;
   changed.modification.flank[EO_PINION][EO_LEFT].tip_relief = 20e-6;
-  ok(ask(service, &changed, "me", 0, &answered, &job) == EO_ADMISSION_ACCEPTED, "now a change is answered at once");
+  ok(ask(service, &changed, "me", 0, &answered, &job) == EO_ADMISSION_ACCEPTED,
+     "a change to a prepared pair is answered at once");
   wait_for_answers(&answered, 2);
   ask(service, &design, "me", 0, &answered, &job);
   wait_for_answers(&answered, 3);
   text = lasting_text(answered.last.text.data);
-  ok(strcmp(by_hand, text) == 0, "and back again is what it was");
+  ok(strcmp(by_hand, text) == 0, "the first design gives the first answer again");
   struct eo_service_status status;
   ok(!eo_service_status(service, &status, &error) && status.database && status.analyses == 3 && status.pairs == 1 &&
          status.jobs[EO_JOB_DONE] == 1 && status.analysis_ms_bucket[11] == 3 && status.analysis_ms_most > 0,
-     "all of it is counted");
+     "the status counts all of these questions");
   free(text);
   free(by_hand);
   eo_text_done(&answered.last.text);
@@ -106,13 +108,13 @@ static void test_left_out(void)
          json_is_null(eo_json_find(first, "vibration/left/history")) &&
          json_is_null(eo_json_find(first, "root_stress")) &&
          json_is_object(eo_json_find(first, "vibration/left/orders")),
-     "what is not wanted is left out: %zu of %zu bytes", answered.last.text.size, whole);
+     "an answer leaves out what is not wanted: %zu of %zu bytes", answered.last.text.size, whole);
   json_decref(document);
   question.common.format = EO_ANSWER_CSV;
   eo_service_analyze(service, &question, &admission, &job, &error);
   wait_for_answers(&answered, 3);
   ok(answered.last.kind == EO_ANSWER_DONE && strncmp(answered.last.text.data, "load_case,torque_Nm", 19) == 0,
-     "as a table");
+     "an analysis is answered as a table");
   eo_text_done(&answered.last.text);
   eo_service_free(service);
 }
@@ -135,12 +137,12 @@ static void test_overtaking(void)
   wait_for_answers(&rest, QUESTIONS - 1);
   wait_for_answers(&last, 1);
   eo_service_status(service, &status, &error);
-  ok(last.last.kind == EO_ANSWER_DONE, "the newest is answered");
-  ok(status.overtaken > 0 && status.overtaken + status.analyses == QUESTIONS + 1, "of the others %lld were overtaken",
-     (long long)status.overtaken);
+  ok(last.last.kind == EO_ANSWER_DONE, "the newest question of a lane is answered");
+  ok(status.overtaken > 0 && status.overtaken + status.analyses == QUESTIONS + 1,
+     "%lld of the older questions were overtaken", (long long)status.overtaken);
   json_t *document = json_loads(last.last.text.data, 0, NULL);
   close_to(eo_json_find_number(document, "design/modification/pinion/left/tip_relief_um"), QUESTIONS - 1, 1e-9,
-           "the newest is the last");
+           "relief of the newest answer, that of the last question, um");
   json_decref(document);
   eo_text_done(&first.last.text);
   eo_text_done(&rest.last.text);
@@ -171,7 +173,7 @@ static void test_sweep(void)
   wait_for_answers(&answered, 1);
   json_t *document = json_loads(answered.last.text.data ? answered.last.text.data : "{}", 0, NULL);
   ok(answered.last.kind == EO_ANSWER_DONE && json_array_size(json_object_get(document, "torque_Nm")) == 3,
-     "and is answered %s", answered.last.error.text);
+     "the sweep that waited is answered %s", answered.last.error.text);
   json_decref(document);
   axes = axes_of(3, 500, 100);
   question.context = &overtaken;
@@ -184,7 +186,7 @@ static void test_sweep(void)
   wait_for_answers(&answered, 2);
   ok(overtaken.last.kind == EO_ANSWER_OVERTAKEN && answered.last.kind == EO_ANSWER_DONE &&
          strchr(answered.last.text.data, ','),
-     "a newer one ends one that runs");
+     "a newer question ends one that runs");
   eo_text_done(&answered.last.text);
   eo_text_done(&overtaken.last.text);
   eo_service_free(service);
@@ -204,8 +206,9 @@ static void test_pairs(void)
   wait_for_answers(&answered, 2);
   wait_for(service, job, "done");
   eo_service_status(service, &status, &error);
-  ok(answered.last.kind == EO_ANSWER_DONE && status.pairs == 1, "one pair is kept: %d", status.pairs);
-  ok(!eo_service_is_prepared(service, &design) && eo_service_is_prepared(service, &other), "the one used last");
+  ok(answered.last.kind == EO_ANSWER_DONE && status.pairs == 1, "one prepared pair is kept: %d", status.pairs);
+  ok(!eo_service_is_prepared(service, &design) && eo_service_is_prepared(service, &other),
+     "the pair that was used last is kept");
   eo_text_done(&answered.last.text);
   eo_service_free(service);
 }
@@ -290,43 +293,44 @@ static void test_job(void)
   ok(outcome == EO_JOB_OUTCOME_DONE && id, "an optimization is queued");
   again = submit(service, EO_JOB_OPTIMIZE, &design, "once", &outcome);
   ok(outcome == EO_JOB_OUTCOME_REPEATED && again == id, "the same request again is the same job");
-  ok(wait_for_evaluations(service, id, 20), "it runs");
+  ok(wait_for_evaluations(service, id, 20), "the optimization runs");
   struct eo_text none = {0};
   ok(!eo_service_result(service, id, &outcome, &none, &error) && outcome == EO_JOB_OUTCOME_STATE,
-     "its result is not there yet");
+     "the result of a running job is not there");
   eo_text_done(&none);
-  ok(wait_for(service, id, "done"), "it ends");
+  ok(wait_for(service, id, "done"), "the optimization ends");
   undisturbed = result_of(service, id);
-  ok(undisturbed != NULL, "with a result");
+  ok(undisturbed != NULL, "the optimization has a result");
   json_t *job = look(service, id);
-  close_to(eo_json_find_number(job, "progress/fraction"), 1, 0, "fraction");
+  close_to(eo_json_find_number(job, "progress/fraction"), 1, 0, "fraction of the progress at the end");
   ok(progress_of(service, id, "true_evaluations") == BUDGET && eo_json_find_number(job, "best/J") < 1 &&
          eo_json_find(job, "best/modification/pinion") && eo_json_find_number(job, "unmodified/J") == 1 &&
          json_is_true(json_object_get(job, "has_result")) && json_string_value(json_object_get(job, "finished")),
-     "its document says what it found");
+     "the document of the job says what it found");
   json_decref(job);
-  ok(!eo_service_convergence(service, id, &outcome, &convergence, &error) && !outcome, "it tells");
+  ok(!eo_service_convergence(service, id, &outcome, &convergence, &error) && !outcome,
+     "the job tells of its convergence");
   json_t *columns = eo_job_convergence_encode(&convergence);
   eo_job_convergence_done(&convergence);
   ok(json_array_size(json_object_get(columns, "best")) > 1 &&
          json_array_size(json_object_get(columns, "mean")) == json_array_size(json_object_get(columns, "pfc_percent")),
-     "and how it converged");
+     "the convergence has as many means as bests");
   json_decref(columns);
   hear_the_end(&heard);
   eo_service_unsubscribe(service, subscription);
   ok(heard.ordered && heard.count > 3 && follows_its_life(&heard),
-     "%d events in order: (queued, preparing,) running, done", heard.count);
+     "%d events come in order: (queued, preparing,) running, done", heard.count);
   struct heard later = {0};
   eo_service_subscribe(service, id, heard.last - 2, hear, &later, &subscription, &error);
-  ok(later.count == 2 && later.last == heard.last, "who comes back hears what he missed");
+  ok(later.count == 2 && later.last == heard.last, "a listener who comes back hears what he missed");
   eo_service_unsubscribe(service, subscription);
   struct heard late = {0};
   eo_service_subscribe(service, id, 0, hear, &late, &subscription, &error);
-  ok(late.count == 1 && late.last == heard.last, "who comes after the end hears that it has ended");
+  ok(late.count == 1 && late.last == heard.last, "a listener who comes after the end hears that it has ended");
   eo_service_unsubscribe(service, subscription);
   late = (struct heard){0};
   eo_service_subscribe(service, id, 1, hear, &late, &subscription, &error);
-  ok(late.count == 1, "and who comes back after so long that it is not kept");
+  ok(late.count == 1, "a listener who comes back too late hears of the end");
   eo_service_unsubscribe(service, subscription);
   eo_service_free(service);
 }
@@ -342,26 +346,28 @@ static void test_cancel(void)
   ok(!eo_service_cancel(service, waiting, &outcome, &job, &error) && !outcome && is_in(service, waiting, "cancelled"),
      "a waiting job is cancelled at once");
   eo_job_view_done(&job);
-  ok(wait_for_evaluations(service, id, 30), "the other one runs");
-  ok(!eo_service_remove(service, id, &outcome, &error) && outcome == EO_JOB_OUTCOME_STATE, "and cannot be removed");
+  ok(wait_for_evaluations(service, id, 30), "the other job runs");
+  ok(!eo_service_remove(service, id, &outcome, &error) && outcome == EO_JOB_OUTCOME_STATE,
+     "a running job cannot be removed");
   double asked = eo_clock_milliseconds();
-  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && !outcome, "it is told to stop");
+  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && !outcome, "a running job is told to stop");
   eo_job_view_done(&job);
-  ok(wait_for(service, id, "cancelled"), "and does, after %.0f ms", eo_clock_milliseconds() - asked);
+  ok(wait_for(service, id, "cancelled"), "a job that was told to stop does so after %.0f ms",
+     eo_clock_milliseconds() - asked);
   int before = progress_of(service, id, "true_evaluations");
   char *found = result_of(service, id);
-  ok(found != NULL && before < BUDGET, "with what it found in %d evaluations", before);
+  ok(found != NULL && before < BUDGET, "a stopped job keeps its %d evaluations", before);
   free(found);
   ok(!eo_service_cancel(service, id, &outcome, &job, &error) && outcome == EO_JOB_OUTCOME_STATE && !job.texts,
-     "once is enough");
-  ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome, "it is tried again");
+     "a stopped job is not stopped again");
+  ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome, "a stopped job is tried again");
   eo_job_view_done(&job);
-  ok(wait_for(service, id, "done"), "and goes on to its end");
+  ok(wait_for(service, id, "done"), "a job that is tried again goes on to its end");
   char *result = result_of(service, id);
   json_t *one = json_loads(undisturbed, 0, NULL), *two = json_loads(result ? result : "{}", 0, NULL);
   ok(json_equal(json_object_get(json_object_get(one, "best"), "objectives"),
                 json_object_get(json_object_get(two, "best"), "objectives")),
-     "which is that of an undisturbed one");
+     "the result of a job with a stop is that of an undisturbed one");
   json_decref(one);
   json_decref(two);
   free(result);
@@ -385,9 +391,9 @@ static void test_tolerance(void)
   few.tolerance.limits = 1;
   few.tolerance.limit[0] = (struct eo_tolerance_limit){.output = "peak_to_peak_um", .most = 1};
   int64_t id = submit(service, EO_JOB_TOLERANCE, &many, "pairs", &outcome);
-  ok(wait_for_evaluations(service, id, 30), "pairs as made are computed");
+  ok(wait_for_evaluations(service, id, 30), "a tolerance analysis computes pairs");
   ok(!eo_service_cancel(service, id, &outcome, &job, &error) && !outcome && wait_for(service, id, "cancelled"),
-     "and stopped");
+     "the tolerance analysis is stopped");
   eo_job_view_done(&job);
   int kept = progress_of(service, id, "true_evaluations");
   int64_t other = submit(service, EO_JOB_TOLERANCE, &few, NULL, &outcome);
@@ -396,18 +402,19 @@ static void test_tolerance(void)
   eo_service_free(service);
   service = start();
   ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome && wait_for(service, id, "done"),
-     "it goes on from %d pairs", kept);
+     "the tolerance analysis goes on from %d pairs", kept);
   eo_job_view_done(&job);
   ok(kept < 300 && progress_of(service, id, "true_evaluations") == 300 && progress_of(service, id, "reused") == 0,
-     "to all of them");
+     "the tolerance analysis comes to all of its pairs");
   char *interrupted = result_of(service, id);
   eo_service_free(service);
   empty_folder();
   service = start();
   id = submit(service, EO_JOB_TOLERANCE, &many, NULL, &outcome);
-  ok(wait_for(service, id, "done"), "undisturbed");
+  ok(wait_for(service, id, "done"), "the same tolerance analysis runs undisturbed");
   char *result = result_of(service, id);
-  ok(interrupted && result && strcmp(interrupted, result) == 0, "the same bytes");
+  ok(interrupted && result && strcmp(interrupted, result) == 0,
+     "a tolerance analysis with a stop gives the same bytes");
   free(interrupted);
   free(result);
   eo_service_free(service);
@@ -425,17 +432,17 @@ static void test_tolerance_bounds(void)
   eo_table_defaults(&eo_service_limits_table, &settings.limits);
   settings.limits.pair_memory_MB = 200;
   many.tolerance.pairs = 100000;
-  ok(!eo_service_new(&service, &settings, &error), "a service with little memory");
+  ok(!eo_service_new(&service, &settings, &error), "a service with little memory is made");
   ok(eo_service_submit(service, &order, &outcome, &job, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/tolerance/pairs") == 0,
-     "%s", error.text);
+     "a tolerance analysis beyond the memory is refused: %s", error.text);
   eo_job_view_done(&job);
   many.tolerance.pairs = 100;
   many.tolerance.limits = 1;
   many.tolerance.limit[0] = (struct eo_tolerance_limit){.output = "loudness"};
   ok(eo_service_submit(service, &order, &outcome, &job, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/tolerance/limits/0/output") == 0,
-     "%s", error.text);
+     "a limit on what is not computed is refused: %s", error.text);
   eo_job_view_done(&job);
   eo_service_free(service);
 }
@@ -447,7 +454,7 @@ static void test_full(void)
   struct eo_job_page page;
   for (int i = 0; i < 10 && !outcome; i++)
     submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
-  ok(outcome == EO_JOB_OUTCOME_FULL, "a full queue says so");
+  ok(outcome == EO_JOB_OUTCOME_FULL, "a full queue is told");
   ok(!eo_service_jobs(service, -1, -1, 0, 1, &page, &error) && page.count == 1 && page.more, "jobs come in pages");
   eo_job_page_done(&page);
   eo_service_free(service);
@@ -521,7 +528,7 @@ static void test_ends(void)
   }
   atomic_store(&watching.stop, true);
   pthread_join(thread, NULL);
-  ok(watching.ends > JOBS && !watching.torn, "seen done %d times, %d times before it was", watching.ends,
+  ok(watching.ends > JOBS && !watching.torn, "the job is seen done %d times, %d of them before it was", watching.ends,
      watching.torn);
   eo_service_free(service);
 }
@@ -553,7 +560,7 @@ static void test_stale_note(void)
   ok(eo_json_find_number(document, "progress/true_evaluations") == 400 &&
          eo_json_find_number(document, "progress/individuals") == 500 &&
          eo_json_find_number(document, "progress/pfc_percent") == 80,
-     "what was noted of a job does not hide what its row knows");
+     "notes of a job do not hide what its row knows");
   json_decref(document);
 }
 
@@ -575,25 +582,26 @@ static void test_park(void)
   eo_service_stop(service);
   ok(submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome) == 0 && outcome == EO_JOB_OUTCOME_CLOSED &&
          ask(service, &design, "", 0, &answered, &job) == EO_ADMISSION_CLOSED,
-     "a service that stops takes nothing");
+     "a service that has stopped takes nothing");
   eo_service_free(service);
   ok(eo_clock_milliseconds() - asked < 20000 && answered.count == 1 &&
          (answered.last.kind == EO_ANSWER_STOPPED || answered.last.kind == EO_ANSWER_DONE),
-     "it stops within %.0f ms and answers who waits", eo_clock_milliseconds() - asked);
+     "a service stops within %.0f ms and answers who waits", eo_clock_milliseconds() - asked);
   eo_text_done(&answered.last.text);
   struct eo_store *store = NULL;
   eo_store_open(&store, folder, EO_STORE_WRITE, &error);
   int64_t count[EO_JOB_STATES];
   eo_queue_count(store, count, &error);
-  ok(count[EO_JOB_QUEUED] >= 1 && count[EO_JOB_RUNNING] == 0 && count[EO_JOB_CANCELLED] == 0, "what ran is parked");
+  ok(count[EO_JOB_QUEUED] >= 1 && count[EO_JOB_RUNNING] == 0 && count[EO_JOB_CANCELLED] == 0,
+     "a job that ran at the stop is parked");
   eo_store_close(store);
   service = start();
-  ok(wait_for(service, id, "done"), "the next service goes on with it");
+  ok(wait_for(service, id, "done"), "the next service goes on with the parked job");
   char *result = result_of(service, id);
-  ok(result && undisturbed && strlen(result) > 1000, "to its result");
+  ok(result && undisturbed && strlen(result) > 1000, "the parked job comes to its result");
   free(result);
   json_t *done = look(service, id);
-  ok(json_integer_value(json_object_get(done, "attempts")) == 2, "at the second attempt");
+  ok(json_integer_value(json_object_get(done, "attempts")) == 2, "the parked job ends at its second attempt");
   json_decref(done);
   eo_service_free(service);
 }

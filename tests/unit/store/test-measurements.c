@@ -111,14 +111,17 @@ static void test_adding(void)
      "a measurement is added");
   ok(*kept.summary == 's' && *kept.result == 'r' && kept.files == 1 &&
          strcmp(kept.file[0].name, "run \"7\".csv") == 0 && kept.file[0].size == 5,
-     "and its row says what was said");
-  ok(is_there("%s/measurements/1/%s", "0") && count_entries() == 1, "its file lies under its number and nowhere else");
+     "the row of a measurement says what was said");
+  ok(is_there("%s/measurements/1/%s", "0") && count_entries() == 1,
+     "the file of a measurement lies under its number and nowhere else");
   ok(add(design, 'a', &kept) == EO_MEASUREMENT_KNOWN && kept.id == 1 && count_entries() == 1,
-     "the same again is the same");
-  ok(add(99, 'b', &kept) == EO_MEASUREMENT_NO_DESIGN && count_entries() == 1, "one of no design leaves nothing");
-  ok(add(design, 'c', &kept) == EO_MEASUREMENT_DONE && kept.id == 2, "another one has the next number");
+     "the same measurement again is the same row");
+  ok(add(99, 'b', &kept) == EO_MEASUREMENT_NO_DESIGN && count_entries() == 1,
+     "a measurement of no design leaves nothing");
+  ok(add(design, 'c', &kept) == EO_MEASUREMENT_DONE && kept.id == 2, "another measurement has the next number");
   int64_t bytes = 0;
-  ok(eo_store_measured_bytes(store, &bytes, &error) == EO_OK && bytes == 10, "their files have %d bytes", (int)bytes);
+  ok(eo_store_measured_bytes(store, &bytes, &error) == EO_OK && bytes == 10,
+     "the files of both measurements have %d bytes", (int)bytes);
 }
 
 static void test_listing(void)
@@ -130,9 +133,10 @@ static void test_listing(void)
   eo_store_list_measurements(store, 0, 2, 10, count, &below, &error);
   eo_store_list_measurements(store, design, 0, 10, count, &other, &error);
   eo_store_list_measurements(store, 1, 0, 1, remember, &last, &error);
-  ok(all == 2 && below == 1 && other == 0, "lists: all %d, before the second %d, of another design %d", all, below,
+  ok(all == 2 && below == 1 && other == 0, "lists find all %d, before the second %d, of another design %d", all, below,
      other);
-  ok(last.id == 2 && *last.summary == 's' && !*last.result, "the newest first, without its result");
+  ok(last.id == 2 && *last.summary == 's' && !*last.result,
+     "a list has the newest measurement first, without its result");
 }
 
 static void test_removing(void)
@@ -144,12 +148,14 @@ static void test_removing(void)
   ok(used == EO_DESIGN_USED, "a design with measurements stays");
   ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_DONE &&
          count_entries() == 1,
-     "one is removed with its file");
-  ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_MISSING, "once");
+     "a measurement is removed with its file");
+  ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_MISSING,
+     "a removed measurement is not removed again");
   ok(eo_store_find_measurement(store, 2, remember, &kept, &outcome, &error) == EO_OK &&
          outcome == EO_MEASUREMENT_MISSING,
-     "and is not found");
-  ok(add(1, 'd', &kept) == EO_MEASUREMENT_DONE && kept.id == 3, "its number is not used again");
+     "a removed measurement is not found");
+  ok(add(1, 'd', &kept) == EO_MEASUREMENT_DONE && kept.id == 3,
+     "the number of a removed measurement is not used again");
 }
 
 static void make(const char *name)
@@ -199,19 +205,19 @@ static void test_tidying(void)
   char kept[400], marked[400];
   snprintf(kept, sizeof kept, "%s/measurements/3", folder);
   snprintf(marked, sizeof marked, "%s/measurements/deleted-3", folder);
-  ok(rename(kept, marked) == 0 && tidy() == 1, "one recording has no row");
+  ok(rename(kept, marked) == 0 && tidy() == 1, "a start finds one recording without a row");
   ok(!is_there("%s/measurements/%s", "incoming-a1B2c3"), "an unfinished upload goes away at a start");
   ok(!is_there("%s/measurements/%s", "4") && holds("lost+found/4/0", "whole, but without a row"),
      "a recording without a row is set aside");
-  ok(!is_there("%s/measurements/%s", "deleted-2"), "a deletion without a row is finished");
-  ok(holds("3/0", "1,2,3") && !is_there("%s/measurements/%s", "deleted-3"), "one with its row is undone");
-  ok(holds("1/0", "1,2,3"), "what has a row stays");
+  ok(!is_there("%s/measurements/%s", "deleted-2"), "a start finishes a deletion without a row");
+  ok(holds("3/0", "1,2,3") && !is_there("%s/measurements/%s", "deleted-3"), "a start undoes a deletion with its row");
+  ok(holds("1/0", "1,2,3"), "a start leaves a recording with its row");
   make_with("4", "0", "another one");
   make_with("deleted-1", "0", "nobody knows how");
   ok(tidy() == 2 && holds("lost+found/4/0", "whole, but without a row") && holds("lost+found/4-2/0", "another one") &&
          holds("lost+found/deleted-1/0", "nobody knows how") && holds("1/0", "1,2,3"),
-     "nothing that was set aside is overwritten");
-  ok(tidy() == 0 && count_entries() == 3, "once");
+     "a start overwrites nothing that was set aside");
+  ok(tidy() == 0 && count_entries() == 3, "a second start sets nothing aside");
 }
 
 /* Whatever lies there that we did not put there stays as it is. */
@@ -222,7 +228,7 @@ static void test_strangers(void)
   mkdir(outside, 0777);
   put_file(outside, "0", "x");
   snprintf(link, sizeof link, "%s/measurements/99", folder);
-  ok(symlink(outside, link) == 0, "a link");
+  ok(symlink(outside, link) == 0, "a link is laid into the folder");
   put_file(folder, "measurements/file", "x");
   put_file(folder, "measurements/77", "a file with a number for a name");
   make_with("backup", "0", "x");
@@ -237,7 +243,7 @@ static void test_strangers(void)
          holds("backup/0", "x") && holds("2026/notes.txt", "x") && holds("01/0", "x") &&
          holds("12345678901234567890/0", "x") && holds("incoming-photos/0", "x") &&
          holds("incoming-photos/cat.jpg", "x") && holds("incoming-letters/0", "x") && holds("deleted-8/notes.txt", "x"),
-     "what is not ours stays where it is");
+     "a start leaves what is not ours where it is");
 }
 
 /* Folders that the database knows nothing of, as after an older one was put back. */
@@ -252,9 +258,10 @@ static void test_numbers(void)
      "a new recording has a number above every folder's: %d", (int)kept.id);
   make_with("lost+found/40-3", "0", "set aside");
   outcome = add(1, 'g', &kept);
-  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 41, "and above those set aside: %d", (int)kept.id);
+  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 41, "a new recording has a number above those set aside: %d",
+     (int)kept.id);
   make_with("23", "0", "above the rows, below the highest");
-  ok(tidy() == 2 && holds("22/0", "1,2,3") && holds("41/0", "1,2,3"), "which are set aside at the next start");
+  ok(tidy() == 2 && holds("22/0", "1,2,3") && holds("41/0", "1,2,3"), "the next start sets aside what stands above it");
 }
 
 /* A deletion that cannot be finished is undone, files and all. */
@@ -266,7 +273,7 @@ static void test_undeleting(void)
      "a deletion that fails leaves the files: %s", error.text);
   struct eo_stored_measurement kept = {0};
   ok(eo_store_find_measurement(store, 22, remember, &kept, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_DONE,
-     "and the row");
+     "a deletion that fails leaves the row");
 }
 
 static enum eo_code refuse(void *context, const struct eo_stored_measurement *row, struct eo_error *fault)
@@ -293,18 +300,19 @@ static void test_failing(void)
                                       .files = 1};
   snprintf(row.file[0].sha256, sizeof row.file[0].sha256, "%s", digest);
   ok(eo_store_add_measurement(store, &row, "/nonexistent", NULL, NULL, &outcome, &error) == EO_ERROR_FILE,
-     "no files: %s", error.text);
+     "a measurement without files is refused: %s", error.text);
   row.result = "{";
   char incoming[400];
   eo_measurement_folder_new(store, incoming, sizeof incoming, &error);
   put_file(incoming, "0", "");
-  ok(eo_store_add_measurement(store, &row, incoming, NULL, NULL, &outcome, &error) == EO_ERROR_FILE, "no JSON");
+  ok(eo_store_add_measurement(store, &row, incoming, NULL, NULL, &outcome, &error) == EO_ERROR_FILE,
+     "a measurement whose layout is no JSON is refused");
   row.result = "{}";
   enum eo_code code = eo_store_add_measurement(store, &row, incoming, refuse, NULL, &outcome, &error);
   ok(code == EO_ERROR_MEMORY && access(incoming, F_OK) == 0, "a transaction that ends badly gives the files back");
   eo_measurement_folder_remove(incoming);
   eo_store_list_measurements(store, 0, 0, 10, count, &all, &error);
-  ok(all == 4 && count_entries() == entries, "nothing of them stays");
+  ok(all == 4 && count_entries() == entries, "a transaction that ends badly leaves no files");
 }
 
 static bool is_refused(const char *words)
@@ -338,12 +346,13 @@ static void test_other_databases(void)
   eo_store_close(store);
   store = NULL;
   ok(rename(path, away) == 0 && is_refused("4 recordings, but the database beside it is new"),
-     "recordings beside a new database: %s", error.text);
-  ok(is_refused("is new"), "and at the next start");
-  ok(truncate(path, 0) == 0 && is_refused("is new"), "beside an empty file");
+     "recordings beside a new database are refused: %s", error.text);
+  ok(is_refused("is new"), "recordings beside a new database are refused at the next start too");
+  ok(truncate(path, 0) == 0 && is_refused("is new"), "recordings beside an empty file are refused");
   truncate(path, 0);
   put_file(folder, "easeoff.db-wal", "what was last written");
-  ok(is_refused("its journal") && access(journal, F_OK) == 0, "a journal without its database: %s", error.text);
+  ok(is_refused("its journal") && access(journal, F_OK) == 0, "a journal without its database is refused: %s",
+     error.text);
   unlink(journal);
   rename(away, path);
 }
@@ -358,8 +367,9 @@ static void test_damaged_database(void)
   overwrite(path, 60, nothing, sizeof nothing); /* whose database it is, and its schema's number */
   overwrite(path, 100, leaf, sizeof leaf);      /* the root of the table of tables */
   stat(path, &before);
-  ok(is_refused("is damaged"), "a database whose first page is damaged: %s", error.text);
-  ok(stat(path, &after) == 0 && after.st_size == before.st_size && after.st_size > 4096, "which is left as it is");
+  ok(is_refused("is damaged"), "a database whose first page is damaged is refused: %s", error.text);
+  ok(stat(path, &after) == 0 && after.st_size == before.st_size && after.st_size > 4096,
+     "a database that is refused is left as it is");
 }
 
 int main(void)

@@ -130,7 +130,7 @@ static void test_database(int flips)
   struct eo_store *store = open_store();
   int told = 0, refused = 0, same = 0;
   struct seen seen = {0};
-  ok(store && fill(store), "a database");
+  ok(store && fill(store), "a database is made and filled");
   eo_store_close(store);
   for (int i = 0; i < flips; i++) {
     off_t at = choose(size_of(name_file("")));
@@ -147,13 +147,13 @@ static void test_database(int flips)
     turn_bit(name_file(""), at, bit);
   }
   ok(seen.wrong == 0,
-     "of %d turned bits %d refuse the file, %d are told on reading, %d stand where nothing is; 0 wrong "
-     "answers: %d",
+     "%d bits are turned: %d refuse the file, %d are told on reading, %d stand where nothing is; 0 wrong answers: %d",
      flips, refused, told, same, seen.wrong);
-  ok(refused + told > flips / 2, "most are noticed");
+  ok(refused + told > flips / 2, "most turned bits are noticed");
   store = open_store();
   seen = (struct seen){0};
-  ok(store && !read_all(store, &seen) && seen.good == DESIGNS && !seen.wrong, "turned back all is there");
+  ok(store && !read_all(store, &seen) && seen.good == DESIGNS && !seen.wrong,
+     "all is there when the bit is turned back");
   eo_store_close(store);
 }
 
@@ -164,7 +164,7 @@ static void test_journal(int flips)
   struct eo_store *writer = open_store();
   struct seen seen = {0};
   int told = 0;
-  ok(writer && fill(writer) && size_of(name_file("-wal")) > 100000, "a journal");
+  ok(writer && fill(writer) && size_of(name_file("-wal")) > 100000, "a journal is made and filled");
   for (int i = 0; i < flips; i++) {
     off_t at = 32 + choose(size_of(name_file("-wal")) - 32);
     int bit = (int)choose(8);
@@ -174,7 +174,7 @@ static void test_journal(int flips)
     turn_bit(name_file("-wal"), at, bit);
     eo_store_close(reader);
   }
-  ok(seen.wrong == 0 && told > 0, "of %d turned bits in the journal %d are told; 0 wrong answers: %d", flips, told,
+  ok(seen.wrong == 0 && told > 0, "%d bits of the journal are turned and %d are told; 0 wrong answers: %d", flips, told,
      seen.wrong);
   eo_store_close(writer);
 }
@@ -189,19 +189,19 @@ static void test_earlier(void)
   snprintf(file, sizeof file, "%s/tests/schema/0005.sql", getenv("SOURCES") ? getenv("SOURCES") : ".");
   ok(eo_text_read(&sql, file, 1 << 20, &error) == EO_OK && sqlite3_open(name_file(""), &handle) == SQLITE_OK &&
          sqlite3_exec(handle, sql.data, NULL, NULL, NULL) == SQLITE_OK,
-     "a database of an earlier version");
+     "a database of an earlier version is made");
   sqlite3_close(handle);
   eo_text_done(&sql);
   struct eo_store *store = open_store();
-  ok(store != NULL, "is opened: %s", store ? "" : error.text);
-  ok(size_of(name_file(".schema-5")) > 4096, "what it was is kept");
+  ok(store != NULL, "a database of an earlier version is opened: %s", store ? "" : error.text);
+  ok(size_of(name_file(".schema-5")) > 4096, "a database of an earlier version is kept as it was");
   eo_store_close(store);
   unsigned char page[4096];
   int input = open(name_file(""), O_RDONLY | O_CLOEXEC), good = 0, pages = 0;
   for (unsigned number = 1; read(input, page, sizeof page) == (ssize_t)sizeof page; number++, pages++)
     good += eo_page_sum_holds(page, sizeof page, number);
   close(input);
-  ok(pages > 5 && good == pages, "%d of %d pages have their sum", good, pages);
+  ok(pages > 5 && good == pages, "%d of %d pages of the database have their sum", good, pages);
 }
 
 /* Another program that writes without them is noticed. */
@@ -211,14 +211,14 @@ static void test_foreign_writer(void)
   struct seen seen = {0};
   empty();
   struct eo_store *store = open_store();
-  ok(store && fill(store), "a database once more");
+  ok(store && fill(store), "another database is made and filled");
   eo_store_close(store);
   ok(sqlite3_open(name_file(""), &handle) == SQLITE_OK &&
          sqlite3_exec(handle, "UPDATE design SET name = 'another' WHERE id = 3", NULL, NULL, NULL) == SQLITE_OK,
-     "another program changes it");
+     "another program changes the database");
   sqlite3_close(handle);
   store = open_store();
-  ok(!store || read_all(store, &seen), "which is told: %s", error.text);
+  ok(!store || read_all(store, &seen), "the change by another program is told: %s", error.text);
   eo_store_close(store);
 }
 

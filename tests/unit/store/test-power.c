@@ -167,10 +167,10 @@ static void test_usual(struct eo_store *store)
       .hash = hash, .spec = "{}", .name = "", .evaluator = 1, .scenarios = 1, .cases = 1};
   struct eo_stored_evaluation row = {.scenarios = 1, .cases = 1, .raw = &raw, .modification = "{}"};
   int64_t id = 0;
-  ok(!eo_store_find_problem(store, &problem, &id, &error), "a problem");
-  ok(!eo_store_add_evaluation(store, id, &row, &error) && count_evaluated(store) == 1, "an evaluation");
+  ok(!eo_store_find_problem(store, &problem, &id, &error), "a problem is stored");
+  ok(!eo_store_add_evaluation(store, id, &row, &error) && count_evaluated(store) == 1, "an evaluation is stored");
   struct eo_store *other = power_off();
-  ok(other && count_evaluated(other) == 0, "after a power failure an evaluation may be gone, whole");
+  ok(other && count_evaluated(other) == 0, "an evaluation may be gone after a power failure, and then whole");
   eo_store_close(other);
 }
 
@@ -197,14 +197,14 @@ static void test_promises(struct eo_store *store)
   int64_t job = 0;
   ok(!eo_store_add_design(store, "a", "{}", 10, NULL, NULL, &outcome, &error), "a design is stored");
   struct eo_store *other = power_off();
-  ok(has_design(other, 1), "and is there after a power failure");
+  ok(has_design(other, 1), "a design is there after a power failure");
   eo_store_close(other);
   const struct eo_queue_entry entry = {.kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "a job", .algorithm = "ga"};
   ok(!eo_queue_add(store, &entry, 10, &job, &ordered, &error), "a job is ordered");
   other = power_off();
   ok(other && !eo_queue_find(other, job, see_job, &state, &ordered, &error) && ordered == EO_JOB_OUTCOME_DONE &&
          state == EO_JOB_QUEUED,
-     "so is an order");
+     "an order is there after a power failure");
   eo_store_close(other);
   const struct eo_stored_measurement row = {.design = 1,
                                             .digest = hash,
@@ -232,13 +232,13 @@ static void test_promises(struct eo_store *store)
      "a recording is kept: %s", error.text);
   other = power_off();
   ok(other && !eo_store_find_measurement(other, 1, NULL, NULL, &measured, &error) && measured == EO_MEASUREMENT_DONE,
-     "so is a recording");
+     "a recording is there after a power failure");
   eo_store_close(other);
   ok(!eo_store_remove_measurement(store, 1, &measured, &error) &&
          !eo_store_remove_design(store, 1, 1, &outcome, &error),
-     "what is deleted");
+     "a recording and a design are deleted");
   other = power_off();
-  ok(other && !has_design(other, 1), "stays deleted");
+  ok(other && !has_design(other, 1), "what was deleted stays deleted after a power failure");
   eo_store_close(other);
 }
 
@@ -249,7 +249,7 @@ int main(void)
   if (!mkdtemp(folder))
     return 99;
   watch();
-  ok(!eo_store_open(&store, folder, EO_STORE_WRITE, &error), "a database");
+  ok(!eo_store_open(&store, folder, EO_STORE_WRITE, &error), "a database is opened");
   test_usual(store);
   test_promises(store);
   eo_store_close(store);

@@ -106,21 +106,21 @@ static void test_order(void)
   int64_t low = add(store, -1), first = add(store, 0), second = add(store, 0), high = add(store, 3);
   ok(low && first && second && high && claim(store) == high && claim(store) == first && claim(store) == second &&
          claim(store) == low,
-     "the highest priority first, then the oldest");
-  ok(claim(store) == 0, "then there is nothing");
+     "the queue gives the highest priority first, then the oldest");
+  ok(claim(store) == 0, "an empty queue gives nothing");
   struct seen seen = look(store, high);
   ok(seen.state == EO_JOB_PREPARING && seen.attempts == 1 && seen.started && !seen.finished,
-     "what was claimed is preparing");
+     "a claimed job is preparing");
   ok(!eo_queue_note(store, high, "{\"fraction\":0.5}", &error) &&
          strcmp(look(store, high).progress, "{\"fraction\":0.5}") == 0,
-     "and tells how far it is");
-  ok(!eo_queue_end(store, high, EO_JOB_FAILED, "{\"detail\":\"no\"}", NULL, &error), "it fails");
+     "a claimed job tells how far it is");
+  ok(!eo_queue_end(store, high, EO_JOB_FAILED, "{\"detail\":\"no\"}", NULL, &error), "a claimed job fails");
   seen = look(store, high);
   ok(seen.state == EO_JOB_FAILED && seen.finished && strcmp(seen.error, "{\"detail\":\"no\"}") == 0 && *seen.progress,
-     "with its reason and what it knew");
+     "a failed job has its reason and what it knew");
   ok(!eo_queue_end(store, first, EO_JOB_QUEUED, NULL, NULL, &error) && claim(store) == first &&
          look(store, first).attempts == 2,
-     "what is put back comes again");
+     "a job that is put back comes again");
   eo_store_close(store);
 }
 
@@ -134,12 +134,12 @@ static void test_full(void)
   ok(add_entry(store, &entry, &id) == EO_JOB_OUTCOME_FULL && id == 0, "a full queue takes no more");
   enum eo_job_outcome outcome;
   ok(!eo_queue_clone(store, job, NULL, MOST, &id, &outcome, &error) && outcome == EO_JOB_OUTCOME_FULL,
-     "no copies either");
+     "a full queue takes no copies either");
   int64_t count[EO_JOB_STATES];
   ok(!eo_queue_count(store, count, &error) && count[EO_JOB_QUEUED] == MOST && count[EO_JOB_FAILED] == 0,
-     "it holds as many as it may");
+     "a full queue holds as many jobs as it may");
   claim(store);
-  ok(add(store, 0) != 0, "what was begun makes room");
+  ok(add(store, 0) != 0, "a job that was begun makes room for another");
   const struct eo_queue_entry other = {
       .kind = EO_JOB_PREPARE, .design = "{}", .name = "", .algorithm = "", .pair = some_hash};
   ok(add_entry(store, &other, &id) == EO_JOB_OUTCOME_DONE && id, "preparations have a limit of their own");
@@ -158,12 +158,14 @@ static void test_idempotency(void)
   entry.request = other_hash;
   ok(add_entry(store, &entry, &three) == EO_JOB_OUTCOME_CONFLICT, "another request under this key is refused");
   entry.key = "twice";
-  ok(add_entry(store, &entry, &three) == EO_JOB_OUTCOME_DONE && three != one, "another key is another job");
+  ok(add_entry(store, &entry, &three) == EO_JOB_OUTCOME_DONE && three != one,
+     "the same request under another key is another job");
   claim(store);
   eo_queue_end(store, one, EO_JOB_DONE, NULL, NULL, &error);
   entry.key = "once";
   entry.request = some_hash;
-  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_REPEATED && two == one, "also after it has ended");
+  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_REPEATED && two == one,
+     "the same request under the same key is the same job after it has ended");
   enum eo_job_outcome outcome;
   ok(!eo_queue_remove(store, one, &outcome, &error) && !outcome &&
          add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one,
@@ -181,10 +183,12 @@ static void test_preparations(void)
   add_entry(store, &entry, &one);
   ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two == one, "a pair that waits is not queued again");
   ok(claim(store) == 0 && !eo_queue_claim(store, EO_JOB_PREPARE, &id, &error) && id == one,
-     "each kind has its own line");
-  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two == one, "nor one that is being prepared");
+     "each kind of job has its own line");
+  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two == one,
+     "a pair that is being prepared is not queued again");
   eo_queue_cancel(store, one, &outcome, &error);
-  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one, "but one that was told to stop is");
+  ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one,
+     "a pair whose preparation was told to stop is queued again");
   for (int i = 0; i < 4; i++) {
     eo_queue_claim(store, EO_JOB_PREPARE, &id, &error);
     eo_queue_end(store, id, EO_JOB_DONE, NULL, NULL, &error);
@@ -194,7 +198,7 @@ static void test_preparations(void)
   eo_queue_count(store, before, &error);
   ok(!eo_queue_tidy(store, 2, &error) && !eo_queue_count(store, after, &error) && before[EO_JOB_DONE] == 4 &&
          after[EO_JOB_DONE] == 2,
-     "finished ones are swept up");
+     "jobs that have ended are swept up, but for two");
   eo_store_close(store);
 }
 
@@ -224,29 +228,29 @@ static void test_states(void)
     int64_t id = make(store, state), copy;
     ok(!eo_queue_clone(store, id, &(int){7}, MOST, &copy, &outcome, &error) && !outcome &&
            look(store, copy).priority == 7 && look(store, copy).state == EO_JOB_QUEUED,
-       "%s: a copy waits", name);
+       "%s: a copy of the job waits", name);
     eo_queue_cancel(store, copy, &outcome, &error);
     ok(!eo_queue_cancel(store, id, &outcome, &error) && outcome == (ended ? EO_JOB_OUTCOME_STATE : EO_JOB_OUTCOME_DONE),
-       "%s: cancel", name);
+       "%s: the job is cancelled unless it has ended", name);
     enum eo_job_state then = state == EO_JOB_QUEUED ? EO_JOB_CANCELLED : state;
-    ok(look(store, id).state == then && look(store, id).stop == !ended, "%s: then it is %s", name,
+    ok(look(store, id).state == then && look(store, id).stop == !ended, "%s: the job is then %s", name,
        eo_store_job_state_name(then));
     bool retried = then == EO_JOB_FAILED || then == EO_JOB_CANCELLED;
     ok(!eo_queue_retry(store, id, MOST, &outcome, &error) &&
            outcome == (retried ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE),
-       "%s: retry", name);
+       "%s: the job is tried again if it has failed or was cancelled", name);
     ok(!retried || (look(store, id).state == EO_JOB_QUEUED && !look(store, id).stop && !*look(store, id).error),
-       "%s: begins anew", name);
+       "%s: a job that is tried again begins anew", name);
     ok(!eo_queue_remove(store, id, &outcome, &error) &&
            outcome == (then == EO_JOB_DONE ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE),
-       "%s: remove", name);
+       "%s: the job is removed if it is done", name);
     while (claim(store))
       ;
   }
   ok(!eo_queue_cancel(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING &&
          !eo_queue_retry(store, 9999, MOST, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING &&
          !eo_queue_remove(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING,
-     "no such job");
+     "a job that is not there is told as missing");
   eo_store_close(store);
 }
 
@@ -263,16 +267,16 @@ static void test_recovery(void)
   eo_store_keep_result(store, written, "{}", &error);
   eo_queue_cancel(store, stopping, &outcome, &error);
   eo_store_claim_job(terminal, taken, &there, &error);
-  ok(!eo_queue_recover(store, 3, "{}", &queued, &error) && queued == 4, "%lld jobs are looked after",
+  ok(!eo_queue_recover(store, 3, "{}", &queued, &error) && queued == 4, "a start looks after %lld jobs",
      (long long)queued);
-  ok(look(store, begun).state == EO_JOB_QUEUED, "one that was begun waits again");
+  ok(look(store, begun).state == EO_JOB_QUEUED, "a job that was begun waits again after a start");
   ok(look(store, stopping).state == EO_JOB_CANCELLED && look(store, stopping).finished,
-     "one that was to be stopped is cancelled");
-  ok(look(store, parked).state == EO_JOB_QUEUED, "one that was being parked waits again");
+     "a job that was to be stopped is cancelled by a start");
+  ok(look(store, parked).state == EO_JOB_QUEUED, "a job that was being parked waits again after a start");
   ok(look(store, unwritten).state == EO_JOB_QUEUED && look(store, written).state == EO_JOB_DONE,
-     "one without its result waits again, one with it does not");
+     "a job without its result waits again after a start, one with it does not");
   ok(look(store, taken).state == EO_JOB_PREPARING && look(store, failed).state == EO_JOB_FAILED,
-     "what a terminal works on and what failed stay");
+     "a start leaves what a terminal works on and what failed");
   eo_store_close(store);
   eo_store_close(terminal);
 }
@@ -284,16 +288,16 @@ static void test_unclean(void)
   enum eo_job_outcome outcome;
   int64_t queued, id = add(store, 10);
   for (int i = 0; i < 3; i++) {
-    ok(claim(store) == id, "attempt %d", i + 1);
+    ok(claim(store) == id, "attempt %d claims the job", i + 1);
     eo_queue_recover(store, 3, "{\"detail\": \"thrice\"}", &queued, &error);
   }
   struct seen seen = look(store, id);
   ok(seen.state == EO_JOB_FAILED && seen.finished && strstr(seen.error, "thrice"),
-     "after three a job that comes no further has failed: %s", seen.error);
+     "a job that comes no further has failed after three attempts: %s", seen.error);
   ok(!eo_queue_retry(store, id, MOST, &outcome, &error) && outcome == EO_JOB_OUTCOME_DONE && claim(store) == id,
-     "and can be tried again");
+     "a job that comes no further can be tried again");
   eo_queue_recover(store, 3, "{}", &queued, &error);
-  ok(look(store, id).state == EO_JOB_QUEUED, "with three attempts");
+  ok(look(store, id).state == EO_JOB_QUEUED, "a job that is tried again has three attempts");
   eo_queue_cancel(store, id, &outcome, &error);
   eo_store_close(store);
 }
@@ -308,7 +312,7 @@ static void test_retention(void)
      "all jobs are kept unless somebody says otherwise");
   ok(!eo_queue_retain(store, 2, 0, &error) && !look(store, id[1]).count && look(store, id[2]).count &&
          look(store, id[3]).count && look(store, id[4]).count,
-     "the newest two that have ended are kept, and one that has not");
+     "the newest two jobs that have ended are kept, and one that has not");
   eo_store_close(store);
 }
 
@@ -348,20 +352,20 @@ static void test_begin(void)
   bool resumed = true;
   int steps = 0;
   ok(eo_store_begin_job(store, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "no job"),
-     "no such job: %s", error.text);
+     "a job that is not there does not begin: %s", error.text);
   job.id = id;
   ok(!eo_store_begin_job(store, &job, &resumed, &error) && !resumed && job.import_upto == 0 &&
          look(store, id).state == EO_JOB_RUNNING,
-     "a job runs");
+     "a job begins");
   ok(eo_store_begin_job(other, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "Another process"),
-     "once: %s", error.text);
-  ok(!log_one(store, problem, id), "and logs");
+     "a job does not begin twice: %s", error.text);
+  ok(!log_one(store, problem, id), "a job that runs logs a row");
   ok(!eo_store_begin_job(store, &job, &resumed, &error) && resumed && job.import_upto == 0,
-     "as the same study it goes on with what it knew");
+     "a job taken up as the same study goes on with what it knew");
   job.study = other_hash;
   ok(!eo_store_begin_job(store, &job, &resumed, &error) && !resumed && job.import_upto == 1 &&
          !eo_store_each_candidate(store, id, count_step, &steps, &error) && steps == 0,
-     "as another one it forgets its path");
+     "a job taken up as another study forgets its path");
   eo_store_close(other);
   eo_store_close(store);
 }
@@ -421,20 +425,22 @@ static void test_pages(void)
   eo_store_keep_result(store, newest, "{}", &error);
   ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 2 && seen.id[0] == newest &&
          seen.id[1] == newest - 1,
-     "the newest first");
+     "a list of jobs has the newest first");
   seen = (struct seen){0};
   filter.before = newest - 1;
   filter.limit = 10;
-  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 3 && seen.id[0] == newest - 2, "page by page");
+  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 3 && seen.id[0] == newest - 2,
+     "a list of jobs goes on page by page");
   filter = (struct eo_queue_filter){.state = EO_JOB_DONE, .kind = -1, .limit = 10};
   seen = (struct seen){0};
   ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 1 && seen.id[0] == newest && seen.has_result,
-     "by state");
+     "a list of jobs is chosen by state");
   filter = (struct eo_queue_filter){.state = -1, .kind = EO_JOB_PREPARE, .limit = 10};
   seen = (struct seen){0};
-  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 0, "by kind");
+  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 0, "a list of jobs is chosen by kind");
   filter = (struct eo_queue_filter){.state = -1, .kind = -1, .active = true, .limit = 10};
-  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 4, "those that have not ended");
+  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 4,
+     "a list of jobs is chosen by those that have not ended");
   eo_store_close(store);
 }
 
@@ -444,10 +450,10 @@ static void test_server_lock(void)
   bool first = false, second = true;
   eo_store_claim_server(one, &first, &error);
   eo_store_claim_server(two, &second, &error);
-  ok(first && !second, "one server at a time");
+  ok(first && !second, "one server at a time has the database");
   eo_store_close(one);
   eo_store_claim_server(two, &second, &error);
-  ok(second, "until it is gone");
+  ok(second, "another server has the database once the first is gone");
   eo_store_close(two);
 }
 
@@ -480,37 +486,37 @@ static void test_designs(void)
      "a design is stored: %s", seen.created);
   int64_t id = seen.id[0];
   ok(eo_store_add_design(store, "bad", "{", 3, NULL, NULL, &outcome, &error) == EO_ERROR_FILE,
-     "what is no JSON is not");
+     "a design that is no JSON is not stored");
   ok(!eo_store_change_design(store, id, 1, "two", "{}", see_design, &seen, &outcome, &error) &&
          outcome == EO_DESIGN_DONE && seen.revision == 2 && strcmp(seen.name, "two") == 0 &&
          strcmp(seen.document, "{}") == 0,
-     "and changed");
+     "a stored design is changed");
   ok(!eo_store_change_design(store, id, 1, "three", "{}", see_design, &seen, &outcome, &error) &&
          outcome == EO_DESIGN_STALE && seen.revision == 2 && strcmp(seen.name, "two") == 0,
-     "not over a change that was not seen");
+     "a stored design is not changed over a change that was not seen");
   ok(!eo_store_change_design(store, id, 0, "three", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_DONE,
-     "unless that does not matter");
+     "a stored design is changed whatever it is where that is asked");
   ok(!eo_store_change_design(store, 77, 1, "x", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_MISSING,
-     "no such design to change");
+     "a design that is not there is not changed");
   eo_store_add_design(store, "b", "{}", 3, NULL, NULL, &outcome, &error);
   eo_store_add_design(store, "c", "{}", 3, NULL, NULL, &outcome, &error);
   ok(!eo_store_add_design(store, "d", "{}", 3, NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_FULL,
-     "no more than may be");
+     "a design above the limit is not stored");
   seen = (struct seen_design){0};
   ok(!eo_store_list_designs(store, 0, 2, see_design, &seen, &error) && seen.count == 2 && seen.id[0] > seen.id[1],
-     "listed, the newest first");
+     "a list of designs has the newest first");
   int64_t last = seen.id[1];
   ok(!eo_store_list_designs(store, last, 2, see_design, &seen, &error) && seen.count == 3 && seen.id[2] == id,
-     "page by page");
+     "a list of designs goes on page by page");
   ok(!eo_store_remove_design(store, id, 2, &outcome, &error) && outcome == EO_DESIGN_STALE &&
          !eo_store_remove_design(store, id, 3, &outcome, &error) && outcome == EO_DESIGN_DONE,
-     "removed in the revision that was seen");
+     "a design is removed in the revision that was seen");
   ok(!eo_store_find_design(store, id, see_design, &seen, &outcome, &error) && outcome == EO_DESIGN_MISSING &&
          !eo_store_remove_design(store, id, 0, &outcome, &error) && outcome == EO_DESIGN_MISSING,
-     "then it is gone");
+     "a removed design is gone");
   seen = (struct seen_design){0};
   eo_store_add_design(store, "e", "{}", 3, see_design, &seen, &outcome, &error);
-  ok(seen.id[0] > id + 2, "and its number is not used again");
+  ok(seen.id[0] > id + 2, "the number of a removed design is not used again");
   eo_store_close(store);
 }
 

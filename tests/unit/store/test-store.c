@@ -164,12 +164,12 @@ static void test_new(void)
 {
   clean();
   struct eo_store *store = open_store(EO_STORE_READ);
-  ok(!store && error.code == EO_ERROR_INPUT && strstr(error.text, "no history"), "reading where nothing is: %s",
-     error.text);
-  ok(access(path, F_OK) != 0, "and makes nothing");
+  ok(!store && error.code == EO_ERROR_INPUT && strstr(error.text, "no history"),
+     "reading where nothing is is refused: %s", error.text);
+  ok(access(path, F_OK) != 0, "reading where nothing is makes nothing");
   store = open_store(EO_STORE_WRITE);
-  ok(store != NULL, "a new database %s", error.text);
-  ok(eo_store_inspect(store, false, &error) == EO_OK, "is sound");
+  ok(store != NULL, "a new database is made %s", error.text);
+  ok(eo_store_inspect(store, false, &error) == EO_OK, "a new database is sound");
   eo_store_close(store);
   ok(read_integer("PRAGMA user_version") == eo_store_schema && read_integer("PRAGMA application_id") == 0x45415345,
      "version and application are marked");
@@ -200,9 +200,10 @@ static void test_older(int version)
   char *fresh = read_schema();
   clean();
   snprintf(file, sizeof file, "%s/tests/schema/%04d.sql", getenv("SOURCES") ? getenv("SOURCES") : ".", version);
-  ok(eo_text_read(&sql, file, 1 << 20, &error) == EO_OK && execute(sql.data), "a database of schema %d", version);
+  ok(eo_text_read(&sql, file, 1 << 20, &error) == EO_OK && execute(sql.data), "a database of schema %d is made",
+     version);
   store = open_store(EO_STORE_WRITE);
-  ok(store != NULL, "is opened %s", error.text);
+  ok(store != NULL, "a database of an older schema is opened %s", error.text);
   int rows = 0;
   enum eo_code code = store ? eo_store_each_evaluation(store, 1, 0, NULL, 1, 3, count_row, &rows, &error)
                             : EO_ERROR_FILE;
@@ -210,11 +211,11 @@ static void test_older(int version)
   eo_store_close(store);
   char *migrated = read_schema();
   ok(read_integer("PRAGMA user_version") == eo_store_schema && strcmp(fresh, migrated) == 0,
-     "and its schema is that of a new one");
+     "the schema of an older database becomes that of a new one");
   ok(version < 2 || read_integer("SELECT count(*) FROM candidate c JOIN job j ON j.id = c.job") == 3,
-     "and what refers to a table that was replaced is still there");
+     "what refers to a table that was replaced is still there");
   ok(read_integer("SELECT count(*) FROM design WHERE json_extract(document, '$.version') IS NOT 1") == 0,
-     "and its stored designs are documents of version 1");
+     "the stored designs of an older database are documents of version 1");
   free(fresh);
   free(migrated);
   eo_text_done(&sql);
@@ -226,19 +227,21 @@ static void test_strangers(void)
   eo_store_close(open_store(EO_STORE_WRITE));
   execute("PRAGMA user_version = 99");
   ok(!open_store(EO_STORE_WRITE) && error.code == EO_ERROR_FILE && strstr(error.text, "newer version"),
-     "a newer schema: %s", error.text);
-  ok(!open_store(EO_STORE_READ) && strstr(error.text, "newer version"), "for readers too");
+     "a database of a newer schema is refused: %s", error.text);
+  ok(!open_store(EO_STORE_READ) && strstr(error.text, "newer version"),
+     "a database of a newer schema is refused to readers too");
   clean();
   execute("CREATE TABLE cake (x)");
-  ok(!open_store(EO_STORE_WRITE) && strstr(error.text, "another program"), "another program's database: %s",
-     error.text);
-  ok(read_integer("SELECT count(*) FROM sqlite_schema") == 1, "is left alone");
+  ok(!open_store(EO_STORE_WRITE) && strstr(error.text, "another program"),
+     "the database of another program is refused: %s", error.text);
+  ok(read_integer("SELECT count(*) FROM sqlite_schema") == 1, "the database of another program is left alone");
   clean();
   FILE *file = fopen(path, "w");
   for (int i = 0; i < 5000; i++)
     fputs("no database ", file);
   fclose(file);
-  ok(!open_store(EO_STORE_WRITE) && strstr(error.text, "damaged"), "no database: %s", error.text);
+  ok(!open_store(EO_STORE_WRITE) && strstr(error.text, "damaged"), "a file that is no database is refused: %s",
+     error.text);
 }
 
 /* A step that fails must leave the older schema as it was. */
@@ -246,9 +249,10 @@ static void test_failed_step(void)
 {
   clean();
   execute("CREATE TABLE problem (x); PRAGMA application_id = 1161909061;");
-  ok(!open_store(EO_STORE_WRITE) && error.code == EO_ERROR_FILE, "a step that fails: %s", error.text);
+  ok(!open_store(EO_STORE_WRITE) && error.code == EO_ERROR_FILE, "a step of the schema that fails is told: %s",
+     error.text);
   ok(read_integer("PRAGMA user_version") == 0 && read_integer("SELECT count(*) FROM sqlite_schema") == 1,
-     "leaves nothing behind");
+     "a step of the schema that fails leaves nothing behind");
 }
 
 static void test_rows(void)
@@ -261,15 +265,15 @@ static void test_rows(void)
   struct eo_stored_evaluation row = make_row("{\"a\":1}", raw, 3),
                               back = {.scenarios = 1, .cases = CASES, .raw = found};
   ok(eo_store_find_evaluation(store, id, "{\"a\":1}", &back, &error) == EO_OK && back.id == 0,
-     "a row that is not there");
-  ok(add(store, id, &row) == 1, "is added %s", error.text);
+     "a row that is not there is not found");
+  ok(add(store, id, &row) == 1, "a row is added %s", error.text);
   ok(eo_store_find_evaluation(store, id, "{\"a\":1}", &back, &error) == EO_OK && back.id == 1 && same_raw(raw, found) &&
          back.cost == 0.01 && back.outcome == EO_EVALUATION_NOT_CONVERGED && strcmp(back.reason, "It did not.") == 0,
-     "and comes back bit for bit");
+     "a row comes back bit for bit");
   struct eo_stored_evaluation again = make_row("{\"a\":1}", other, 5);
   ok(add(store, id, &again) == 1 && same_raw(raw, other), "a second row for the same point becomes the first");
   ok(eo_store_find_evaluation(store, 7, "{\"a\":1}", &back, &error) == EO_OK && back.id == 0,
-     "another problem does not know it");
+     "another problem does not know the row");
   eo_store_begin(store, &error);
   row = make_row("{\"a\":2}", raw, 4);
   eo_store_add_evaluation(store, id, &row, &error);
@@ -296,10 +300,10 @@ static void test_curves(void)
          memcmp(found[0].transmission, raw[0].transmission, sizeof raw[0].transmission) == 0 &&
          memcmp(found[2].end_impact, raw[2].end_impact, sizeof raw[2].end_impact) == 0,
      "a transmission error comes back bit for bit");
-  ok(isnan(found[1].transmission[5]) && isnan(found[1].end_impact[0]), "what was not kept is no number");
+  ok(isnan(found[1].transmission[5]) && isnan(found[1].end_impact[0]), "a curve that was not kept is no number");
   execute("UPDATE raw SET curve = (SELECT curve FROM raw WHERE load_case = 2) WHERE load_case = 1");
   ok(eo_store_find_evaluation(store, id, "{\"a\":1}", &back, &error) == EO_ERROR_DAMAGED,
-     "a curve that came from elsewhere: %s", error.text);
+     "a curve that came from elsewhere is refused: %s", error.text);
   eo_store_close(store);
 }
 
@@ -319,18 +323,18 @@ static void test_damage(void)
           "raw WHERE evaluation = 4 AND load_case = 2");
   struct eo_stored_evaluation back = {.scenarios = 1, .cases = CASES, .raw = raw};
   ok(eo_store_find_evaluation(store, id, "{\"a\":2}", &back, &error) == EO_ERROR_DAMAGED && strstr(error.text, "row 3"),
-     "a number that was changed: %s", error.text);
+     "a row with a changed number is told as damaged: %s", error.text);
   ok(eo_store_find_evaluation(store, id, "{\"a\":3}", &back, &error) == EO_ERROR_DAMAGED && strstr(error.text, "row 4"),
-     "a number that is missing");
+     "a row with a missing number is told as damaged");
   int rows = 0;
   ok(eo_store_each_evaluation(store, id, 0, NULL, 1, CASES, count_row, &rows, &error) == EO_ERROR_DAMAGED && rows == 2,
      "no row is handed out from the damage on");
   bool good = !eo_store_begin(store, &error) && !eo_store_remove_damaged(store, &removed, &error) &&
               !eo_store_commit(store, &error);
   rows = 0;
-  ok(good && removed == 2, "both can be removed %s", error.text);
+  ok(good && removed == 2, "both damaged rows can be removed %s", error.text);
   ok(eo_store_each_evaluation(store, id, 0, NULL, 1, CASES, count_row, &rows, &error) == EO_OK && rows == 3,
-     "and the other three stay");
+     "the other three rows stay");
   eo_store_close(store);
 }
 
@@ -382,7 +386,8 @@ static void test_garbage(void)
     eo_store_close(store);
   }
   ok(refused + whole == 60 && refused > 20 && !wrong,
-     "garbage in 60 files: %d refused, %d untouched where it matters, %d with a wrong row", refused, whole, wrong);
+     "garbage is written into 60 files: %d refused, %d untouched where it matters, %d with a wrong row", refused, whole,
+     wrong);
 }
 
 static void test_two(void)
@@ -396,14 +401,15 @@ static void test_two(void)
   eo_store_add_evaluation(one, id, &row, &error);
   eo_store_wait(two, 100);
   ok(eo_store_begin(two, &error) == EO_ERROR_BUSY && strstr(error.text, "locked"),
-     "a second writer waits, then says: %s", error.text);
+     "a second writer waits, and is then refused: %s", error.text);
   struct eo_stored_evaluation back = {.scenarios = 1, .cases = CASES, .raw = raw};
   ok(eo_store_find_evaluation(two, id, "{}", &back, &error) == EO_OK && back.id == 0,
-     "readers do not wait and see what was there before");
+     "readers do not wait and see what was there before the writer");
   eo_store_commit(one, &error);
-  ok(eo_store_find_evaluation(two, id, "{}", &back, &error) == EO_OK && back.id == 1, "and what was committed");
+  ok(eo_store_find_evaluation(two, id, "{}", &back, &error) == EO_OK && back.id == 1,
+     "readers see what the writer committed");
   row = make_row("{\"b\":1}", raw, 2);
-  ok(add(two, id, &row) == 2, "then the second one writes");
+  ok(add(two, id, &row) == 2, "the second writer writes after the first");
   eo_store_close(one);
   eo_store_close(two);
 }
@@ -427,24 +433,25 @@ static void test_jobs(void)
                               .best_value = NAN},
                        same = {0};
   bool taken = false;
-  ok(eo_store_resume_job(one, hash, false, &same, &error) == EO_OK && same.id == 0, "no job to take up");
+  ok(eo_store_resume_job(one, hash, false, &same, &error) == EO_OK && same.id == 0,
+     "a study without a job takes none up");
   ok(eo_store_add_job(one, &job, &error) == EO_OK && job.import_upto == 1 &&
          !eo_store_claim_job(one, job.id, &taken, &error) && taken,
-     "a job that knows one row");
+     "a job begins that knows one row");
   ok(eo_store_resume_job(two, hash, false, &same, &error) == EO_OK && same.id == 0,
-     "nobody else takes it up while somebody works on it");
-  ok(eo_store_job_is_taken(two, job.id), "and sees so");
+     "a job that somebody works on is not taken up");
+  ok(eo_store_job_is_taken(two, job.id), "another connection sees that the job is taken");
   eo_store_close(one);
-  ok(!eo_store_job_is_taken(two, job.id), "until it is left");
-  ok(eo_store_resume_job(two, hash, true, &same, &error) == EO_OK && same.id == 0, "a fresh study is another one");
+  ok(!eo_store_job_is_taken(two, job.id), "another connection sees that the job was left");
+  ok(eo_store_resume_job(two, hash, true, &same, &error) == EO_OK && same.id == 0, "a fresh study is another job");
   ok(eo_store_resume_job(two, hash, false, &same, &error) == EO_OK && same.id == job.id && same.import_upto == 1,
-     "then it is taken up");
+     "a job that was left is taken up");
   const double x[2] = {0.25, 1};
   struct eo_stored_candidate candidate = {
       .job = job.id, .evaluation = 1, .ordinal = 0, .reused = false, .x = x, .size = 2};
   eo_store_log_candidate(two, &candidate, &error);
   candidate.reused = true;
-  ok(eo_store_log_candidate(two, &candidate, &error) == EO_OK && !candidate.reused, "what a job logged once stays");
+  ok(eo_store_log_candidate(two, &candidate, &error) == EO_OK && !candidate.reused, "a row that a job logged stays");
   eo_store_close(two);
 }
 
@@ -456,9 +463,9 @@ static void test_folders(void)
   eo_store_close(open_store(EO_STORE_WRITE));
   snprintf(file, sizeof file, "%s/easeoff.db/below", folder);
   ok(eo_store_open(&store, file, EO_STORE_WRITE, &error) == EO_ERROR_FILE && strstr(error.text, "cannot be made"),
-     "a folder below a file: %s", error.text);
+     "a folder below a file is not made: %s", error.text);
   ok(eo_store_open(&store, path, EO_STORE_WRITE, &error) == EO_ERROR_FILE && strstr(error.text, "cannot be made"),
-     "a file for a folder: %s", error.text);
+     "a file in the place of the folder is refused: %s", error.text);
 }
 
 int main(void)

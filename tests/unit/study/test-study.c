@@ -48,15 +48,15 @@ static void test_threads(const char *algorithm)
       eo_study_result_done(&result);
   }
   ok(text[0] && text[1] && text[2] && strcmp(text[0], text[1]) == 0 && strcmp(text[0], text[2]) == 0,
-     "%s: the same bytes for 1, 2 and 4 threads", algorithm);
+     "%s: 1, 2 and 4 threads give the same bytes", algorithm);
   ok(result.best.there && result.best.value.objective < 0.7 && result.computed == 60 && result.true_evaluations == 60 &&
          result.reused == 0,
-     "%s: J %.4g after %d evaluations", algorithm, result.best.value.objective, result.computed);
+     "%s: the search comes to J %.4g after %d evaluations", algorithm, result.best.value.objective, result.computed);
   eo_study_result_done(&result);
   struct eo_study_plan plan = plan_of(&design, NULL);
   char *again = run(&plan, &result);
   ok(again && strcmp(again, text[0]) == 0 && result.computed == 0 && result.resumed,
-     "%s: once more, nothing is computed and the result is the same", algorithm);
+     "%s: a second search computes nothing and gives the same result", algorithm);
   eo_study_result_done(&result);
   free(again);
   for (int i = 0; i < 3; i++)
@@ -93,8 +93,9 @@ static void test_cancel(void)
   free(text);
   text = run(&plan, &result);
   computed += result.computed;
-  ok(cuts == 7 && text && strcmp(text, whole) == 0, "stopped %d times: the result of an undisturbed run", cuts);
-  ok(computed == 80 && result.reused == 0, "with %d evaluations in all, none twice", computed);
+  ok(cuts == 7 && text && strcmp(text, whole) == 0,
+     "a search that is stopped %d times gives the result of an undisturbed one", cuts);
+  ok(computed == 80 && result.reused == 0, "a search with stops computes %d evaluations in all, none twice", computed);
   eo_study_result_done(&result);
   free(text);
   free(whole);
@@ -129,11 +130,11 @@ static void test_removed_job(const char *algorithm)
     eo_store_close(store);
     text[removed] = run(&plan, &result);
     ok(result.resumed && result.imported == 40 && result.true_evaluations == 90,
-       "%s: taken up with %d rows of another job", algorithm, result.imported);
+       "%s: the search is taken up with %d rows of another job", algorithm, result.imported);
     eo_study_result_done(&result);
   }
-  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "%s: whether that job is still there or not, the same result",
-     algorithm);
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0,
+     "%s: the result is the same whether that job is still there or not", algorithm);
   free(text[0]);
   free(text[1]);
 }
@@ -157,7 +158,7 @@ static void test_reuse(void)
   plan.fresh = true;
   free(run(&plan, &result));
   ok(result.reused >= 20 && result.reused + result.computed == 40,
-     "other weights and shares: %d of 40 known, fitness anew", result.reused);
+     "other weights and shares weigh anew what is known of %d of 40", result.reused);
   ok(fabs(result.unmodified.value.objective - 1.4) < 1e-12, "J of the unmodified pair is the sum of the weights");
   eo_study_result_done(&result);
 
@@ -168,7 +169,7 @@ static void test_reuse(void)
   free(run(&plan, &result));
   ok(result.imported >= 60 && result.imported <= 100 && result.best.there && result.best.value.sums.f[0] <= sum * 1.2,
      "%d rows of earlier searches are imported", result.imported);
-  ok(result.computed == 8, "and the budget is for new ones");
+  ok(result.computed == 8, "the budget is spent on new rows");
   eo_study_result_done(&result);
 
   /* a stop while these are read, which takes long where there are many */
@@ -181,8 +182,8 @@ static void test_reuse(void)
      "a stop is heard after %d rows of earlier searches", result.imported);
   eo_study_result_done(&result);
   free(run(&plan, &result));
-  ok(result.resumed && result.imported >= 60 && result.computed == 9, "and the search goes on with all %d",
-     result.imported);
+  ok(result.resumed && result.imported >= 60 && result.computed == 9,
+     "the search goes on with all %d rows of earlier searches", result.imported);
   eo_study_result_done(&result);
 
   /* another space: both ends apart; the rows with equal ends lie in it */
@@ -197,10 +198,10 @@ static void test_reuse(void)
   design.supports.mesh_damping_ratio = 0.08;
   complete(&design);
   free(run(&plan, &result));
-  ok(result.imported == 0 && result.reused == 0 && result.computed == 20, "another problem shares nothing");
+  ok(result.imported == 0 && result.reused == 0 && result.computed == 20, "a search of another problem shares nothing");
   eo_study_result_done(&result);
   ok(best.flank[EO_PINION][EO_LEFT].tip_relief == best.flank[EO_PINION][EO_RIGHT].tip_relief,
-     "shared variables are shared");
+     "variables that are shared have one value");
 }
 
 /* The reported optimum analysed on its own gives the numbers that were reported. */
@@ -226,9 +227,9 @@ static void test_truth(void)
      "the optimum read back from its document and analysed: J %.17g", good ? analysis->value.objective : NAN);
   ok(good && eo_json_find_number(document, "best/result/objectives/J") ==
                  eo_json_find_number(document, "best/objectives/J"),
-     "as its own result says");
+     "the optimum read back has the J of its own result");
   double pfc = eo_json_find_number(document, "pfc_percent");
-  ok(fabs(pfc - 100. * result.true_evaluations / result.individuals) < 1e-9, "PFC %.3g %%", pfc);
+  ok(fabs(pfc - 100. * result.true_evaluations / result.individuals) < 1e-9, "PFC is %.3g %%", pfc);
   const json_t *generations = json_object_get(document, "generations");
   double before = INFINITY;
   int worse = 0, sum = 0;
@@ -240,7 +241,7 @@ static void test_truth(void)
   }
   ok(json_array_size(generations) == 6 && !worse && sum == result.true_evaluations &&
          before == eo_json_find_number(document, "best/objectives/J"),
-     "generations: true evaluations add up, the best never gets worse");
+     "true evaluations add up over the generations, and the best never gets worse");
   eo_analysis_free(analysis);
   eo_study_result_done(&result);
   json_decref(document);
@@ -262,7 +263,7 @@ static void test_front(void)
       dominated += a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && (a[0] < b[0] || a[1] < b[1] || a[2] < b[2]);
     }
   ok(result.front_count > 3 && !dominated && result.knee >= 0 && result.weighted >= 0,
-     "nsga2: a front of %d true rows, none dominated", result.front_count);
+     "nsga2 finds a front of %d true rows, none dominated", result.front_count);
   eo_study_result_done(&result);
 }
 
@@ -286,7 +287,7 @@ static void test_robust_front(void)
                    (a->nominal < b->nominal || a->objective < b->objective);
     }
   ok(result.front_count > 1 && !dominated && result.scenarios == 4,
-     "nsga2: %d true rows between the nominal and the robust J, none dominated", result.front_count);
+     "nsga2 finds %d true rows between the nominal and the robust J, none dominated", result.front_count);
   eo_study_result_done(&result);
 }
 
@@ -308,7 +309,7 @@ static void test_race(void)
     if (i == 0)
       eo_study_result_done(&result);
   }
-  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "a race over pairs: the same bytes for 1 and 3 threads");
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "a race over pairs gives the same bytes for 1 and 3 threads");
   int first = design.objective.first_pairs, looked = first * result.true_evaluations,
       more = (design.objective.scatter_pairs - first) * result.whole;
   ok(first == 2 && result.whole < 40 && more < looked && 2 * more > looked,
@@ -318,16 +319,16 @@ static void test_race(void)
   for (int i = 0; i < result.scenarios * result.cases; i++)
     there += isfinite(result.best.raw[i].rms);
   ok(result.best.there && there == result.scenarios * result.cases && result.best.value.objective < 1,
-     "the best one, J %.3f, is known over all of them", result.best.value.objective);
+     "the best flank, J %.3f, is known over all of its pairs", result.best.value.objective);
   eo_study_result_done(&result);
   struct eo_study_plan plan = plan_of(&design, NULL);
   char *again = run(&plan, &result);
-  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0, "once more, nothing is computed");
+  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0, "a second race computes nothing");
   json_t *document = again ? json_loads(again, 0, NULL) : NULL;
   const json_t *check = json_object_get(document, "check");
   ok(json_integer_value(json_object_get(check, "pairs")) == 6 &&
          json_array_size(json_object_get(check, "designs")) == 2,
-     "what was found is checked on six other pairs beside the unmodified pair");
+     "the race's result is checked on six other pairs beside the unmodified pair");
   json_decref(document);
   eo_study_result_done(&result);
   free(again);
@@ -358,7 +359,7 @@ static void test_failures(void)
   eo_store_close(store);
   struct eo_text text = {0};
   ok(good && !eo_records_rows_csv(rows, &text, &error) && strstr(text.data, "pinion/left/tip_relief_um") != NULL,
-     "rows as comma-separated values");
+     "the rows are written as comma-separated values");
   eo_text_done(&text);
   struct eo_text spec = {0};
   char hash[EO_HASH_LENGTH + 1];
@@ -391,7 +392,7 @@ static void test_failures(void)
   free(run(&plan, &result));
   ok(good && result.failed == 1 && result.reused == 1, "a failed row is found again and not evaluated once more");
   ok(result.best.there && result.best.rank > value && result.best.evaluation != 1,
-     "and is never the optimum: %.4g instead of %.4g", result.best.rank, value);
+     "a failed row is never the optimum: %.4g instead of %.4g", result.best.rank, value);
   eo_study_result_done(&result);
   empty_folder();
   rmdir(folder);
@@ -445,7 +446,8 @@ static int parameter(const char *key)
 static void refuse(const char *what, const char *pointer, int count, const struct eo_listed_variable *list)
 {
   enum eo_code code = with_list(count, list);
-  ok(code == EO_ERROR_INPUT && strcmp(error.pointer, pointer) == 0, "%s: %s: %s", what, error.pointer, error.text);
+  ok(code == EO_ERROR_INPUT && strcmp(error.pointer, pointer) == 0, "the search refuses %s: %s: %s", what,
+     error.pointer, error.text);
 }
 
 static struct eo_listed_variable knots_of(int row, int column, double low, double high)
@@ -519,29 +521,30 @@ static void test_unmodified_best(void)
 static void test_opened(json_t *document)
 {
   json_object_del(document, "optimization");
-  near(opened_value(document), result.best.value.objective, 1e-12, "which opens with the J that the search reported");
+  near(opened_value(document), result.best.value.objective, 1e-12,
+       "J of the best design opened again, over that of the search");
   for (int end = 0; end < 2; end++) {
     static const char *const name[2] = {"left", "right"};
     json_t *flank = json_object_get(eo_json_find(document, "modification/pinion"), name[end]);
     json_object_set_new(json_object_get(flank, "grid"), "kind", json_string("measured"));
   }
-  near(opened_value(document), 1, 1e-12, "and with 1 as a pair that is measured so");
+  near(opened_value(document), 1, 1e-12, "J of a pair that is measured so");
 }
 
 static void test_grid_search(void)
 {
   const struct eo_listed_variable list[3] = {knots_of(1, 0, 0, 30), knots_of(3, 0, 0, 30), knots_of(2, 4, -5, 10)};
-  ok(with_knots(3, list), "rows and a knot of a grid %s", error.text);
+  ok(with_knots(3, list), "rows and a knot of a grid are variables %s", error.text);
   struct eo_study_plan plan = plan_of(&design, NULL);
   empty_folder();
   free(run(&plan, &result));
   char name[80];
   eo_study_variable_name(&result.space.variable[2], name, sizeof name);
-  ok(strcmp(name, "pinion/both/grid_um[u2 y4]") == 0, "a variable by its name: %s", name);
+  ok(strcmp(name, "pinion/both/grid_um[u2 y4]") == 0, "a variable of a grid has its name: %s", name);
   double start[3], x[3];
   ok(eo_study_space_locate(&result.space, &design.modification, &design.modification, start) && start[0] == 0 &&
          fabs(start[2] - 6. / 15) < 1e-12,
-     "the grid itself is the start");
+     "the grid itself is the start of a search over it");
   ok(result.best.there && result.best.value.objective < 0.9 * result.unmodified.value.objective,
      "a search over the grid improves the pair: J %.3g of %.3g", result.best.value.objective,
      result.unmodified.value.objective);
@@ -559,13 +562,14 @@ static void test_grid_search(void)
      "the best is a design with that grid: row 1 at %.4g um", of_row);
   ok(eo_design_decode(document, &opened, NULL, &found) && !eo_design_complete(&opened, &geometry, &error) &&
          eo_json_find(document, "modification/pinion/right/grid_nodes") == NULL,
-     "and opens as one");
-  ok(eo_study_space_locate(&result.space, &design.modification, &best.modification, x), "a row of it is in the space");
+     "the best design over a grid opens as one");
+  ok(eo_study_space_locate(&result.space, &design.modification, &best.modification, x),
+     "a row of the best design is in the space");
   struct eo_text text = {0};
   static struct eo_modification read;
   ok(!eo_modification_write(&best.modification, 2, &text, &error) && !eo_modification_read(text.data, &read, &error) &&
          eo_modification_equal(&read.flank[EO_PINION][EO_LEFT], &best.modification.flank[EO_PINION][EO_LEFT]),
-     "as text and back: %.120s", text.data ? text.data : "");
+     "a modification over a grid is written as text and read again: %.120s", text.data ? text.data : "");
   eo_text_done(&text);
   test_opened(document);
   json_decref(document);
@@ -590,13 +594,15 @@ static void test_grid_kinds(void)
     bool good = complete(&stated) && !eo_study_space_init(&space, &stated, &pair->geometry, &error);
     ok(good == (kind == EO_GRID_DESIGNED) &&
            (good || strcmp(error.pointer, "/optimization/variable_list/0/parameter") == 0),
-       "%s: %s", kind ? "stated as designed" : "stated as measured, it does not vary", error.text);
+       "%s: the grid is judged by that: %s", kind ? "stated as designed" : "stated as measured, it does not vary",
+       error.text);
   }
 }
 
 static void refuse_knots(const char *what, const char *pointer, int count, const struct eo_listed_variable *list)
 {
-  ok(!with_knots(count, list) && strcmp(error.pointer, pointer) == 0, "%s: %s: %s", what, error.pointer, error.text);
+  ok(!with_knots(count, list) && strcmp(error.pointer, pointer) == 0, "the search refuses %s: %s: %s", what,
+     error.pointer, error.text);
 }
 
 static void test_grid_refusals(void)
@@ -628,7 +634,8 @@ static void test_variables(void)
   struct eo_listed_variable three[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0, 0, 0, false},
                                        {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0, 0, 0, false},
                                        {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0, 0, 0, false}};
-  ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
+  ok(with_list(3, three) == EO_OK, "a list of tip relief of the pinion and lead slope of each gear end is taken %s",
+     error.text);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
       design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
   struct eo_study_plan plan = plan_of(&design, NULL);
@@ -638,15 +645,15 @@ static void test_variables(void)
                                      *pinion = result.best.modification.flank[EO_PINION];
   ok(result.space.count == 3 && pinion[0].tip_relief == pinion[1].tip_relief && pinion[0].tip_relief_start == 1e-3 &&
          gear[0].helix_slope != gear[1].helix_slope && gear[0].helix_slope >= -5e-6 && gear[1].helix_slope <= 5e-6,
-     "are searched for, the rest stays");
+     "a search over a list varies its variables, and the rest stays");
   struct eo_modification applied;
   double x[3] = {0.123456789, 1, 0}, back[3];
   eo_study_space_apply(&result.space, &design.modification, x, &applied);
   ok(eo_study_space_locate(&result.space, &design.modification, &applied, back) && fabs(back[0] - x[0]) < 1e-15 &&
          back[1] == 1 && back[2] == 0,
-     "there and back");
+     "a point of a listed space is found again");
   ok(applied.flank[EO_GEAR][0].helix_slope == 10e-6 && applied.flank[EO_GEAR][1].helix_slope == -10e-6,
-     "bounds are reached exactly");
+     "the bounds of a listed space are reached exactly");
   applied.flank[EO_PINION][0].root_relief = 1e-6;
   ok(!eo_study_space_locate(&result.space, &design.modification, &applied, back),
      "a modification with another rest is not in the space");
@@ -654,7 +661,7 @@ static void test_variables(void)
   ok(!eo_modification_write(&applied, 2, &text, &error) &&
          !eo_modification_read(text.data, &design.modification, &error) &&
          memcmp(&design.modification.flank[1], &applied.flank[1], sizeof applied.flank[1]) == 0,
-     "a modification as text and back: %s", text.data ? text.data : "");
+     "a modification is written as text and read again: %s", text.data ? text.data : "");
   eo_text_done(&text);
   eo_study_result_done(&result);
 
@@ -683,11 +690,11 @@ static void test_variables(void)
     eo_flank_grids_put(&with_grid.grids, EO_DRIVE_FLANK, EO_PINION, k, &grid, &error);
   double scale = 0.75;
   struct eo_modification gained;
-  ok(complete(&with_grid) && !eo_study_space_init(&gains, &with_grid, &pair->geometry, &error), "of one that is %s",
-     error.text);
+  ok(complete(&with_grid) && !eo_study_space_init(&gains, &with_grid, &pair->geometry, &error),
+     "the gain of a grid that is there is taken %s", error.text);
   eo_study_space_apply(&gains, &with_grid.modification, &scale, &gained);
   ok(gained.flank[EO_PINION][0].grid_gain == 0.5 && gained.flank[EO_PINION][1].grid_gain == 0.5,
-     "the search lays on more or less of it");
+     "a search over a gain lays on more or less of the grid");
   struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false};
   refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
   struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false},
@@ -695,12 +702,12 @@ static void test_variables(void)
   refuse("an end relief whose length may vanish", "/optimization/variable_list", 2, zero);
   struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0, 0, 0, false},
                                       {EO_PINION, EO_LEFT, length, {1, 10}, 0, 0, 0, false}};
-  ok(with_list(2, good) == EO_OK, "an end relief with a length");
+  ok(with_list(2, good) == EO_OK, "an end relief with a length is taken");
   refuse("no variable", "/optimization/variable_list", 0, good);
   with_list(1, good);
   design.optimization.variables = EO_VARIABLES_SHARED;
-  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s",
-     error.text);
+  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0,
+     "a list beside a preset is refused: %s", error.text);
   struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open, 0, 0, 0, false};
   coarse_design(&design, "ga", 20);
   design.gear_pair.ends = 1;
@@ -709,7 +716,7 @@ static void test_variables(void)
   design.optimization.list[0] = right;
   design.optimization.listed = 1;
   ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list/0/end") == 0,
-     "the right end of a pair that has one: %s", error.text);
+     "the right end of a pair that has one is refused: %s", error.text);
 }
 
 int main(void)

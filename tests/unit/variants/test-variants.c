@@ -47,12 +47,13 @@ static void test_factorial(void)
   ok(read(&plan, "\"vary\":[{\"key\":\"gear_pair.pinion_teeth\",\"from\":16,\"to\":18,\"points\":3},"
                  "{\"key\":\"load_cases.*.torque_Nm\",\"values\":[500.5,600.5]}]") &&
          plan.rows == 6,
-     "three times two variants");
+     "three times two variants are read");
   ok(values_are(&plan, 0, "[16,500.5]") && values_are(&plan, 3, "[17,600.5]") && values_are(&plan, 5, "[18,600.5]"),
-     "the last one varies fastest");
-  ok(plan.axis[1].paths == 2 && strcmp(plan.axis[1].path[1], "load_cases.2.torque_Nm") == 0, "* is every load case");
+     "the last key of a plan varies fastest");
+  ok(plan.axis[1].paths == 2 && strcmp(plan.axis[1].path[1], "load_cases.2.torque_Nm") == 0,
+     "a key with * stands for every load case");
   ok(plan.axis[0].of_pair && !plan.axis[1].of_pair && !plan.of_modification,
-     "teeth take another pair, a torque does not");
+     "teeth take another pair, and a torque does not");
   eo_variant_plan_done(&plan);
 }
 
@@ -91,7 +92,7 @@ static void test_hashes(void)
          strcmp(one, other) == 0,
      "the same design by other keys is the same row");
   ok(hash_of("\"vary\":[{\"key\":\"T [kNm]\",\"values\":[0.7,0.8]}]", 0, third) && strcmp(one, third) == 0,
-     "in another unit too");
+     "the same design in another unit is the same row");
   ok(hash_of("\"vary\":[{\"key\":\"T\",\"values\":[700,828]}]", 1, other) && strcmp(one, other) != 0,
      "another value is another row");
 }
@@ -107,7 +108,7 @@ static void test_samples(void)
              "\"sampling\":\"%s\",\"samples\":16,\"vary\":[{\"key\":\"T\",\"from\":0,\"to\":16},"
              "{\"key\":\"gear_pair.pinion_teeth\",\"from\":16,\"to\":18}]",
              kind ? "latin" : "sobol");
-    ok(read(&plan, rest) && plan.rows == 16, "%d samples", plan.rows);
+    ok(read(&plan, rest) && plan.rows == 16, "a plan of %d samples is read", plan.rows);
     for (int row = 0; row < plan.rows; row++) {
       json_t *values = eo_variant_values(&plan, row);
       strata[(int)json_number_value(json_array_get(values, 0)) % 16]++;
@@ -118,7 +119,8 @@ static void test_samples(void)
     }
     for (int i = 0; i < 16; i++)
       right = right && strata[i] == 1;
-    ok(right && teeth[0] && teeth[1] && teeth[2], "one in each part of a range, whole numbers where they are");
+    ok(right && teeth[0] && teeth[1] && teeth[2],
+       "each part of a range holds one sample, and whole numbers stay whole");
     eo_variant_plan_done(&plan);
   }
 }
@@ -146,28 +148,29 @@ static void test_grids(void)
   bool good = eo_variant_plan_init(&plan, document, &faults);
   json_t *values = good ? eo_variant_values(&plan, 1) : NULL;
   good = good && eo_variant_design(plan.base, plan.axis, plan.axes, values, design, &geometry, &error) == EO_OK;
-  ok(good && plan.rows == 2 && plan.axis[0].paths == 2, "a number of the grids of both ends varies: %s",
+  ok(good && plan.rows == 2 && plan.axis[0].paths == 2, "numbers of the grids of both ends vary %s",
      good           ? ""
      : faults.count ? faults.fault[0].text
                     : error.text);
   if (good) {
     const struct eo_flank_grid left = eo_flank_grid_at(&design->grids, EO_DRIVE_FLANK, EO_PINION, EO_LEFT),
                                right = eo_flank_grid_at(&design->grids, EO_DRIVE_FLANK, EO_PINION, EO_RIGHT);
-    close_to(1e6 * left.delta[6], 5, 1e-9, "row 2, column 3, um");
-    close_to(1e6 * right.delta[6], 5, 1e-9, "on the other end, um");
-    close_to(1e6 * left.delta[12], 7, 1e-9, "row 4, all columns, um");
-    close_to(1e6 * left.delta[15], 7, 1e-9, "the last one too, um");
-    close_to(1e6 * right.delta[15], 0, 1e-9, "the other grid keeps its own, um");
+    close_to(1e6 * left.delta[6], 5, 1e-9, "delta at row 2, column 3, um");
+    close_to(1e6 * right.delta[6], 5, 1e-9, "delta at the same place on the other end, um");
+    close_to(1e6 * left.delta[12], 7, 1e-9, "delta at row 4 of all columns, first, um");
+    close_to(1e6 * left.delta[15], 7, 1e-9, "delta at row 4 of all columns, last, um");
+    close_to(1e6 * right.delta[15], 0, 1e-9, "delta of the other grid at row 4, um");
     ok(!plan.of_modification, "rows of a search that know nothing of these numbers are none of its rows");
     ok(left.kind == EO_GRID_DESIGNED && right.kind == EO_GRID_DESIGNED &&
            plan.design->grids.place[EO_DRIVE_FLANK][EO_PINION][EO_LEFT].kind == EO_GRID_MEASURED,
-       "what varies is designed, the base is as it was");
+       "a grid that varies is designed, and the base is as it was");
   }
   json_decref(values);
   json_decref(document);
   eo_variant_plan_done(&plan);
   free(design);
-  ok(!read(&plan, "\"vary\":[{\"key\":\"gear_pair.grid_um.1.1\",\"values\":[1]}]"), "a pair has no grid");
+  ok(!read(&plan, "\"vary\":[{\"key\":\"gear_pair.grid_um.1.1\",\"values\":[1]}]"),
+     "a key of a grid that the pair has not is refused");
   eo_variant_plan_done(&plan);
 }
 
@@ -181,12 +184,12 @@ static void test_table(void)
          &plan,
          "\"table\":\"b [inch];alignment.pinion_axial;resolution.tip_edge_contact\\n2;fixed;false\\n;floating;\\n\"") &&
          plan.rows == 2,
-     "a table with units, words, flags and an empty cell");
+     "a table with units, words, flags and an empty cell is read");
   json_t *values = eo_variant_values(&plan, 0);
   ok(eo_variant_design(plan.base, plan.axis, plan.axes, values, design, &geometry, &error) == EO_OK &&
          fabs(design->gear_pair.face_width - 0.0508) < 1e-12 && design->alignment.pinion_axial == EO_AXIAL_FIXED &&
          !design->resolution.tip_edge_contact,
-     "is a design");
+     "a row of a table makes a design");
   json_decref(values);
   values = eo_variant_values(&plan, 1);
   ok(eo_variant_design(plan.base, plan.axis, plan.axes, values, design, &geometry, &error) == EO_OK &&
@@ -202,7 +205,7 @@ static void refuses(const char *rest, const char *pointer, const char *text)
   struct eo_variant_plan plan;
   bool refused = !read(&plan, rest) && strcmp(faults.fault[0].pointer, pointer) == 0 &&
                  strstr(faults.fault[0].text, text);
-  if (!ok(refused, "refused: %s", text))
+  if (!ok(refused, "the plan is refused: %s", text))
     printf("# %s: %s\n", faults.fault[0].pointer, faults.fault[0].text);
   eo_variant_plan_done(&plan);
 }
@@ -230,22 +233,22 @@ static void test_columns(void)
   struct eo_error error;
   ok(eo_scalars_init(&scalars, eo_scalars_usual, 3, 2, &error) == EO_OK && scalars.objectives && !scalars.want &&
          scalars.count == 6 + 3 * 6,
-     "the usual columns need nothing but the objectives");
+     "the usual columns need the objectives alone");
   eo_scalars_done(&scalars);
   ok(eo_scalars_init(&scalars, "rating.*", 1, 2, &error) == EO_OK && scalars.want == EO_WANT_RATING &&
          !scalars.objectives,
      "a rating is computed when its numbers are wanted");
   eo_scalars_done(&scalars);
   ok(eo_scalars_init(&scalars, "*", 1, 1, &error) == EO_OK && scalars.want == (EO_WANT_RATING | EO_WANT_ROOT),
-     "everything is everything");
+     "all columns need rating and root stress");
   bool right_end = false;
   for (int i = 0; i < scalars.count; i++)
     right_end = right_end || strstr(scalars.scalar[i].name, ".right.");
-  ok(!right_end, "one end has no right one");
+  ok(!right_end, "a pair with one end has no column of the right one");
   eo_scalars_done(&scalars);
   ok(eo_scalars_init(&scalars, "objectives.J,objective.K", 1, 2, &error) == EO_ERROR_INPUT &&
          strstr(error.text, "objective.K"),
-     "a name that is none: %s", error.text);
+     "a column that is none is refused: %s", error.text);
 }
 
 int main(void)
