@@ -131,7 +131,7 @@ __attribute__((unused)) static void expect_all_of(const char *const *names, cons
 
 static void tell_what_was_heard(void)
 {
-  ok(heard > 0 && !misfits, "%d replies, %d not as described", heard, misfits);
+  ok(heard > 0 && !misfits, "%d replies are as described, but for %d", heard, misfits);
   listener = NULL;
   json_decref(description);
 }

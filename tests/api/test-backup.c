@@ -104,8 +104,8 @@ static void test_under_load(void)
   atomic_store(&over, true);
   if (writes)
     pthread_join(thread, NULL);
-  ok(good == backups && written > 0, "%d backups while %d designs are written", good, written);
-  ok(restored == backups && sound == backups, "%d restored, %d sound: %s", restored, sound, said);
+  ok(good == backups && written > 0, "%d backups are made while %d designs are written", good, written);
+  ok(restored == backups && sound == backups, "%d archives are restored and %d are sound: %s", restored, sound, said);
   ok(run(said, "backup %s --data %s", archive, server.folder) == 1 && strstr(said, "is there already"),
      "an archive is not overwritten");
 }
@@ -117,12 +117,12 @@ static void test_restored(void)
   snprintf(kept, sizeof kept, "%s", server.folder);
   ok(stop_server(SIGTERM) == 0, "the server stops");
   snprintf(server.folder, sizeof server.folder, "%.190s", other);
-  ok(start_server("--quiet", "--threads", "2"), "another one serves what was restored");
+  ok(start_server("--quiet", "--threads", "2"), "another server starts on what was restored");
   struct reply reply = call("GET", API "/measurements/1", NULL, NULL);
-  ok(reply.status == 200, "its recording is measured");
+  ok(reply.status == 200, "the restored recording is measured");
   free_reply(&reply);
   reply = call("GET", API "/measurements/1/file", NULL, NULL);
-  ok(reply.status == 200 && reply.size > 10000, "and its file is there: %zu bytes", reply.size);
+  ok(reply.status == 200 && reply.size > 10000, "the file of the restored recording has %zu bytes", reply.size);
   free_reply(&reply);
   json_t *named = json_pack("{s:s, s:o}", "name", "of this server", "design", coarse_document("ga", 10));
   char *text = json_dumps(named, 0);
@@ -133,19 +133,19 @@ static void test_restored(void)
   char one[300];
   snprintf(one, sizeof one, "%s.one.tar.gz", other);
   ok(run(said, "backup %s --data %s --design 1", one, kept) == 0 && strstr(said, "1 designs, 1 recordings, 0 jobs"),
-     "one design alone: %s", said);
+     "one design is backed up with its recording alone: %s", said);
   ok(run(said, "restore %s --data %s", one, server.folder) == 0 && strstr(said, "0 designs, 0 recordings") &&
          strstr(said, "2 were there"),
-     "into a folder that has it, while a server works on it: %s", said);
+     "a restore into a folder that has it all adds nothing while a server works there: %s", said);
   reply = call("DELETE", API "/measurements/1", NULL, NULL);
   free_reply(&reply);
   ok(run(said, "restore %s --data %s", one, server.folder) == 0 && strstr(said, "1 recordings"),
-     "what is missing is added: %s", said);
+     "a restore adds the recording that is missing: %s", said);
   reply = call("GET", API "/measurements/2/file", NULL, NULL);
-  ok(reply.status == 200, "under a number of its own");
+  ok(reply.status == 200, "the recording that was added has a number of its own");
   free_reply(&reply);
   unlink(one);
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server of the restored folder stops when told");
 }
 
 static void test_damaged(void)
@@ -160,9 +160,10 @@ static void test_damaged(void)
   }
   ok(run(said, "doctor --data %s", other) == 2 && strstr(said, "lost: Recording 2") && strstr(said, "1 lost"),
      "the doctor says what is lost: %.100s", said);
-  ok(start_server("--quiet", "--threads", "2"), "a server beside it");
+  ok(start_server("--quiet", "--threads", "2"), "a server starts beside a damaged recording");
   struct reply reply = call("GET", API "/measurements/2/file", NULL, NULL);
-  ok(reply.status == 500 && reply.body && strstr(reply.body, "damaged"), "does not give it out: %d", reply.status);
+  ok(reply.status == 500 && reply.body && strstr(reply.body, "damaged"),
+     "a damaged recording is not given out, but answered with %d", reply.status);
   free_reply(&reply);
   stop_server(SIGTERM);
   file = fopen(archive, "r+");
@@ -175,7 +176,7 @@ static void test_damaged(void)
   snprintf(third, sizeof third, "%s.third", other);
   ok(run(said, "restore %s --data %s", archive, third) == 1, "a damaged archive is refused: %.150s", said);
   snprintf(path, sizeof path, "%s/easeoff.db", third);
-  ok(access(path, F_OK) != 0, "before anything is touched");
+  ok(access(path, F_OK) != 0, "a damaged archive is refused before a database is made");
   rmdir(third);
 }
 
@@ -183,10 +184,10 @@ int main(void)
 {
   char kept[200];
   signal(SIGPIPE, SIG_IGN);
-  if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "a server"))
+  if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "a server starts on an empty folder"))
     return 1;
   snprintf(kept, sizeof kept, "%s", server.folder);
-  ok(add_recording(), "with a recording");
+  ok(add_recording(), "the server takes a recording");
   test_under_load();
   test_restored();
   test_damaged();

@@ -70,14 +70,17 @@ static bool header_is_right(const struct reply *reply, const struct command *c)
 static void run_command(const struct command *c)
 {
   struct reply reply = call(c->method, c->path, c->headers, c->body ? *c->body : c->text);
-  if (!ok(reply.status == c->status, "%s: %d", c->what, reply.status))
-    printf("# %s %s: %.300s\n", c->method, c->path, reply.body ? reply.body : "");
+  if (!ok(reply.status == c->status, "%s: %s %s is answered with %d, %d is right", c->what, c->method, c->path,
+          reply.status, c->status))
+    printf("# %.300s\n", reply.body ? reply.body : "");
   if (c->header)
-    ok(header_is_right(&reply, c), "%s: %s", c->what, c->header);
+    ok(header_is_right(&reply, c), "%s: %s of the reply %s%s", c->what, c->header, c->holds ? "holds " : "is not there",
+       c->holds ? c->holds : "");
   if (c->pointer)
-    ok(stands_there(&reply, c->pointer, c->value), "%s: %s", c->what, c->pointer);
+    ok(stands_there(&reply, c->pointer, c->value), "%s: %s of the reply is %s", c->what, c->pointer,
+       c->value ? c->value : "there");
   if (c->says)
-    ok(reply.body && strstr(reply.body, c->says), "%s: %s", c->what, c->says);
+    ok(reply.body && strstr(reply.body, c->says), "%s: the reply says %s", c->what, c->says);
   free_reply(&reply);
 }
 
@@ -89,9 +92,9 @@ static const struct command first[] = {
     {"safety headers", "GET", API "/health", .status = 200, .header = "Content-Security-Policy",
      .holds = "default-src 'none'"},
     {"no sniffing", "GET", API "/health", .status = 200, .header = "X-Content-Type-Options", .holds = "nosniff"},
-    {"nobody else's page", "GET", API "/health", "Origin: http://elsewhere.example\r\n", .status = 200,
+    {"the page of another site", "GET", API "/health", "Origin: http://elsewhere.example\r\n", .status = 200,
      .header = "Access-Control-Allow-Origin"},
-    {"no session needed", "GET", API "/session", .status = 200, .pointer = "required", .value = "false"},
+    {"a server without a token", "GET", API "/session", .status = 200, .pointer = "required", .value = "false"},
     {"a token that nobody asked for", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 204},
     {"a session with a wrong key", "POST", API "/session", .text = "{\"token\":\"x\",\"tokn\":1}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/tokn"},
@@ -104,15 +107,15 @@ static const struct command first[] = {
     {"no example", "GET", API "/examples/nothing", .status = 404, .pointer = "status", .value = "404"},
     {"field tables", "GET", API "/schema", .status = 200, .pointer = "design/fields/1/key", .value = "name"},
     {"description", "GET", API "/openapi.json", .status = 200, .pointer = "openapi", .value = "3.1.0"},
-    {"compressed", "GET", API "/openapi.json", "Accept-Encoding: br, gzip\r\n", .status = 200,
+    {"a client that takes gzip", "GET", API "/openapi.json", "Accept-Encoding: br, gzip\r\n", .status = 200,
      .header = "Content-Encoding", .holds = "gzip"},
-    {"not compressed when refused", "GET", API "/openapi.json", "Accept-Encoding: gzip;q=0\r\n", .status = 200,
+    {"a client that refuses gzip", "GET", API "/openapi.json", "Accept-Encoding: gzip;q=0\r\n", .status = 200,
      .header = "Content-Encoding"},
-    {"small replies are not compressed", "GET", API "/health", "Accept-Encoding: gzip\r\n", .status = 200,
+    {"a small reply to a client that takes gzip", "GET", API "/health", "Accept-Encoding: gzip\r\n", .status = 200,
      .header = "Content-Encoding"},
-    {"nothing there", "GET", API "/nothing", .status = 404, .header = "Content-Type",
+    {"a path of nothing", "GET", API "/nothing", .status = 404, .header = "Content-Type",
      .holds = "application/problem+json"},
-    {"no page", "GET", "/", .status = 404},
+    {"the page of a server without one", "GET", "/", .status = 404},
     {"a page is only read", "POST", "/", .text = "{}", .status = 405, .header = "Allow", .holds = "GET, HEAD"},
     {"wrong method", "DELETE", API "/health", .status = 405, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
     {"unknown method", "BREW", API "/health", .status = 405, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
@@ -121,32 +124,33 @@ static const struct command first[] = {
     {"query out of range", "GET", API "/designs?limit=201", .status = 400},
     {"query that is no number", "GET", API "/designs?limit=1x", .status = 400},
     {"query that is no word", "GET", API "/jobs?state=lost", .status = 400},
-    {"up and out", "GET", "/../../etc/passwd", .status = 400},
-    {"up and out, encoded", "GET", "/%2e%2e/%2e%2e/etc/passwd", .status = 400},
-    {"a number that is none", "GET", API "/designs/x", .status = 404},
-    {"a number too large", "GET", API "/designs/99999999999999999999", .status = 404},
+    {"a path that leads out", "GET", "/../../etc/passwd", .status = 400},
+    {"an encoded path that leads out", "GET", "/%2e%2e/%2e%2e/etc/passwd", .status = 400},
+    {"a design whose number is none", "GET", API "/designs/x", .status = 404},
+    {"a design whose number is too large", "GET", API "/designs/99999999999999999999", .status = 404},
     {"check", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "false"},
-    {"check: everything at once", "POST", API "/check",
+    {"a check of several faults", "POST", API "/check",
      .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44},\"nonsense\":1}", .status = 422,
      .pointer = "errors/4/pointer"},
-    {"check: the pointer", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44}}",
+    {"a check of one fault", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44}}",
      .status = 422, .pointer = "errors/0/pointer", .value = "/gear_pair/pinion_teeth"},
-    {"no JSON", "POST", API "/check", .text = "{\"a\":", .status = 400, .pointer = "type",
+    {"a body that is no JSON", "POST", API "/check", .text = "{\"a\":", .status = 400, .pointer = "type",
      .value = "/problems/not-json"},
-    {"an array", "POST", API "/check", .text = "[1]", .status = 400},
-    {"a key twice", "POST", API "/check", .text = "{\"name\":\"a\",\"name\":\"b\"}", .status = 400},
+    {"an array in place of a design", "POST", API "/check", .text = "[1]", .status = 400},
+    {"a body with a key twice", "POST", API "/check", .text = "{\"name\":\"a\",\"name\":\"b\"}", .status = 400},
     {"an empty body", "POST", API "/check", .text = "", .status = 400},
-    {"another type", "POST", API "/check", "Content-Type: text/xml\r\n", .text = "<a/>", .status = 415},
-    {"from another site", "POST", API "/check", "Origin: http://elsewhere.example\r\n", .body = &coarse, .status = 403,
-     .pointer = "type", .value = "/problems/cross-site"},
-    {"from another site, as browsers say it", "POST", API "/check", "Sec-Fetch-Site: cross-site\r\n", .body = &coarse,
-     .status = 403},
-    {"from nowhere", "POST", API "/check", "Origin: null\r\n", .body = &coarse, .status = 403},
-    {"another name", "GET", API "/health", "Host: rebound.example:80\r\n", .status = 421, .pointer = "type",
+    {"a body of another type", "POST", API "/check", "Content-Type: text/xml\r\n", .text = "<a/>", .status = 415},
+    {"a request from another site", "POST", API "/check", "Origin: http://elsewhere.example\r\n", .body = &coarse,
+     .status = 403, .pointer = "type", .value = "/problems/cross-site"},
+    {"a request from another site, as browsers say it", "POST", API "/check", "Sec-Fetch-Site: cross-site\r\n",
+     .body = &coarse, .status = 403},
+    {"a request whose origin is null", "POST", API "/check", "Origin: null\r\n", .body = &coarse, .status = 403},
+    {"a host of another name", "GET", API "/health", "Host: rebound.example:80\r\n", .status = 421, .pointer = "type",
      .value = "/problems/wrong-host"},
-    {"its own name", "GET", API "/health", "Host: localhost:1\r\n", .status = 200},
-    {"version 6 by number", "GET", API "/health", "Host: [::1]\r\n", .status = 200},
-    {"a name that looks like it", "GET", API "/health", "Host: 127.0.0.1.elsewhere.example\r\n", .status = 421},
+    {"the host's own name", "GET", API "/health", "Host: localhost:1\r\n", .status = 200},
+    {"a host by its number of version 6", "GET", API "/health", "Host: [::1]\r\n", .status = 200},
+    {"a host whose name begins like ours", "GET", API "/health", "Host: 127.0.0.1.elsewhere.example\r\n",
+     .status = 421},
 };
 
 static const struct command designs[] = {
@@ -155,8 +159,8 @@ static const struct command designs[] = {
      .holds = API "/designs/1", .pointer = "name", .value = "paper pair"},
     {"add one with a name", "POST", API "/designs", .body = &named, .status = 201, .header = "ETag", .holds = "\"2.1\"",
      .pointer = "name", .value = "mine"},
-    {"a third", "POST", API "/designs", .body = &coarse, .status = 201, .pointer = "id", .value = "3"},
-    {"a wrong one", "POST", API "/designs", .text = "{\"name\":\"x\",\"design\":{}}", .status = 422,
+    {"a third design", "POST", API "/designs", .body = &coarse, .status = 201, .pointer = "id", .value = "3"},
+    {"a design without teeth", "POST", API "/designs", .text = "{\"name\":\"x\",\"design\":{}}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/design/gear_pair/pinion_teeth"},
     {"a name too long for its place", "POST", API "/designs",
      .text = "{\"name\":7,\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,"
@@ -167,34 +171,38 @@ static const struct command designs[] = {
      .value = "/nmae"},
     {"a name of no letters", "POST", API "/designs", .text = "{\"name\":\"\",\"design\":{}}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/name"},
-    {"newest first", "GET", API "/designs?limit=2", .status = 200, .pointer = "items/0/id", .value = "3"},
-    {"more to come", "GET", API "/designs?limit=2", .status = 200, .pointer = "next", .value = "2"},
-    {"the next page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "items/0/id", .value = "1"},
-    {"the last page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "next", .value = "null"},
-    {"get it", "GET", API "/designs/1", .status = 200, .header = "ETag", .holds = "\"1.1\""},
-    {"known already", "GET", API "/designs/1", "If-None-Match: \"0.0\", W/\"1.1\"\r\n", .status = 304, .header = "ETag",
-     .holds = "\"1.1\""},
-    {"known otherwise", "GET", API "/designs/1", "If-None-Match: \"1.0\"\r\n", .status = 200},
-    {"replace blindly", "PUT", API "/designs/1", .body = &coarse, .status = 428},
-    {"replace", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &named, .status = 200, .header = "ETag",
-     .holds = "\"1.2\"", .pointer = "name", .value = "mine"},
-    {"replace what has changed", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &coarse, .status = 412},
-    {"a weak tag does not match", "PUT", API "/designs/1", "If-Match: W/\"1.2\"\r\n", .body = &coarse, .status = 412},
-    {"replace whatever it is", "PUT", API "/designs/1", "If-Match: *\r\n", .body = &coarse, .status = 200,
+    {"the newest design", "GET", API "/designs?limit=2", .status = 200, .pointer = "items/0/id", .value = "3"},
+    {"the first page of designs", "GET", API "/designs?limit=2", .status = 200, .pointer = "next", .value = "2"},
+    {"the next page of designs", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "items/0/id",
+     .value = "1"},
+    {"the last page of designs", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "next",
+     .value = "null"},
+    {"a design", "GET", API "/designs/1", .status = 200, .header = "ETag", .holds = "\"1.1\""},
+    {"a design that the client knows", "GET", API "/designs/1", "If-None-Match: \"0.0\", W/\"1.1\"\r\n", .status = 304,
+     .header = "ETag", .holds = "\"1.1\""},
+    {"a design that has changed since", "GET", API "/designs/1", "If-None-Match: \"1.0\"\r\n", .status = 200},
+    {"a replacement without a tag", "PUT", API "/designs/1", .body = &coarse, .status = 428},
+    {"a replacement of the known version", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &named,
+     .status = 200, .header = "ETag", .holds = "\"1.2\"", .pointer = "name", .value = "mine"},
+    {"a replacement of an old version", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &coarse,
+     .status = 412},
+    {"a replacement by a weak tag", "PUT", API "/designs/1", "If-Match: W/\"1.2\"\r\n", .body = &coarse, .status = 412},
+    {"a replacement of any version", "PUT", API "/designs/1", "If-Match: *\r\n", .body = &coarse, .status = 200,
      .header = "ETag", .holds = "\"1.3\""},
-    {"replace nothing", "PUT", API "/designs/9", "If-Match: *\r\n", .body = &coarse, .status = 404},
-    {"remove an old version", "DELETE", API "/designs/1", "If-Match: \"1.1\"\r\n", .status = 412},
-    {"remove", "DELETE", API "/designs/1", .status = 204},
-    {"gone", "GET", API "/designs/1", .status = 404},
-    {"gone for good", "DELETE", API "/designs/1", .status = 404},
+    {"a replacement of no design", "PUT", API "/designs/9", "If-Match: *\r\n", .body = &coarse, .status = 404},
+    {"the removal of an old version", "DELETE", API "/designs/1", "If-Match: \"1.1\"\r\n", .status = 412},
+    {"the removal of a design", "DELETE", API "/designs/1", .status = 204},
+    {"a removed design", "GET", API "/designs/1", .status = 404},
+    {"the removal of a removed design", "DELETE", API "/designs/1", .status = 404},
 };
 
 static const struct command analyses[] = {
-    {"not prepared", "POST", API "/analyze", .body = &coarse, .status = 202, .header = "Retry-After", .holds = "1",
-     .pointer = "job/kind", .value = "prepare"},
-    {"wait for it", "POST", API "/analyze", "Prefer: wait=60\r\n", .body = &coarse, .status = 200,
-     .pointer = "load_cases/0/outcome", .value = "converged"},
-    {"prepared now", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "true"},
+    {"an analysis of an unprepared pair", "POST", API "/analyze", .body = &coarse, .status = 202,
+     .header = "Retry-After", .holds = "1", .pointer = "job/kind", .value = "prepare"},
+    {"an analysis that waits for its pair", "POST", API "/analyze", "Prefer: wait=60\r\n", .body = &coarse,
+     .status = 200, .pointer = "load_cases/0/outcome", .value = "converged"},
+    {"a check of a prepared pair", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared",
+     .value = "true"},
     {"analyze", "POST", API "/analyze?maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/2/torque_Nm",
      .value = "1035"},
     {"a slider's step", "POST", API "/analyze?rating=0&curves_of=1&parts=lte,pattern,maps", .body = &coarse,
@@ -209,12 +217,14 @@ static const struct command analyses[] = {
      .holds = "text/csv"},
     {"analyze as CSV in inches", "POST", API "/analyze.csv?units=inch", .body = &coarse, .status = 200,
      .says = ",peak_to_peak_thou,"},
-    {"JSON is liked better", "POST", API "/analyze?maps=0", "Accept: text/csv;q=0.5, application/json\r\n",
-     .body = &coarse, .status = 200, .header = "Content-Type", .holds = "application/json"},
+    {"an analysis for who likes JSON better", "POST", API "/analyze?maps=0",
+     "Accept: text/csv;q=0.5, application/json\r\n", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "application/json"},
     {"no other suffix", "POST", API "/analyze.xml", .body = &coarse, .status = 404},
     {"no CSV of a check", "POST", API "/check.csv", .body = &coarse, .status = 404},
-    {"a wrong lane", "POST", API "/analyze", "Easeoff-Lane: a b\r\n", .body = &coarse, .status = 400},
-    {"a lane", "POST", API "/analyze?maps=0", "Easeoff-Lane: tab-1\r\n", .body = &coarse, .status = 200},
+    {"an analysis in a lane whose name is wrong", "POST", API "/analyze", "Easeoff-Lane: a b\r\n", .body = &coarse,
+     .status = 400},
+    {"an analysis in a lane", "POST", API "/analyze?maps=0", "Easeoff-Lane: tab-1\r\n", .body = &coarse, .status = 200},
     {"sweep", "POST", API "/sweep", .body = &sweep, .status = 200, .pointer = "speed_rpm", .value = "[1000,1500,2000]"},
     {"sweep as CSV", "POST", API "/sweep.csv", .body = &sweep, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
@@ -266,8 +276,8 @@ static const struct command analyses[] = {
      .holds = "text/html", .says = "<code>/geometry/normal_module_in</code>"},
     {"a report in ells", "POST", API "/report?units=ell", .body = &coarse, .status = 400},
     {"a report of nothing", "POST", API "/report", .text = "{}", .status = 422},
-    {"no rating", "POST", API "/analyze?maps=0&rating=0", .body = &coarse, .status = 200, .pointer = "rating",
-     .value = "null"},
+    {"an analysis without rating", "POST", API "/analyze?maps=0&rating=0", .body = &coarse, .status = 200,
+     .pointer = "rating", .value = "null"},
     {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "application/json"},
     {"a REXS model as a file", "POST", API "/export/rexs", .body = &coarse, .status = 200, .header = "Content-Type",
@@ -296,17 +306,17 @@ static const struct command orders[] = {
     {"an order with nonsense", "POST", API "/jobs",
      .text = "{\"kind\":\"cook\",\"priority\":11,\"fresh\":1,\"wish\":2,\"design\":{}}", .status = 422,
      .pointer = "errors/3/pointer", .value = "/wish"},
-    {"a wrong key", "POST", API "/jobs", "Idempotency-Key: a b\r\n", .body = &order, .status = 400},
+    {"an order under a wrong key", "POST", API "/jobs", "Idempotency-Key: a b\r\n", .body = &order, .status = 400},
     {"an order", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .header = "Location",
      .holds = API "/jobs/2", .pointer = "kind", .value = "optimize"},
-    {"the same again", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .pointer = "id",
-     .value = "2"},
-    {"another under its key", "POST", API "/jobs", "Idempotency-Key: one\r\n",
+    {"the same order again", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202,
+     .pointer = "id", .value = "2"},
+    {"another order under its key", "POST", API "/jobs", "Idempotency-Key: one\r\n",
      .text = "{\"kind\":\"prepare\",\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,\"normal_module_"
              "mm\":3,\"helix_angle_deg\":20,"
              "\"face_width_mm\":30},\"load_cases\":[{\"torque_Nm\":9,\"speed_rpm\":9}]}}",
      .status = 422, .pointer = "type", .value = "/problems/key-used"},
-    {"the job", "GET", API "/jobs/2", .status = 200, .pointer = "design/gear_pair/pinion_teeth", .value = "17"},
+    {"a search", "GET", API "/jobs/2", .status = 200, .pointer = "design/gear_pair/pinion_teeth", .value = "17"},
     {"no job", "GET", API "/jobs/99", .status = 404},
     {"no job to stop", "POST", API "/jobs/99/cancel", .status = 404},
     {"no stream of no job", "GET", API "/jobs/99/events", .status = 404},
@@ -315,40 +325,45 @@ static const struct command orders[] = {
 };
 
 static const struct command after[] = {
-    {"the result", "GET", API "/jobs/2/result", .status = 200, .pointer = "true_evaluations", .value = "60"},
-    {"its rows", "GET", API "/jobs/2/history?limit=7", .status = 200, .pointer = "items/6/ordinal", .value = "6"},
-    {"the next rows", "GET", API "/jobs/2/history?limit=7&cursor=6", .status = 200, .pointer = "items/0/ordinal",
-     .value = "7"},
-    {"the last rows", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next",
+    {"the result of a search", "GET", API "/jobs/2/result", .status = 200, .pointer = "true_evaluations",
+     .value = "60"},
+    {"the rows of a search", "GET", API "/jobs/2/history?limit=7", .status = 200, .pointer = "items/6/ordinal",
+     .value = "6"},
+    {"the next rows of a search", "GET", API "/jobs/2/history?limit=7&cursor=6", .status = 200,
+     .pointer = "items/0/ordinal", .value = "7"},
+    {"the last rows of a search", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next",
      .value = "null"},
-    {"its rows as CSV", "GET", API "/jobs/2/history.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
-    {"its rows in inches", "GET", API "/jobs/2/history.csv?units=inch", .status = 200, .says = "_thou"},
+    {"the rows of a search as CSV", "GET", API "/jobs/2/history.csv", .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
+    {"the rows of a search in inches", "GET", API "/jobs/2/history.csv?units=inch", .status = 200, .says = "_thou"},
     {"no rows in inches but as CSV", "GET", API "/jobs/2/history?units=inch", .status = 400},
     {"convergence", "GET", API "/jobs/2/generations", .status = 200, .pointer = "generation/0", .value = "0"},
     {"the path of a search", "GET", API "/jobs/2/path", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"no path of no job", "GET", API "/jobs/99/path", .status = 404},
     {"the rows of a problem", "GET", API "/history/1/rows", .status = 200, .pointer = "rows/0/outcome",
      .value = "converged"},
-    {"as CSV", "GET", API "/history/1/rows.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
-    {"in inches", "GET", API "/history/1/rows.csv?units=inch", .status = 200, .says = "_thou"},
+    {"the rows of a problem as CSV", "GET", API "/history/1/rows.csv", .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
+    {"the rows of a problem in inches", "GET", API "/history/1/rows.csv?units=inch", .status = 200, .says = "_thou"},
     {"no such problem", "GET", API "/history/99/rows", .status = 404},
     {"what a problem means", "GET", "/problems/full", .status = 200, .header = "Content-Type", .holds = "text/html"},
     {"no such problem page", "GET", "/problems/nothing", .status = 404},
     {"all problems", "GET", API "/history", .status = 200, .pointer = "problems/0/name", .value = "paper pair"},
     {"done jobs", "GET", API "/jobs?state=done&kind=optimize", .status = 200, .pointer = "items/0/id", .value = "2"},
-    {"one at a time", "GET", API "/jobs?limit=1", .status = 200, .pointer = "next", .value = "2"},
-    {"too late to stop", "POST", API "/jobs/2/cancel", .status = 409, .pointer = "type", .value = "/problems/state"},
-    {"nothing to repeat", "POST", API "/jobs/2/retry", .status = 409},
-    {"once more", "POST", API "/jobs/2/clone", .text = "{\"priority\":-3}", .status = 202, .pointer = "priority",
+    {"the first of the jobs", "GET", API "/jobs?limit=1", .status = 200, .pointer = "next", .value = "2"},
+    {"the stop of a job that has ended", "POST", API "/jobs/2/cancel", .status = 409, .pointer = "type",
+     .value = "/problems/state"},
+    {"the repetition of a job that has ended", "POST", API "/jobs/2/retry", .status = 409},
+    {"a copy of a job", "POST", API "/jobs/2/clone", .text = "{\"priority\":-3}", .status = 202, .pointer = "priority",
      .value = "-3"},
-    {"once more, as it is", "POST", API "/jobs/2/clone", .status = 202},
-    {"once more, with half a priority", "POST", API "/jobs/2/clone", .text = "{\"priority\":0.5}", .status = 422,
+    {"a copy of a job as it is", "POST", API "/jobs/2/clone", .status = 202},
+    {"a copy with half a priority", "POST", API "/jobs/2/clone", .text = "{\"priority\":0.5}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/priority"},
-    {"once more, with a design", "POST", API "/jobs/2/clone", .text = "{\"design\":{}}", .status = 422,
+    {"a copy with a design", "POST", API "/jobs/2/clone", .text = "{\"design\":{}}", .status = 422,
      .pointer = "errors/0/pointer", .value = "/design"},
-    {"once more, wrongly", "POST", API "/jobs/2/clone", .text = "{\"priority\":\"high\"}", .status = 422},
-    {"remove it", "DELETE", API "/jobs/2", .status = 204},
-    {"it is gone", "GET", API "/jobs/2", .status = 404},
+    {"a copy with a priority in words", "POST", API "/jobs/2/clone", .text = "{\"priority\":\"high\"}", .status = 422},
+    {"the removal of a job", "DELETE", API "/jobs/2", .status = 204},
+    {"a removed job", "GET", API "/jobs/2", .status = 404},
 };
 
 static const struct command studies[] = {
@@ -362,21 +377,24 @@ static const struct command studies[] = {
      .header = "Location", .holds = API "/jobs/5", .pointer = "kind", .value = "study"},
     {"the same study again", "POST", API "/studies", "Idempotency-Key: study\r\n", .body = &study, .status = 202,
      .pointer = "id", .value = "5"},
-    {"no study", "GET", API "/studies/99/table", .status = 404},
-    {"no study either", "GET", API "/studies/1/table", .status = 404},
+    {"the table of no study", "GET", API "/studies/99/table", .status = 404},
+    {"the table of a preparation", "GET", API "/studies/1/table", .status = 404},
     {"what a study can keep", "GET", API "/study-columns?cases=2", .status = 200, .pointer = "items/0/name",
      .value = "geometry.pinion_teeth"},
 };
 static const struct command studied[] = {
-    {"a table", "GET", API "/studies/5/table", .status = 200, .pointer = "items/5/values/1", .value = "0.5"},
-    {"its best rows", "GET", API "/studies/5/table?sort=objectives.J&limit=2&filter=objectives.J%3C2,outcome=converged",
-     .status = 200, .pointer = "next", .value = "2"},
-    {"its worst row", "GET", API "/studies/5/table?sort=objectives.J&order=descending&limit=1", .status = 200,
-     .pointer = "items/0/outcome"},
-    {"a filter that is none", "GET", API "/studies/5/table?filter=J", .status = 422, .pointer = "errors/0/pointer",
-     .value = "/filter"},
-    {"a table in inches", "GET", API "/studies/5/table.csv?units=inch", .status = 200, .says = "_thou"},
-    {"a table as CSV", "GET", API "/studies/5/table.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"the table of a study", "GET", API "/studies/5/table", .status = 200, .pointer = "items/5/values/1",
+     .value = "0.5"},
+    {"the best rows of a study", "GET",
+     API "/studies/5/table?sort=objectives.J&limit=2&filter=objectives.J%3C2,outcome=converged", .status = 200,
+     .pointer = "next", .value = "2"},
+    {"the worst row of a study", "GET", API "/studies/5/table?sort=objectives.J&order=descending&limit=1",
+     .status = 200, .pointer = "items/0/outcome"},
+    {"a table under a filter that is none", "GET", API "/studies/5/table?filter=J", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/filter"},
+    {"the table of a study in inches", "GET", API "/studies/5/table.csv?units=inch", .status = 200, .says = "_thou"},
+    {"the table of a study as CSV", "GET", API "/studies/5/table.csv", .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
     {"a variant's design", "GET", API "/studies/5/variants/5/design", .status = 200,
      .pointer = "modification/pinion/right/tip_relief_um", .value = "20"},
     {"no such variant", "GET", API "/studies/5/variants/6/design", .status = 422},
@@ -401,8 +419,8 @@ static const struct command tolerances[] = {
     {"no pairs of a study", "GET", API "/jobs/5/pairs", .status = 404},
 };
 static const struct command toleranced[] = {
-    {"what they come to", "GET", API "/jobs/6/result", .status = 200, .pointer = "pairs", .value = "6"},
-    {"the pairs", "GET", API "/jobs/6/pairs", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"the result of many pairs", "GET", API "/jobs/6/result", .status = 200, .pointer = "pairs", .value = "6"},
+    {"the pairs of a job", "GET", API "/jobs/6/pairs", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"the pairs in inches", "GET", API "/jobs/6/pairs?units=inch", .status = 200, .says = "peak_to_peak_thou"},
     {"pairs that were known", "GET", API "/jobs/7", .status = 200, .pointer = "progress/reused", .value = "6"},
     {"nothing to prune", "POST", API "/history/prune", .text = "{}", .status = 200, .pointer = "rows", .value = "0"},
@@ -411,7 +429,7 @@ static const struct command toleranced[] = {
     {"a tolerance analysis goes", "DELETE", API "/jobs/7", .status = 204},
     {"pairs that another job has stay", "POST", API "/history/prune", .text = "{\"unused\":true,\"outdated\":true}",
      .status = 200, .pointer = "rows", .value = "6"},
-    {"the others are there", "GET", API "/jobs/6/pairs", .status = 200},
+    {"the pairs of the other job", "GET", API "/jobs/6/pairs", .status = 200},
     {"tolerance analyses among the jobs", "GET", API "/jobs?kind=tolerance", .status = 200, .pointer = "items/0/state",
      .value = "done"},
 };
@@ -433,19 +451,22 @@ static const struct command launched[] = {
     {"no files of an analysis of pairs", "GET", API "/jobs/10/files", .status = 404},
 };
 static const struct command after_launch[] = {
-    {"its table", "GET", API "/studies/8/table", .status = 200, .pointer = "items/5/outcome", .value = "converged"},
-    {"its progress", "GET", API "/jobs/8", .status = 200, .pointer = "progress/true_evaluations", .value = "6"},
-    {"the result of its search", "GET", API "/jobs/9/result", .status = 200, .pointer = "true_evaluations",
+    {"the table of a launched study", "GET", API "/studies/8/table", .status = 200, .pointer = "items/5/outcome",
+     .value = "converged"},
+    {"the progress of a launched study", "GET", API "/jobs/8", .status = 200, .pointer = "progress/true_evaluations",
+     .value = "6"},
+    {"the result of a launched search", "GET", API "/jobs/9/result", .status = 200, .pointer = "true_evaluations",
      .value = "60"},
-    {"what its pairs come to", "GET", API "/jobs/10/result", .status = 200, .pointer = "pairs", .value = "12"},
-    {"the paper once more", "GET", API "/jobs/11/result", .status = 200, .pointer = "optimizations/5/case",
+    {"the result of launched pairs", "GET", API "/jobs/10/result", .status = 200, .pointer = "pairs", .value = "12"},
+    {"the result of a reproduction", "GET", API "/jobs/11/result", .status = 200, .pointer = "optimizations/5/case",
      .value = "B"},
-    {"its files", "GET", API "/jobs/11/files", .status = 200, .pointer = "items/0", .value = "comparisons.csv"},
-    {"its page", "GET", API "/jobs/11/files/reproduction.html", .status = 200, .header = "Content-Type",
-     .holds = "text/html"},
-    {"a table of it", "GET", API "/jobs/11/files/comparisons.csv", .status = 200, .header = "Content-Type",
+    {"the files of a reproduction", "GET", API "/jobs/11/files", .status = 200, .pointer = "items/0",
+     .value = "comparisons.csv"},
+    {"the page of a reproduction", "GET", API "/jobs/11/files/reproduction.html", .status = 200,
+     .header = "Content-Type", .holds = "text/html"},
+    {"a table of a reproduction", "GET", API "/jobs/11/files/comparisons.csv", .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
-    {"no other file", "GET", API "/jobs/11/files/easeoff.db", .status = 404},
+    {"a file that is none of a reproduction", "GET", API "/jobs/11/files/easeoff.db", .status = 404},
 };
 /* Seven searches of the reproduction are jobs too. */
 static const struct command not_launched[] = {
@@ -453,7 +474,7 @@ static const struct command not_launched[] = {
      .holds = API "/jobs/19"},
 };
 static const struct command after_no_launch[] = {
-    {"why it failed", "GET", API "/jobs/19", .status = 200, .pointer = "error/detail",
+    {"a job whose launcher did nothing", "GET", API "/jobs/19", .status = 200, .pointer = "error/detail",
      .value = "The launcher ended without a result (status 1); the server's log has what it said."},
 };
 
@@ -667,7 +688,7 @@ static void check_token(void)
   snprintf(cookie, sizeof cookie, "Cookie: a=b; %.*s\r\n", set ? (int)strcspn(set, ";") : 0, set ? set : "");
   free_reply(&reply);
   reply = call("GET", API "/designs", cookie, NULL);
-  ok(reply.status == 200, "the cookie opens: %d", reply.status);
+  ok(reply.status == 200, "a session's cookie opens what the token does, answer %d", reply.status);
   free_reply(&reply);
 }
 
@@ -722,7 +743,7 @@ static void check_pages(void)
       {"no link out", "GET", "/passwd.txt", .status = 404},
       {"no way out", "GET", "/figures/..%2f..%2f..%2fetc/passwd", .status = 400},
       {"what a page allows", "OPTIONS", "/", .status = 204, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
-      {"nothing there", "GET", "/nothing.html", .status = 404, .header = "Content-Type",
+      {"a path of nothing", "GET", "/nothing.html", .status = 404, .header = "Content-Type",
        .holds = "application/problem+json"},
   };
   RUN(pages);
@@ -731,7 +752,7 @@ static void check_pages(void)
   snprintf(known, sizeof known, "If-None-Match: %s\r\n", header_of(&reply, "ETag"));
   free_reply(&reply);
   reply = call("GET", "/", known, NULL);
-  ok(reply.status == 304, "a page that is known: %d", reply.status);
+  ok(reply.status == 304, "a page that the browser knows is answered with %d", reply.status);
   free_reply(&reply);
 }
 
@@ -739,7 +760,7 @@ static void check_refusals(void)
 {
   ok(!start_server("--listen", "0.0.0.0:0"), "an address for others needs a token");
   waitpid(server.pid, NULL, 0);
-  ok(!start_server("--listen", "elsewhere"), "an address that is none");
+  ok(!start_server("--listen", "elsewhere"), "an address that is none is refused");
   waitpid(server.pid, NULL, 0);
 }
 
@@ -808,50 +829,51 @@ int main(void)
   json_decref(document);
   if (!make_data_folder() || !ok(start_server("--threads", "2"), "the server starts"))
     return 1;
-  ok(listen_to_replies(), "it describes itself");
+  ok(listen_to_replies(), "the server describes itself");
   check_description();
   RUN(first);
   RUN(designs);
   RUN(analyses);
   RUN(orders);
-  ok(wait_for_job(2, "done", 60), "the job ends");
+  ok(wait_for_job(2, "done", 60), "the search ends");
   RUN(after);
   RUN(studies);
   ok(wait_for_job(5, "done", 60), "the study ends");
   RUN(studied);
   RUN(tolerances);
-  ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "the pairs are computed");
-  ok(wait_for_job(3, "done", 60) && wait_for_job(4, "done", 60), "and nothing else runs");
+  ok(wait_for_job(6, "done", 60) && wait_for_job(7, "done", 60), "both tolerance analyses end");
+  ok(wait_for_job(3, "done", 60) && wait_for_job(4, "done", 60), "both copies of the search end");
   RUN(toleranced);
   check_export();
-  ok(stop_server(SIGTERM) == 0, "it stops when told");
-  ok(start_server("--quiet", "--launcher", "env"), "a server with a launcher");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
+  ok(start_server("--quiet", "--launcher", "env"), "a server with a launcher starts");
   RUN(launched);
-  ok(wait_for_job(8, "done", 60) && wait_for_job(9, "done", 60) && wait_for_job(10, "done", 60), "its jobs end");
-  ok(wait_for_job(11, "done", 120), "the paper once more ends");
+  ok(wait_for_job(8, "done", 60) && wait_for_job(9, "done", 60) && wait_for_job(10, "done", 60),
+     "the jobs of the launcher end");
+  ok(wait_for_job(11, "done", 120), "the reproduction ends");
   RUN(after_launch);
-  ok(stop_server(SIGTERM) == 0, "it stops");
-  ok(start_server("--quiet", "--launcher", "false"), "a server with a launcher that does nothing");
+  ok(stop_server(SIGTERM) == 0, "the server with a launcher stops when told");
+  ok(start_server("--quiet", "--launcher", "false"), "a server with a launcher that does nothing starts");
   RUN(not_launched);
-  ok(wait_for_job(19, "failed", 60), "its job fails");
+  ok(wait_for_job(19, "failed", 60), "the job fails whose launcher does nothing");
   RUN(after_no_launch);
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server with a launcher that does nothing stops when told");
   setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
-  ok(start_server("--quiet"), "a server with a token");
+  ok(start_server("--quiet"), "a server with a token starts");
   check_token();
-  ok(stop_server(SIGINT) == 0, "it stops on Ctrl-C");
+  ok(stop_server(SIGINT) == 0, "a server with a token stops on Ctrl-C");
   unsetenv("EASEOFF_TOKEN");
   remove_data_folder();
-  ok(make_data_folder() && start_server("--quiet"), "a server with nothing in it");
+  ok(make_data_folder() && start_server("--quiet"), "a server with nothing in it starts");
   json_decref(call_json("POST", API "/designs", NULL, coarse, NULL));
   json_decref(call_json("POST", API "/jobs", NULL, order, NULL));
   check_examples();
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "a server with nothing in it stops when told");
   char folder[300];
   make_pages(folder);
-  ok(start_server("--quiet", "--web", folder), "a server with a page");
+  ok(start_server("--quiet", "--web", folder), "a server with a page starts");
   check_pages();
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "a server with a page stops when told");
   check_refusals();
   remove_data_folder();
   tell_what_was_heard();

@@ -26,7 +26,7 @@ static void expect_answer(const char *what, const char *path, json_t *body)
 {
   int status;
   json_t *answer = post(path, body, &status);
-  ok(status == 200, "%s: %d", what, status);
+  ok(status == 200, "%s is answered with %d", what, status);
   json_decref(answer);
 }
 
@@ -50,24 +50,24 @@ static void test_analyses(void)
              {"analysis with the least", API "/analyze?root_stress=0&maps=0", plain},
              {"analysis with one part", API "/analyze?parts=lte&curves_of=1", plain},
              {"analysis with no part", API "/analyze?parts=", plain},
-             {"one end", API "/analyze?histories=1&band=1", single},
-             {"halves of unequal width", API "/analyze", uneven},
-             {"halves of unequal helix", API "/analyze", unlike},
-             {"a pinion that is held", API "/analyze", held},
-             {"elastic shafts", API "/analyze", shafts},
-             {"coast flanks with twist", API "/analyze", coast},
-             {"a noisy pair", API "/analyze?histories=1", fast}};
+             {"analysis of one end", API "/analyze?histories=1&band=1", single},
+             {"analysis of halves of unequal width", API "/analyze", uneven},
+             {"analysis of halves of unequal helix", API "/analyze", unlike},
+             {"analysis of a pinion that is held", API "/analyze", held},
+             {"analysis on elastic shafts", API "/analyze", shafts},
+             {"analysis of coast flanks with twist", API "/analyze", coast},
+             {"analysis of a noisy pair", API "/analyze?histories=1", fast}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, row[i].path, design_with("ga", 10, row[i].patch));
   json_t *design = design_with("ga", 10, plain);
   json_object_del(design, "modification");
-  expect_answer("an unmodified pair", API "/analyze", design);
+  expect_answer("analysis of an unmodified pair", API "/analyze", design);
   design = design_with("ga", 10, plain);
   json_object_set_new(
       design, "pitch",
       json_loads("{\"pinion\": {\"tolerance_class\": 5}, \"gear\": {\"axial_wobble_um\": 2}}", 0, NULL));
   json_object_set_new(json_array_get(json_object_get(design, "load_cases"), 0), "direction", json_string("astern"));
-  expect_answer("single teeth on both flanks", API "/analyze", design);
+  expect_answer("analysis of single teeth on both flanks", API "/analyze", design);
 }
 
 /* What the page asks while a slider moves: the string of its source that names an overview. Owned by the caller. */
@@ -134,13 +134,13 @@ static void test_stroke(void)
      reply.size, MOST, path);
   json_t *answer = json_loadb(reply.body ? reply.body : "", reply.size, 0, NULL);
   ok(json_is_object(json_object_get(answer, "design")) && json_is_object(json_object_get(answer, "modification")),
-     "it has the resolved design and the flanks");
+     "the answer to a stroke has the resolved design and the flanks");
   for (int k = 0; k < 3; k++) {
     const json_t *row = json_array_get(json_object_get(answer, "load_cases"), (size_t)k);
     for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
-      ok(json_is_array(at_path(row, shown[i])) == (k == 1), "load case %d: %s", k, shown[i]);
+      ok(json_is_array(at_path(row, shown[i])) == (k == 1), "load case %d has %s if it is the one shown", k, shown[i]);
     for (size_t i = 0; i < sizeof compared / sizeof *compared; i++)
-      ok(json_is_array(at_path(row, compared[i])), "load case %d: %s", k, compared[i]);
+      ok(json_is_array(at_path(row, compared[i])), "load case %d has %s, which is compared", k, compared[i]);
   }
   json_decref(answer);
   json_decref(design);
@@ -153,13 +153,13 @@ static void test_sweeps(void)
 {
   static const struct {
     const char *what, *patch, *torque, *speed;
-  } row[] = {
-      {"a sweep of speeds", plain, "null", "{\"from\": 500, \"to\": 8000, \"points\": 16}"},
-      {"a sweep of torques", plain, "{\"from\": 10, \"to\": 1000, \"points\": 3}", "null"},
-      {"a map", plain, "{\"from\": 400, \"to\": 1000, \"points\": 2}", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
-      {"a sweep of one end", single, "null", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
-      {"a sweep through lost contact", fast, "{\"from\": 60, \"to\": 60}",
-       "{\"from\": 1000, \"to\": 9000, \"points\": 33}"}};
+  } row[] = {{"a sweep of speeds", plain, "null", "{\"from\": 500, \"to\": 8000, \"points\": 16}"},
+             {"a sweep of torques", plain, "{\"from\": 10, \"to\": 1000, \"points\": 3}", "null"},
+             {"a sweep of torques and speeds", plain, "{\"from\": 400, \"to\": 1000, \"points\": 2}",
+              "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
+             {"a sweep of one end", single, "null", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
+             {"a sweep through lost contact", fast, "{\"from\": 60, \"to\": 60}",
+              "{\"from\": 1000, \"to\": 9000, \"points\": 33}"}};
   static const char vary[] = "{\"key\": \"alignment.coupling_thrust_N\", \"from\": -500, \"to\": 500, \"points\": 3}";
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, API "/sweep",
@@ -177,7 +177,7 @@ static void look_at(int id)
   for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
     snprintf(path, sizeof path, API "/jobs/%d%s", id, what[i]);
     struct reply reply = call("GET", path, NULL, NULL);
-    ok(reply.status == 200, "job %d%s: %d", id, what[i], reply.status);
+    ok(reply.status == 200, "job %d%s is answered with %d", id, what[i], reply.status);
     free_reply(&reply);
   }
 }
@@ -188,7 +188,8 @@ static void look_at_front(int id, bool there)
   char path[100];
   snprintf(path, sizeof path, API "/jobs/%d/front", id);
   struct reply csv = call("GET", path, NULL, NULL);
-  ok(csv.status == (there ? 200 : 404), "job %d/front: %d", id, csv.status);
+  ok(csv.status == (there ? 200 : 404), "the front of job %d is there for two objectives alone, answer %d", id,
+     csv.status);
   snprintf(path, sizeof path, API "/jobs/%d/result", id);
   struct reply result = call("GET", path, NULL, NULL);
   json_t *document = json_loadb(result.body ? result.body : "", result.size, 0, NULL);
@@ -199,7 +200,7 @@ static void look_at_front(int id, bool there)
     lines += csv.body[i] == '\n';
   if (there)
     ok(lines == 1 + json_array_size(json_object_get(document, "front")) && first && strstr(csv.body, first),
-       "its heading has \"%s\", %zu points follow", first ? first : "", lines - 1);
+       "the heading of the front has \"%s\" and %zu points follow", first ? first : "", lines - 1);
   json_decref(document);
   free_reply(&result);
   free_reply(&csv);
@@ -212,7 +213,7 @@ static void test_job(const char *algorithm, int budget, const char *patch)
                      json_pack("{s:s, s:o}", "kind", "optimize", "design", design_with(algorithm, budget, patch)),
                      &status);
   int id = (int)json_integer_value(json_object_get(job, "id"));
-  ok(status == 202 && wait_for_job(id, "done", 60), "%s: job %d", algorithm, id);
+  ok(status == 202 && wait_for_job(id, "done", 60), "a search with %s ends, job %d", algorithm, id);
   json_decref(job);
   look_at(id);
   look_at_front(id, strcmp(algorithm, "nsga2") == 0);
@@ -239,7 +240,7 @@ static void test_lists(void)
                                      API "/examples", API "/designs", API "/health"};
   for (size_t i = 0; i < sizeof path / sizeof path[0]; i++) {
     struct reply reply = call("GET", path[i], NULL, NULL);
-    ok(reply.status == 200, "%s: %d", path[i], reply.status);
+    ok(reply.status == 200, "%s is answered with %d", path[i], reply.status);
     free_reply(&reply);
   }
 }
@@ -248,13 +249,13 @@ int main(void)
 {
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
-  ok(listen_to_replies(), "it describes itself");
+  ok(listen_to_replies(), "the server describes itself");
   test_analyses();
   test_stroke();
   test_sweeps();
   test_jobs();
   test_lists();
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
   remove_data_folder();
   expect_all_of((const char *const[]){"Result", "Sweep", "OptimizationResult", "Job", "Generations", "JobHistoryRow",
                                       "History", NULL},

@@ -90,18 +90,19 @@ static void test_events(void)
     json_decref(job);
   }
   close(stream);
-  ok(rising && events >= 4, "%d events with rising numbers", events);
-  ok(strstr(seen, "running") && strstr(seen, "done"), "its states are told: %s", seen);
+  ok(rising && events >= 4, "%d events come with rising numbers", events);
+  ok(strstr(seen, "running") && strstr(seen, "done"), "the events tell of a job's states: %s", seen);
   stream = open_stream(API "/events", middle);
   number = next_event(stream, &job);
-  ok(number == middle + 1, "who comes back gets what was missed: %lld after %lld", number, middle);
+  ok(number == middle + 1, "a client that comes back gets what it missed: event %lld after %lld", number, middle);
   json_decref(job);
   close(stream);
   char path[80];
   snprintf(path, sizeof path, API "/jobs/%d/events", id);
   stream = open_stream(path, middle);
   number = next_event(stream, &job);
-  ok(number > middle && json_integer_value(json_object_get(job, "id")) == id, "a stream of one job");
+  ok(number > middle && json_integer_value(json_object_get(job, "id")) == id,
+     "the stream of one job tells of this job");
   json_decref(job);
   close(stream);
 }
@@ -118,10 +119,11 @@ static void test_cancel_and_retry(void)
   wait_for_evaluations(id, 20);
   ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "a running job is stopped");
   int before = count_true(id);
-  ok(before > 0 && before < 3000, "it keeps what it found: %d", before);
-  ok(post_to_job(id, "retry") == 202, "it is taken up again");
+  ok(before > 0 && before < 3000, "a stopped job keeps the %d evaluations that it made", before);
+  ok(post_to_job(id, "retry") == 202, "a stopped job is taken up again");
   wait_for_evaluations(id, before + 20);
-  ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "and stopped again");
+  ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30),
+     "a job that was taken up again is stopped again");
 }
 
 /* Nothing that was evaluated before the kill is evaluated again, and the result is that of a run in one piece. */
@@ -130,17 +132,20 @@ static void test_kill(void)
   int id = add_job("optimize", "ga", 400, 3);
   wait_for_evaluations(id, 60);
   int before = count_true(id);
-  ok(stop_server(SIGKILL) == 128 + SIGKILL && before < 400, "killed after %d evaluations", before);
-  ok(start_server("--quiet", "--threads", "2"), "started again");
-  ok(wait_for_job(id, "done", 120), "the job goes on by itself");
+  ok(stop_server(SIGKILL) == 128 + SIGKILL && before < 400, "the server is killed after %d evaluations of its job",
+     before);
+  ok(start_server("--quiet", "--threads", "2"), "the server starts again after it was killed");
+  ok(wait_for_job(id, "done", 120), "the job of the killed server goes on by itself");
   json_t *job = get_of_job(id, ""), *result = get_of_job(id, "/result");
-  ok(count_true(id) == 400, "to its whole budget: %d", count_true(id));
-  ok(json_integer_value(json_object_get(result, "true_evaluations")) == 400, "and its result says so: %d, %s",
+  ok(count_true(id) == 400, "the job of the killed server comes to its whole budget, %d", count_true(id));
+  ok(json_integer_value(json_object_get(result, "true_evaluations")) == 400,
+     "the result of the killed server's job counts its whole budget: %d, %s",
      (int)json_integer_value(json_object_get(result, "true_evaluations")),
      json_string_value(json_object_get(result, "stopped")));
-  ok(json_integer_value(json_object_get(job, "attempts")) == 2, "at the second attempt");
+  ok(json_integer_value(json_object_get(job, "attempts")) == 2,
+     "the job of the killed server ends at the second attempt");
   json_t *history = call_json("GET", API "/history", NULL, NULL, NULL);
-  ok(json_is_object(result) && json_is_object(history), "with a result");
+  ok(json_is_object(result) && json_is_object(history), "the job of the killed server has a result and a history");
   json_decref(history);
   json_decref(result);
   json_decref(job);
@@ -152,14 +157,15 @@ static void test_park(void)
   wait_for_evaluations(id, 30);
   double begun = seconds_now();
   int status = stop_server(SIGTERM);
-  ok(status == 0, "told to stop during a job, in %.1f s", seconds_now() - begun);
-  ok(start_server("--quiet", "--threads", "2"), "started again");
+  ok(status == 0, "a server that is told to stop during a job does so in %.1f s", seconds_now() - begun);
+  ok(start_server("--quiet", "--threads", "2"), "the server starts again after its stop during a job");
   json_t *job = get_of_job(id, "");
   const char *state = json_string_value(json_object_get(job, "state"));
-  ok(state && strcmp(state, "failed") != 0 && strcmp(state, "cancelled") != 0, "the parked job waits or runs: %s",
-     state ? state : "");
+  ok(state && strcmp(state, "failed") != 0 && strcmp(state, "cancelled") != 0,
+     "the job that was parked waits or runs: %s", state ? state : "");
   json_decref(job);
-  ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "it can be stopped for good");
+  ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30),
+     "the job that was parked can be stopped for good");
 }
 
 /* Pairs that were drawn before the stop are a result; where it goes on, more are. */
@@ -220,11 +226,12 @@ static void test_overtaking(void)
     answered += reply.status == 200;
     overtaken += reply.status == 409 && strstr(reply.body, "/problems/overtaken");
     if (i == QUESTIONS - 1)
-      ok(reply.status == 200, "the newest question is answered: %d", reply.status);
+      ok(reply.status == 200, "the newest question of a lane is answered with %d", reply.status);
     free_reply(&reply);
     close(connection[i]);
   }
-  ok(answered + overtaken == QUESTIONS && overtaken >= 1, "%d older ones of the same lane are not", overtaken);
+  ok(answered + overtaken == QUESTIONS && overtaken >= 1, "%d older questions of the same lane are overtaken",
+     overtaken);
   free(text);
   json_decref(document);
 }
@@ -234,14 +241,14 @@ int main(void)
   signal(SIGPIPE, SIG_IGN);
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
-  ok(listen_to_replies(), "it describes itself");
+  ok(listen_to_replies(), "the server describes itself");
   test_events();
   test_cancel_and_retry();
   test_kill();
   test_park();
   test_stopped_pairs();
   test_overtaking();
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
   remove_data_folder();
   tell_what_was_heard();
   return tap_done();

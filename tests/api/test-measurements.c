@@ -157,19 +157,20 @@ static void test_rig(void)
 {
   modified = record("{" POINT "}");
   unmodified = record("{" POINT ",\"unmodified\":true,\"torque_column\":true,\"speed_column\":true}");
-  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0, "a synthetic recording: %d",
-     modified.status);
+  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0,
+     "a synthetic recording is made, answer %d", modified.status);
   const char *header = header_of(&modified, "Content-Disposition");
-  ok(header && strstr(header, "rig-828Nm-2000rpm.csv"), "is a file");
+  ok(header && strstr(header, "rig-828Nm-2000rpm.csv"), "a synthetic recording comes as a file with a name");
   struct reply again = record("{" POINT "}");
-  ok(again.size == modified.size && memcmp(again.body, modified.body, again.size) == 0, "the same each time");
+  ok(again.size == modified.size && memcmp(again.body, modified.body, again.size) == 0,
+     "a synthetic recording is the same each time");
   free_reply(&again);
   again = record("{\"turns\":1e6}");
-  ok(again.status == 422 && !header_of(&again, "Content-Disposition"), "one that is too long is refused: %d",
-     again.status);
+  ok(again.status == 422 && !header_of(&again, "Content-Disposition"),
+     "a synthetic recording that is too long is refused with %d", again.status);
   free_reply(&again);
   again = record("{\"turn\":1}");
-  ok(again.status == 422 && strstr(again.body, "/rig/turn"), "and one with a misspelt key");
+  ok(again.status == 422 && strstr(again.body, "/rig/turn"), "a synthetic recording with a misspelt key is refused");
   free_reply(&again);
 }
 
@@ -188,7 +189,7 @@ static void test_trial(void)
   json_t *document = body_of(&reply);
   ok(reply.status == 200 && fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1,
      "a recording is measured without being kept: %d", reply.status);
-  ok(count_kept() == 0 && folders_become(0), "nothing of it stays");
+  ok(count_kept() == 0 && folders_become(0), "nothing stays of a recording that was not to be kept");
   json_decref(document);
   free_reply(&reply);
 }
@@ -198,14 +199,14 @@ static void test_upload(void)
   const struct upload u = {"1", "modified", "828", "2000", NULL, "../../etc/r\xff\"un.csv", &modified, NULL};
   struct reply reply = post(&u), other;
   json_t *document = body_of(&reply);
-  ok(reply.status == 201 && strcmp(header_of(&reply, "Location"), API "/measurements/1") == 0, "an upload: %d %.200s",
-     reply.status, reply.status == 201 ? "" : reply.body);
-  ok(fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1, "its speed is %.4f rpm",
+  ok(reply.status == 201 && strcmp(header_of(&reply, "Location"), API "/measurements/1") == 0,
+     "an upload is kept: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
+  ok(fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1, "the speed of the upload is %.4f rpm",
      number_of(document, "speed_rpm", "mean"));
   ok(number_of(document, "rms_m_per_s2", "value") > 1 && number_of(document, "rms_m_per_s2", "sigma") > 0,
-     "its RMS %.4g +- %.2g m/s2", number_of(document, "rms_m_per_s2", "value"),
+     "the RMS of the upload is %.4g +- %.2g m/s2", number_of(document, "rms_m_per_s2", "value"),
      number_of(document, "rms_m_per_s2", "sigma"));
-  ok(json_array_size(json_object_get(document, "notes")) > 2, "what was guessed is said");
+  ok(json_array_size(json_object_get(document, "notes")) > 2, "the answer to an upload says what was guessed");
   const char *name = json_string_value(json_object_get(document, "file"));
   ok(name && !strchr(name, '/') && !strchr(name, '\\') && is_discreet(&reply), "a hostile name becomes \"%s\"",
      name ? name : "");
@@ -213,31 +214,32 @@ static void test_upload(void)
   reply = post(&u);
   json_t *same = body_of(&reply);
   ok(reply.status == 200 && json_equal(same, document) && count_kept() == 1 && folders_become(1),
-     "sent again it is the same measurement: %d", reply.status);
+     "an upload that is sent again is the same measurement, answer %d", reply.status);
   free_reply(&reply);
   other = call("GET", API "/measurements/1", NULL, NULL);
   json_decref(same);
   same = body_of(&other);
-  ok(other.status == 200 && json_equal(same, document), "it is got as it was answered");
+  ok(other.status == 200 && json_equal(same, document), "a measurement is got as the upload was answered");
   char tag[200];
   snprintf(tag, sizeof tag, "If-None-Match: %s\r\n", header_of(&other, "ETag"));
   free_reply(&other);
   other = call("GET", API "/measurements/1", tag, NULL);
-  ok(other.status == 304, "and not sent twice");
+  ok(other.status == 304, "a measurement that the client knows is not sent again");
   free_reply(&other);
   other = call("GET", API "/measurements/1/file", NULL, NULL);
   ok(other.status == 200 && other.size == modified.size && memcmp(other.body, modified.body, other.size) == 0,
-     "the file comes back as it went");
+     "the file of a measurement comes back as it went");
   const char *file_hash =
       json_string_value(json_object_get(json_array_get(json_object_get(document, "files"), 0), "sha256"));
   ok(strstr(header_of(&other, "ETag"), file_hash) && strncmp(header_of(&other, "Repr-Digest"), "sha-256=:", 9) == 0,
-     "with its check sum");
+     "the file of a measurement comes with its check sum");
   free_reply(&other);
   other = call("HEAD", API "/measurements/1/file", NULL, NULL);
-  ok(other.status == 200 && (size_t)atol(header_of(&other, "Content-Length")) == modified.size, "or only its size");
+  ok(other.status == 200 && (size_t)atol(header_of(&other, "Content-Length")) == modified.size,
+     "HEAD tells the size of a measurement's file");
   free_reply(&other);
   other = call("GET", API "/measurements/1/file?part=2", NULL, NULL);
-  ok(other.status == 404, "there is no second one");
+  ok(other.status == 404, "a measurement of one file has no second one");
   free_reply(&other);
   json_decref(same);
   json_decref(document);
@@ -267,12 +269,12 @@ static void test_two_files(void)
   struct reply reply = post(&(struct upload){"1", "modified", "828", NULL, NULL, "pinion.csv", &pinion, &gear});
   json_t *document = body_of(&reply), *first = call_json("GET", API "/measurements/1", NULL, NULL, NULL);
   ok(reply.status == 201 && json_array_size(json_object_get(document, "files")) == 2,
-     "one file of each encoder: %d %.300s", reply.status, reply.status == 201 ? "" : reply.body);
+     "an upload of one file for each encoder is kept: %d %.300s", reply.status, reply.status == 201 ? "" : reply.body);
   ok(fabs(number_of(document, "rms_m_per_s2", "value") / number_of(first, "rms_m_per_s2", "value") - 1) < 1e-6,
-     "gives the same RMS");
+     "one file for each encoder gives the same RMS as both in one");
   free_reply(&reply);
   reply = call("DELETE", API "/measurements/5", NULL, NULL);
-  ok(reply.status == 204 && count_kept() == 1 && folders_become(1), "and is deleted with its files");
+  ok(reply.status == 204 && count_kept() == 1 && folders_become(1), "a measurement is deleted with its files");
   free_reply(&reply);
   json_decref(first);
   json_decref(document);
@@ -301,19 +303,19 @@ static void test_kinds(void)
                tracks = record("{" POINT ",\"output\":\"sine-cosine\",\"pinion_lines\":100,\"gear_lines\":100}"), reply;
   add_sideband(&modified, &beside);
   reply = post(&(struct upload){"1", "modified", "828", "2000", "{\"lines\":100}", "tracks.csv", &tracks, NULL});
-  ok(reply.status == 201 && strstr(reply.body, "\"amplitude\""), "raw tracks: %d %.200s", reply.status,
-     reply.status == 201 ? "" : reply.body);
+  ok(reply.status == 201 && strstr(reply.body, "\"amplitude\""), "raw tracks of the encoders are measured: %d %.200s",
+     reply.status, reply.status == 201 ? "" : reply.body);
   free_reply(&reply);
   reply = post(&(struct upload){"1", "modified", "828", "2000", untimed, "untimed.csv", &modified, NULL});
-  ok(reply.status == 201 && strstr(reply.body, "\"sample_rate_Hz\""), "rows without a time: %d %.200s", reply.status,
-     reply.status == 201 ? "" : reply.body);
+  ok(reply.status == 201 && strstr(reply.body, "\"sample_rate_Hz\""),
+     "rows without a time are measured by their rate: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
   free_reply(&reply);
   reply = post(&(struct upload){"1", "modified", "828", "2000", NULL, "beside.csv", &beside, NULL});
   json_t *document = body_of(&reply);
   const json_t *first = json_array_get(json_object_get(json_object_get(document, "result"), "sidebands"), 0);
   ok(json_integer_value(json_object_get(first, "mesh_order")) == 1 &&
          json_integer_value(json_object_get(first, "turns")) == 1,
-     "a sideband");
+     "the first sideband is one of the first mesh order at one turn");
   json_decref(document);
   free_reply(&reply);
   free_reply(&beside);
@@ -324,7 +326,7 @@ static void test_kinds(void)
     reply = call("DELETE", path, NULL, NULL);
     free_reply(&reply);
   }
-  ok(count_kept() == 1, "they go again");
+  ok(count_kept() == 1, "the measurements of this test are deleted");
 }
 
 static const struct refusal {
@@ -332,14 +334,15 @@ static const struct refusal {
   int status;
   const char *kind;
 } refusals[] = {
-    {"slip", "{" POINT ",\"fault\":\"slip\",\"fault_row\":5000,\"fault_size\":3}", 422, "slip"},
-    {"wrong teeth", "{" POINT ",\"fault\":\"teeth\",\"fault_size\":1}", 422, "teeth"},
-    {"a channel that stands still", "{" POINT ",\"fault\":\"constant\"}", 422, "constant"},
-    {"too short", "{\"torque_Nm\":828,\"speed_rpm\":2000,\"turns\":0.5}", 422, NULL},
-    {"swapped channels", "{" POINT ",\"fault\":\"swapped\"}", 201, "swapped"},
-    {"reversed sign", "{" POINT ",\"fault\":\"reversed\"}", 201, "reversed"},
-    {"dropped rows", "{" POINT ",\"fault\":\"dropped\",\"fault_row\":5000,\"fault_size\":5}", 201, "dropped"},
-    {"a decimal comma",
+    {"a recording with a slip", "{" POINT ",\"fault\":\"slip\",\"fault_row\":5000,\"fault_size\":3}", 422, "slip"},
+    {"a recording of other teeth", "{" POINT ",\"fault\":\"teeth\",\"fault_size\":1}", 422, "teeth"},
+    {"a recording with a channel that stands still", "{" POINT ",\"fault\":\"constant\"}", 422, "constant"},
+    {"a recording that is too short", "{\"torque_Nm\":828,\"speed_rpm\":2000,\"turns\":0.5}", 422, NULL},
+    {"a recording with swapped channels", "{" POINT ",\"fault\":\"swapped\"}", 201, "swapped"},
+    {"a recording with a reversed sign", "{" POINT ",\"fault\":\"reversed\"}", 201, "reversed"},
+    {"a recording with dropped rows", "{" POINT ",\"fault\":\"dropped\",\"fault_row\":5000,\"fault_size\":5}", 201,
+     "dropped"},
+    {"a recording with a decimal comma",
      "{" POINT ",\"decimal_comma\":true,\"separator\":\"semicolon\",\"byte_order_mark\":true,\"carriage_return\":true}",
      201, NULL},
 };
@@ -361,10 +364,11 @@ static void test_faults(void)
     struct reply file = record(r->settings),
                  reply = post(&(struct upload){"1", "modified", "828", NULL, NULL, NULL, &file, NULL});
     json_t *document = body_of(&reply);
-    if (!ok(reply.status == r->status && (!r->kind || has_finding(document, r->kind)), "%s: %d", r->what, reply.status))
+    if (!ok(reply.status == r->status && (!r->kind || has_finding(document, r->kind)),
+            "%s: answered with %d, %d is right", r->what, reply.status, r->status))
       printf("# %.600s\n", reply.body ? reply.body : "");
-    ok(count_kept() == before + (r->status == 201) && is_discreet(&reply), "%s",
-       r->status == 201 ? "kept" : "nothing is kept");
+    ok(count_kept() == before + (r->status == 201) && is_discreet(&reply), "%s: %s", r->what,
+       r->status == 201 ? "one measurement more is kept" : "nothing is kept");
     json_decref(document);
     free_reply(&file);
     free_reply(&reply);
@@ -376,7 +380,7 @@ static void refuse(const char *what, const struct upload *u, int status, const c
 {
   struct reply reply = post(u);
   if (!ok(reply.status == status && (!holds || (reply.body && strstr(reply.body, holds))) && is_discreet(&reply),
-          "%s: %d", what, reply.status))
+          "%s: answered with %d", what, reply.status))
     printf("# %.400s\n", reply.body ? reply.body : "");
   free_reply(&reply);
 }
@@ -387,14 +391,17 @@ static void test_words(void)
                none = {.body = (char *)"", .size = 0};
   struct reply half = {.body = modified.body, .size = 40};
   int before = count_kept();
-  refuse("no such design", &(struct upload){"77", "modified", "828", NULL, NULL, NULL, &modified, NULL}, 422,
+  refuse("an upload for no design", &(struct upload){"77", "modified", "828", NULL, NULL, NULL, &modified, NULL}, 422,
          "/design");
-  refuse("no label", &(struct upload){"1", NULL, "828", NULL, NULL, NULL, &modified, NULL}, 422, "/label");
-  refuse("another label", &(struct upload){"1", "new", "828", NULL, NULL, NULL, &modified, NULL}, 422, "/label");
-  refuse("no torque", &(struct upload){"1", "modified", NULL, NULL, NULL, NULL, &modified, NULL}, 422, "/torque_Nm");
+  refuse("an upload without a label", &(struct upload){"1", NULL, "828", NULL, NULL, NULL, &modified, NULL}, 422,
+         "/label");
+  refuse("an upload with an unknown label", &(struct upload){"1", "new", "828", NULL, NULL, NULL, &modified, NULL}, 422,
+         "/label");
+  refuse("an upload without a torque", &(struct upload){"1", "modified", NULL, NULL, NULL, NULL, &modified, NULL}, 422,
+         "/torque_Nm");
   refuse("a torque that is none", &(struct upload){"1", "modified", "1e400", NULL, NULL, NULL, &modified, NULL}, 422,
          "/torque_Nm");
-  refuse("everything at once", &(struct upload){NULL, "x", "-1", "fast", "{", NULL, &modified, NULL}, 422,
+  refuse("an upload with five faults", &(struct upload){NULL, "x", "-1", "fast", "{", NULL, &modified, NULL}, 422,
          "\"5 values are wrong.\"");
   refuse("a layout with an unknown key",
          &(struct upload){"1", "modified", "828", NULL, "{\"colums\":{}}", NULL, &modified, NULL}, 422,
@@ -402,18 +409,19 @@ static void test_words(void)
   refuse("a column that is not there",
          &(struct upload){"1", "modified", "828", NULL, "{\"columns\":{\"pinion\":9}}", NULL, &modified, NULL}, 422,
          "/layout/columns");
-  refuse("no file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, NULL, NULL}, 422, "file");
+  refuse("an upload without a file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, NULL, NULL}, 422,
+         "file");
   refuse("an empty file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &none, NULL}, 422, "empty");
-  refuse("no table", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &cake, NULL}, 422, NULL);
+  refuse("a file without a table", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &cake, NULL}, 422, NULL);
   refuse("the beginning of a file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &half, NULL}, 422, NULL);
-  refuse("not the speed that was said", &(struct upload){"1", "modified", "828", "3000", NULL, NULL, &modified, NULL},
-         201, "\"speed\"");
-  ok(count_kept() == before + 1 && folders_become(before + 1), "of these only the last one is kept");
+  refuse("a recording at another speed than said",
+         &(struct upload){"1", "modified", "828", "3000", NULL, NULL, &modified, NULL}, 201, "\"speed\"");
+  ok(count_kept() == before + 1 && folders_become(before + 1), "the last one of these uploads is kept, and no other");
 }
 
 static void expect(const char *what, struct reply reply, int status)
 {
-  if (!ok(reply.status == status, "%s: %d", what, reply.status))
+  if (!ok(reply.status == status, "%s: answered with %d", what, reply.status))
     printf("# %.300s\n", reply.body ? reply.body : "");
   free_reply(&reply);
 }
@@ -428,10 +436,10 @@ static void test_bodies(void)
          call("POST", API "/measurements", "Content-Type: application/x-www-form-urlencoded\r\n", "design=1"), 415);
   expect("a form without a boundary", call("POST", API "/measurements", "Content-Type: multipart/form-data\r\n", "x"),
          415);
-  expect("no body", call("POST", API "/measurements", form_type, ""), 422);
+  expect("a form without a body", call("POST", API "/measurements", form_type, ""), 422);
   expect("a body that ends before its form", post_bytes(&form, form.size / 2, form.size / 2), 400);
   expect("a connection that ends before its body", post_bytes(&form, form.size / 2, form.size), 0);
-  expect("more than is taken", post_bytes(&form, 0, (size_t)3 << 30), 413);
+  expect("a body above the limit", post_bytes(&form, 0, (size_t)3 << 30), 413);
   add_text(&twice, "design", "1");
   add_text(&twice, "design", "2");
   end_form(&twice);
@@ -474,14 +482,14 @@ static void test_bodies(void)
        "--" EDGE "\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a\"\r\nContent-Transfer-Encoding: "
        "base64\r\n\r\nMQ==\r\n--" EDGE "--\r\n",
        415},
-      {"other bytes", "\x1f\x8b\x08 nonsense", 422}};
+      {"a form of other bytes", "\x1f\x8b\x08 nonsense", 422}};
   for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
     expect(
         odd[i].what,
         post_bytes(&(struct form){(char *)odd[i].text, strlen(odd[i].text)}, strlen(odd[i].text), strlen(odd[i].text)),
         odd[i].status);
-  ok(count_kept() == before && folders_become(before), "nothing is kept of any of them");
-  expect("from another site",
+  ok(count_kept() == before && folders_become(before), "nothing is kept of any wrong form");
+  expect("an upload from another site",
          call("POST", API "/measurements",
               "Origin: http://elsewhere.example\r\nContent-Type: multipart/form-data; boundary=x\r\n", "x"),
          403);
@@ -546,11 +554,11 @@ static void test_slow_files(void)
     close(connection[i]);
   }
   close(other);
-  ok(reply.status == 422 && unanswered == SLOW, "another client's recording is answered (%d) before %d slow ones",
+  ok(reply.status == 422 && unanswered == SLOW, "the recording of another client is answered (%d) before %d slow ones",
      reply.status, unanswered);
   for (int i = 0; i < 10 && !folders_become(before); i++)
     continue;
-  ok(count_folders() == before, "nothing is kept of them");
+  ok(count_folders() == before, "nothing is kept of uploads that broke off");
   free_reply(&reply);
   free(slow.text);
   free(quick.text);
@@ -567,17 +575,17 @@ static void test_kill(void)
            form_type, form.size);
   send_text(connection, head);
   send_bytes(connection, form.text, form.size - 1000);
-  ok(folders_become(before + 1), "a file is on its way");
+  ok(folders_become(before + 1), "a file is on its way to the server");
   stop_server(SIGKILL);
   close(connection);
-  ok(count_folders() == before + 1, "the server dies and leaves it");
-  ok(start_server("--quiet", "--threads", "2"), "another one starts");
-  ok(count_folders() == before && count_kept() == before, "nothing half-stored is there");
+  ok(count_folders() == before + 1, "the server dies and leaves a file half stored");
+  ok(start_server("--quiet", "--threads", "2"), "another server starts after one that died");
+  ok(count_folders() == before && count_kept() == before, "nothing half-stored is there after the start");
   struct reply reply = post(&u);
   json_t *document = body_of(&reply);
-  ok(reply.status == 201, "sent again it is taken: %d", reply.status);
+  ok(reply.status == 201, "a file whose upload died is taken when it is sent again, answer %d", reply.status);
   ok(fabs(json_number_value(json_object_get(document, "torque_Nm")) - 828) < 0.5,
-     "and its column of torque stands for the one that was not stated");
+     "the column of torque stands for a torque that was not stated");
   json_decref(document);
   free_reply(&reply);
   free(form.text);
@@ -595,22 +603,24 @@ static void test_comparison(void)
   document = call_json("GET", API "/designs/1/comparison", "Prefer: wait=60\r\n", NULL, NULL);
   ok((int)json_array_size(json_object_get(document, "id")) == count_kept(),
      "all measurements of the design are in its comparison");
-  ok(json_array_size(json_object_get(document, "reductions")) > 0, "modified ones beside the unmodified one");
+  ok(json_array_size(json_object_get(document, "reductions")) > 0,
+     "the comparison has modified recordings beside the unmodified one");
   json_decref(document);
   json_t *softer = json_deep_copy(design);
   json_object_set_new(json_object_get(softer, "supports"), "mesh_damping_ratio", json_real(0.2));
   char *text = json_dumps(softer, JSON_COMPACT);
   document = call_json("POST", API "/designs/1/comparison", "Prefer: wait=60\r\n", text, NULL);
   ok(fabs(json_number_value(json_object_get(document, "ratio")) - 1) > 0.02,
-     "beside a design with more damping they lie elsewhere");
+     "recordings of the design lie elsewhere beside one with more damping");
   json_decref(document);
   json_decref(softer);
   free(text);
   reply = call("GET", API "/designs/1/comparison.csv", NULL, NULL);
-  ok(reply.status == 200 && strncmp(reply.body, "file,label,torque_Nm", 20) == 0, "as a table too");
+  ok(reply.status == 200 && strncmp(reply.body, "file,label,torque_Nm", 20) == 0,
+     "the comparison comes as a table too");
   free_reply(&reply);
   expect("a comparison of nothing", call("GET", API "/measurements/99/comparison", NULL, NULL), 404);
-  expect("of no design", call("GET", API "/designs/99/comparison", NULL, NULL), 404);
+  expect("a comparison of no design", call("GET", API "/designs/99/comparison", NULL, NULL), 404);
 }
 
 /* The recordings were made with the design's own damping, 0.07: the fit has to find it in its range. */
@@ -620,11 +630,11 @@ static void test_fit(void)
                             "{\"unknowns\":{\"mesh_damping_ratio\":[0.02,0.3]},\"measurements\":[1]}");
   json_t *document = body_of(&reply), *unknown = json_array_get(json_object_get(document, "unknowns"), 0);
   double value = json_number_value(json_object_get(unknown, "value"));
-  ok(reply.status == 200 && fabs(value - 0.07) < 0.004, "the damping is found: %.4f", value);
+  ok(reply.status == 200 && fabs(value - 0.07) < 0.004, "the fit finds the damping, %.4f", value);
   json_t *applied = json_object_get(json_object_get(json_object_get(document, "design"), "supports"),
                                     "mesh_damping_ratio");
   ok(fabs(json_number_value(applied) - value) < 1e-9 && json_array_size(json_object_get(document, "id")) == 1,
-     "and stands in the design that comes with it");
+     "the damping stands in the design that comes with the fit");
   json_decref(document);
   free_reply(&reply);
   expect("a fit of nothing", call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{}}"), 422);
@@ -646,8 +656,8 @@ static void test_other_pair(void)
   json_t *document = call_json("GET", API "/designs/1/comparison", "Prefer: wait=60\r\n", NULL, NULL);
   ok(json_array_size(json_object_get(document, "id")) == 0 &&
          (int)json_array_size(json_object_get(document, "left_out")) == count_kept(),
-     "leaves its measurements out of the comparison");
-  expect("and cannot be deleted", call("DELETE", API "/designs/1", NULL, NULL), 409);
+     "another pair under the number of the design leaves its measurements out of the comparison");
+  expect("a deletion of a design with measurements", call("DELETE", API "/designs/1", NULL, NULL), 409);
   json_decref(document);
   json_decref(other);
   free(text);
@@ -666,18 +676,19 @@ static void test_set_aside(void)
   mkdir(path, 0777);
   name_in_folder(path, sizeof path, "measurements/700/0");
   FILE *file = fopen(path, "w");
-  ok(file && fputs("1,2,3", file) >= 0 && fclose(file) == 0, "a recording without a row");
+  ok(file && fputs("1,2,3", file) >= 0 && fclose(file) == 0, "a recording without a row is laid into the folder");
   name_in_folder(path, sizeof path, "measurements/backup");
   mkdir(path, 0777);
   int kept = count_kept();
   ok(stop_server(SIGTERM) == 0 && start_server("--quiet"), "the next server starts");
   json_t *health = call_json("GET", API "/health", NULL, NULL, NULL);
   const char *warning = json_string_value(json_array_get(json_object_get(health, "warnings"), 0));
-  ok(warning && strstr(warning, "1 recording ") && strstr(warning, "lost+found"), "and says: %s", warning);
+  ok(warning && strstr(warning, "1 recording ") && strstr(warning, "lost+found"),
+     "the next server says that a recording was moved: %s", warning);
   json_decref(health);
   ok(access(path, F_OK) == 0 && count_kept() == kept, "what is not its own stays, and so do all recordings with a row");
   name_in_folder(path, sizeof path, "measurements/lost+found/700/0");
-  ok(access(path, F_OK) == 0, "the one without lies where it says");
+  ok(access(path, F_OK) == 0, "a recording without a row lies where the server says");
 }
 
 /* The recordings beside a database that is not theirs. */
@@ -704,10 +715,10 @@ int main(void)
   signal(SIGPIPE, SIG_IGN);
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
-  ok(listen_to_replies(), "it describes itself");
+  ok(listen_to_replies(), "the server describes itself");
   design = coarse_document("ga", 10);
   char *text = json_dumps(design, JSON_COMPACT);
-  expect("a design", call("POST", API "/designs", NULL, text), 201);
+  expect("a design to measure", call("POST", API "/designs", NULL, text), 201);
   test_rig();
   test_trial();
   test_upload();
@@ -726,7 +737,7 @@ int main(void)
   json_decref(design);
   free_reply(&modified);
   free_reply(&unmodified);
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
   test_new_database();
   remove_data_folder();
   expect_all_of((const char *const[]){"Measurement", "ListedMeasurement", "Comparison", "Fit", NULL}, NULL);

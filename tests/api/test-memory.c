@@ -31,13 +31,13 @@ static void allow(rlim_t megabytes)
 static void ask(rlim_t megabytes)
 {
   struct reply reply = call("POST", API "/analyze", "Prefer: wait=20\r\n", coarse);
-  ok(reply.status == 200 || reply.status == 202 || reply.status == 503, "%ld MB: an analysis: %d", (long)megabytes,
-     reply.status);
+  ok(reply.status == 200 || reply.status == 202 || reply.status == 503, "%ld MB: an analysis is answered with %d",
+     (long)megabytes, reply.status);
   free_reply(&reply);
   reply = call("POST", API "/measurements", "Content-Type: multipart/form-data; boundary=xx\r\n",
                "--xx\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a.csv\"\r\n\r\n"
                "t_s,a_deg,b_deg\r\n0,0,0\r\n1,10,4\r\n2,20,8\r\n\r\n--xx--\r\n");
-  ok(reply.status >= 400, "%ld MB: an upload of nothing: %d", (long)megabytes, reply.status);
+  ok(reply.status >= 400, "%ld MB: an upload of nothing is refused with %d", (long)megabytes, reply.status);
   free_reply(&reply);
 }
 
@@ -56,7 +56,7 @@ static bool try_with(rlim_t megabytes)
     return false;
   }
   ask(megabytes);
-  ok(stop_server(SIGTERM) == 0, "%ld MB: it stops when told", (long)megabytes);
+  ok(stop_server(SIGTERM) == 0, "%ld MB: the server stops when told", (long)megabytes);
   return true;
 }
 
@@ -72,9 +72,9 @@ int main(void)
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
   struct reply reply = call("POST", API "/analyze", "Prefer: wait=60\r\n", coarse);
-  ok(reply.status == 200, "a pair is prepared: %d", reply.status);
+  ok(reply.status == 200, "a pair is prepared, answer %d", reply.status);
   free_reply(&reply);
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
   for (size_t i = 0; i < sizeof tried / sizeof tried[0]; i++)
     started = try_with(tried[i]);
   ok(started, "8 GB of addresses are enough for two threads");

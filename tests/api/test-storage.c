@@ -99,23 +99,24 @@ static void test_full_disk(void)
     ok(1, "a full disk # SKIP the shim is not built, or cannot be loaded beside a sanitizer");
     return;
   }
-  ok(wait_for_health(200, "ok") && post_design() == 201, "a server on a disk of its own");
+  ok(wait_for_health(200, "ok") && post_design() == 201, "a server starts on a disk of its own");
   for (int i = 0; i < 200; i++, wait_a_little()) { /* the spare is kept by a thread of its own */
     char spare[300];
     snprintf(spare, sizeof spare, "%s/easeoff.spare", server.folder);
     if (access(spare, F_OK) == 0)
       break;
   }
-  ok(order_pairs(), "a job that writes all the time");
+  ok(order_pairs(), "a job starts that writes all the time");
   set_left("00000000000000200000");
   for (int i = 0; i < 2000 && status == 201; i++)
     stored += (status = post_design()) == 201;
-  ok(status == 507 && stored > 1, "%d designs, then %d", stored, status);
+  ok(status == 507 && stored > 1, "%d designs are stored, the next is answered with %d", stored, status);
   status = status_of("POST", API "/designs", design, type, sizeof type);
-  ok(status == 507 && strcmp(type, "/problems/full") == 0, "with the problem %s", type);
+  ok(status == 507 && strcmp(type, "/problems/full") == 0, "a design on a full disk is refused with the problem %s",
+     type);
   ok(wait_for_health(503, "full"), "health says that the disk is full");
-  ok(status_of("GET", API "/health/live", NULL, type, sizeof type) == 200, "the server lives");
-  ok(status_of("GET", API "/designs/1", NULL, type, sizeof type) == 200, "what is there is read");
+  ok(status_of("GET", API "/health/live", NULL, type, sizeof type) == 200, "the server answers on a full disk");
+  ok(status_of("GET", API "/designs/1", NULL, type, sizeof type) == 200, "a design is read on a full disk");
   int cancelled = status_of("POST", API "/jobs/1/cancel", "{}", type, sizeof type);
   ok(cancelled == 202 || cancelled == 409, "the job can be stopped, unless it has ended: %d", cancelled);
   int removed = 0;
@@ -124,14 +125,14 @@ static void test_full_disk(void)
     snprintf(path, sizeof path, API "/designs/%d", i);
     removed += status_of("DELETE", path, NULL, type, sizeof type) == 204;
   }
-  ok(removed == (stored < 30 ? stored : 30), "deleting goes on: %d designs are gone", removed);
-  ok(post_design() == 201, "which makes room for others");
+  ok(removed == (stored < 30 ? stored : 30), "designs are deleted on a full disk: %d are gone", removed);
+  ok(post_design() == 201, "deleted designs make room for others");
   set_left("none");
   ok(has_ended(), "the job has ended when there is room to say so");
-  ok(wait_for_health(200, "ok") && post_design() == 201, "it heals when there is room again");
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(wait_for_health(200, "ok") && post_design() == 201, "health is good when there is room again");
+  ok(stop_server(SIGTERM) == 0, "the server on a full disk stops when told");
   remove_data_folder();
-  ok(make_data_folder(), "a new folder");
+  ok(make_data_folder(), "a new folder is made");
 }
 
 /* Another program begins to write and does not end. */
@@ -140,21 +141,21 @@ static void test_foreign_lock(void)
   sqlite3 *other;
   char path[300], type[100];
   snprintf(path, sizeof path, "%s/easeoff.db", server.folder);
-  ok(start_server("--quiet", "--threads", "2") && post_design() == 201, "a server");
+  ok(start_server("--quiet", "--threads", "2") && post_design() == 201, "a server starts and stores a design");
   sqlite3_open(path, &other);
-  ok(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK, "somebody locks its database");
+  ok(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL) == SQLITE_OK, "another process locks the database");
   double begun = seconds_now();
   int status = status_of("POST", API "/designs", design, type, sizeof type);
-  ok(status == 503 && strcmp(type, "/problems/locked") == 0 && seconds_now() - begun < 2, "a write is told so: %d %s",
-     status, type);
+  ok(status == 503 && strcmp(type, "/problems/locked") == 0 && seconds_now() - begun < 2,
+     "a write to a locked database is refused: %d %s", status, type);
   begun = seconds_now();
   ok(status_of("GET", API "/examples", NULL, type, sizeof type) == 200 && seconds_now() - begun < 2,
-     "others do not wait for it: %.2f s", seconds_now() - begun);
-  ok(wait_for_health(503, "locked"), "health says so");
+     "questions that write nothing do not wait for the lock: %.2f s", seconds_now() - begun);
+  ok(wait_for_health(503, "locked"), "health says that the database is locked");
   sqlite3_exec(other, "ROLLBACK", NULL, NULL, NULL);
   sqlite3_close(other);
-  ok(wait_for_health(200, "ok") && post_design() == 201, "and that it is over");
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(wait_for_health(200, "ok") && post_design() == 201, "health says when the lock is over");
+  ok(stop_server(SIGTERM) == 0, "the server with a lock stops when told");
 }
 
 static void turn_bit(off_t at)
@@ -182,12 +183,12 @@ static void test_damage(void)
   if (file)
     fclose(file);
   const char *at = memmem(content, size, "normal_module_mm", 16);
-  ok(at != NULL, "a design in the database");
+  ok(at != NULL, "the design is found in the bytes of the database");
   if (!at)
     return;
   turn_bit(at - content);
   ok(start_server("--quiet", "--threads", "2"), "the server starts with a damaged page");
-  ok(wait_for_health(503, "damaged"), "and says so");
+  ok(wait_for_health(503, "damaged"), "health says that a page is damaged");
   int good = 0, damaged = 0, other = 0;
   for (int i = 1; i < 300; i++) {
     snprintf(path, sizeof path, API "/designs/%d", i);
@@ -196,9 +197,9 @@ static void test_damage(void)
     good += status == 200;
     other += status != 500 && status != 200 && status != 404;
   }
-  ok(damaged > 0 && other == 0, "what stands there is not given out: %d damaged, %d good", damaged, good);
-  ok(status_of("GET", API "/health/live", NULL, type, sizeof type) == 200, "the server lives");
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(damaged > 0 && other == 0, "a damaged page is not given out: %d designs damaged, %d good", damaged, good);
+  ok(status_of("GET", API "/health/live", NULL, type, sizeof type) == 200, "the server answers beside a damaged page");
+  ok(stop_server(SIGTERM) == 0, "the server with a damaged page stops when told");
   turn_bit(at - content);
 }
 

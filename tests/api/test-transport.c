@@ -44,7 +44,7 @@ static void test_keep_alive(void)
     free_reply(&reply);
   }
   close(connection);
-  ok(good == 5, "five requests on one connection, an error among them");
+  ok(good == 5, "five requests on one connection are answered, an error among them");
 }
 
 static void test_pipelined(void)
@@ -59,7 +59,7 @@ static void test_pipelined(void)
     free_reply(&reply);
   }
   close(connection);
-  ok(good == 3, "three requests at once, answered in their order");
+  ok(good == 3, "three requests at once are answered in their order");
 }
 
 static void test_declared_too_large(void)
@@ -73,11 +73,11 @@ static void test_declared_too_large(void)
   const char *header = header_of(&reply, "Connection");
   ok(told && reply.status == 413 && header && strcasecmp(header, "close") == 0,
      "a body that will be too large is refused before it comes");
-  ok(recv(connection, &rest, 1, 0) == 0, "and the connection ends");
+  ok(recv(connection, &rest, 1, 0) == 0, "the connection ends after a body that is too large");
   free_reply(&reply);
   close(connection);
   ok(send_raw("POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 99999999999999999999999\r\n\r\n") >= 400,
-     "a length beyond all numbers");
+     "a length beyond all numbers is refused");
 }
 
 /* A body in chunks of 1000 bytes; the status, 0: the connection was dropped. */
@@ -107,11 +107,11 @@ static void test_chunked(void)
   enum { LARGE = 1100000, HUGE_SIZE = 8000000 };
   char *blank = malloc(HUGE_SIZE);
   memset(blank, ' ', HUGE_SIZE);
-  ok(send_chunked(coarse, strlen(coarse)) == 200, "a body in chunks");
-  ok(send_chunked(blank, LARGE) == 413, "a body in chunks that is too large");
-  ok(send_chunked(blank, HUGE_SIZE) == 0, "one that goes on and on is cut off");
+  ok(send_chunked(coarse, strlen(coarse)) == 200, "a body in chunks is taken");
+  ok(send_chunked(blank, LARGE) == 413, "a body in chunks that is too large is refused");
+  ok(send_chunked(blank, HUGE_SIZE) == 0, "a body in chunks that goes on and on is cut off");
   free(blank);
-  ok(is_alive(), "the server lives");
+  ok(is_alive(), "the server answers after bodies in chunks");
 }
 
 static void test_truncated(void)
@@ -125,7 +125,7 @@ static void test_truncated(void)
     send_bytes(connection, text, length);
     close(connection);
   }
-  ok(is_alive(), "clients that break off anywhere");
+  ok(is_alive(), "the server answers after clients that broke off anywhere");
 }
 
 static void test_malformed(void)
@@ -151,11 +151,11 @@ static void test_malformed(void)
   memset(long_text, 'a', 100000);
   memcpy(long_text, "GET /", 5);
   strcpy(long_text + 50000, " HTTP/1.1\r\n" HOST "\r\n");
-  ok(send_raw(long_text) == 414, "an address that is too long");
+  ok(send_raw(long_text) == 414, "an address that is too long is refused");
   memset(long_text, 'a', 100000);
   memcpy(long_text, "GET / HTTP/1.1\r\n" HOST "X: ", 35);
   strcpy(long_text + 50000, "\r\n\r\n");
-  ok(send_raw(long_text) == 431, "header fields that are too long");
+  ok(send_raw(long_text) == 431, "header fields that are too long are refused");
   free(long_text);
 }
 
@@ -170,7 +170,7 @@ static void test_noise(void)
     send_bytes(connection, noise, sizeof noise);
     close(connection);
   }
-  ok(is_alive(), "noise");
+  ok(is_alive(), "the server answers after noise");
 }
 
 static void test_deep(void)
@@ -180,7 +180,7 @@ static void test_deep(void)
   memcpy(deep, "{\"a\":", 5);
   deep[sizeof deep - 1] = '\0';
   struct reply reply = call("POST", API "/check", NULL, deep);
-  ok(reply.status == 400 && strstr(reply.body, "brackets"), "thousands of brackets");
+  ok(reply.status == 400 && strstr(reply.body, "brackets"), "thousands of brackets are refused");
   free_reply(&reply);
 }
 
@@ -193,7 +193,8 @@ static void test_continue(void)
   bool asked = read_head(connection, &reply) && reply.status == 100;
   free_reply(&reply);
   send_text(connection, "{}");
-  ok(asked && read_reply(connection, &reply, false) && reply.status == 422, "a client that asks first");
+  ok(asked && read_reply(connection, &reply, false) && reply.status == 422,
+     "a client that asks first is told to go on");
   free_reply(&reply);
   close(connection);
 }
@@ -210,7 +211,7 @@ static void test_dawdlers(void)
   }
   double begun = seconds_now();
   bool alive = is_alive();
-  ok(alive && seconds_now() - begun < 5, "others are answered while %d dawdle", DAWDLERS);
+  ok(alive && seconds_now() - begun < 5, "other clients are answered while %d dawdle", DAWDLERS);
   for (int i = 0; i < DAWDLERS; i++)
     close(connection[i]);
 }
@@ -231,7 +232,7 @@ static void test_rate(void)
   double allowed = 100 + 2 * (seconds_now() - begun);
   ok(refused >= REQUESTS - allowed - 1 && refused <= 100, "who asks too much is refused: %d of %d, %.0f were allowed",
      refused, REQUESTS, allowed);
-  ok(says_when, "and told when to come again");
+  ok(says_when, "a client that asks too much is told when to come again");
 }
 
 enum { STREAMS = 200 };
@@ -273,23 +274,23 @@ static void test_streams_and_stop(void)
               strstr(header_of(&reply, "Content-Type"), "text/event-stream");
     free_reply(&reply);
   }
-  ok(opened == STREAMS, "%d streams of events", opened);
+  ok(opened == STREAMS, "%d streams of events are opened", opened);
   for (int i = 0; i < STREAMS; i += 2) /* every other one leaves without a word */
     close(stream[i]);
   char *order = order_text("prepare", "ga", 10, 1);
   struct reply reply = call("POST", API "/jobs", NULL, order);
-  ok(reply.status == 202, "a job to tell of");
+  ok(reply.status == 202, "a job is taken that the streams tell of");
   free_reply(&reply);
   free(order);
   for (int i = 1; i < STREAMS; i += 2)
     told += read_until(stream[i], "\"state\":\"done\"");
-  ok(told == STREAMS / 2, "each that stayed hears of it: %d", told);
-  ok(stop_server(SIGTERM) == 0, "the server stops while they listen");
+  ok(told == STREAMS / 2, "each stream that stayed hears of the job: %d", told);
+  ok(stop_server(SIGTERM) == 0, "the server stops while streams are open");
   for (int i = 1; i < STREAMS; i += 2) {
     ended += ends(stream[i]);
     close(stream[i]);
   }
-  ok(ended == STREAMS / 2, "and ends every stream properly: %d", ended);
+  ok(ended == STREAMS / 2, "the server ends every open stream properly: %d", ended);
 }
 
 /* Somebody waits for a preparation that takes long. */
@@ -306,7 +307,8 @@ static void test_stop_while_waiting(void)
     ;
   ok(stop_server(SIGTERM) == 0, "the server stops while somebody waits");
   bool answered = read_reply(connection, &reply, false);
-  ok(answered && (reply.status == 503 || reply.status == 202), "who gets an answer: %d", reply.status);
+  ok(answered && (reply.status == 503 || reply.status == 202), "a client that waits is answered at the stop with %d",
+     reply.status);
   free_reply(&reply);
   close(connection);
   free(text);
@@ -333,7 +335,7 @@ static void test_manager(const char *path)
   ssize_t size = recv(manager, message, sizeof message - 1, 0);
   ok(bound && started && size > 0 && strcmp(message, "READY=1") == 0 && is_alive(),
      "a service manager hears that the server is ready: %s", message);
-  ok(stop_server(SIGTERM) == 0, "and stops it");
+  ok(stop_server(SIGTERM) == 0, "the service manager stops the server");
   close(manager);
 }
 
@@ -363,10 +365,10 @@ int main(void)
   test_continue();
   test_dawdlers();
   test_rate();
-  ok(stop_server(SIGTERM) == 0, "it stops");
-  ok(start_server("--quiet", "--threads", "2"), "again, for streams");
+  ok(stop_server(SIGTERM) == 0, "the server stops when told");
+  ok(start_server("--quiet", "--threads", "2"), "the server starts again for streams");
   test_streams_and_stop();
-  ok(start_server("--quiet", "--threads", "2"), "again, with somebody who waits");
+  ok(start_server("--quiet", "--threads", "2"), "the server starts again for a client that waits");
   test_stop_while_waiting();
   test_managers();
   remove_data_folder();

@@ -103,7 +103,7 @@ int main(void)
   bool good = work(&computed) == 0;
   clock_gettime(CLOCK_MONOTONIC, &end);
   long duration = (end.tv_sec - start.tv_sec) * 1000000 + (end.tv_nsec - start.tv_nsec) / 1000;
-  ok(good && computed == BUDGET && count_rows() == BUDGET + 1, "undisturbed: %d evaluations", computed);
+  ok(good && computed == BUDGET && count_rows() == BUDGET + 1, "an undisturbed search makes %d evaluations", computed);
   read_result(&undisturbed);
 
   empty_folder();
@@ -125,10 +125,12 @@ int main(void)
   }
   good = work(&computed) == 0;
   read_result(&disturbed);
-  ok(kills == wanted, "killed %d times (SEED=%llu)", kills, (unsigned long long)seed);
-  ok(good && strcmp(undisturbed.data, disturbed.data) == 0, "the result of an undisturbed run, byte for byte");
+  ok(kills == wanted, "the search is killed %d times (SEED=%llu)", kills, (unsigned long long)seed);
+  ok(good && strcmp(undisturbed.data, disturbed.data) == 0,
+     "the killed search comes to the result of an undisturbed one, byte for byte");
   ok(!lost && computed == BUDGET - (rows > 0 ? rows - 1 : 0) && count_rows() == BUDGET + 1,
-     "no row lost, none computed twice: %d of %d were left for the last run", computed, BUDGET);
+     "no row of the killed search is lost and none computed twice: %d of %d were left for the last run", computed,
+     BUDGET);
   eo_text_done(&undisturbed);
   eo_text_done(&disturbed);
   empty_folder();

@@ -82,7 +82,8 @@ int main(void)
   bool done = wait_for(service, id, "done");
   char *undisturbed = result_of(service, id, &computed);
   eo_service_free(service);
-  ok(done && undisturbed && computed == BUDGET && count_rows() == BUDGET + 1, "undisturbed: %d evaluations", computed);
+  ok(done && undisturbed && computed == BUDGET && count_rows() == BUDGET + 1,
+     "an undisturbed service makes %d evaluations", computed);
 
   for (int round = 0; round < 10 && rows > BUDGET; round++) { /* through before the signal: once more from nothing */
     empty_folder();
@@ -92,11 +93,12 @@ int main(void)
       killed += serve_and_kill(count_rows() + (BUDGET / 2) / kills);
     rows = count_rows();
   }
-  ok(killed == kills, "killed %d times", killed);
+  ok(killed == kills, "the service is killed %d times", killed);
   service = start();
   ok(wait_for(service, id, "done"), "the next service goes on with the job");
   char *result = result_of(service, id, &rest);
-  ok(result && undisturbed && strcmp(result, undisturbed) == 0, "to the result of an undisturbed run, byte for byte");
+  ok(result && undisturbed && strcmp(result, undisturbed) == 0,
+     "the job comes to the result of an undisturbed one, byte for byte");
   ok(rows > 20 && rows <= BUDGET && rest == BUDGET + 1 - rows && count_rows() == BUDGET + 1,
      "nothing is evaluated twice: %d rows were there, %d were left", rows, rest);
   eo_service_free(service);

@@ -65,10 +65,10 @@ int main(int argc, char **argv)
            done ? "" : error.text);
     fflush(stdout);
     if (!done && !fair)
-      ok(false, "gear %d: %d/%d teeth, m %.4g mm: %s: %s", i, geometry.teeth[0], geometry.teeth[1],
+      ok(false, "gear %d is analysed: %d/%d teeth, m %.4g mm: %s: %s", i, geometry.teeth[0], geometry.teeth[1],
          1e3 * geometry.normal_module, error.pointer, error.text);
   }
-  ok(analysed + refused == count && analysed > count / 2, "%d of %d drawn gears analysed, %d refused", analysed, count,
-     refused);
+  ok(analysed + refused == count && analysed > count / 2, "%d of %d drawn gears are analysed, %d refused", analysed,
+     count, refused);
   return tap_done();
 }

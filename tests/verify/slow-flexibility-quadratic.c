@@ -116,7 +116,7 @@ static void study(const struct eo_geometry *g, const struct eo_gear_pair *pair, 
     printf("# %s, %2d layers: ours %.5f um, C3D20R %.5f um (ours %+.2f %%)\n", member ? "gear" : "pinion",
            step[i].layers, 1e6 * linear[i], 1e6 * quadratic[i], 100 * (linear[i] / quadratic[i] - 1));
   }
-  ok(fabs(linear[STEPS - 1] / quadratic[STEPS - 1] - 1) < 0.025, "%s: within 2.5 %% on the finest mesh",
+  ok(fabs(linear[STEPS - 1] / quadratic[STEPS - 1] - 1) < 0.025, "%s: the finest mesh is within 2.5 %%",
      member ? "gear" : "pinion");
   for (int i = 1; i < STEPS; i++) {
     ok(fabs(linear[i] - quadratic[i]) < 0.6 * fabs(linear[i - 1] - quadratic[i - 1]),

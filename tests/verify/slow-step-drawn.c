@@ -191,8 +191,9 @@ static void check_loaded(int index, int member, bool folded)
   remove_mesh(folder);
   for (int end = 0; end < ends; end++)
     eo_tooth_done(&tooth[end]);
-  ok(nodes > 100 && largest <= allowed, "pair %d, %s: OpenCASCADE meshes it; %d nodes within %.2g nm, %d above 10 nm%s",
-     index, member ? "gear" : "pinion", nodes, 1e9 * largest, off, folded ? ", folded by a relief" : "");
+  ok(nodes > 100 && largest <= allowed,
+     "pair %d, %s: OpenCASCADE meshes the tooth; %d nodes within %.2g nm, %d above 10 nm%s", index,
+     member ? "gear" : "pinion", nodes, 1e9 * largest, off, folded ? ", folded by a relief" : "");
 }
 
 /* What was not drawn is 0, which a document has as no number of its key. */
@@ -236,8 +237,8 @@ int main(int argc, char **argv)
       struct eo_text text = {0};
       eo_step_write(&design, &geometry, member, false, &text);
       double stated = text.failed ? INFINITY : stated_deviation(text.data, &folded[member]);
-      ok(stated <= 1e9 * allowed, "pair %d, %s: %zu kB, at most %.3g nm off%s", index, member ? "gear" : "pinion",
-         text.size / 1000, fmax(5, stated), folded[member] ? ", folded by a relief" : "");
+      ok(stated <= 1e9 * allowed, "pair %d, %s: the file has %zu kB and is at most %.3g nm off%s", index,
+         member ? "gear" : "pinion", text.size / 1000, fmax(5, stated), folded[member] ? ", folded by a relief" : "");
       eo_text_done(&text);
       fflush(stdout);
     }

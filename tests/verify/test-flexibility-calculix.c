@@ -104,7 +104,7 @@ static void take_mean_out(const struct eo_sector *sector, int teeth, const struc
   const struct eo_section *s = sector->section;
   int across = LAYERS + 1, each = s->cut_nodes * across;
   double *weight = calloc((size_t)each, sizeof *weight), sum[3] = {0}, mass = 0, inertia = 0;
-  ok(weight && !eo_member_cut_weights(sector, teeth, weight), "the cuts have weights");
+  ok(weight && !eo_member_cut_weights(sector, teeth, weight), "the cuts of the sector have weights");
   for (int i = 0; i < found->cuts && weight; i++) {
     double p[3], w = weight[i % each], angle = 2 * M_PI * (i / each) / teeth;
     eo_sector_position(sector, s->cut[0][i % each / across], i % across, p);
@@ -144,8 +144,8 @@ static void compare(int member, const struct eo_member_result *result, const str
       worst = fmax(worst, fabs(ours - theirs));
     }
     ok(largest > 1e-7 && worst < 0.01 * largest,
-       "%s, load case %d: within 1 %% of the largest displacement (%.4g um): %.4f %%", member ? "gear" : "pinion",
-       k + 1, 1e6 * largest, 100 * worst / largest);
+       "%s, load case %d: deflections are within 1 %% of the largest displacement (%.4g um): %.4f %%",
+       member ? "gear" : "pinion", k + 1, 1e6 * largest, 100 * worst / largest);
   }
 }
 

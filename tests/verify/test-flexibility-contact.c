@@ -144,14 +144,16 @@ static void compare_pairs(const struct eo_flexibility *flexibility, const struct
     printf("\n");
     compared++;
   }
-  ok(compared == 17, "%d positions compared", compared);
-  ok(load_difference < 0.03, "load of a pair within 3 %% of CalculiX everywhere: %.2f %%", 100 * load_difference);
+  ok(compared == 17, "%d positions are compared", compared);
+  ok(load_difference < 0.03, "the load of a pair is within 3 %% of CalculiX everywhere: %.2f %%",
+     100 * load_difference);
   near(largest[0][0], largest[0][1], 0.05, "largest root stress of the pinion, MPa");
   near(largest[1][0], largest[1][1], 0.05, "largest root stress of the gear, MPa");
   for (int member = 0; member < 2; member++) {
-    ok(stress_difference[member][0] < 0.05, "root stress of the %s within 5 %%: %.2f %%", member ? "gear" : "pinion",
-       100 * stress_difference[member][0]);
-    ok(stress_difference[member][1] < 0.15, "where only a corner of the flank touches within 15 %%: %.2f %%",
+    ok(stress_difference[member][0] < 0.05, "the root stress of the %s is within 5 %%: %.2f %%",
+       member ? "gear" : "pinion", 100 * stress_difference[member][0]);
+    ok(stress_difference[member][1] < 0.15,
+       "the root stress is within 15 %% where only a corner of the flank touches: %.2f %%",
        100 * stress_difference[member][1]);
   }
 }
@@ -213,7 +215,7 @@ static void compare_coupling(const struct eo_flexibility *uncoupled, const struc
   double apart = json_number_value(json_array_get(json_object_get(reference, "LTE_um"), 3));
   near(two_pairs(uncoupled, g, m), apart, 0.02, "transmission error, each pair in its own sector, um");
   ok(!eo_flexibility_prepare(g, pair, m, &settings, NULL, NULL, &coupled, NULL),
-     "prepared with five teeth and coupling");
+     "the pair is prepared with five teeth and coupling");
   if (coupled)
     near(two_pairs(coupled, g, m), 8.16, 0.02, "transmission error, both pairs in one sector, um");
   eo_flexibility_free(coupled);

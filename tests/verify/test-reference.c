@@ -107,10 +107,10 @@ static void check_levels(struct bench *bench)
   near(1e6 * c->mean, 7.15, 0.01, "mean loaded transmission error, um");
   near(stiffness / 1e6, 1309, 0.01, "mean secant stiffness, N/um");
   near(stiffness / 1e9 * pow(cos(geometry.base_helix_angle), 2) / geometry.face_width, 20.17, 0.02,
-       "the same per face width, transverse, against ISO 6336-1 c_gamma, N/(mm um)");
+       "mean secant stiffness per face width, transverse, against ISO 6336-1 c_gamma, N/(mm um)");
   near(c->end[0].impact.force, 4280, 0.01, "entering impact, N");
-  near(c->end[0].impact.speed, 0.257, 0.01, "its speed, m/s");
-  near(c->end[0].impact.duration, 0.47e-3, 0.01, "its duration, s");
+  near(c->end[0].impact.speed, 0.257, 0.01, "speed of the entering impact, m/s");
+  near(c->end[0].impact.duration, 0.47e-3, 0.01, "duration of the entering impact, s");
   /* 46..50 MPa there, 49.7 by ISO 6336-3. */
   for (int member = 0; member < 2; member++)
     near(c->end[0].root[member].maximum / 1e6, 49.7, 0.1,
@@ -142,7 +142,7 @@ static void check_impact(struct bench *bench)
              ? NAN
              : bench->analysis->evaluation->load_case[1].end[0].impact.force;
   ok(fabs(tip / plain - 1) < 0.03 && root < 0.85 * plain,
-     "impact %.0f N, with tip relief %.0f N, with root relief %.0f N", plain, tip, root);
+     "the impact is %.0f N, with tip relief %.0f N, with root relief %.0f N", plain, tip, root);
 }
 
 int main(void)

@@ -261,7 +261,7 @@ static void check_part(const json_t *whole, const struct part *part, const char 
     move_expected(&t, &v);
     walk(&t, t.root);
     clock_gettime(CLOCK_MONOTONIC, &end);
-    ok(t.tried > 0 && t.fooled == 0, "%s: %s: %d of %d mutations are not noticed (%.1f s)", part->file, part->block,
+    ok(t.tried > 0 && t.fooled == 0, "%s: %s notices every mutation but %d of %d (%.1f s)", part->file, part->block,
        t.fooled, t.tried, (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec));
   }
   eo_verification_done(&v);
@@ -276,7 +276,8 @@ static void refused(const char *text, const char *pointer, const char *sentence)
   enum eo_code code = eo_verify_run(file, &v, &error);
   const struct eo_error *fault = &eo_case_faults(file)->fault[0];
   ok(!code && eo_case_faulty(file) && strcmp(fault->pointer, pointer) == 0 && strstr(fault->text, sentence),
-     "%s: %s: %s", text, eo_case_faulty(file) ? fault->pointer : "", eo_case_faulty(file) ? fault->text : "accepted");
+     "%s is a fault: %s: %s", text, eo_case_faulty(file) ? fault->pointer : "",
+     eo_case_faulty(file) ? fault->text : "accepted");
   eo_case_close(file);
   eo_verification_done(&v);
 }
@@ -342,7 +343,7 @@ int main(void)
     if (whole)
       check_part(whole, &parts[i], folder ? folder : "tests/cases");
     else
-      ok(false, "%s: %s", path, error.text);
+      ok(false, "%s is read: %s", path, error.text);
   }
   json_decref(whole);
   return tap_done();
