@@ -63,17 +63,17 @@ static void test_framing(void)
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     bool closes;
     int status = send_raw(wrong[i].text, wrong[i].size, &closes);
-    ok(status == wrong[i].status && closes, "%s: %d, and the connection %s", wrong[i].what, status,
+    ok(status == wrong[i].status && closes, "%s: refused with %d, and the connection %s", wrong[i].what, status,
        closes ? "ends" : "stays");
   }
   struct reply reply = call("GET", API "/health%00x", NULL, NULL);
-  ok(reply.status == 404, "a NUL in a path ends nothing: %d", reply.status);
+  ok(reply.status == 404, "a NUL in a path is answered with %d", reply.status);
   free_reply(&reply);
   reply = call("GET", API "/jobs?limit=5%00", NULL, NULL);
-  ok(reply.status == 400, "nor in a query: %d", reply.status);
+  ok(reply.status == 400, "a NUL in a query is answered with %d", reply.status);
   free_reply(&reply);
   reply = call("GET", API "/health%2f%2E%2e/x", NULL, NULL);
-  ok(reply.status == 400, "what is decoded is looked at: %d", reply.status);
+  ok(reply.status == 400, "a path is looked at once it is decoded, answer %d", reply.status);
   free_reply(&reply);
 }
 
@@ -92,7 +92,7 @@ static void test_signals(void)
 static void test_log_without_reader(void)
 {
   int ends[2], kept = dup(STDERR_FILENO), good = 0;
-  if (pipe2(ends, O_CLOEXEC) != 0 || !getenv("EASEOFF"))
+  if (!ok(getenv("EASEOFF") && pipe2(ends, O_CLOEXEC) == 0, "a pipe is made that nobody reads"))
     return;
   setenv("SHOW_LOG", "1", 1);
   dup2(ends[1], STDERR_FILENO);
@@ -105,12 +105,13 @@ static void test_log_without_reader(void)
   ok(started && good == 1500, "a log that nobody reads holds nobody up: %d of 1500 answered", good);
   double begun = seconds_now();
   int status = stop_server(SIGTERM);
-  ok(status == 0 && seconds_now() - begun < 8, "nor the stop: %.1f s", seconds_now() - begun);
+  ok(status == 0 && seconds_now() - begun < 8, "a log that nobody reads does not hold up the stop, which takes %.1f s",
+     seconds_now() - begun);
   char text[4096];
   ssize_t got = read(ends[0], text, sizeof text - 1);
   text[got > 0 ? got : 0] = '\0';
   ok(strstr(text, "\"client\":\"127.0.0.1\"") && strstr(text, "\"level\":\"info\"") && strstr(text, "\"user\":\"-\""),
-     "a line says who asked");
+     "a line of the log says who asked");
   close(ends[0]);
   close(kept);
 }
@@ -141,16 +142,17 @@ static void test_slow_uploads(void)
     refused += status == 429;
   }
   /* a refusal is only sent once the body has come or the connection closes: what is small is drained */
-  ok(held >= 4 && held + refused == MANY, "of %d uploads of one client %d are on their way", MANY, held);
+  ok(held >= 4 && held + refused == MANY, "%d uploads of one client come, and %d are on their way", MANY, held);
   char rest;
   struct timeval limit = {.tv_sec = 25};
   double begun = seconds_now();
   setsockopt(connection[0], SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   ssize_t got = recv(connection[0], &rest, 1, 0);
-  ok(got <= 0 && seconds_now() - begun < 20, "one that sends nothing is let go after %.0f s", seconds_now() - begun);
+  ok(got <= 0 && seconds_now() - begun < 20, "an upload that sends nothing is let go after %.0f s",
+     seconds_now() - begun);
   for (int i = 0; i < MANY; i++)
     close(connection[i]);
-  ok(is_alive(), "the server lives");
+  ok(is_alive(), "the server answers after all these uploads");
 }
 
 /* Chunks without end: the limit of recordings is met without a stated length. */
@@ -210,21 +212,21 @@ static void test_large_order(void)
   double begun = seconds_now();
   struct reply reply = call("POST", path, NULL, "");
   free_reply(&reply);
-  ok(wait_for_job(id, "cancelled", 10) && seconds_now() - begun < 3, "and ends %.2f s after it was cancelled",
+  ok(wait_for_job(id, "cancelled", 10) && seconds_now() - begun < 3, "a large order ends %.2f s after it was cancelled",
      seconds_now() - begun);
   job = call_json("POST", API "/jobs", NULL, text, &status);
   json_decref(job);
   wait_for_job(id + 1, "preparing", 20);
   begun = seconds_now();
-  ok(stop_server(SIGTERM) == 0 && seconds_now() - begun < 5, "a stop does not wait for it: %.2f s",
+  ok(stop_server(SIGTERM) == 0 && seconds_now() - begun < 5, "a stop does not wait for a large order, but takes %.2f s",
      seconds_now() - begun);
-  ok(start_server("--quiet", "--pair-memory-MB", "500"), "a server that allows less");
+  ok(start_server("--quiet", "--pair-memory-MB", "500"), "a server that allows less memory starts");
   job = call_json("POST", API "/analyze", NULL, alone, &status);
   const char *detail = json_string_value(json_object_get(job, "detail"));
-  ok(status == 422 && detail && strstr(detail, "500 MB"), "refuses such a pair with the figures: %s",
-     detail ? detail : "");
+  ok(status == 422 && detail && strstr(detail, "500 MB"),
+     "a pair above the allowed memory is refused with the figures: %s", detail ? detail : "");
   json_decref(job);
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(stop_server(SIGTERM) == 0, "the server that allows less memory stops when told");
   json_decref(order);
   json_decref(design);
   free(text);
@@ -251,43 +253,46 @@ static void test_tokens(void)
   ok(!start_server("--quiet"), "a short token is refused");
   waitpid(server.pid, NULL, 0);
   setenv("EASEOFF_TOKEN", token, 1);
-  ok(start_server("--quiet", "--wrong-tokens-per-minute", "20", "--session-hours", "0.0004"), "a server with a token");
+  ok(start_server("--quiet", "--wrong-tokens-per-minute", "20", "--session-hours", "0.0004"),
+     "a server with a token starts");
   unsetenv("EASEOFF_TOKEN");
   snprintf(text, sizeof text, "/proc/%d/environ", (int)server.pid);
   char environment[100000] = "";
   int file = open(text, O_RDONLY | O_CLOEXEC);
   ssize_t size = file >= 0 ? read(file, environment, sizeof environment) : 0;
-  ok(size > 0 && !memmem(environment, (size_t)size, token, strlen(token)), "its environment does not keep the token");
+  ok(size > 0 && !memmem(environment, (size_t)size, token, strlen(token)),
+     "the environment of the server does not keep the token");
   close(file);
   for (int i = 0; i < 60; i++) {
     int status = ask(BEARER "a-guess-of-useful-length\r\n");
     told += status == 401;
     waits += status == 429;
   }
-  ok(told >= 20 && told <= 30 && told + waits == 60, "of 60 wrong tokens %d are told so, %d wait", told, waits);
-  ok(ask(right) == 200, "the right one from the same address is never refused");
+  ok(told >= 20 && told <= 30 && told + waits == 60, "60 wrong tokens are refused: %d are told so, %d wait", told,
+     waits);
+  ok(ask(right) == 200, "the right token from the same address is never refused");
   snprintf(text, sizeof text, "{\"token\":\"%s\"}", token);
   struct reply reply = call("POST", API "/session", NULL, text);
   const char *set = header_of(&reply, "Set-Cookie");
   char cookie[300];
   snprintf(cookie, sizeof cookie, "Cookie: %.*s\r\n", set ? (int)strcspn(set, ";") : 0, set ? set : "");
-  ok(reply.status == 204 && ask(cookie) == 200, "a session begins");
+  ok(reply.status == 204 && ask(cookie) == 200, "a session begins with the right token");
   free_reply(&reply);
   reply = call("POST", API "/session", NULL, text);
   set = header_of(&reply, "Set-Cookie");
-  ok(set && strncmp(set, cookie + 8, strcspn(cookie + 8, "\r")) != 0, "each has a name of its own");
+  ok(set && strncmp(set, cookie + 8, strcspn(cookie + 8, "\r")) != 0, "each session has a name of its own");
   free_reply(&reply);
   reply = call("DELETE", API "/session", cookie, NULL);
   free_reply(&reply);
-  ok(ask(cookie) == 401, "one that was ended is over");
+  ok(ask(cookie) == 401, "a session that was ended opens nothing");
   reply = call("POST", API "/session", NULL, text);
   set = header_of(&reply, "Set-Cookie");
   snprintf(cookie, sizeof cookie, "Cookie: %.*s\r\n", set ? (int)strcspn(set, ";") : 0, set ? set : "");
   free_reply(&reply);
   for (int i = 0; i < 75; i++)
     wait_a_little();
-  ok(ask(cookie) == 401, "and so is one whose time is over");
-  ok(stop_server(SIGTERM) == 0, "it stops");
+  ok(ask(cookie) == 401, "a session whose time is over opens nothing");
+  ok(stop_server(SIGTERM) == 0, "the server with a token stops when told");
 }
 
 /* The client is whom a proxy names that is trusted, and nobody else. */
@@ -296,7 +301,7 @@ static void test_proxy(void)
   int mine = 0, other = 0;
   ok(start_server("--quiet", "--trusted-proxies", "127.0.0.1, 10.0.0.0/8", "--base-path", "/easeoff",
                   "--questions-at-once", "5", "--questions-per-second", "0.01"),
-     "a server behind a proxy");
+     "a server behind a proxy starts");
   for (int i = 0; i < 8; i++) {
     struct reply reply = call("POST", API "/check", "X-Forwarded-For: 203.0.113.9, 10.1.2.3\r\n", "{}");
     mine += reply.status == 429;
@@ -305,20 +310,22 @@ static void test_proxy(void)
   struct reply reply = call("POST", API "/check", "X-Forwarded-For: 203.0.113.9, 203.0.113.10\r\n", "{}");
   other = reply.status;
   free_reply(&reply);
-  ok(mine == 3 && other == 422, "each client behind it has rates of its own: %d refused, the other %d", mine, other);
+  ok(mine == 3 && other == 422, "each client behind the proxy has rates of its own: %d refused, the other %d", mine,
+     other);
   char *design = coarse_text();
   reply = call("POST", "/easeoff" API "/designs", "X-Forwarded-For: 203.0.113.11\r\n", design);
   const char *place = header_of(&reply, "Location");
-  ok(reply.status == 201 && place && strcmp(place, "/easeoff" API "/designs/1") == 0, "its path stands in Location: %s",
-     place ? place : "none");
+  ok(reply.status == 201 && place && strcmp(place, "/easeoff" API "/designs/1") == 0,
+     "the path of the proxy stands in Location: %s", place ? place : "none");
   free_reply(&reply);
   free(design);
   reply = call("DELETE", API "/session", "X-Forwarded-Proto: https\r\n", NULL);
   const char *set = header_of(&reply, "Set-Cookie");
-  ok(set && strstr(set, "Secure") && strstr(set, "Path=/easeoff/"), "a cookie is for TLS alone: %s", set ? set : "");
+  ok(set && strstr(set, "Secure") && strstr(set, "Path=/easeoff/"), "a session's cookie is sent over TLS alone: %s",
+     set ? set : "");
   free_reply(&reply);
-  ok(stop_server(SIGTERM) == 0, "it stops");
-  ok(!start_server("--quiet", "--trusted-proxies", "10.0.0.0/64"), "a network that is none is refused");
+  ok(stop_server(SIGTERM) == 0, "the server behind a proxy stops when told");
+  ok(!start_server("--quiet", "--trusted-proxies", "10.0.0.0/64"), "a network of proxies that is none is refused");
   waitpid(server.pid, NULL, 0);
 }
 
@@ -334,7 +341,7 @@ int main(void)
   test_slow_uploads();
   test_signals();
   test_log_without_reader();
-  ok(start_server("--quiet", "--threads", "2"), "again, for a large order");
+  ok(start_server("--quiet", "--threads", "2"), "the server starts again for a large order");
   test_large_order();
   test_tokens();
   test_proxy();

@@ -41,26 +41,27 @@ static void against_reference(struct eo_vibration_solver *solver, const json_t *
   for (int end = 0; end < 2; end++) {
     struct eo_error error = {0};
     int failed = eo_law_set_tangent(&law[end], POSITIONS, s->z[end], s->k[end], s->load, ORDER, -1e-4, &error);
-    ok(!failed, "the law is set %s", error.text);
+    ok(!failed, "the stiffness law of S02 is set %s", error.text);
   }
   ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED,
-     "S02 tangent law converges");
-  near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n"), 1e-3, "S02 rms_n");
-  near(r.rms_pair[EO_READING_TRANSVERSE], number_of(out, "rms_t"), 1e-3, "S02 rms_t");
-  near(r.rms_pair[EO_READING_ROTATIONAL], number_of(out, "rms_rot"), 1e-3, "S02 rms_rot");
-  near(r.force_min[0] / s->load, number_of(s02, "Fmin_over_P"), 1e-3, "S02 smallest force");
+     "the tangent law of S02 converges");
+  near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n"), 1e-3, "normal RMS of S02");
+  near(r.rms_pair[EO_READING_TRANSVERSE], number_of(out, "rms_t"), 1e-3, "transverse RMS of S02");
+  near(r.rms_pair[EO_READING_ROTATIONAL], number_of(out, "rms_rot"), 1e-3, "rotational RMS of S02");
+  near(r.force_min[0] / s->load, number_of(s02, "Fmin_over_P"), 1e-3, "smallest force of S02");
   double complex order[1 + HARMONICS];
   eo_vibration_orders(solver, EO_CHANNEL_NORMAL, 0, order);
   const json_t *harmonics = json_object_get(s02, "acc_harmonics_n");
+  ok(json_array_size(harmonics) > 0, "the case S02 has harmonics of its acceleration");
   for (size_t k = 1; k <= json_array_size(harmonics); k++)
     close_to(cabs(order[k]), json_number_value(json_array_get(harmonics, k - 1)), 1e-3 * 12.3,
-             "S02 acceleration harmonic");
+             "acceleration harmonic of S02");
   for (int end = 0; end < 2; end++)
     eo_law_set_secant(&law[end], POSITIONS, s->z[end], s->load, 1e-6 * json_number_value(json_array_get(datum, end)),
                       ORDER, -1e-4, NULL);
   ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED,
-     "S02 secant law converges");
-  near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n_secant"), 1e-3, "S02 rms_n_secant");
+     "the secant law of S02 converges");
+  near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n_secant"), 1e-3, "normal RMS of S02 by the secant law");
   eo_law_done(&law[0]);
   eo_law_done(&law[1]);
 }
@@ -176,7 +177,7 @@ static void default_parameters(const json_t *evaluation, const char *name)
   pair_of(given, &g, &pair);
   supports = resolved_supports(&pair, &g);
   int failed = eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, false, 20e9 * pair.face_width, &error);
-  ok(!failed, "%s parameters %s", name, error.text);
+  ok(!failed, "%s parameters are derived %s", name, error.text);
   const struct {
     const char *key;
     double value;
@@ -216,9 +217,10 @@ static void torsional_coupling(const json_t *evaluation)
   pair_of(json_object_get(json_object_get(evaluation, "pairs"), "P0"), &g, &pair);
   supports = resolved_supports(&pair, &g);
   eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, true, 1e9, NULL);
-  near(p.groove_torsional_stiffness[0], 12487038.99751322, 1e-12, "kt_p");
-  near(p.groove_torsional_stiffness[1], 841121351.5381075, 1e-12, "kt_g");
-  near(p.groove_torsional_damping[0], 0.04 * sqrt(12487038.99751322 * 0.008133856745044276 / 2), 1e-12, "ct_p");
+  near(p.groove_torsional_stiffness[0], 12487038.99751322, 1e-12, "torsional stiffness of the pinion's groove kt_p");
+  near(p.groove_torsional_stiffness[1], 841121351.5381075, 1e-12, "torsional stiffness of the gear's groove kt_g");
+  near(p.groove_torsional_damping[0], 0.04 * sqrt(12487038.99751322 * 0.008133856745044276 / 2), 1e-12,
+       "torsional damping of the pinion's groove ct_p");
   supports.groove_torsional_stiffness[EO_GEAR] = NAN;
   ok(eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, true, 1e9, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/supports/gear_groove_torsional_stiffness_Nm_per_rad") == 0,
@@ -226,7 +228,7 @@ static void torsional_coupling(const json_t *evaluation)
   supports.mass[EO_PINION] = NAN;
   ok(eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, false, 1e9, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/supports/pinion_mass_kg") == 0,
-     "and so is a mass: %s", error.text);
+     "a mass that nobody derived is refused: %s", error.text);
 }
 
 int main(void)

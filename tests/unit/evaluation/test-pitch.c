@@ -50,12 +50,18 @@ static const struct eo_pitch_case *run(struct eo_design *design)
   return &analysis->pitch.load_case[0];
 }
 
-static double amplitude(const struct eo_pitch_case *c, const char *name)
+static const struct eo_pitch_order *find_order(const struct eo_pitch_case *c, const char *name)
 {
   for (int i = 0; i < c->orders; i++)
     if (strcmp(c->order[i].name, name) == 0)
-      return c->order[i].transmission;
-  return NAN;
+      return &c->order[i];
+  return NULL;
+}
+
+static double amplitude(const struct eo_pitch_case *c, const char *name)
+{
+  const struct eo_pitch_order *order = find_order(c, name);
+  return order ? order->transmission : NAN;
 }
 
 static void test_drawn(void)
@@ -85,7 +91,7 @@ static void test_drawn(void)
   eo_pitch_draw(&tolerance, 0.5, GEAR, 7, 1, again);
   for (int i = 0; i < GEAR; i++)
     differ = differ || index[i] != again[i];
-  ok(differ, "... and other ones for the other hand");
+  ok(differ, "the same seed draws other teeth for the other hand");
   double most = 0, mean = 0, square = 0;
   for (uint64_t seed = 0; seed < 60; seed++) {
     eo_tooth_form_draw(&tolerance, 0.5, EO_TOOTH_LEAD_CROWNING, GEAR, seed, 1, index);
@@ -123,13 +129,14 @@ static void test_stop(void)
   analysis->progress = &progress;
   run(&design);
   int asked = patience.asked;
+  ok(asked > 2, "the evaluation asks %d times whether to go on", asked);
   for (int most = 1; most<asked; most += asked> 2 ? asked - 2 : 1) {
     patience = (struct patience){.most = most};
-    ok(asked > 2 && eo_analysis_run(analysis, &design, EO_WANT_PITCH, &error) == EO_ERROR_CANCELLED,
-       "stopped when asked for the %dth of %d times", most + 1, asked);
+    ok(eo_analysis_run(analysis, &design, EO_WANT_PITCH, &error) == EO_ERROR_CANCELLED,
+       "the evaluation is stopped when asked for the %dth of %d times", most + 1, asked);
   }
   analysis->progress = NULL;
-  ok(amplitude(run(&design), "pinion 1") == undisturbed, "and whole again");
+  ok(amplitude(run(&design), "pinion 1") == undisturbed, "the evaluation is whole again after a stop");
 }
 
 /* LTE of amplitude e at the member's order, less what pairs in contact average. */
@@ -164,7 +171,7 @@ static void test_eccentricity_phase(void)
       /* displaced by e (cos, sin) of the angle from the line of centres; the drive flank of the driver looks ahead */
       double sense = (side == EO_DRIVE_FLANK) == (member == EO_PINION) ? 1 : -1;
       close_to(1e6 * tooth[quarter].index * at, 2 * (cos(turn) * sin(alpha) + sense * sin(turn) * cos(alpha)), 1e-9,
-               "displacement along the line of action a quarter turn on");
+               "displacement along the line of action a quarter turn on, um");
     }
 }
 
@@ -177,8 +184,8 @@ static void test_wobble(void)
   /* the pinion floats back by what its teeth are displaced, so that nothing is left of it but the float */
   ok(c->float_swing > 5.5e-6 && c->float_swing < 6.01e-6,
      "the pinion shuttles against its teeth's axial wobble (%.3f um)", 1e6 * c->float_swing);
-  ok(amplitude(c, "pinion 1") < 1e-3 * 3e-6 * lean + 2e-9, "... and the transmission error does not know (%.2e m)",
-     amplitude(c, "pinion 1"));
+  ok(amplitude(c, "pinion 1") < 1e-3 * 3e-6 * lean + 2e-9,
+     "the transmission error does not know of the axial wobble (%.2e m)", amplitude(c, "pinion 1"));
 }
 
 /* Any numbers of both members' teeth, the same on both hands. */
@@ -215,9 +222,10 @@ static void test_coast(void)
   c = run(&astern);
   for (int i = 0; i < n; i++)
     most = fmax(most, fabs(c->transmission[i] - before[i]));
-  ok(c->meeting.side == EO_COAST_FLANK && most < 1e-11, "coast flanks, tables reversed: the same curve (%.1e m)", most);
+  ok(c->meeting.side == EO_COAST_FLANK && most < 1e-11,
+     "coast flanks with reversed tables have the same curve (%.1e m)", most);
   ok(eo_pitch_tooth(&astern.pitch, &c->meeting, EO_PINION, PINION, 1) == PINION - 1,
-     "... teeth are named by the body's count");
+     "teeth are named by the body's count");
   free(before);
 }
 
@@ -231,17 +239,17 @@ static void test_parseval(void)
     square += pow(c->transmission[i], 2) / c->hunting.instants;
   for (int k = 1; k < c->lines; k++)
     lines += pow(cabs(c->line[k]), 2) / (k == c->hunting.instants / 2 ? 1 : 2);
-  near(lines, square, 1e-12, "Parseval: the lines' mean square is the curve's");
+  near(lines, square, 1e-12, "mean square of the lines against that of the curve (Parseval)");
   for (int member = 0; member < 2; member++) {
     double complex first = 0;
     int bins = c->hunting.teeth[member] * POSITIONS;
     for (int i = 0; i < bins; i++)
       first += 2 * c->turn[member][i] * cexp(-2 * M_PI * I * i / bins) / bins;
     near(cabs(first), amplitude(c, member ? "gear 1" : "pinion 1"), 1e-9,
-         "the average over the turns of a member keeps its order");
+         "order of a member in the average over its turns");
   }
-  ok(c->hunting.cycles == 90 && c->peak_to_peak > 10e-6, "%d cycles, %.1f um peak to peak", c->hunting.cycles,
-     1e6 * c->peak_to_peak);
+  ok(c->hunting.cycles == 90 && c->peak_to_peak > 10e-6, "the period has %d cycles and %.1f um peak to peak",
+     c->hunting.cycles, 1e6 * c->peak_to_peak);
 }
 
 static void test_vibration(void)
@@ -249,10 +257,11 @@ static void test_vibration(void)
   struct eo_design design = plain_design();
   const struct eo_pitch_case *c = run(&design);
   const struct eo_vibration *v = &analysis->evaluation->load_case[0].vibration;
-  ok(c->response.outcome == EO_LONG_IN_CONTACT && c->response.change < 1e-6, "the motion repeats");
+  ok(c->response.outcome == EO_LONG_IN_CONTACT && c->response.change < 1e-6, "the motion repeats after a period");
   near(c->response.rms[EO_READING_NORMAL], v->rms_pair[EO_READING_NORMAL], 3e-3,
-       "teeth alike: the RMS of the harmonic balance, normal");
-  near(c->response.rms[EO_READING_ROTATIONAL], v->rms_pair[EO_READING_ROTATIONAL], 3e-3, "... rotational");
+       "RMS of teeth alike by the harmonic balance, normal");
+  near(c->response.rms[EO_READING_ROTATIONAL], v->rms_pair[EO_READING_ROTATIONAL], 3e-3,
+       "RMS of teeth alike by the harmonic balance, rotational");
   /* so slow that inertia does nothing: the relative motion is the transmission error itself */
   design.pitch.member[1].eccentricity = 5e-6;
   double normal = cos(pair->geometry.base_helix_angle);
@@ -263,11 +272,10 @@ static void test_vibration(void)
     c = run(&design);
     snprintf(what, sizeof what, "at %.3g rpm the gear's order accelerates by omega^2 times its transmission error",
              speed * 30 / M_PI);
-    ok(c->response.outcome == EO_LONG_IN_CONTACT, "in contact");
-    for (int i = 0; i < c->orders; i++)
-      if (strcmp(c->order[i].name, "gear 1") == 0)
-        near(c->order[i].acceleration[EO_READING_NORMAL], omega * omega * normal * c->order[i].transmission, 2e-2,
-             what);
+    const struct eo_pitch_order *order = find_order(c, "gear 1");
+    ok(c->response.outcome == EO_LONG_IN_CONTACT && order, "the pair stays in contact, and the gear has its order");
+    near(order ? order->acceleration[EO_READING_NORMAL] : NAN, omega * omega * normal * amplitude(c, "gear 1"), 2e-2,
+         what);
   }
 }
 
@@ -290,7 +298,7 @@ static void test_threads(void)
   }
   analysis->threads = 1;
   free(first);
-  ok(same, "one thread and two: the same bytes");
+  ok(same, "one thread and two give the same bytes");
 }
 
 static bool faulty(const char *pitch, const char *pointer, const char *text)
@@ -334,33 +342,36 @@ static void test_document(void)
      "single pitch deviations add up, decimal commas are read");
   json_t *written = eo_pitch_encode(&read, 2);
   eo_pitch_decode(written, &teeth, &again, faults);
-  ok(faults->count == 0 && memcmp(&read, &again, sizeof read) == 0, "written and read again it is the same");
+  ok(faults->count == 0 && memcmp(&read, &again, sizeof read) == 0,
+     "pitch deviations written and read again are the same");
   json_decref(written);
   json_decref(object);
   free(faults);
   ok(faulty("{\"pinion\":{\"left\":{\"index_um\":[1,2,3]}}}", "/pitch/pinion/left/index_um", "18 teeth"),
-     "a table of another length names key and teeth");
+     "a fault of a table of another length names key and teeth");
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,index_um\\n0,1\\n1,x\\n\"}}}", "/pitch/gear/left/csv",
             "Line 3, column 2"),
      "a cell that is no number has its line and column");
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,index_um\\n0,1\\n0,2\\n\"}}}", "/pitch/gear/left/csv", "already"),
-     "a tooth that is there twice");
-  ok(faulty("{\"csv\":\"tooth,index_um\\n0,1\\n\"}", "/pitch/csv", "member"), "a table of the pair says whose teeth");
+     "a tooth that is there twice is refused");
+  ok(faulty("{\"csv\":\"tooth,index_um\\n0,1\\n\"}", "/pitch/csv", "member"),
+     "a fault in a table of the pair says whose teeth");
   ok(faulty("{\"csv\":\"member,end,flank,tooth,single_um\\ngear,left,coast,1,0\\ngear,left,coast,2,1.5\\n"
             "gear,left,coast,3,1.5\\n\"}",
             "/pitch/csv", "of the gear, left end, coast flank, add up to 3 um over 3 teeth"),
      "single pitch deviations that do not come back to the first tooth name whose they are and their sum");
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.4\\n3,-0.1\\n\"}}}", "/pitch/gear/left/csv",
             "index_um"),
-     "... and ask whether they are index deviations");
+     "the fault of such a sum asks whether they are index deviations");
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.3\\n3,-0.8\\n\"}}}",
             "/pitch/gear/left/single_um", "") ||
          faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,single_um\\n1,0.4\\n2,0.3\\n3,-0.8\\n\"}}}",
                 "/pitch/gear/left/index_um", "3"),
-     "a sum that rounding to tenths leaves is none: the next fault is that of three teeth");
+     "a sum that rounding to tenths leaves is no fault, and the next one is that of three teeth");
   ok(faulty("{\"csv\":\"member,end,flank,tooth,index_um\\n\"}", "/pitch/csv", "not one tooth"),
-     "headings without teeth");
-  ok(faulty("{\"pinion\":{\"eccentricity\":1}}", "/pitch/pinion/eccentricity", ""), "an unknown key");
+     "headings without teeth are refused");
+  ok(faulty("{\"pinion\":{\"eccentricity\":1}}", "/pitch/pinion/eccentricity", ""),
+     "an unknown key of the pitch is refused");
 }
 
 static void test_refusals(void)
@@ -371,17 +382,17 @@ static void test_refusals(void)
   design.pitch.positions = 5;
   ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/pitch/positions_per_cycle") == 0,
-     "positions that are not among the resolution's");
+     "positions that are not among the resolution's are refused");
   design.pitch.positions = 0;
   design.pitch.member[1].tolerance_class = 12;
   ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/pitch/gear/tolerance_class") == 0,
-     "a class that ISO 1328-1:2013 does not have");
+     "a class that ISO 1328-1:2013 does not have is refused");
   design.pitch.member[1].tolerance_class = 0;
   design.pitch.member[1].flank_class = 12;
   ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
          strcmp(error.pointer, "/pitch/gear/flank_class") == 0,
-     "... of flanks");
+     "a class of flanks that ISO 1328-1:2013 does not have is refused");
 }
 
 int main(void)

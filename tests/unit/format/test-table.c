@@ -133,11 +133,12 @@ static void test_optional(void)
   ok(read_outer("{\"maybe\":{}}", NULL) == 1, "an optional object that is there requires what it says");
   ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2}]}",
                 "{\"maybe\":null,\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2,\"series_mm\":[]}]}") == 0,
-     "rows with series");
-  ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2,11]},{\"number\":12}]}", NULL) == 2, "rows with faults");
+     "rows with series are read and written");
+  ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2,11]},{\"number\":12}]}", NULL) == 2,
+     "each fault of rows is told");
   ok(read_outer("{\"maybe\":3,\"rows\":[{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0}]}",
                 NULL) == 2,
-     "no object; too many rows");
+     "what is no object and too many rows are told");
 }
 
 /* What requests have that designs do not: another name of a key, an object that somebody else reads, whole numbers that
