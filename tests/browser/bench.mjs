@@ -63,13 +63,13 @@ const opened = await page.evaluate(() => ({
 await page.waitForTimeout(3000);
 const start = longestTask(await browser.stopTracing());
 const shift = await page.evaluate(() => window.shift);
-ok(opened.words <= MOST.words, `first words after ${opened.words.toFixed(2)} s`);
-ok(opened.figures <= MOST.figures, `numbers of a cached pair after ${opened.figures.toFixed(2)} s`);
-ok(opened.bytes <= MOST.bytes, `${(opened.bytes / 1000).toFixed(0)} kB to the form`);
-ok(shift < MOST.shift, `layout shift ${shift.toFixed(4)}`);
+ok(opened.words <= MOST.words, `the first words come after ${opened.words.toFixed(2)} s`);
+ok(opened.figures <= MOST.figures, `the numbers of a cached pair come after ${opened.figures.toFixed(2)} s`);
+ok(opened.bytes <= MOST.bytes, `the form takes ${(opened.bytes / 1000).toFixed(0)} kB`);
+ok(shift < MOST.shift, `the layout shifts by ${shift.toFixed(4)}`);
 ok(
   start.processor <= MOST.task,
-  `longest task of the start ${start.processor.toFixed(0)} ms of a processor, ${start.wall.toFixed(0)} ms by the clock`,
+  `the start has a task of ${start.processor.toFixed(0)} ms of a processor, ${start.wall.toFixed(0)} ms by the clock`,
 );
 
 let updates = 0;
@@ -89,10 +89,10 @@ const seconds = (performance.now() - began) / 1000;
 const drag = longestTask(await browser.stopTracing());
 await page.mouse.up();
 const rate = updates / seconds;
-ok(rate >= LEAST_UPDATES, `${rate.toFixed(1)} updates a second in a drag of ${seconds.toFixed(1)} s`);
+ok(rate >= LEAST_UPDATES, `a drag of ${seconds.toFixed(1)} s brings ${rate.toFixed(1)} updates a second`);
 ok(
   drag.processor <= MOST.task,
-  `longest task of the drag ${drag.processor.toFixed(0)} ms of a processor, ${drag.wall.toFixed(0)} ms by the clock`,
+  `a drag has a task of ${drag.processor.toFixed(0)} ms of a processor, ${drag.wall.toFixed(0)} ms by the clock`,
 );
 note(`load average ${(await readFile('/proc/loadavg', 'utf8').catch(() => 'unknown')).trim()}`);
 note(`Chromium by playwright-core ${load('playwright-core/package.json').version}`);

@@ -231,13 +231,13 @@ for (const [turn, example] of names.entries())
       }
     });
     note(`${example}: ${edits} edits of ${fields} fields`);
-    ok(edits > (ALL ? 300 : 5), `${example}: ${edits} edits`);
+    ok(edits > (ALL ? 300 : 5), `${example} has ${edits} edits`);
   });
 
 note(JSON.stringify(counts));
 for (const text of wrong) note(text);
 ok(wrong.length === 0, 'each edit leads to a result, or to a fault at its field');
-ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+ok(troubles.length === 0, `the page throws no errors: ${troubles.join('; ')}`);
 await browser.close();
 await server.remove();
 finish();

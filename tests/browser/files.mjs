@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that are dropped on the page: of other programs, of this one, a grid on a flank, recordings on the rig.
 import { readFile } from 'node:fs/promises';
-import { COARSE, LOOSE, Server, WAIT, chapter, drop, finish, ok, openBrowser, settled } from './harness.mjs';
+import { COARSE, LOOSE, Server, WAIT, chapter, comes, drop, finish, ok, openBrowser, settled } from './harness.mjs';
 
 const START = `#design?from=paper-case-a&${LOOSE}`;
 const CASES = `${process.env.SOURCES}/tests/cases/exchange`;
@@ -33,23 +33,26 @@ await chapter('a gear unit of two stages', async () => {
   await drop(page, '.figure-pane', [await fileOf('two-stage-1.5.rexs')]);
   await dialog.getByRole('radio').nth(2).waitFor();
   const labels = await dialog.locator('label.choice').allInnerTexts();
-  ok(labels.length === 3 && /23 and 71 teeth/.test(labels[0]) && /step-up/.test(labels[2]), 'lists its pairs');
+  ok(
+    labels.length === 3 && /23 and 71 teeth/.test(labels[0]) && /step-up/.test(labels[2]),
+    'the dialog lists the pairs of the gear unit',
+  );
   await dialog.getByRole('radio').nth(1).check();
   await dialog.getByText('19/58 teeth').waitFor();
   const text = await dialog.innerText();
-  ok(/amounts are normal to the flank/.test(text), 'says what was assumed');
-  ok(/gear_casing 2/.test(text), 'and what was not used');
+  ok(/amounts are normal to the flank/.test(text), 'the dialog says what was assumed');
+  ok(/gear_casing 2/.test(text), 'the dialog says what was not used');
   await page.setViewportSize({ width: 1280, height: 320 });
   const button = await dialog.getByRole('button', { name: 'Open this pair' }).boundingBox();
-  ok(button.y + button.height < 320, 'however long that is, its buttons stay in sight');
+  ok(button.y + button.height < 320, 'the buttons of a long dialog stay in sight');
   await page.setViewportSize({ width: 1280, height: 800 });
   await dialog.getByRole('button', { name: 'Open this pair' }).click();
   await page.waitForFunction(() => /two-stage unit/.test(document.title));
   ok((await teeth()).join('/') === '19/58', 'the chosen pair is on the table');
-  ok((await page.getByLabel(/^Torque of load case/).count()) === 3, 'with the loads of the file');
+  ok((await page.getByLabel(/^Torque of load case/).count()) === 3, 'the loads are those of the file');
   await page.goBack();
   await page.waitForFunction(() => /paper pair/.test(document.title));
-  ok((await teeth()).join('/') === '17/44', 'back goes back to the design before');
+  ok((await teeth()).join('/') === '17/44', 'the back button shows the design before');
 });
 
 await chapter('every kind of model', async () => {
@@ -60,7 +63,7 @@ await chapter('every kind of model', async () => {
   ]) {
     await drop(page, '.form-pane', [await fileOf(name)]);
     await dialog.getByText(words).waitFor();
-    ok(await dialog.getByRole('button', { name: 'Open this pair' }).isEnabled(), name);
+    ok(await dialog.getByRole('button', { name: 'Open this pair' }).isEnabled(), `${name} can be opened`);
     await dialog.getByRole('button', { name: 'Cancel' }).click();
   }
   const table = [
@@ -73,7 +76,10 @@ await chapter('every kind of model', async () => {
   ].join('\n');
   await drop(page, '.form-pane', [{ name: 'pair.csv', text: table }]);
   await dialog.getByText('23/61 teeth').waitFor();
-  ok(/the load cases of the design on the table are kept/.test(await dialog.innerText()), 'a table without loads');
+  ok(
+    /the load cases of the design on the table are kept/.test(await dialog.innerText()),
+    'a table without loads keeps those of the design',
+  );
   await dialog.getByRole('button', { name: 'Cancel' }).click();
 });
 
@@ -81,21 +87,23 @@ await chapter('files with faults', async () => {
   await drop(page, '.form-pane', [await fileOf('errors-1.6.rexs')]);
   await dialog.locator('.fault').nth(2).waitFor();
   ok(/"inch"/.test(await dialog.innerText()), 'each fault is said');
-  ok(await dialog.getByRole('button', { name: 'Open this pair' }).isDisabled(), 'and there is nothing to open');
+  ok(await dialog.getByRole('button', { name: 'Open this pair' }).isDisabled(), 'a file with faults cannot be opened');
   await page.keyboard.press('Escape');
   await drop(page, '.form-pane', [{ name: 'notes.txt', text: 'no gear at all' }]);
-  await dialog.locator('.fault').first().waitFor();
-  ok(true, `what is no model: ${await dialog.locator('.fault').first().innerText()}`);
+  const fault = await dialog.locator('.fault').first().innerText();
+  ok(/\w/.test(fault), `a file that is no model is refused in words: ${fault}`);
   await page.keyboard.press('Escape');
-  ok(/paper pair/.test(await page.title()), 'the design stays as it is');
+  ok(/paper pair/.test(await page.title()), 'a refused file leaves the design as it is');
 });
 
 await chapter('a design of this program', async () => {
   const design = await (await fetch(`${server.address}api/v1/examples/paper-case-b`)).json();
   const text = JSON.stringify({ ...design, name: 'mine', resolution: { ...design.resolution, ...COARSE } });
   await drop(page, '.figure-pane', [{ name: 'mine.json', text }]);
-  await page.waitForFunction(() => /^mine/.test(document.title));
-  ok(true, 'is opened at once');
+  await comes(
+    page.waitForFunction(() => /^mine/.test(document.title)),
+    'a design of this program is opened at once',
+  );
   const flank = { tip_relief_exponent: 0, root_relief_exponent: 0, leading_end_relief_exponent: 0 };
   const ends = { left: flank, right: flank };
   const wrong = JSON.stringify({ ...design, modification: { pinion: ends, gear: ends } });
@@ -103,7 +111,10 @@ await chapter('a design of this program', async () => {
   const notice = page.locator('.notice', { hasText: 'relief_exponent' });
   await notice.waitFor();
   const { y } = await notice.boundingBox();
-  ok(y > 0 && / more\.$/.test(await notice.innerText()), 'of many faults the first ones are told, and how many more');
+  ok(
+    y > 0 && / more\.$/.test(await notice.innerText()),
+    'the first of many faults are told, and how many more there are',
+  );
 });
 
 await chapter('a grid on a flank', async () => {
@@ -113,16 +124,16 @@ await chapter('a grid on a flank', async () => {
   const csv = 'u\\y, -30, 0, 30\n-5, 30, 25, 30\n0, 5, 0, 5\n5, 30, 25, 30\n';
   await drop(page, '.flank', [{ name: 'flank.csv', text: csv }]);
   await page.locator('.notice', { hasText: 'flank.csv' }).waitFor();
-  await page.waitForFunction(
-    value => document.querySelector('.number-cell .value').textContent !== value,
-    before,
+  await comes(
+    page.waitForFunction(value => document.querySelector('.number-cell .value').textContent !== value, before),
+    'a grid that is dropped on a flank changes the result',
   );
-  ok(true, 'changes the result');
-  await page.getByText('This flank has a grid.').waitFor({ state: 'attached' });
-  ok(true, 'and the form says so');
+  await comes(page.getByText('This flank has a grid.').waitFor({ state: 'attached' }), 'the form tells of the grid');
   await page.getByRole('button', { name: 'Undo' }).click();
-  await page.waitForFunction(value => document.querySelector('.number-cell .value').textContent === value, before);
-  ok(true, 'undo takes it back');
+  await comes(
+    page.waitForFunction(value => document.querySelector('.number-cell .value').textContent === value, before),
+    'undo takes the grid back',
+  );
 });
 
 /** What a figure saves as CSV: rows of cells. */
@@ -165,12 +176,15 @@ await chapter('a grid is seen in charts and in space', async () => {
   const left = rows.filter(([end]) => end === 'left');
   const most = left.reduce((best, row) => (row[3] > best[3] ? row : best));
   const other = rows.filter(([end]) => end === 'right').reduce((best, row) => Math.max(best, Math.abs(row[3])), 0);
-  ok(most[3] > 15 && most[2] > 29, `deepest where the grid is, ${most[3]} µm at eta ${most[2]} mm`);
+  ok(most[3] > 15 && most[2] > 29, `the ease-off is deepest where the grid is, ${most[3]} µm at eta ${most[2]} mm`);
   const middle = left.filter(([, , eta]) => Math.abs(eta) < 1e-6);
-  ok(middle.every(row => Math.abs(row[3]) < 0.05), 'nothing in mid face');
+  ok(
+    middle.length > 0 && middle.every(row => Math.abs(row[3]) < 0.05),
+    'the ease-off has nothing of the grid in mid face',
+  );
   const sOf = left.filter(([, , eta]) => eta > 29);
-  ok(sOf[0][3] > sOf[sOf.length - 1][3] + 10, 'at the tip of the gear, which is the root of the pinion');
-  ok(other < 1e-9, `and nothing on the other end: ${other}`);
+  ok(sOf[0][3] > sOf[sOf.length - 1][3] + 10, 'the ease-off is deeper at the tip of the gear, the root of the pinion');
+  ok(other < 1e-9, `the ease-off of the other end has nothing of the grid: ${other}`);
 });
 
 await chapter('recordings on the rig', async () => {
@@ -191,7 +205,7 @@ await chapter('recordings on the rig', async () => {
   await page.getByRole('button', { name: 'Measure', exact: true }).click();
   const row = page.locator('section[aria-label="Measurements"] tbody tr');
   await row.first().waitFor();
-  ok(/1499/.test(await row.first().innerText()), 'of two steady states the longer one is measured');
+  ok(/1499/.test(await row.first().innerText()), 'the longer one of two steady states is measured');
   const part = page.locator('section[aria-label="Part of the recording"]');
   await part.locator('.stretches li').first().waitFor();
   ok(/900 … 1500 rpm/.test(await part.innerText()), 'the stretch that was found is listed');
@@ -200,12 +214,14 @@ await chapter('recordings on the rig', async () => {
   await part.getByRole('button', { name: 'Measure these times' }).click();
   await row.nth(1).waitFor();
   await part.getByText('Measured: 0.6 … 1.899 s').waitFor();
-  ok(/900\.0/.test((await row.allInnerTexts()).join(' ')), 'the other one by its times, with a result of its own');
+  ok(
+    /900\.0/.test((await row.allInnerTexts()).join(' ')),
+    'the shorter one is measured by its times, with a result of its own',
+  );
   await part.getByRole('button', { name: 'The whole recording' }).click();
   await part.getByText(/Measured: 2\.02 … 3\.[45]\d* s/).waitFor();
   await part.getByRole('button', { name: /with its run-up/ }).click();
-  await row.nth(2).waitFor();
-  ok(true, 'and the whole stretch with what leads to the steady state');
+  await comes(row.nth(2).waitFor(), 'the stretch is measured with what leads to the steady state, as a third result');
 });
 
 ok(troubles.length === 0, `nothing was complained about${troubles.length ? `: ${troubles.join('; ')}` : ''}`);

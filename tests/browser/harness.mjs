@@ -19,6 +19,15 @@ export function ok(condition, what) {
   return Boolean(condition);
 }
 
+/** Waits for what is to come, which is a check of its own; what follows in the chapter needs it. */
+export async function comes(wait, what) {
+  const fault = await wait.then(
+    () => null,
+    error => error,
+  );
+  if (!ok(!fault, what)) throw fault;
+}
+
 export function note(text) {
   console.log(`# ${text}`);
 }
@@ -105,7 +114,7 @@ export async function accessible(page, what) {
   for (const colorScheme of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme });
     const texts = await findings(page);
-    ok(texts.length === 0, `${what}, ${colorScheme}: accessible`);
+    ok(texts.length === 0, `${what} is accessible, ${colorScheme}`);
     texts.forEach(note);
   }
   await page.emulateMedia({ colorScheme: 'light' });

@@ -49,11 +49,15 @@ for (const [block, asked, what, word] of [
   [{ preset: 'as_stated', inputs: [{ key: 'compliance_factor' }] }, 0, 'inputs of your own', 'draw the pairs'],
   [{ single_teeth: true }, 2, 'pairs that were asked for', 'on their way'],
 ])
-  ok(emptyText(block, asked).includes(word), `what stands there with ${what}`);
-ok(!emptyText({ single_teeth: true }, 0).includes('Choose how'), 'single teeth are a choice');
+  ok(emptyText(block, asked).includes(word), `the right sentence stands there with ${what}`);
+ok(!emptyText({ single_teeth: true }, 0).includes('Choose how'), 'single teeth are taken as a choice');
 
 // ---- lengths in sentences, as tests/unit/format/test-inch.c has them ----
-is(shownSentence('The face, 70 mm, is wide.'), 'The face, 70 mm, is wide.', 'mm where nothing is chosen');
+is(
+  shownSentence('The face, 70 mm, is wide.'),
+  'The face, 70 mm, is wide.',
+  'a sentence stays in mm where nothing is chosen',
+);
 useInches(true);
 for (const [metric, inch] of [
   ['The face, 70 mm, is wide.', 'The face, 2.7559 in, is wide.'],
@@ -68,7 +72,7 @@ for (const [metric, inch] of [
   ['8 N/um, 3 mm/s, 7 mm2, 7 mm², 5 N mm, 600 N m', '8 N/um, 3 mm/s, 7 mm2, 7 mm², 5 N mm, 600 N m'],
   ['ISO 286-1 and 25.4 mm; A2 mm; v1.2 mm', 'ISO 286-1 and 1 in; A2 mm; v1.2 mm'],
 ])
-  is(shownSentence(metric), inch, 'a sentence in inches');
+  is(shownSentence(metric), inch, 'a sentence is said in inches');
 useInches(false);
 
 // ---- where two documents differ ----
@@ -78,11 +82,11 @@ is(
     { a: 1, b: { c: 3, d: [1, 5] }, e: [{ f: 1 }, { f: 4 }], h: { i: 5 } },
   ),
   ['/b/c', '/b/d/1', '/e/1/f', '/g', '/h/i'],
-  'numbers, elements, what is there in one alone',
+  'numbers, elements and what is there in one alone are differences',
 );
-is(differences({ e: [1] }, { e: [1, 2] }), ['/e'], 'a list of another length as a whole');
-is(differences({ a: { b: null } }, { a: { b: 3 } }), ['/a/b'], 'a number in place of none');
-is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind');
+is(differences({ e: [1] }, { e: [1, 2] }), ['/e'], 'a list of another length is a difference as a whole');
+is(differences({ a: { b: null } }, { a: { b: 3 } }), ['/a/b'], 'a number in place of none is a difference');
+is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind is a difference as a whole');
 
 // ---- what is taken off a flank, at any place ----
 {
@@ -95,16 +99,28 @@ is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind');
   const member = { u_mm: [-2, 0, 2], surface_u_mm: [-2, 2], left: flank, right: { ...flank, surface_um: surface } };
   const result = { modification: { eta_mm: [-10, 0, 10], surface_eta_mm: [-10, 10], pinion: member, gear: member } };
   const at = (end, side, ...place) => takenOff(result, 'pinion', end, side, [-10, 0, 10])(...place);
-  near(at('left', 'drive', 1, -5), 3.5, 1e-12, 'profile and lead where they add up');
-  near(at('right', 'drive', 0, 0), 20, 1e-12, 'the surface where profiles vary over the face');
-  near(at('right', 'drive', 2, 10), 50, 1e-12, 'its corner');
-  near(at('left', 'coast', 1, -5), 0, 0, 'a coast flank that is not modified');
+  near(at('left', 'drive', 1, -5), 3.5, 1e-12, 'value where profile and lead add up');
+  near(at('right', 'drive', 0, 0), 20, 1e-12, 'value where profiles vary over the face');
+  near(at('right', 'drive', 2, 10), 50, 1e-12, 'value at the corner of such a surface');
+  near(at('left', 'coast', 1, -5), 0, 0, 'value of a coast flank that is not modified');
   const outer = { flank: 'drive', axial: { meets_first: 'outer' } };
   const inner = { flank: 'coast', axial: { meets_first: 'inner' } };
-  is([runsLeft(outer, 'left', true), runsLeft(outer, 'right', true)], [true, false], 'eta outwards');
-  is([runsLeft(inner, 'left', true), runsLeft(inner, 'right', true)], [false, true], 'eta inwards');
+  is(
+    [runsLeft(outer, 'left', true), runsLeft(outer, 'right', true)],
+    [true, false],
+    'eta outwards runs to the left on the left end alone',
+  );
+  is(
+    [runsLeft(inner, 'left', true), runsLeft(inner, 'right', true)],
+    [false, true],
+    'eta inwards runs to the left on the right end alone',
+  );
   is([faceRunsLeft(outer, 'left', true), faceRunsLeft(inner, 'left', true)], [true, true], 'y belongs to the body');
-  is(runsLeft({ axial: { meets_first: 'left' } }, 'left', false), true, 'of one end');
+  is(
+    runsLeft({ axial: { meets_first: 'left' } }, 'left', false),
+    true,
+    'eta of one end runs to the left where the left meets first',
+  );
 }
 
 // ---- jobs: answers, lists and events in any order ----
@@ -127,9 +143,9 @@ is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind');
   jobs.put(job(1, 'queued', 100));
   is(states(), ['1 done'], 'the answer to an order does not undo the end that came before it');
   jobs.put(job(1, 'running', 200));
-  is(states(), ['1 done'], 'nor within a millisecond');
+  is(states(), ['1 done'], 'an order within a millisecond does not undo the end either');
   jobs.put(job(1, 'queued', 300));
-  is(states(), ['1 queued'], 'a retry does');
+  is(states(), ['1 queued'], 'a retry undoes the end that came before it');
   jobs.put(job(2, 'done', 100));
   await listed(
     () => {
@@ -144,69 +160,77 @@ is(differences({ a: { b: 1 } }, { a: 2 }), ['/a'], 'something of another kind');
 }
 
 // ---- names of rig files ----
-is(guess('mod_828Nm_2000rpm.csv'), { label: 'modified', torque: '828', speed: '2000' }, 'units in the name');
+is(
+  guess('mod_828Nm_2000rpm.csv'),
+  { label: 'modified', torque: '828', speed: '2000' },
+  'torque and speed are guessed from the units in a name',
+);
 is(
   guess('Unmodified 1035,5 N m 600 rpm.tdms'),
   { label: 'unmodified', torque: '1035.5', speed: '600' },
-  'blanks and a comma',
+  'a name with blanks and a comma is guessed',
 );
 is(
   guess('u-621-1000.csv.gz'),
   { label: 'unmodified', torque: '621', speed: '1000' },
-  'bare numbers: torque, then speed',
+  'bare numbers in a name are torque, then speed',
 );
-is(guess('run7.csv'), { label: '', torque: '', speed: '' }, 'a name that says nothing');
+is(guess('run7.csv'), { label: '', torque: '', speed: '' }, 'a name that says nothing guesses nothing');
 
 // ---- load cases ----
 const byPower = { power_kW: 100, speed_rpm: 1500 };
-is(caseNames([byPower, { torque_Nm: 828, speed_rpm: 2000 }]), ['100 kW', '828 N m'], 'one that states its power');
-is(caseLong(byPower), '100 kW at 1500 rpm', 'in full');
-near(torqueOf(byPower), 100000 / (2 * Math.PI * 25), 1e-9, 'and what it comes to');
+is(
+  caseNames([byPower, { torque_Nm: 828, speed_rpm: 2000 }]),
+  ['100 kW', '828 N m'],
+  'a load case that states its power is called by it',
+);
+is(caseLong(byPower), '100 kW at 1500 rpm', 'a load case that states its power has it in full');
+near(torqueOf(byPower), 100000 / (2 * Math.PI * 25), 1e-9, 'torque of a load case that states its power, N m');
 
 // ---- numbers ----
-is(parseNumber('1,5'), 1.5, 'comma');
-is(parseNumber(' 1 234.5 '), 1234.5, 'spaces');
-is(parseNumber('−2e-3'), -0.002, 'a printed minus');
-is(parseNumber('1.2.3'), undefined, 'two points');
-is(parseNumber(''), undefined, 'nothing');
-is(parseNumber('12px'), undefined, 'a unit');
-is(parseNumber('1e999'), undefined, 'too large');
-is(parseNumber('1.234,5'), 1234.5, 'thousands with points');
-is(parseNumber('1,234.5'), 1234.5, 'thousands with commas');
-is(parseNumber('12,345,678'), 12345678, 'twice');
+is(parseNumber('1,5'), 1.5, 'a comma is a decimal sign');
+is(parseNumber(' 1 234.5 '), 1234.5, 'spaces in a number are passed over');
+is(parseNumber('−2e-3'), -0.002, 'a printed minus is read');
+is(parseNumber('1.2.3'), undefined, 'a number with two points is none');
+is(parseNumber(''), undefined, 'an empty text is no number');
+is(parseNumber('12px'), undefined, 'a number with a unit is none');
+is(parseNumber('1e999'), undefined, 'a number that is too large is none');
+is(parseNumber('1.234,5'), 1234.5, 'points of thousands are passed over');
+is(parseNumber('1,234.5'), 1234.5, 'commas of thousands are passed over');
+is(parseNumber('12,345,678'), 12345678, 'commas of thousands may stand twice');
 is(parseNumber('0,125'), 0.125, 'no thousands begin with a nought');
 ok(/1250 or 1\.25/.test(readQuantity('1,250').fault), 'what can be read in two ways is asked about');
-is(readQuantity('0.5 in', 'mm').value, 12.7, 'inch');
-is(readQuantity('2 thou', 'um').value, 50.8, 'thousandths of an inch');
-is(readQuantity('0,4 kN m', 'Nm').value, 400, 'kilo');
-is(readQuantity('828 N·m', 'Nm').value, 828, 'a dot between units');
-is(readQuantity("1'200 rpm", 'rpm').value, 1200, 'an apostrophe');
-ok(readQuantity('5 kg', 'mm').fault !== undefined, 'a unit of another kind');
-is(sig(0.60714, 3), '0.607', 'three digits');
-is(sig(1888.4, 3), '1888', 'never less than the whole part');
-is(sig(-0.05, 2), '−0.050', 'minus sign');
-is(sig(null), '–', 'what is not known');
-is(plain(12.233164931618317), '12.2332', 'a field');
+is(readQuantity('0.5 in', 'mm').value, 12.7, 'a length in inches becomes mm');
+is(readQuantity('2 thou', 'um').value, 50.8, 'a length in thousandths of an inch becomes µm');
+is(readQuantity('0,4 kN m', 'Nm').value, 400, 'a torque in kN m becomes N m');
+is(readQuantity('828 N·m', 'Nm').value, 828, 'a dot between units is read');
+is(readQuantity("1'200 rpm", 'rpm').value, 1200, 'an apostrophe of thousands is passed over');
+ok(readQuantity('5 kg', 'mm').fault !== undefined, 'a unit of another kind is a fault');
+is(sig(0.60714, 3), '0.607', 'a number is shown with three digits');
+is(sig(1888.4, 3), '1888', 'a number is never shown with less than its whole part');
+is(sig(-0.05, 2), '−0.050', 'a number below zero is shown with a minus sign');
+is(sig(null), '–', 'what is not known is shown as a dash');
+is(plain(12.233164931618317), '12.2332', 'a number in a field is shown with six digits');
 is(plain(9007199254740991), '9007199254740991', 'a seed keeps every digit');
-is(changeText(change(0.607, 1.31)), '−54 %', 'change');
-is(changeText(change(1, 1)), '±0 %', 'no change');
-is(change(1, 0), undefined, 'no change against nothing');
-is([duration(7), duration(3671), duration(null)], ['00:07', '1:01:11', '–'], 'time left');
-is(labelOf('tip_relief_start_mm'), 'Tip relief start', 'label of a key');
+is(changeText(change(0.607, 1.31)), '−54 %', 'a change is shown in per cent');
+is(changeText(change(1, 1)), '±0 %', 'no change is shown as none');
+is(change(1, 0), undefined, 'a change against nothing is none');
+is([duration(7), duration(3671), duration(null)], ['00:07', '1:01:11', '–'], 'the time left is shown by the clock');
+is(labelOf('tip_relief_start_mm'), 'Tip relief start', 'a key has its label');
 
 // ---- documents ----
 const document = { a: { b: [1, 2, { c: 3 }] }, d: 4 };
 const changed = withValue(document, '/a/b/2/c', 5);
-is([valueAt(changed, '/a/b/2/c'), valueAt(document, '/a/b/2/c')], [5, 3], 'a changed copy');
-ok(changed.a !== document.a && Array.isArray(changed.a.b), 'lists stay lists');
-is(valueAt(document, '/x/y'), undefined, 'a value that is not there');
+is([valueAt(changed, '/a/b/2/c'), valueAt(document, '/a/b/2/c')], [5, 3], 'a changed copy leaves the original');
+ok(changed.a !== document.a && Array.isArray(changed.a.b), 'lists stay lists in a changed copy');
+is(valueAt(document, '/x/y'), undefined, 'a value that is not there is undefined');
 is(
   [...leaves({ a: { b: 1 }, c: [1, 2] })],
   [
     ['a.b', 1],
     ['c', [1, 2]],
   ],
-  'leaves',
+  'the leaves of a document are found',
 );
 
 // ---- field tables ----
@@ -225,15 +249,15 @@ const fields = [
 is(
   complete(fields, { pair: { teeth: 17 }, rows: [{}] }),
   { pair: { teeth: 17, width_mm: null }, rows: [{ share: null }], name: '' },
-  'defaults are written out',
+  'the defaults are written out',
 );
-is(fieldAt(fields, '/rows/3/share')?.key, 'share', 'field of a row');
-is(fieldAt(fields, '/pair/none'), undefined, 'no such field');
+is(fieldAt(fields, '/rows/3/share')?.key, 'share', 'the field of a row is found');
+is(fieldAt(fields, '/pair/none'), undefined, 'a field that is not there is undefined');
 ok(
   numberFault(fields[1].fields[0], 3) !== '' &&
     numberFault(fields[1].fields[0], 4.5) !== '' &&
     numberFault(fields[1].fields[0], 4) === '',
-  'range and whole number',
+  'range and whole number of a field are checked',
 );
 
 // ---- addresses ----
@@ -242,9 +266,9 @@ const design = { name: 'y & z', gear_pair: { teeth: 18, module: 6 }, load_cases:
 const parameters = new URLSearchParams();
 putDifference(base, design, parameters);
 const place = readPlace(writePlace('design', parameters));
-is(place.view, 'design', 'view of an address');
-is(takeDifference(base, place.parameters), design, 'a design by way of its address');
-is(readPlace(''), { view: 'design', parameters: {} }, 'no address at all');
+is(place.view, 'design', 'the view of an address is read');
+is(takeDifference(base, place.parameters), design, 'a design comes back by way of its address');
+is(readPlace(''), { view: 'design', parameters: {} }, 'no address at all is the design view');
 
 // ---- the store ----
 const store = new DesignStore();
@@ -254,26 +278,30 @@ store.open(
   { example: 'paper' },
   { fresh: true },
 );
-ok(store.tied && !store.canUndo, 'equal ends are tied');
+ok(store.tied && !store.canUndo, 'equal ends are tied from the start');
 for (const tip of [1, 2, 3]) store.set('/modification/pinion/left/tip', tip, { live: true });
 store.settle();
-is([store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')], [3, 3], 'left = right');
+is(
+  [store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')],
+  [3, 3],
+  'left and right change together while they are tied',
+);
 store.set('/modification/pinion/left/start', 1);
 store.undo();
 is(store.get('/modification/pinion/right/start'), 0, 'undo takes both ends back');
 store.undo();
 is([store.get('/modification/pinion/left/tip'), store.canUndo], [0, false], 'a whole stroke of the slider is one step');
 store.redo();
-is(store.get('/modification/pinion/right/tip'), 3, 'redo');
+is(store.get('/modification/pinion/right/tip'), 3, 'redo gives the stroke again');
 store.tie(false);
 store.set('/modification/pinion/right/tip', 9);
 is(
   [store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')],
   [3, 9],
-  'each end for itself',
+  'each end changes for itself when they are not tied',
 );
 store.tie(true);
-is(store.get('/modification/pinion/right/tip'), 3, 'tied again: the right takes what the left has');
+is(store.get('/modification/pinion/right/tip'), 3, 'the right end takes what the left has when they are tied again');
 
 // ---- the tooth's section: closed forms of a 17-tooth gear of module 6, 20 degrees, 24 degrees helix, no profile shift
 // ----
@@ -309,17 +337,17 @@ near(
 );
 const tooth = halfTooth(geometry, pair, 0);
 const radii = tooth.map(([x, y]) => Math.hypot(x, y));
-near(radii[0], reference - 1.25 * 6, 1e-9, 'the fillet starts on the root circle');
+near(radii[0], reference - 1.25 * 6, 1e-9, 'radius at the start of the fillet, that of the root circle');
 ok(
   radii.every((radius, i) => i === 0 || radius >= radii[i - 1] - 1e-9),
   'the radius grows from root to tip',
 );
 const own = halfTooth(geometry, { ...pair, pinion_dedendum_coefficient: 1.4 }, 0);
-near(Math.hypot(...own[0]), reference - 1.4 * 6, 1e-9, 'a member with a rack of its own');
+near(Math.hypot(...own[0]), reference - 1.4 * 6, 1e-9, 'radius of the root of a member with a rack of its own');
 const jump = Math.max(...tooth.slice(1).map(([x, y], i) => Math.hypot(x - tooth[i][0], y - tooth[i][1])));
 ok(jump < 1.5, `fillet and involute meet without a step (longest piece ${jump.toFixed(2)} mm)`);
 const last = tooth[tooth.length - 1];
-near(Math.hypot(...last), reference + 6, 1e-9, 'the tip');
+near(Math.hypot(...last), reference + 6, 1e-9, 'radius of the tip');
 const [plainFlank, lower] = [halfTooth(geometry, pair, 0, () => 0), halfTooth(geometry, pair, 0, () => 0.1)];
 ok(
   plainFlank.every(
@@ -330,13 +358,13 @@ ok(
 
 store.open({ gear_pair: { ends: 2 } }, { id: '1', etag: 'a' });
 store.set('/name', 'x');
-ok(store.changed, 'differs from what is stored');
+ok(store.changed, 'a design that changes differs from what is stored');
 store.kept('1', 'b');
-ok(!store.changed && store.from.etag === 'b', 'stored again');
+ok(!store.changed && store.from.etag === 'b', 'a design that is stored again does not differ');
 store.set('/name', 'y');
 store.kept('2', 'c');
 store.undo();
-is([store.from.id, store.changed], ['2', true], 'stored as a new one: undo stays with it');
+is([store.from.id, store.changed], ['2', true], 'a design that is stored as a new one stays so with undo');
 store.open({ gear_pair: { ends: 2 } }, { id: '3' });
 store.setFault('/name', 'no');
 store.undo();
@@ -349,12 +377,12 @@ is(
     { torque_Nm: 500, speed_rpm: 1000, share: 0.5 },
     { torque_Nm: 600, speed_rpm: 2000, share: 0.5 },
   ],
-  'torque, speed, share',
+  'columns of torque, speed and share are read',
 );
 is(
   readRows('case\tspeed\ttorque\nsea\t900\t1,5 kN m').rows,
   [{ name: 'sea', speed_rpm: 900, torque_Nm: 1500 }],
-  'in the order of their headings, with units',
+  'columns are read in the order of their headings, with units',
 );
 ok(/Row 2/.test(readRows('500\t1\n\tx').fault), 'a row without a torque is named');
 
@@ -365,8 +393,8 @@ const touched = [
   [null, 30, 20],
   [5, 0, null],
 ];
-is(overFace(touched, Math.max), [null, 30, 5], 'the most over the face');
-is(overFace(touched, Math.min), [null, 20, 0], 'the least; what does not touch is no zero');
+is(overFace(touched, Math.max), [null, 30, 5], 'the most over the face is found');
+is(overFace(touched, Math.min), [null, 20, 0], 'the least over the face counts no row without contact as zero');
 const side = { flash_K: touched, film_um: touched, max_flash_K: 31, min_film_ratio: 0, max_sliding_m_per_s: 1 };
 const rated = {
   geometry: { tangent_length_mm: [20, 50] },
@@ -376,19 +404,19 @@ const rated = {
   },
 };
 const path = tribologyCurves(rated, 0, ['left', 'right']);
-is([path.roll, path.pitchPoint], [[15, 20, 25], 20], 'roll length of the pinion');
+is([path.roll, path.pitchPoint], [[15, 20, 25], 20], 'the path has the roll length of the pinion');
 is(
   path.filmRatio.map(({ end, y }) => [end, y]),
   [
     ['left', [null, 10, 0]],
     ['right', [null, 10, 0]],
   ],
-  'the film over the roughness, of each end',
+  'the film over the roughness is taken of each end',
 );
 is(path.peak, { flash: 31, filmRatio: 0, sliding: 1 }, 'the peaks are those of all points of the contact');
 is(path.sliding, [-1, 0, 1], 'nothing slides at the pitch point');
-is(tribologyCurves(rated, 1, ['left']), null, 'a load case that is not there');
-is(tribologyCurves({ ...rated, tribology: null }, 0, ['left']), null, 'without a rating');
+is(tribologyCurves(rated, 1, ['left']), null, 'a load case that is not there has no curves');
+is(tribologyCurves({ ...rated, tribology: null }, 0, ['left']), null, 'a result without a rating has no curves');
 
 // ---- the lane of requests: whose preparation is waited for, left and asked for again ----
 const { Lane } = await import('../../web/src/base/lane.js');
@@ -441,21 +469,25 @@ is(
     { teeth: 17, harmonics: 12 },
   ]),
   { teeth: 17, harmonics: 12 },
-  'the newer',
+  'the newer question is answered',
 );
 is(log, ['wait 1', 'wait 1'], 'a change that needs the same pair stops no preparation');
 log = serve();
-is(await follow([{ teeth: 19 }, { teeth: 17 }]), { teeth: 17 }, 'the newer pair');
+is(await follow([{ teeth: 19 }, { teeth: 17 }]), { teeth: 17 }, 'the newer pair is answered');
 is(log, ['wait 1', 'wait 2', 'cancel 1'], 'a preparation that is of no use any more is stopped');
 log = serve({ stopped: [1] });
-is(await follow([{ teeth: 19 }]), { teeth: 19 }, 'stopped by somebody else, the preparation is asked for once more');
+is(await follow([{ teeth: 19 }]), { teeth: 19 }, 'a preparation that somebody else stopped is asked for once more');
 log = serve({ stopped: [1, 2, 3, 4] });
-is(await follow([{ teeth: 19 }]), 'The preparation of the teeth was stopped.', 'but not for ever');
+is(
+  await follow([{ teeth: 19 }]),
+  'The preparation of the teeth was stopped.',
+  'a preparation that is stopped again is not asked for again',
+);
 
 is(
   byComponent(['gear_casing 2', 'width of bearing 49', 'name of bearing 49', 'name of shaft 6']),
   ['gear_casing 2', 'width, name of bearing 49', 'name of shaft 6'],
-  'what an import did not use: attributes of one component on one line',
+  'attributes of one component that an import did not use stand on one line',
 );
 
 console.log(`1..${count}`);

@@ -2,7 +2,7 @@
 // A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
 // one is deleted.
 import { readFile } from 'node:fs/promises';
-import { LOOSE, Server, WAIT, accessible, chapter, cutLabels, finish, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, comes, cutLabels, finish, ok, openBrowser } from './harness.mjs';
 
 const START = `#rig?from=paper-case-a&${LOOSE}`;
 
@@ -61,12 +61,12 @@ await chapter('measure', async () => {
   await compared();
   ok(
     (await page.locator('.recording').count()) === 0 && (await rows.count()) === 3,
-    'the queue is empty, three measurements stand in the table',
+    'the queue is empty, and three measurements stand in the table',
   );
   const ratios = (await rows.allInnerTexts()).map(text => Number(text.split('\t')[6]));
   ok(
     ratios.every(ratio => Math.abs(ratio - 1) < 0.02),
-    `measured over predicted: ${ratios.join(', ')}`,
+    `what was measured lies beside what was predicted: ${ratios.join(', ')}`,
   );
   ok(
     /\d %/.test(await page.locator('section[aria-label="Reductions"]').innerText()),
@@ -82,12 +82,15 @@ await chapter('a broken recording', async () => {
   await finding.waitFor();
   ok(
     /no result/.test(await finding.innerText()) && /jumps/.test(await finding.innerText()),
-    'says in plain words why it has no result',
+    'a refused recording says in plain words why it has no result',
   );
-  ok((await rows.count()) === 3, 'and is not kept');
+  ok((await rows.count()) === 3, 'a refused recording is not kept');
   await page.getByRole('button', { name: 'Say what the columns mean' }).click();
   ok(await page.getByLabel('Pinion column or columns').isVisible(), 'the columns can be named');
-  ok(/pinion 2, gear 3/.test(await page.locator('.form-pane').innerText()), 'beside what was guessed');
+  ok(
+    /pinion 2, gear 3/.test(await page.locator('.form-pane').innerText()),
+    'the columns that were guessed stand beside',
+  );
   await page.getByRole('button', { name: /^Leave .* out$/ }).click();
 });
 
@@ -123,7 +126,7 @@ await chapter('for everybody', async () => {
   await page.setViewportSize({ width: 390, height: 800 });
   await page.waitForTimeout(300);
   const cut = await cutLabels(page);
-  ok(cut.length === 0, `390 px: nothing is cut ${cut.slice(0, 3).join(' | ')}`);
+  ok(cut.length === 0, `no label is cut at 390 px ${cut.slice(0, 3).join(' | ')}`);
   await page.setViewportSize({ width: 1280, height: 800 });
 });
 
@@ -133,13 +136,13 @@ await chapter('delete', async () => {
     .getByRole('button', { name: /^Delete/ })
     .click();
   await page.locator('dialog.question').getByRole('button', { name: 'Delete' }).click();
-  await page.waitForFunction(
-    () => document.querySelectorAll('section[aria-label="Measurements"] tbody tr').length === 2,
+  await comes(
+    page.waitForFunction(() => document.querySelectorAll('section[aria-label="Measurements"] tbody tr').length === 2),
+    'a measurement is deleted',
   );
-  ok(true, 'a measurement is deleted');
 });
 
-ok(troubles.length === 0, `no error on the way ${troubles.join(' | ')}`);
+ok(troubles.length === 0, `the page throws no errors ${troubles.join(' | ')}`);
 await browser.close();
 await server.remove();
 finish();

@@ -2,7 +2,7 @@
 // A designer's day: look, drag, mistype, search, close the laptop, come back, compare, print; and a server that goes
 // away.
 import { readFile } from 'node:fs/promises';
-import { Server, WAIT, chapter, cutLabels, finish, note, ok, openBrowser } from './harness.mjs';
+import { Server, WAIT, chapter, comes, cutLabels, finish, note, ok, openBrowser } from './harness.mjs';
 
 // a coarse mesh, so that preparing the pair takes a second
 const COARSE = {
@@ -84,7 +84,7 @@ await chapter('open', async () => {
   );
   note(`first view ${Math.round(page_bytes / 1000)} kB without its data`);
   await settled();
-  ok(page_bytes > 0 && page_bytes < MOST_BYTES, 'the first view is light');
+  ok(page_bytes > 0 && page_bytes < MOST_BYTES, 'the first view is lighter than 1 MB');
   ok(
     !(await page.evaluate(() =>
       performance.getEntriesByType('resource').some(entry => /rig-|compare-/.test(entry.name)),
@@ -117,19 +117,24 @@ await chapter('drag a slider', async () => {
   await page.mouse.up();
   await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent !== old, before[0]);
   await rest(400);
-  ok((await number('PPLTE')) !== before[0], 'the number follows');
-  ok((await ink('Loaded TE')) !== before[1] && (await ink('Contact pressure')) !== before[2], 'the figures follow');
+  ok((await number('PPLTE')) !== before[0], 'the number follows a drag');
+  ok(
+    (await ink('Loaded TE')) !== before[1] && (await ink('Contact pressure')) !== before[2],
+    'the figures follow a drag',
+  );
   ok(
     /modification\.pinion\.left\.tip_relief_um=/.test(page.url()) && /right\.tip_relief_um=/.test(page.url()),
-    'the address holds it, left and right',
+    'the address holds the drag, left and right',
   );
   await page.keyboard.press('Control+z');
   await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent === old, before[0]);
   ok(!/tip_relief_um/.test(page.url()), 'one undo takes the whole stroke back');
   await slider('Lead crowning').focus();
   await page.keyboard.press('ArrowRight');
-  await page.waitForFunction(() => /lead_crowning_um=/.test(location.hash));
-  ok(true, 'a slider is moved by keys');
+  await comes(
+    page.waitForFunction(() => /lead_crowning_um=/.test(location.hash)),
+    'a slider is moved by keys',
+  );
   await page.keyboard.press('Control+z');
 });
 
@@ -143,8 +148,10 @@ await chapter('type numbers', async () => {
   await page.locator('.field .fault:not(:empty)').first().waitFor();
   ok((await tip.getAttribute('aria-invalid')) === 'true', 'what is no number is said at its field');
   await tip.fill('2000');
-  await page.getByText('2000 is outside 0 … 1000.', { exact: true }).waitFor();
-  ok(true, 'so is what is out of range');
+  await comes(
+    page.getByText('2000 is outside 0 … 1000.', { exact: true }).waitFor(),
+    'what is out of range is said with its range',
+  );
   await tip.fill('14');
   await tip.press('Enter');
   await page.waitForFunction(() => !document.querySelector('.field .fault:not(:empty)'));
@@ -152,8 +159,10 @@ await chapter('type numbers', async () => {
   await teeth.fill('9');
   await teeth.press('Enter');
   const trouble = page.locator('.head-pane .trouble');
-  await trouble.filter({ hasText: /undercut|interferes|pointed|line of action/ }).waitFor();
-  ok(true, 'what the gears refuse is said in words');
+  await comes(
+    trouble.filter({ hasText: /undercut|interferes|pointed|line of action/ }).waitFor(),
+    'what the gears refuse is said in words',
+  );
   await page.keyboard.press('Control+z');
   await teeth.fill('17');
   await teeth.press('Enter');
@@ -177,12 +186,12 @@ await chapter('figures', async () => {
     page.getByRole('menuitem', { name: 'Save as CSV' }).click(),
   ]);
   const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n');
-  ok(lines.length === 35 && lines[2].startsWith('mesh cycle,'), 'a figure as CSV');
-  ok(/paper pair/.test(lines[0]) && lines[1].startsWith('# Loaded transmission error'), 'which says whose it is');
-  ok(/^paper-pair.*-loaded-te\.csv$/.test(csv.suggestedFilename()), 'in its name too');
+  ok(lines.length === 35 && lines[2].startsWith('mesh cycle,'), 'a figure is saved as CSV');
+  ok(/paper pair/.test(lines[0]) && lines[1].startsWith('# Loaded transmission error'), 'the CSV says whose it is');
+  ok(/^paper-pair.*-loaded-te\.csv$/.test(csv.suggestedFilename()), 'the name of the CSV says whose it is');
   ok(
     lines.slice(3).every(line => line.split(',').every(cell => cell.replace(/[-.]/g, '').length <= 12)),
-    'with six digits',
+    'the CSV has six digits',
   );
   await figure.getByRole('button', { name: /menu/ }).click();
   const [png] = await Promise.all([
@@ -190,13 +199,16 @@ await chapter('figures', async () => {
     page.getByRole('menuitem', { name: 'Save as PNG' }).click(),
   ]);
   const picture = await readFile(await png.path());
-  ok(picture.readUInt32BE(16) >= 1200, `a figure as PNG, ${picture.readUInt32BE(16)} px wide`);
+  ok(picture.readUInt32BE(16) >= 1200, `a figure is saved as PNG, ${picture.readUInt32BE(16)} px wide`);
   await figure.getByRole('button', { name: /menu/ }).click();
   await page.getByRole('menuitem', { name: 'Open large' }).click();
   ok((await page.locator('dialog .figure-body').boundingBox()).height > 400, 'a figure opens large');
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => !document.querySelector('dialog'));
-  ok((await page.locator('.figures .figure', { hasText: 'Loaded TE' }).count()) > 0, 'and goes back to its place');
+  ok(
+    (await page.locator('.figures .figure', { hasText: 'Loaded TE' }).count()) > 0,
+    'a large figure goes back to its place',
+  );
   const box = await figure.locator('.u-over').boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await figure.locator('.tip:not([hidden])').waitFor();
@@ -206,8 +218,7 @@ await chapter('figures', async () => {
   await page.locator('.figure.tall').getByRole('button', { name: 'front' }).click();
   ok((await page.locator('.figure.tall canvas').count()) === 1, 'the ease-off is drawn in space');
   await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
-  await page.locator('.figure.wide .uplot').first().waitFor();
-  ok(true, 'the speed sweep is drawn');
+  await comes(page.locator('.figure.wide .uplot').first().waitFor(), 'the speed sweep is drawn');
   for (const title of ['Flash temperature', 'Specific film thickness', 'Sliding speed']) {
     const path = page.locator('.figure', { has: page.locator('h3', { hasText: title }) });
     await path.scrollIntoViewIfNeeded();
@@ -225,7 +236,7 @@ await chapter('keep a design', async () => {
     page.getByRole('button', { name: 'Export JSON' }).click(),
   ]);
   const document = JSON.parse(await readFile(await file.path(), 'utf8'));
-  ok(document.gear_pair.pinion_teeth === 17, 'the design as JSON');
+  ok(document.gear_pair.pinion_teeth === 17, 'the design is saved as JSON');
   await page.locator('.design-button').click();
   const [model] = await Promise.all([
     page.waitForEvent('download'),
@@ -234,19 +245,19 @@ await chapter('keep a design', async () => {
   const archive = await readFile(await model.path());
   ok(
     model.suggestedFilename().endsWith('.rexsz') && archive.subarray(0, 4).equals(Buffer.from('PK\u0003\u0004')),
-    `a file of another program as it is: ${model.suggestedFilename()}`,
+    `a file of another program is saved as it is: ${model.suggestedFilename()}`,
   );
-  ok(archive.includes(Buffer.from('PK\u0005\u0006')), 'to its end, byte for byte');
+  ok(archive.includes(Buffer.from('PK\u0005\u0006')), 'the archive is saved to its end, byte for byte');
   await page.locator('.design-button').click();
   await page.getByRole('button', { name: 'Store as new' }).click();
   await page.waitForFunction(() => /[?&]id=1/.test(location.hash));
-  ok(true, 'it is stored');
+  ok((await fetch(`${server.address}api/v1/designs/1`)).ok, 'the design is stored on the server');
   await page.locator('.design-button').click();
   const [points] = await Promise.all([
     page.waitForEvent('download'),
     page.getByRole('button', { name: /flank points/ }).click(),
   ]);
-  ok((await readFile(await points.path(), 'utf8')).split('\n').length > 100, 'points of the flanks');
+  ok((await readFile(await points.path(), 'utf8')).split('\n').length > 100, 'the points of the flanks are saved');
   document.name = 'from a file';
   document.modification.pinion.left.tip_relief_um = document.modification.pinion.right.tip_relief_um = 11;
   await page.locator('input[type=file]').setInputFiles({
@@ -264,19 +275,16 @@ await chapter('search', async () => {
   await field('Budget, evaluations').fill('400');
   await field('Budget, evaluations').press('Tab');
   await page.getByRole('button', { name: 'Start the search' }).click();
-  await page.locator('.job-bar .progress').waitFor();
+  await comes(page.locator('.job-bar .progress').waitFor(), 'the job bar shows the search');
   job = await page.locator('.job-list tbody tr').first().getAttribute('data-job');
-  ok(true, 'the job bar shows it');
   await page.reload();
   await page.locator('.job-list tbody tr').first().waitFor();
   ok(
     /running|preparing|queued|done/.test(await page.locator('.job-list tbody tr').first().innerText()),
-    'after a reload it is still there',
+    'the search is still there after a reload',
   );
-  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, {
-    timeout: 4 * WAIT,
-  });
-  ok(true, 'it ends');
+  const ended = () => document.querySelector('.job-list tbody .job-state')?.textContent === 'done';
+  await comes(page.waitForFunction(ended, null, { timeout: 4 * WAIT }), 'the search ends');
   await page.locator('.job-detail .figure', { hasText: 'Convergence' }).locator('.uplot').waitFor();
   await page.locator('.job-detail .figure', { hasText: 'History' }).waitFor();
   const before = await page.locator('.job-detail table').first().innerText();
@@ -284,7 +292,10 @@ await chapter('search', async () => {
   await page.getByRole('button', { name: 'Open the best' }).click();
   await settled();
   ok((await field('Tip relief').inputValue()) !== '11', 'the optimum opens in the design view');
-  ok(/0\.[1-9]/.test(await page.locator('.number-cell').last().locator('.value').innerText()), 'with its objective');
+  ok(
+    /0\.[1-9]/.test(await page.locator('.number-cell').last().locator('.value').innerText()),
+    'the optimum has its objective',
+  );
 });
 
 await chapter('compare and print', async () => {
@@ -299,16 +310,22 @@ await chapter('compare and print', async () => {
     null,
     { timeout: 3 * WAIT },
   );
-  ok((await page.locator('.comparison tbody tr').count()) > 20, 'three designs side by side');
+  ok((await page.locator('.comparison tbody tr').count()) > 20, 'three designs stand side by side');
   await page.locator('.compare-view .uplot').first().waitFor();
   const legend = await page.locator('.compare-view .legend').first().innerText();
-  ok(/unmodified/.test(legend), 'their curves over one another');
+  ok(/unmodified/.test(legend), 'the curves of three designs stand over one another');
   await page.getByRole('button', { name: 'Design', exact: true }).click();
   await settled();
   const paper = await page.pdf({ format: 'A4', printBackground: true });
-  ok(paper.subarray(0, 4).toString() === '%PDF' && paper.length > 40000, 'a report on paper');
-  ok((paper.toString('latin1').match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, 'of some pages');
-  ok(await page.evaluate(() => !document.body.classList.contains('paper')), 'and the screen is a screen again');
+  ok(paper.subarray(0, 4).toString() === '%PDF' && paper.length > 40000, 'the report is printed');
+  ok(
+    (paper.toString('latin1').match(/\/Type\s*\/Page\b/g) ?? []).length >= 3,
+    'the printed report has three pages or more',
+  );
+  ok(
+    await page.evaluate(() => !document.body.classList.contains('paper')),
+    'the screen is a screen again after printing',
+  );
 });
 
 await chapter('two pages share one stream', async () => {
@@ -319,17 +336,20 @@ await chapter('two pages share one stream', async () => {
   await page.bringToFront(); // a page behind another one draws nothing
   await page.getByRole('navigation').getByRole('button', { name: 'Optimize' }).click();
   await page.getByRole('button', { name: 'Again' }).click();
-  await other.waitForFunction(before => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows, {
-    polling: 100, // a page behind another one has no frames
-  });
-  ok(true, 'the other page sees a search that this one starts');
+  const added = before => document.querySelectorAll('.job-list tbody tr').length === before + 1;
+  await comes(
+    other.waitForFunction(added, rows, { polling: 100 }), // a page behind another one has no frames
+    'the other page sees a search that this one starts',
+  );
   await other.bringToFront();
   await other.locator('.job-bar').getByRole('button', { name: 'stop' }).click();
   await page.bringToFront();
-  await page.waitForFunction(() =>
-    /cancelled|done/.test(document.querySelector('.job-list tbody .job-state')?.textContent ?? ''),
+  await comes(
+    page.waitForFunction(() =>
+      /cancelled|done/.test(document.querySelector('.job-list tbody .job-state')?.textContent ?? ''),
+    ),
+    'this page sees that the other has stopped the search',
   );
-  ok(true, 'and this one that the other has stopped it');
   await other.close();
   await page.getByRole('navigation').getByRole('button', { name: 'Compare' }).click();
   await page.getByRole('navigation').getByRole('button', { name: 'Design' }).click();
@@ -338,7 +358,7 @@ await chapter('two pages share one stream', async () => {
 await chapter('back', async () => {
   await page.goBack();
   await page.locator('.compare-view').waitFor();
-  ok(/^#compare/.test(new URL(page.url()).hash), 'the browser’s back goes back');
+  ok(/^#compare/.test(new URL(page.url()).hash), 'the back button shows the comparison again');
   await page.goForward();
   await page.locator('.headline').waitFor();
 });
@@ -349,7 +369,7 @@ await chapter('every width', async () => {
     await page.setViewportSize({ width, height: 800 });
     await rest(150);
     const texts = await cutLabels(page);
-    ok(texts.length === 0, `${width} px: nothing is cut ${texts.slice(0, 3).join(' | ')}`);
+    ok(texts.length === 0, `no label is cut at ${width} px ${texts.slice(0, 3).join(' | ')}`);
   }
   await page.setViewportSize({ width: 1280, height: 800 });
 });
@@ -387,11 +407,10 @@ await chapter('a server with a token', async () => {
   const token = door.getByLabel('Token of this server');
   await token.fill('a-guess');
   await token.press('Enter');
-  await door.locator('.fault:not(:empty)').waitFor();
+  await comes(door.locator('.fault:not(:empty)').waitFor(), 'a wrong token is refused in words');
   await token.fill('only-for-the-three-of-us');
   await token.press('Enter');
-  await door.locator('.form-pane input').first().waitFor();
-  ok(true, 'asks for it, refuses a wrong one, takes the right one');
+  await comes(door.locator('.form-pane input').first().waitFor(), 'the right token opens the page');
   await visitor.close();
   await closed.remove();
 });
@@ -405,12 +424,14 @@ await chapter('the server goes away and comes back', async () => {
   await tip.fill('7');
   await tip.press('Enter');
   await page.locator('.away-banner:not([hidden])').waitFor();
-  ok((await tip.inputValue()) === '7', 'the page says so and keeps the design');
+  ok((await tip.inputValue()) === '7', 'the page tells of a server that is away and keeps the design');
   const before = await number('PPLTE');
   await server.open();
   await page.locator('.away-banner[hidden]').waitFor({ state: 'attached' });
-  await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent !== old, before);
-  ok(true, 'it goes on by itself');
+  await comes(
+    page.waitForFunction(old => document.querySelector('.number-cell .value').textContent !== old, before),
+    'the page goes on by itself when the server is back',
+  );
   quiet = false;
 });
 
@@ -438,7 +459,7 @@ await chapter('fluency', async () => {
   ok(rate > 1, 'results follow a moving slider');
 });
 
-ok(troubles.length === 0, 'nothing was complained about');
+ok(troubles.length === 0, 'the page complains about nothing');
 for (const text of troubles.slice(0, 8)) note(text);
 await browser.close();
 await server.remove();

@@ -59,10 +59,10 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     if (process.env.EASEOFF_PICTURES)
       await page.screenshot({ path: `${process.env.EASEOFF_PICTURES}/${width}-${colorScheme}-${what}.png` });
     const cut = await cutLabels(page);
-    ok(cut.length === 0, `${what}: nothing is cut ${cut.slice(0, 3).join(' | ')}`);
+    ok(cut.length === 0, `${what}: no label is cut ${cut.slice(0, 3).join(' | ')}`);
     if (!reads) return;
     const found = await findings(page);
-    ok(found.length === 0, `${what}: accessible`);
+    ok(found.length === 0, `${what} is accessible`);
     found.forEach(note);
     if (!phone) return;
     const small = await page.evaluate(
@@ -96,7 +96,7 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     }
     await page.goto(`${page.url()}&${LOOSE}`); // prepared in a moment; all else stays
     await settled(page);
-    ok((await page.getByLabel('Gear teeth', { exact: true }).inputValue()) === '61', 'the link is the gear');
+    ok((await page.getByLabel('Gear teeth', { exact: true }).inputValue()) === '61', 'the link opens the gear');
     await page.waitForFunction(() => /no relief yet/.test(document.querySelector('.sensitivity')?.textContent ?? ''));
 
     const before = Number(await number('Transmission error'));
@@ -110,7 +110,7 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     await page.waitForFunction(() => /left\.tip_relief_um=/.test(location.hash));
     await page.waitForFunction(() => /[−+]\d/.test(document.querySelector('.number-cell .delta').textContent));
     const after = Number(await number('Transmission error'));
-    ok(after !== before, `a drag of a slider: ${before} µm, ${after} µm`);
+    ok(after !== before, `a drag of a slider moves its number from ${before} µm to ${after} µm`);
     await look('Design');
 
     await page.getByRole('button', { name: 'Optimize…' }).click();
@@ -134,7 +134,7 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     });
     const J = await page.locator('.comparison tbody tr').first().locator('td').allInnerTexts();
     const [plain, best] = J.map(text => parseFloat(text));
-    ok(plain === 1 && best < plain, `unmodified and the best of the search: ${J.join('; ')}`);
+    ok(plain === 1 && best < plain, `the best of the search has less J than the unmodified pair: ${J.join('; ')}`);
     await look('Compare');
 
     await page.getByRole('navigation').getByRole('button', { name: 'Design' }).click();
@@ -142,7 +142,7 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     await page.locator('.design-button').click();
     await page.locator('.design-menu').getByRole('button', { name: /Print a report/ }).click();
     await page.locator('.report-state', { hasText: 'whole' }).waitFor();
-    ok((await page.locator('.report h1').innerText()) === 'my gear', 'a report with its name');
+    ok((await page.locator('.report h1').innerText()) === 'my gear', 'the report has the name of the gear');
     await look('Report');
     const beyond = await page.evaluate(() =>
       [...document.querySelectorAll('.report-figure > svg')].flatMap(svg => {
@@ -155,14 +155,14 @@ for (const { width, height, colorScheme, phone = false, reads = false } of SCREE
     ok(beyond.length === 0, `no figure is drawn over its frame ${beyond.join('; ')}`);
     if (reads) {
       const pdf = (await page.pdf({ format: 'A4' })).toString('latin1');
-      ok((pdf.match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, 'on paper');
+      ok((pdf.match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, 'the printed report has three pages or more');
     }
 
     await page.getByRole('button', { name: 'Help' }).click();
     await page.getByRole('menuitem', { name: 'All words explained' }).click();
     await page.getByText('Transmission error (TE)').waitFor();
     await look('Words');
-    ok(troubles.length === 0, `nothing went wrong ${troubles.join('; ')}`);
+    ok(troubles.length === 0, `the page throws no errors ${troubles.join('; ')}`);
   });
   await context.close();
 }

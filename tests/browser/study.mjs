@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study from the page: keys, cost, start, table, sort, brush, a row that is opened; no long task while doing so.
 import { cp, rm } from 'node:fs/promises';
-import { LOOSE, Server, WAIT, accessible, chapter, finish, note, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, comes, finish, note, ok, openBrowser } from './harness.mjs';
 
 const [FOLDER, JOB] = (process.env.EASEOFF_STUDY ?? '').split(':');
 const MOST_TASK = 100; // ms
@@ -45,17 +45,18 @@ await chapter('a study is ordered', async () => {
   if (JOB) return;
   await page.getByLabel('Values 1').fill('0:30:6');
   await page.getByLabel('Values 2').fill('0, 5, 10, 20');
-  await page.getByText(/^24 variants of 1 gear pair/).waitFor();
-  ok(true, 'its cost stands beside it');
+  await comes(page.getByText(/^24 variants of 1 gear pair/).waitFor(), 'the cost of a study stands beside it');
   await page.getByLabel('Key 2').fill('gear_pair.teeth');
-  await page.getByText('of which member').waitFor();
-  ok(true, 'a key that could be two is asked about');
+  await comes(page.getByText('of which member').waitFor(), 'a key that could be two is asked about');
   await page.getByLabel('Key 2').fill('crowning both');
   await page.getByRole('option', { name: /^Lead crowning, pinion, both ends µm/ }).click();
   const row = page.locator('.study-axis').nth(1);
   const words = await page.getByLabel('Key 2').inputValue();
   ok(words === 'Lead crowning, pinion, both ends', 'a number is found by words');
-  ok(/modification\.pinion\.\*\.lead_crowning_um in µm/.test(await row.innerText()), 'its path and unit stand below it');
+  ok(
+    /modification\.pinion\.\*\.lead_crowning_um in µm/.test(await row.innerText()),
+    'the path and unit of a number stand below it',
+  );
   await page.getByText(/^24 variants of 1 gear pair/).waitFor();
   await page.getByRole('button', { name: 'Start the study' }).click();
 });
@@ -79,7 +80,7 @@ await chapter('its table', async () => {
     const numbers = shown.map(tr => Number(tr.children[at].textContent));
     return numbers.length > 10 && numbers.every((value, i) => !i || value >= numbers[i - 1]);
   });
-  ok(await sorted.then(Boolean, () => false), 'a click on a heading sorts');
+  ok(await sorted.then(Boolean, () => false), 'a click on a heading sorts the table');
   const table = page.locator('.variant-table');
   for (let i = 0; i < 10; i++)
     await table.evaluate((element, to) => (element.scrollTop = to * element.scrollHeight), i / 10);
@@ -99,12 +100,14 @@ await chapter('a brush', async () => {
   note(await count.textContent());
   await page.waitForFunction(() => document.querySelector('.variant-table tbody:not(.space) tr'));
   const kept = await rows.count();
-  ok(kept > 0 && (JOB || kept < 24), 'keeps the rows of a range');
+  ok(kept > 0 && (JOB || kept < 24), 'a brush keeps the rows of its range');
   await page.getByRole('button', { name: 'show all rows' }).click();
-  await page.waitForFunction(
-    () => !document.querySelector('.study-detail > .figure-note').textContent.includes('show all rows'),
+  await comes(
+    page.waitForFunction(
+      () => !document.querySelector('.study-detail > .figure-note').textContent.includes('show all rows'),
+    ),
+    'a brush lets all rows go again',
   );
-  ok(true, 'and lets them go again');
 });
 
 const wall = await page.evaluate(() => window.longest);
@@ -125,7 +128,7 @@ await chapter('a variant', async () => {
   ok((await page.content()).includes(name.toLowerCase()), 'a click on a row opens its design');
 });
 
-ok(troubles.length === 0, `nothing went wrong in the page: ${troubles.join('; ')}`);
+ok(troubles.length === 0, `the page throws no errors: ${troubles.join('; ')}`);
 await browser.close();
 await server.remove();
 finish();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs as made from the page: the first at once, all of them from a job that another page finds again and can stop.
-import { LOOSE, Server, WAIT, accessible, chapter, finish, ok, openBrowser } from './harness.mjs';
+import { LOOSE, Server, WAIT, accessible, chapter, comes, finish, ok, openBrowser } from './harness.mjs';
 
 const server = await Server.start();
 const browser = await openBrowser();
@@ -18,18 +18,17 @@ const jobs = async () => (await (await fetch(new URL('api/v1/jobs?kind=tolerance
 await chapter('a job draws them all', async () => {
   await page.goto(`${server.address}#tolerance?from=paper-case-a&${LOOSE}&tolerance.pairs=150`);
   await draw.click();
-  await page.getByText(/\b64 pairs/).first().waitFor({ timeout: WAIT });
-  ok(true, 'the first pairs are shown');
+  await comes(page.getByText(/\b64 pairs/).first().waitFor({ timeout: WAIT }), 'the first 64 pairs are shown');
   await page.getByText(/, 150 pairs/).first().waitFor({ timeout: WAIT });
   const [job] = await jobs();
-  ok(job.state === 'done' && job.progress.true_evaluations === 150, 'all of them come from a job');
-  ok(await draw.isEnabled(), 'it can be done again');
+  ok(job.state === 'done' && job.progress.true_evaluations === 150, 'a job draws all pairs');
+  ok(await draw.isEnabled(), 'the pairs can be drawn again');
 });
 
 await chapter('another page', async () => {
   await page.reload();
   await page.getByText(/, 150 pairs/).first().waitFor({ timeout: WAIT });
-  ok((await state.textContent()).includes('20'), 'shows what was drawn, with its date');
+  ok((await state.textContent()).includes('20'), 'another page shows what was drawn, with its date');
 });
 
 await chapter('for everybody', () => accessible(page, 'a tolerance analysis'));
@@ -41,18 +40,20 @@ await chapter('stopping', async () => {
   await draw.click();
   await page.getByText(/of 50000/).first().waitFor({ timeout: WAIT });
   await page.reload();
-  await page.getByText(/of 50000/).first().waitFor({ timeout: WAIT });
-  ok(true, 'a job that runs is found again');
+  await comes(page.getByText(/of 50000/).first().waitFor({ timeout: WAIT }), 'a job that runs is found after a reload');
   await page.getByRole('button', { name: 'Stop' }).click();
   await page.getByText('what was drawn is kept').waitFor({ timeout: WAIT });
-  ok((await jobs())[0].state === 'cancelled', 'and is stopped');
+  ok((await jobs())[0].state === 'cancelled', 'the job that was found is cancelled by stop');
   const [{ id }] = (await (await fetch(new URL('api/v1/jobs?kind=prepare', server.address))).json()).items;
   const other = await fetch(new URL(`api/v1/jobs/${id}/clone`, server.address), { method: 'POST' });
   await page.waitForTimeout(1000); // it reaches the page and ends
-  ok(other.ok && (await state.textContent()).includes('is kept'), 'which is still said when another job changes');
+  ok(
+    other.ok && (await state.textContent()).includes('is kept'),
+    'the page still says what is kept when another job changes',
+  );
 });
 
-ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+ok(troubles.length === 0, `the page throws no errors: ${troubles.join('; ')}`);
 await browser.close();
 await server.remove();
 finish();

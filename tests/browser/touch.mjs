@@ -85,10 +85,10 @@ for (const [name, act] of Object.entries(views))
     small.forEach(note);
     ok(small.length === 0, `${name}: everything that is pressed is as large as a finger`);
     const cut = await cutLabels(page);
-    ok(cut.length === 0, `${name}: no label is cut: ${cut.join(', ')}`);
+    ok(cut.length === 0, `${name}: no label is cut ${cut.join(', ')}`);
   });
 
-ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+ok(troubles.length === 0, `the page throws no errors: ${troubles.join('; ')}`);
 await browser.close();
 await server.remove();
 finish();

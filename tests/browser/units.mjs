@@ -77,36 +77,47 @@ await chapter('in mm', async () => {
   await settled(page);
   await page.waitForFunction(() => /µm/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
   metric = await look();
-  ok(metric.headlineUnit === 'µm' && /µm/.test(metric.heading), 'micrometres');
+  ok(metric.headlineUnit === 'µm' && /µm/.test(metric.heading), 'numbers and headings are in micrometres at first');
 });
 
 await chapter('in inches', async () => {
   await page.getByLabel('Lengths in').selectOption('inch');
   await page.waitForFunction(() => /thou/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
   inch = await look();
-  ok(agree(metric.module, inch.module, 1e-5), 'the form');
-  ok(inch.headlineUnit === 'thou' && agree(metric.headline, inch.headline), `a number at the top: ${inch.headline}`);
-  ok(/thou$/.test(inch.heading), `the unit of an axis: ${inch.heading}`);
+  ok(agree(metric.module, inch.module, 1e-5), 'the form is in inches, with the same module');
+  ok(
+    inch.headlineUnit === 'thou' && agree(metric.headline, inch.headline),
+    `a number at the top is in thou: ${inch.headline}`,
+  );
+  ok(/thou$/.test(inch.heading), `an axis is in thou: ${inch.heading}`);
   const last = text => number(/([−\d.]+)\s*$/.exec(text)?.[1] ?? 'NaN');
   const [before, after] = [last(metric.reading), last(inch.reading)];
-  ok(agree(before, after, 0.002), `a readout: ${before}, ${after}`);
-  ok(/ in thou: /.test(inch.said), 'the sentence about a figure');
+  ok(agree(before, after, 0.002), `a readout is in thou: ${before}, ${after}`);
+  ok(/ in thou: /.test(inch.said), 'the sentence about a figure is in thou');
   const radius = text => number(/pinion radius, (?:mm|in)\s+([\d.]+)/.exec(text)?.[1] ?? 'NaN');
-  ok(/radius, in\b/.test(inch.tip) && agree(radius(metric.tip), radius(inch.tip), 1e-3), 'a place on a flank');
-  ok(!/µm|\bmm\b/.test(inch.strip), 'the strip of sensitivities');
+  ok(
+    /radius, in\b/.test(inch.tip) && agree(radius(metric.tip), radius(inch.tip), 1e-3),
+    'a place on a flank is in inches',
+  );
+  ok(!/µm|\bmm\b/.test(inch.strip), 'the strip of sensitivities has no unit of mm');
 });
 
 await chapter('what is saved', async () => {
   const head = ({ te }) => te[0].at(-1);
-  ok(/\(µm\)"?$/.test(head(metric)) && /\(thou\)"?$/.test(head(inch)), `the head of a column: ${head(inch)}`);
+  ok(
+    /\(µm\)"?$/.test(head(metric)) && /\(thou\)"?$/.test(head(inch)), `the head of a column is in thou: ${head(inch)}`,
+  );
   const middle = Math.floor(metric.te.length / 3);
-  ok(agree(Number(metric.te[middle][1]), Number(inch.te[middle][1]), 1e-4), 'a number below it');
-  ok(inch.te[middle][0] === metric.te[middle][0], 'the mesh cycle beside it stays');
-  ok(/\(in\)$/.test(inch.profile[0][0]) && /\(thou\)$/.test(inch.profile[0][1]), 'two units in one table');
+  ok(agree(Number(metric.te[middle][1]), Number(inch.te[middle][1]), 1e-4), 'a number of this column is converted');
+  ok(inch.te[middle][0] === metric.te[middle][0], 'the mesh cycle beside it is not converted');
+  ok(/\(in\)$/.test(inch.profile[0][0]) && /\(thou\)$/.test(inch.profile[0][1]), 'a table of two units names both');
   const tip = metric.profile.length - 1;
-  ok([0, 1].every(k => agree(Number(metric.profile[tip][k]), Number(inch.profile[tip][k]), 1e-4)), 'both converted');
-  ok(/thou/.test(inch.picture) && !/µm|\bmm\b/.test(inch.picture), 'a picture');
-  ok(JSON.stringify(inch.stiffness) === JSON.stringify(metric.stiffness), 'N/µm is no length');
+  ok(
+    [0, 1].every(k => agree(Number(metric.profile[tip][k]), Number(inch.profile[tip][k]), 1e-4)),
+    'both columns of this table are converted',
+  );
+  ok(/thou/.test(inch.picture) && !/µm|\bmm\b/.test(inch.picture), 'a picture is in thou');
+  ok(JSON.stringify(inch.stiffness) === JSON.stringify(metric.stiffness), 'a stiffness in N/µm is not converted');
 });
 
 /** A file that the design's menu saves. */
@@ -121,17 +132,23 @@ async function fromMenu(name) {
 
 await chapter('files of the service', async () => {
   const points = await fromMenu('Export flank points');
-  ok(/x_in,/.test(points) && !/_mm|_um/.test(points.slice(0, 400)), 'flank points');
+  ok(/x_in,/.test(points) && !/_mm|_um/.test(points.slice(0, 400)), 'the points of the flanks are in inches');
   const report = await fromMenu('Save the report to sign');
-  ok(/<code>\/gear_pair\/face_width_in<\/code>/.test(report) && !/>mm</.test(report), 'the report to sign');
-  ok(/roll length, in/.test(report) && /deviation, thou/.test(report), 'its charts');
+  ok(
+    /<code>\/gear_pair\/face_width_in<\/code>/.test(report) && !/>mm</.test(report),
+    'the report to sign is in inches',
+  );
+  ok(/roll length, in/.test(report) && /deviation, thou/.test(report), 'the charts of the report are in inches');
 });
 
 await chapter('and back', async () => {
   await page.getByLabel('Lengths in').selectOption('mm');
   await page.waitForFunction(() => /µm/.test(document.querySelector('.sensitivity b')?.textContent ?? ''));
   const again = await look();
-  ok(JSON.stringify([again.te, again.profile]) === JSON.stringify([metric.te, metric.profile]), 'the same tables');
+  ok(
+    JSON.stringify([again.te, again.profile]) === JSON.stringify([metric.te, metric.profile]),
+    'the tables in mm come back as they were',
+  );
 });
 
 await chapter('sentences', async () => {
@@ -146,16 +163,16 @@ await chapter('sentences', async () => {
   const radius = /up to the radius ([\d.]+) mm/.exec(said)?.[1];
   await page.getByLabel('Lengths in').selectOption('inch');
   const inches = /up to the radius ([\d.]+) in\b/.exec(await warnings())?.[1];
-  ok(agree(Number(radius), Number(inches), 1e-4), `a warning: ${radius} mm, ${inches} in`);
-  ok(!/\d (mm|um)\b/.test(await page.locator('.remark').first().innerText()), 'a remark at its field');
+  ok(agree(Number(radius), Number(inches), 1e-4), `a warning is in inches: ${radius} mm, ${inches} in`);
+  ok(!/\d (mm|um)\b/.test(await page.locator('.remark').first().innerText()), 'a remark at its field is in inches');
   await page.getByLabel('Lengths in').selectOption('mm');
-  ok((await warnings()) === said, 'and back');
+  ok((await warnings()) === said, 'the warnings in mm come back as they were');
   await page.goto(`${server.address}#design?from=narrow&${PAIR}&gear_pair.pinion_bore_mm=95&${LOOSE}`);
   const fault = page.locator('.trouble').filter({ hasText: 'bore' }).first();
   await fault.waitFor();
-  ok(/bore of 95 mm/.test(await fault.innerText()), `a fault: ${await fault.innerText()}`);
+  ok(/bore of 95 mm/.test(await fault.innerText()), `a fault is in mm: ${await fault.innerText()}`);
   await page.getByLabel('Lengths in').selectOption('inch');
-  ok(/bore of 3\.7402 in/.test(await fault.innerText()), `in inches: ${await fault.innerText()}`);
+  ok(/bore of 3\.7402 in/.test(await fault.innerText()), `the fault is in inches: ${await fault.innerText()}`);
 });
 
 await chapter('a gear of one’s own', async () => {
@@ -174,11 +191,11 @@ await chapter('a gear of one’s own', async () => {
   ])
     await dialog.getByLabel(name).fill(value);
   const body = (await asked).postData() ?? '';
-  ok(/"normal_module_mm":6\.35\b/.test(body), 'is read in the unit that stands beside it');
-  ok(/"face_width_mm":44\.45/.test(body), 'its face too');
+  ok(/"normal_module_mm":6\.35\b/.test(body), 'what is typed is read in the unit that stands beside it');
+  ok(/"face_width_mm":44\.45/.test(body), 'the face width is read in its unit');
 });
 
-ok(troubles.length === 0, `no errors: ${troubles.join('; ')}`);
+ok(troubles.length === 0, `the page throws no errors: ${troubles.join('; ')}`);
 await browser.close();
 await server.remove();
 finish();
