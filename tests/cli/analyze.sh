@@ -15,19 +15,19 @@ expect() # STATUS WHAT COMMAND...
   "$@" >"$folder/out" 2>"$folder/err"
   status=$?
   [ "$status" -eq "$wanted" ] && { [ "$wanted" -ne 0 ] || [ ! -s "$folder/err" ]; }
-  result $? "$what: exit $status, expected $wanted"
+  result $? "$what: the program ends with $status, expected $wanted"
 }
 
 says() # TEXT: on the only line of standard error
 {
   [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$1" "$folder/err"
-  result $? "says \"$1\" on one line"
+  result $? "$what: the program says \"$1\" on one line"
 }
 
 holds() # TEXT FILE
 {
   grep -q -e "$1" "$2"
-  result $? "$(basename "$2") holds \"$1\""
+  result $? "$what: $(basename "$2") holds \"$1\""
 }
 
 # A coarse finite-element model: these tests are about the program, not about its accuracy.
@@ -47,41 +47,41 @@ for name in paper paper-case-a paper-case-b narrow shifted single; do
   ends=2
   [ $name = single ] && ends=1
   "$CHECK_RESULT" $ends <"$folder/out" >"$folder/err"
-  result $? "$name: every name that is relied on"
+  result $? "$name has every name that is relied on"
   mv "$folder/out" "$folder/$name.out"
 done
 timeless "$folder/paper-case-b.out" >"$folder/cold"
 [ "$(find "$HOME/.cache/easeoff/flexibility" -name '*.flex' | wc -l)" -eq 4 ]
 result $? "four gear pairs are kept under ~/.cache"
 
-expect 0 "again" "$EASEOFF" analyze "$folder/paper-case-b.json" --json
+expect 0 "a second run" "$EASEOFF" analyze "$folder/paper-case-b.json" --json
 timeless "$folder/out" | cmp -s - "$folder/cold"
-result $? "the same bytes on a second run"
-expect 0 "without the cache" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --no-cache
+result $? "a second run gives the same bytes"
+expect 0 "a run without the cache" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --no-cache
 timeless "$folder/out" | cmp -s - "$folder/cold"
-result $? "the same bytes without the cache"
-expect 0 "a fresh cache" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --data "$folder/data"
+result $? "a run without the cache gives the same bytes"
+expect 0 "a run with a fresh cache" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --data "$folder/data"
 timeless "$folder/out" | cmp -s - "$folder/cold"
-result $? "the same bytes with a fresh cache"
-expect 0 "standard input" sh -c "cat '$folder/paper-case-b.json' | '$EASEOFF' analyze - --json"
+result $? "a run with a fresh cache gives the same bytes"
+expect 0 "a design from standard input" sh -c "cat '$folder/paper-case-b.json' | '$EASEOFF' analyze - --json"
 timeless "$folder/out" | cmp -s - "$folder/cold"
-result $? "the same bytes from standard input"
+result $? "a design from standard input gives the same bytes"
 # The document's own design is a design again, and the same one.
 sed -n '/^  "design": {/,/^  },/p' "$folder/paper-case-b.out" | sed '1s/.*/{/; $s/.*/}/' >"$folder/resolved.json"
 expect 0 "the resolved design" "$EASEOFF" analyze "$folder/resolved.json" --json
 stated <"$folder/cold" >"$folder/cold.stated"
 timeless "$folder/out" | stated | cmp -s - "$folder/cold.stated"
-result $? "the same bytes from the resolved design, but for what it states"
+result $? "the resolved design gives the same bytes, but for what it states"
 for file in "$folder"/data/flexibility/*.flex; do head -c 1000 "$file" >"$file.short" && mv "$file.short" "$file"; done
 expect 0 "a damaged cache" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --data "$folder/data"
 holds "A damaged cache file was thrown away" "$folder/out"
 sed '/"warnings"/,$d' "$folder/out" >"$folder/again"
 sed '/"warnings"/,$d' "$folder/cold" | cmp -s - "$folder/again"
-result $? "the same numbers after a damaged cache, and a note"
+result $? "a damaged cache gives the same numbers, and a note"
 export EASEOFF_DATA="$folder/environment"
 expect 0 "a cache named by the environment" "$EASEOFF" analyze "$folder/paper.json" --json
 [ "$(find "$folder/environment/flexibility" -name '*.flex' | wc -l)" -eq 1 ]
-result $? "is used"
+result $? "a cache that the environment names is used"
 EASEOFF_DATA=$folder/paper.json/below
 expect 0 "a cache that cannot be made" "$EASEOFF" analyze "$folder/paper.json" --json
 holds 'The cache' "$folder/out"
@@ -98,20 +98,20 @@ holds 'summed to 3' "$folder/out"
 
 expect 0 "--csv" "$EASEOFF" analyze "$folder/paper-case-b.json" --csv "$folder/csv"
 [ ! -s "$folder/out" ] && [ "$(find "$folder/csv" -type f | wc -l)" -eq 21 ]
-result $? "21 files and no output"
+result $? "--csv writes 21 files and prints nothing"
 holds '^position,lte_pair_um,lte_left_um,lte_right_um,' "$folder/csv/case-2-curves.csv"
 holds '^mesh_order,lte_pair_um,left_deflection_um,' "$folder/csv/case-3-orders.csv"
 holds '^s_mm,eta_mm,pressure_MPa,unloaded_clearance_um' "$folder/csv/case-1-pattern-right.csv"
 [ "$(wc -l <"$folder/csv/case-1-curves.csv")" -eq 33 ] && [ "$(wc -l <"$folder/csv/case-1-pattern-left.csv")" -eq 826 ]
-result $? "one line per mesh position and per point of the pattern"
+result $? "the files have one line per mesh position and per point of the pattern"
 [ "$(awk -F, 'NR > 1 && NF != n { bad = 1 } { n = NF } END { print bad + 0 }' "$folder/csv/case-1-vibration.csv")" -eq 0 ]
-result $? "as many cells as headings"
-expect 0 "one end" "$EASEOFF" analyze "$folder/single.json" --csv "$folder/csv1"
+result $? "the lines have as many cells as headings"
+expect 0 "a pair with one end" "$EASEOFF" analyze "$folder/single.json" --csv "$folder/csv1"
 [ ! -e "$folder/csv1/case-1-pattern-right.csv" ] && ! grep -q right "$folder/csv1/case-1-curves.csv"
-result $? "no files or columns of a right end"
+result $? "one end has no files or columns of a right end"
 expect 0 "--csv and --json" "$EASEOFF" analyze "$folder/paper-case-b.json" --json --csv "$folder/csv"
 timeless "$folder/out" | cmp -s - "$folder/cold"
-result $? "give the document too"
+result $? "--csv and --json give the document too"
 
 touch "$folder/file"
 expect 2 "a folder that cannot be made" "$EASEOFF" analyze "$folder/paper.json" --csv "$folder/none/below"
@@ -122,7 +122,7 @@ mkdir "$folder/taken" && mkdir "$folder/taken/unloaded.csv"
 expect 2 "a file that cannot be replaced" "$EASEOFF" analyze "$folder/paper.json" --csv "$folder/taken"
 says 'cannot be replaced'
 [ -z "$(find "$folder/taken" -name '*.part')" ]
-result $? "nothing half-written is left"
+result $? "a file that cannot be replaced leaves nothing half-written"
 if [ -w /dev/full ]; then
   expect 2 "a full disk" sh -c "'$EASEOFF' analyze '$folder/paper.json' --json >/dev/full"
   says 'No space left'
@@ -169,10 +169,10 @@ kill -TERM $process
 wait $process
 status=$?
 [ $status -eq 2 ] && [ ! -s "$folder/out" ]
-result $? "stopped: exit $status, nothing printed"
+result $? "a program that is stopped ends with $status and prints nothing"
 says 'Stopped'
 [ -z "$(find "$folder/stopped" -name '*.part' -o -name '*.flex')" ]
-result $? "nothing half-written is kept"
+result $? "a program that is stopped keeps nothing half-written"
 
 echo "1..$count"
 exit $failed

@@ -8,7 +8,7 @@ refuses() # NAME INPUT TEXT: on one line of standard error
 {
   printf '%s' "$2" | "$EASEOFF" stage "$1" - >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$3" "$folder/err"
-  result $? "stage $1 says $3"
+  result $? "the stage $1 refuses its input and says $3"
 }
 
 scaled() # PLACE FACTOR: numbers of the reference as an array
@@ -33,25 +33,25 @@ prints '"outcome": "converged"'
 for key in normal:rms_n transverse:rms_t rotational:rms_rot; do
   near "RMS ${key%:*}, m/s2" "/rms_m_per_s2/${key%:*}" "$reference" "/dynamics/0/expected/${key#*:}" 1e-4 relative
 done
-near "RMS of the mean" /rms_pair_m_per_s2/normal_of_mean "$reference" /dynamics/0/expected/rms_meanLR 1e-4 relative
-near "mean deflection, um" /deflection_mean_um "$reference" /dynamics/0/expected/X_mean 1e-5 relative 1e6
+near "RMS of the mean of both ends, m/s2" /rms_pair_m_per_s2/normal_of_mean "$reference" /dynamics/0/expected/rms_meanLR 1e-4 relative
+near "mean deflection of the left end, um" /deflection_mean_um "$reference" /dynamics/0/expected/X_mean 1e-5 relative 1e6
 near "mean force, N" /mesh_force_mean_N "$reference" /dynamics/0/expected/F_mean 1e-5 relative
 near "largest force, N" /mesh_force_max_N "$reference" /dynamics/0/expected/F_max 3e-4 relative
 near "accelerations of the freedoms" /freedom_rms "$reference" /dynamics/0/expected/dof_acc_rms 2e-4 relative
-near "first harmonic, um" /left/deflection_real_um/0 "$reference" /dynamics/0/expected/X_harm_left/0/0 1e-4 relative 1e6
-near "its imaginary part, um" /right/deflection_imaginary_um/0 "$reference" /dynamics/0/expected/X_harm_right/0/1 1e-3 relative 1e6
-near "largest multiplier" /largest_multiplier "$reference" /dynamics/0/expected/max_floquet 1e-3 relative
-near "eigenfrequencies, Hz" /eigenfrequencies_Hz "$reference" /eigen/0/freq_hz 1e-6 relative
-near "damping ratios" /damping_ratios "$reference" /eigen/0/damping_ratio 2e-5 relative
+near "first harmonic of the left end, um" /left/deflection_real_um/0 "$reference" /dynamics/0/expected/X_harm_left/0/0 1e-4 relative 1e6
+near "first harmonic of the right end, imaginary part, um" /right/deflection_imaginary_um/0 "$reference" /dynamics/0/expected/X_harm_right/0/1 1e-3 relative 1e6
+near "largest multiplier of the motion" /largest_multiplier "$reference" /dynamics/0/expected/max_floquet 1e-3 relative
+near "eigenfrequencies of the pair, Hz" /eigenfrequencies_Hz "$reference" /eigen/0/freq_hz 1e-6 relative
+near "damping ratios of the pair" /damping_ratios "$reference" /eigen/0/damping_ratio 2e-5 relative
 "$numbers" "$folder/out" /power_supplied_W >"$folder/expected"
-near "power balance, W" /power_dissipated_W "$folder/expected" "" 1e-6 relative
+near "power that is dissipated, W" /power_dissipated_W "$folder/expected" "" 1e-6 relative
 cp "$folder/out" "$folder/first"
 stage dynamics "{$parameters,$fourier,$running,\"harmonics\":40,\"solver\":\"time_integration\"}"
-near "the same by time integration" /rms_m_per_s2/normal "$folder/first" /rms_m_per_s2/normal 1e-4 relative
+near "RMS by time integration, m/s2" /rms_m_per_s2/normal "$folder/first" /rms_m_per_s2/normal 1e-4 relative
 near "the state of time integration has the same multiplier" /largest_multiplier "$reference" /dynamics/0/expected/max_floquet 1e-3 relative
 
 stage dynamics "{$parameters,$fourier,$running,\"harmonics\":96,\"impact\":{\"mode\":\"paper\",\"force_N\":[300,300],\"duration\":[0.1,0.1]}}"
-near "RMS with impacts" /rms_m_per_s2/normal "$reference" /dynamics/1/expected/rms_n 1e-4 relative
+near "RMS with impacts, m/s2" /rms_m_per_s2/normal "$reference" /dynamics/1/expected/rms_n 1e-4 relative
 
 rows=
 for i in 0 1 2 3 4 5 6 7 8 9 10 11 12 13; do
@@ -76,11 +76,11 @@ stage dynamics "{$pair,\"law\":{\"kind\":\"tangent\",$flat,\"kt_N_per_um\":[1200
 echo '[7,7]' >"$folder/expected"
 near "deflection of a constant law, um" /deflection_mean_um "$folder/expected" "" 1e-9 relative
 echo '[0,0]' >"$folder/expected"
-near "its vibration, m/s2" /rms_m_per_s2/normal "$folder/expected" "" 1e-9
-near "its contact loss" /contact_loss "$folder/expected" "" 0
+near "vibration under a constant law, m/s2" /rms_m_per_s2/normal "$folder/expected" "" 1e-9
+near "contact loss under a constant law" /contact_loss "$folder/expected" "" 0
 stage dynamics "{$pair,\"law\":{\"kind\":\"secant\",$flat,\"datum_um\":2},$derived}"
 echo '[1727.723918,1727.723918]' >"$folder/expected" # 8638.61959 N over 5 um
-near "secant stiffness, N/um" /mean_stiffness_N_per_um "$folder/expected" "" 1e-6 relative
+near "secant stiffness of the law, N/um" /mean_stiffness_N_per_um "$folder/expected" "" 1e-6 relative
 
 # A staggered right end repeats the left one later; a prescribed float of the pinion loads the ends in opposite senses.
 wavy='"law":{"kind":"tangent","Z_um":[7,7.2,7.3,7.2,7,6.8,6.7,6.8],"kt_N_per_um":[1200,1210,1220,1210,1200,1190,1180,1190],"te_harmonics":2}'
@@ -93,7 +93,7 @@ stage dynamics "{$pair,\"law\":{\"kind\":\"tangent\",$flat,\"kt_N_per_um\":[1200
 "$numbers" "$folder/out" /left/deflection_real_um/0 >"$folder/expected"
 near "a float loads the ends in turn" /right/deflection_real_um/0 "$folder/expected" "" 1e-9 relative -1
 ! grep -q '"normal": \[0, 0\]' "$folder/out"
-result $? "and makes them vibrate"
+result $? "a float makes the ends vibrate"
 
 # One end; two different ends.
 stage dynamics "{\"gear_pair\":{\"ends\":1,\"pinion_teeth\":20,\"gear_teeth\":30,\"normal_module_mm\":3,\"helix_angle_deg\":10,\"face_width_mm\":30},$wavy,$derived}"
@@ -124,19 +124,19 @@ i=0
 for start in low high low; do
   stage sdof "{$sdof,\"frequency\":$(one "/sdof/cases/$i/W"),\"start\":\"$start\",\"folds\":{}}"
   for key in mean rms peak_to_peak:pp amplitude/0:h1 largest_multiplier:max_floquet; do
-    near "${key%:*}, $start" "/${key%:*}" "$reference" "/sdof/cases/$i/expected/${key#*:}" 1e-4 relative
+    near "${key%:*} from the $start start" "/${key%:*}" "$reference" "/sdof/cases/$i/expected/${key#*:}" 1e-4 relative
   done
-  near "contact loss, $start" /contact_loss "$reference" "/sdof/cases/$i/expected/contact_loss_fraction" 1e-3
+  near "contact loss from the $start start" /contact_loss "$reference" "/sdof/cases/$i/expected/contact_loss_fraction" 1e-3
   i=$((i + 1))
 done
-near "where an upward sweep loses contact" /folds/contact_lost "$reference" /sdof/folds/A/up 2e-3
-near "where a downward one falls back" /folds/jump_down/0 "$reference" /sdof/folds/A/down 2e-3
+near "frequency where an upward sweep loses contact" /folds/contact_lost "$reference" /sdof/folds/A/up 2e-3
+near "frequency where a downward sweep falls back" /folds/jump_down/0 "$reference" /sdof/folds/A/down 2e-3
 # F_h W^2 = F_m |1 - W^2 + 2 i z W|: a quadratic in W^2.
 awk 'BEGIN { z = 0.05; r = 0.5; a = r * r - 1; b = 2 - 4 * z * z; d = sqrt(b * b + 4 * a)
   printf "[%.12f,%.12f]", sqrt((-b + d) / (2 * a)), sqrt((-b - d) / (2 * a)) }' >"$folder/expected"
-near "grazing frequencies" /grazing "$folder/expected" "" 1e-9 relative
+near "grazing frequencies of the oscillator" /grazing "$folder/expected" "" 1e-9 relative
 stage sdof "{$sdof,\"frequency\":0.78,\"start\":\"state\",\"state\":$(scaled /sdof/cases/1/x0 1)}"
-near "from the state on the upper branch" /rms "$reference" /sdof/cases/1/expected/rms 1e-4 relative
+near "RMS from the state on the upper branch" /rms "$reference" /sdof/cases/1/expected/rms 1e-4 relative
 prints '"folds": null'
 refuses sdof "{$sdof}" "/frequency: This key is required"
 refuses sdof '{"damping_ratio":-1,"mean_force":0.1,"frequency":1}' "/damping_ratio: -1 is outside"

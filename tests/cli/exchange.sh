@@ -12,23 +12,23 @@ run() # STATUS WHAT COMMAND...
   "$@" >"$folder/out" 2>"$folder/err"
   status=$?
   [ "$status" -eq "$wanted" ]
-  result $? "$what: exit $status, expected $wanted"
+  result $? "$what: the program ends with $status, expected $wanted"
 }
 
 says() # TEXT
 {
   grep -qF -e "$1" "$folder/err"
-  result $? "says \"$1\""
+  result $? "$what: the program says \"$1\""
 }
 
 prints() # TEXT
 {
   grep -qF -e "$1" "$folder/out"
-  result $? "prints \"$1\""
+  result $? "$what: the program prints \"$1\""
 }
 
 # Every case: pairs, design, what is assumed, refused and not used, faults.
-run 0 "reference cases" "$EASEOFF" verify "$files/cases.json"
+run 0 "the reference cases" "$EASEOFF" verify "$files/cases.json"
 prints "checks are within tolerance"
 mkdir "$folder/changed"
 cp "$files"/* "$folder/changed"
@@ -39,21 +39,21 @@ sed 's/"gear_casing 2"/"gear_casing 3"/' "$files/cases.json" >"$folder/changed/c
 run 1 "a wrong name of what is not used" "$EASEOFF" verify "$folder/changed/cases.json"
 
 # A model becomes a design that can be analysed as it is.
-run 0 "import" "$EASEOFF" import "$files/paper-case-b-1.7.rexs" -o "$folder/design.json"
+run 0 "a model of one pair" "$EASEOFF" import "$files/paper-case-b-1.7.rexs" -o "$folder/design.json"
 says "not used: gear_casing 2"
-run 0 "the design is one" "$EASEOFF" export "$folder/design.json" --format design
+run 0 "the imported design" "$EASEOFF" export "$folder/design.json" --format design
 prints '"tip_relief_start_mm": 1.31'
-run 0 "import through a pipe" "$EASEOFF" import - <"$files/paper-case-b-2.0.0.rexsj"
+run 0 "a model through a pipe" "$EASEOFF" import - <"$files/paper-case-b-2.0.0.rexsj"
 prints '"pinion_teeth": 17'
 
 # Several pairs: listed, chosen by number; what does not exist is refused.
-run 1 "several pairs, no choice" "$EASEOFF" import "$files/two-stage-1.5.rexs"
+run 1 "several pairs without a choice" "$EASEOFF" import "$files/two-stage-1.5.rexs"
 says "pair 2: stages 22 and 23"
 says "double helical"
 says "choose one by its number (--pair N)"
 run 0 "a pair by its number" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair 3
 prints '"pinion_teeth": 47'
-run 1 "no such pair" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair 4
+run 1 "a pair that is not there" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair 4
 says "There is no pair 4"
 run 1 "a pair that is no number" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair two
 run 1 "a flank that is none" "$EASEOFF" import "$files/spur-1.0.rexs" --flank middle
@@ -62,7 +62,7 @@ says "turned to the normal"
 prints '"tip_relief_um": 12.0' # 13 um cos(beta_b), beta_b = 22.47 deg
 
 # Faults: all at once, each with its place.
-run 1 "many faults" "$EASEOFF" import "$files/errors-1.6.rexs"
+run 1 "a model with many faults" "$EASEOFF" import "$files/errors-1.6.rexs"
 says 'line 268, column 7: cylindrical_gear 11: normal_module states the unit "inch"'
 says "helix_angel"
 sed 's/role="left"/role="left_flank"/' "$files/paper-case-b-1.7.rexs" >"$folder/role.rexs"
@@ -77,7 +77,7 @@ says "not used: tip_relief 81, which no relation that is read holds"
 sed 's/type="flank"/type="flanks"/' "$files/paper-case-b-1.7.rexs" >"$folder/relation.rexs"
 run 0 "a misspelt relation of flanks" "$EASEOFF" import "$folder/relation.rexs"
 says "not used: cylindrical_gear_flank 41, which no relation that is read holds"
-run 1 "cut off" "$EASEOFF" import "$files/not-xml.rexs"
+run 1 "a model that is cut off" "$EASEOFF" import "$files/not-xml.rexs"
 says "line 4, column 1: The XML is not well-formed"
 run 1 "a document type" "$EASEOFF" import "$files/entity.rexs"
 says "document type"
@@ -86,7 +86,7 @@ says "A part of the workbook has a document type"
 run 0 "an OpenDocument spreadsheet" "$EASEOFF" import "$files/pair.ods"
 prints '"normal_module_mm": 4.5'
 prints '"tip_relief_um": 12.5'
-run 1 "as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
+run 1 "faults as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
 prints '"kind": "not_a_boolean"'
 prints '"design": null'
 
@@ -97,7 +97,7 @@ for format in rexs rexs-json rexs-zip rexs-2.0.0 rexs-2.0.0-json table table-com
   "$EASEOFF" export "$folder/design.json" --format design >"$folder/one"
   "$EASEOFF" export "$folder/back.json" --format design >"$folder/two"
   cmp -s "$folder/one" "$folder/two"
-  result $? "$format: the same design"
+  result $? "$format brings back the same design"
 done
 # A grid of a hundred and fifty numbers in one cell of a sheet; spur teeth on two ends.
 awk 'BEGIN { printf "{\"gear_pair\":{\"ends\":2,\"pinion_teeth\":23,\"gear_teeth\":61,\"normal_module_mm\":4,"
@@ -114,10 +114,10 @@ run 0 "a spur pair with two ends and a grid" "$EASEOFF" export "$folder/grid.jso
 cp "$folder/out" "$folder/one"
 for format in rexs rexs-json table table-rows workbook; do
   "$EASEOFF" export "$folder/grid.json" --format "$format" -o "$folder/file"
-  run 0 "its import of $format" "$EASEOFF" import "$folder/file" -o "$folder/back.json"
+  run 0 "import of $format with a grid" "$EASEOFF" import "$folder/file" -o "$folder/back.json"
   "$EASEOFF" export "$folder/back.json" --format design >"$folder/two"
   cmp -s "$folder/one" "$folder/two"
-  result $? "$format: the same design"
+  result $? "$format brings back the same design with a grid"
 done
 "$EASEOFF" example single >"$folder/single.json"
 run 0 "two designs in one table" "$EASEOFF" export "$folder/design.json" "$folder/single.json" --format table -o "$folder/two.csv"
@@ -131,7 +131,7 @@ prints "(-x, all mirrored, where the pinion turns clockwise"
 run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-gear
 prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
 test ! -s "$folder/err"
-result $? "there is nothing to say about it"
+result $? "an exported tooth leaves nothing to say about it"
 echo '{"gear_pair": {"pinion_teeth": 23, "gear_teeth": 61, "normal_module_mm": 5, "helix_angle_deg": 26, "face_width_mm": 60},
   "load_cases": [{"torque_Nm": 500, "speed_rpm": 1500}], "modification": {"pinion": {"left": {"root_relief_um": 400,
   "root_relief_start_mm": 3.5, "root_relief_shape": "exponent", "root_relief_exponent": 1.2}}}}' >"$folder/folded.json"
@@ -187,7 +187,7 @@ run 1 "an id without end" "$EASEOFF" import "$folder/id.rexsj"
 printf '{"model":{"version":"1.7","relations":[{"id":1,"type":"stage","refs":[{"id":5,"role":"stage"}]}]}}' >"$folder/lost.rexsj"
 run 1 "a relation to nothing" "$EASEOFF" import "$folder/lost.rexsj"
 says "/model/relations/0: Relation 1 (stage) names component 5 as stage"
-run 1 "no file" "$EASEOFF" import "$folder/nothing.rexs"
+run 1 "a file that is not there" "$EASEOFF" import "$folder/nothing.rexs"
 printf '' >"$folder/empty.rexs"
 run 1 "an empty file" "$EASEOFF" import "$folder/empty.rexs"
 

@@ -13,7 +13,7 @@ check()
   grep -q "^# version $3 of" "$folder/out" || status=1
   grep -v '^ok' "$folder/out" >>"$folder/err"
   : >"$folder/out"
-  result $status "version $3, OpenBLAS for ${2:-this processor}: nothing depends on what was asked before"
+  result $status "nothing depends on what was asked before: version $3, OpenBLAS for ${2:-this processor}"
 }
 
 has()

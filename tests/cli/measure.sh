@@ -27,7 +27,7 @@ recording() # WHAT OPTIONS...
   what=$1
   shift
   rig r.csv --torque 828 --speed 2000 "$@" && "$EASEOFF" verify "$folder/r.csv.json" >"$folder/out" 2>"$folder/err"
-  result $? "$what: $(sed -n 's/^  files: r.csv  *\([0-9]*\) .*/\1/p' "$folder/out") numbers"
+  result $? "a recording is measured, $what: $(sed -n 's/^  files: r.csv  *\([0-9]*\) .*/\1/p' "$folder/out") numbers"
 }
 recording "angles in degrees"
 recording "wrapped radians without a heading" --radians yes --wrapped yes --heading none
@@ -58,50 +58,50 @@ recording "fault saturated" --fault saturated --output sine-cosine --pinion-line
 
 # The same settings give the same bytes; another seed gives others.
 rig one.csv --torque 828 --speed 2000 --turns 2 && rig two.csv --torque 828 --speed 2000 --turns 2 && cmp -s "$folder/one.csv" "$folder/two.csv"
-result $? "the same bytes"
+result $? "a second recording has the same bytes"
 rig two.csv --torque 828 --speed 2000 --turns 2 --seed 2 && ! cmp -s "$folder/one.csv" "$folder/two.csv"
-result $? "another seed"
+result $? "a recording of another seed has other bytes"
 
 # ---- measured and predicted ----
 
 for torque in 414 828; do
   rig "plain$torque.csv" --torque $torque --speed 2000 --unmodified yes --seed $torque && rig "relieved$torque.csv" --torque $torque --speed 2000
-  result $? "recordings at $torque N m"
+  result $? "recordings at $torque N m are made"
 done
 cat >"$folder/list.json" <<END
 {"measurements": [{"file": "plain414.csv", "label": "unmodified", "torque_Nm": 414}, {"file": "relieved414.csv", "torque_Nm": 414},
   {"file": "plain828.csv", "label": "unmodified", "torque_Nm": 828}, {"file": "relieved828.csv", "torque_Nm": 828}]}
 END
 measure --list "$folder/list.json" --json --csv "$folder/table.csv"
-result $? "four recordings measured"
+result $? "four recordings are measured"
 verdict=$("$numbers" "$folder/out" /comparison/measurements/measured_rms_m_per_s2 "$folder/out" /comparison/measurements/predicted_rms_m_per_s2 0.005 relative 2>&1)
-result $? "RMS as predicted: $verdict"
+result $? "the RMS is as predicted: $verdict"
 verdict=$("$numbers" "$folder/out" /comparison/reductions/\*/measured_percent "$folder/out" /comparison/reductions/\*/predicted_percent 1.5 2>&1)
-result $? "reductions as predicted: $verdict"
+result $? "the reductions are as predicted: $verdict"
 verdict=$("$numbers" "$folder/out" /measurements/\*/result/rms_m_per_s2/value "$folder/out" /comparison/measurements/measured_rms_m_per_s2 0 2>&1)
-result $? "the same RMS in both places: $verdict"
+result $? "the RMS is the same in both places: $verdict"
 verdict=$("$numbers" "$folder/out" /comparison/details/2/te/measured_um "$folder/out" /comparison/details/2/te/predicted_um 0.05 2>&1)
-result $? "curves on each other: $verdict"
+result $? "the curves lie on each other: $verdict"
 [ "$(wc -l <"$folder/table.csv")" -eq 5 ] && [ "$(awk -F, '{ print NF }' "$folder/table.csv" | sort -u)" = 11 ]
-result $? "a heading and four lines of CSV"
+result $? "the CSV has a heading and four lines"
 measure --list "$folder/list.json"
 grep -q "the modification takes" "$folder/out" && grep -q "relieved828.csv, orders" "$folder/out"
-result $? "a table for people"
+result $? "the table for people has every recording"
 measure "$folder/relieved828.csv" "$folder/plain828.csv" --torque 828 --harmonics 3 --no-prediction --json
 [ $? -eq 0 ] && grep -q '"comparison": null' "$folder/out" && [ "$("$numbers" "$folder/out" /measurements/\*/result/mesh/order | tr ',' '\n' | wc -l)" -eq 6 ]
-result $? "two recordings alone, three orders each"
+result $? "two recordings alone have three orders each"
 
 # Inputs that nobody knows: the rig has other bearings than the design says.
 sed 's/"modification"/"supports": {"pinion_bearing_stiffness_N_per_um": 500}, "modification"/' "$design" >"$folder/rig.json"
 for speed in 1500 2500; do
   "$EASEOFF" rig --design "$folder/rig.json" --data "$folder/data" --torque 828 --speed $speed -o "$folder/s$speed.csv" --sample-rate-Hz 12000 2>"$folder/err"
-  result $? "a rig with softer bearings at $speed rpm"
+  result $? "a rig with softer bearings is recorded at $speed rpm"
 done
 measure "$folder/s1500.csv" "$folder/s2500.csv" --torque 828 --json --update '{"unknowns": {"pinion_bearing_stiffness_N_per_um": [200, 2000]}, "model_error": 0.01}' --apply "$folder/found.json"
 "$numbers" "$folder/out" /update/unknowns/\*/confidence_95 2>/dev/null | tr -d '[] ' | tr ',' '\n' | awk 'NR == 1 { low = $1 } NR == 2 { high = $1 } END { exit !(low < 500 && high > 500 && high - low < 100) }'
-result $? "its bearings are found: $("$numbers" "$folder/out" /update/unknowns/\*/value 2>/dev/null)"
+result $? "the stiffness of its bearings is found: $("$numbers" "$folder/out" /update/unknowns/\*/value 2>/dev/null)"
 verdict=$("$numbers" "$folder/found.json" /supports/pinion_bearing_stiffness_N_per_um "$folder/out" /update/unknowns/\*/value 1e-9 relative 2>&1)
-result $? "and applied: $verdict"
+result $? "the stiffness that was found is applied: $verdict"
 
 # ---- wrong input ----
 
@@ -111,7 +111,7 @@ refuses() # TEXT ARGUMENTS...
   shift
   "$EASEOFF" "$@" >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$text" "$folder/err"
-  result $? "says $text"
+  result $? "the program refuses $* and says $text"
 }
 refuses "needs --design FILE" rig -o x.csv
 refuses "/turns: -1 is outside" rig --design "$design" -o "$folder/x.csv" --turns=-1
@@ -120,10 +120,10 @@ refuses "/sample_rate_Hz" rig --design "$design" -o "$folder/x.csv" --sample-rat
 refuses "decimal comma needs" rig --design "$design" -o "$folder/x.csv" --decimal-comma yes
 refuses "unknown or incomplete option" rig --design "$design" -o "$folder/x.csv" --turn 5
 [ ! -e "$folder/x.csv" ]
-result $? "and nothing is written"
+result $? "a refused recording writes nothing"
 measure "$folder/none.csv"
 [ $? -eq 2 ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q "could not be opened" "$folder/err"
-result $? "a file that is not there"
+result $? "a file that is not there is refused"
 refuses "Between 1 and" measure "$design"
 refuses "/layout/lines" measure "$design" "$folder/one.csv" --layout '{"lines": -5}'
 refuses "/layout/colums: Unknown key" measure "$design" "$folder/one.csv" --layout '{"colums": {}}'
@@ -162,7 +162,7 @@ result $? "two turns are refused, with the reason"
 printf 'a,b,c\n1,2\n' >"$folder/bad.csv"
 measure "$folder/bad.csv"
 [ $? -eq 1 ] && [ "$(wc -l <"$folder/err")" -eq 1 ]
-result $? "no recording at all: $(cat "$folder/err")"
+result $? "a file that is no recording is refused: $(cat "$folder/err")"
 
 echo "1..$count"
 exit $failed

@@ -8,7 +8,7 @@ refuses() # STATUS NAME INPUT TEXT: on one line of standard error
 {
   printf '%s' "$3" | "$EASEOFF" stage "$2" - >"$folder/out" 2>"$folder/err"
   [ $? -eq "$1" ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$4" "$folder/err"
-  result $? "stage $2 says $4"
+  result $? "the stage $2 refuses its input and says $4"
 }
 
 column() { "$numbers" "$reference" "$1"; }
@@ -43,18 +43,18 @@ overlap_ratio eps_b 1
 rack_factor ku 1
 base_helix_angle_deg bb 57.29577951308232
 KEYS
-near "form radii" /form_radius_mm "$reference" /macro/fillet_form_radius 1e-8 relative
+near "form radii of both members, mm" /form_radius_mm "$reference" /macro/fillet_form_radius 1e-8 relative
 
 stage modification "{$pair,$case_a,\"s_mm\":$(column '/modification/points/*/0'),\"eta_mm\":$(column '/modification/points/*/1')}"
 near "delta of case A, um" /delta_um "$reference" /modification/delta_um/A 1e-6
-near "a_l" /lead_crowning_per_um "$reference" /modification/mods/A/a_l 1e-12 relative 1e-3
+near "lead crowning coefficient a_l" /lead_crowning_per_um "$reference" /modification/mods/A/a_l 1e-12 relative 1e-3
 stage modification "{$pair,$case_a,\"member\":\"gear\",\"u_mm\":[-5,0,5]}"
 prints '"delta_um": \[0, 0, 0\]'
 
 stage surface "{$pair,$case_a,\"u_mm\":$(column '/exact_surface_A/points/*/u'),\"v_mm\":$(column '/exact_surface_A/points/*/v')}"
 for axis in 0:x 1:y 2:z; do
   near "surface point, ${axis#*:}, mm" "/position_${axis#*:}_mm" "$reference" "/exact_surface_A/points/*/x/${axis%:*}" 1e-8
-  near "its normal" "/normal_${axis#*:}" "$reference" "/exact_surface_A/points/*/n/${axis%:*}" 1e-8
+  near "surface normal, ${axis#*:}" "/normal_${axis#*:}" "$reference" "/exact_surface_A/points/*/n/${axis%:*}" 1e-8
 done
 stage surface "{$pair,\"s_mm\":[-10,0,10],\"eta_mm\":[-27.5,3,20]}"
 echo '[-27.5,3,20]' >"$folder/expected"
@@ -77,11 +77,11 @@ tca='"phase_mm":'$(column /unloaded_tca/0/phase)',"end":"right"'
 crossing='"alignment":{"shaft_angle_error_in_plane_deg":0,"shaft_angle_error_out_of_plane_deg":'$(awk 'BEGIN { printf "%.15g", 0.1 / 60 }')'}'
 stage tca "{$pair,$case_a,$crossing,$tca,\"pivot\":\"mid_face\"}"
 near "exact transmission error, um" '/phases/*/exact/transmission_error_um' "$reference" /unloaded_tca/0/TE_exact_um 1e-3 level
-near "by the smallest gap, um" '/phases/*/minimum_gap/transmission_error_um' "$reference" /unloaded_tca/0/TE_mingap_um 0.04 level
-near "contact path, s, mm" '/phases/*/exact/s_mm' "$reference" /unloaded_tca/0/s 0.02
-near "contact path, eta, mm" '/phases/*/exact/eta_mm' "$reference" /unloaded_tca/0/eta 0.1
+near "transmission error by the smallest gap, um" '/phases/*/minimum_gap/transmission_error_um' "$reference" /unloaded_tca/0/TE_mingap_um 0.04 level
+near "contact path of the exact contact, s, mm" '/phases/*/exact/s_mm' "$reference" /unloaded_tca/0/s 0.02
+near "contact path of the exact contact, eta, mm" '/phases/*/exact/eta_mm' "$reference" /unloaded_tca/0/eta 0.1
 echo '[0]' >"$folder/expected"
-near "the two forms agree, um" /largest_difference_um "$folder/expected" "" 0.04
+near "difference between the two forms, um" /largest_difference_um "$folder/expected" "" 0.04
 prints '"touch": "point"'
 stage tca "{$pair,$tca}"
 prints '"touch": "edge", *$'
@@ -99,7 +99,7 @@ for end in 0:left 1:right; do
   near "load of pair -1, N" "$place/pairs/1/load_N" "$reference" "$row/share_N/${end%:*}/-1" 2e-5 relative
 done
 awk 'BEGIN { printf "[%.9f]", 828e3 / (2 * 51.861854090581396 * cos(0.39218390684663407)) }' >"$folder/expected"
-near "half the torque per end, N" /loads/0/force_N "$folder/expected" "" 1e-9 relative
+near "force of one end under half the torque, N" /loads/0/force_N "$folder/expected" "" 1e-9 relative
 
 # Every point obeys the law of contact: gaps close where load is, and no load is negative. Sum over one position is the force.
 "$numbers" "$folder/out" /loads/0/left/points/position | tr -d '[]' | tr ',' '\n' >"$folder/position"
@@ -112,19 +112,19 @@ result $? "point loads are not negative and sum to the force"
 
 stage contact "{$pair,$closed,\"alignment\":{\"shaft_angle_error_in_plane_deg\":0.02,\"pinion_axial\":\"fixed\"},\"torque_Nm\":[828],\"pivot\":\"mid_face\",\"resolution\":{\"positions\":16,\"te_harmonics\":8}}"
 "$numbers" "$folder/out" /loads/0/left/approach_um >"$folder/expected"
-near "a fixed pinion has one approach for both ends, um" /loads/0/right/approach_um "$folder/expected" "" 1e-3
+near "approach of a fixed pinion, the same for both ends, um" /loads/0/right/approach_um "$folder/expected" "" 1e-3
 stage contact "{$pair,$closed,\"alignment\":{\"shaft_angle_error_in_plane_deg\":0.02,\"pinion_axial\":\"floating\"},\"force_N\":[8000,4000],\"resolution\":{\"positions\":16,\"te_harmonics\":8}}"
 echo '[8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000,8000]' >"$folder/expected"
-near "a floating one carries equal loads, N" /loads/0/right/load_N "$folder/expected" "" 1e-9 relative
+near "load of a floating pinion, the same for both ends, N" /loads/0/right/load_N "$folder/expected" "" 1e-9 relative
 stage contact "{\"gear_pair\":{\"ends\":1,\"pinion_teeth\":20,\"gear_teeth\":30,\"normal_module_mm\":3,\"helix_angle_deg\":0,\"face_width_mm\":20},$closed,\"torque_Nm\":[100]}"
 prints '"right": null'
 
 stage impact "{$pair,$aligned,$closed,\"approach_um\":[7],\"resolution\":{\"positions\":16,\"te_harmonics\":8}}"
-near "effective mass, kg" /effective_mass_kg "$reference" /impact/m_eff_t 1e-6 relative 1e3
+near "effective mass of the impact, kg" /effective_mass_kg "$reference" /impact/m_eff_t 1e-6 relative 1e3
 near "phase of first touch, mm" /loads/0/right/phase_mm "$reference" /impact/cases/0/c 0.002
-near "where on the face, mm" /loads/0/right/eta_mm "$reference" /impact/cases/0/eta 1e-6
-near "radius on the pinion, mm" /loads/0/right/pinion_radius_mm "$reference" /impact/cases/0/pinion_radius 1e-4
-near "closing speed, mm/s" /loads/0/right/speed_mm_per_s "$reference" /impact/cases/0/closing_speed_mm_s 1e-4 relative
+near "place of first touch on the face, mm" /loads/0/right/eta_mm "$reference" /impact/cases/0/eta 1e-6
+near "radius of first touch on the pinion, mm" /loads/0/right/pinion_radius_mm "$reference" /impact/cases/0/pinion_radius 1e-4
+near "closing speed of first touch, mm/s" /loads/0/right/speed_mm_per_s "$reference" /impact/cases/0/closing_speed_mm_s 1e-4 relative
 prints '"off_line": true'
 
 stage hertz "{\"relative_radius_mm\":$(column /macro/rho_n/0.0 | tr -d '[]'),\"depth_mm\":$(column /macro/h_depth/0.0),\"line_load_N_per_mm\":$(column /hertz/q)}"
@@ -144,18 +144,18 @@ done
 prints '"from_cache": false'
 cp "$folder/out" "$folder/first"
 stage flexibility "{$pair,$elements,\"cache_directory\":\"$folder/cache\",\"s_mm\":$(column '/fe_bulk/pinion/*/s')}"
-near "the same from the cache" '/rows/*/gear_um' "$folder/first" '/rows/*/gear_um' 0
+near "deflection read from the cache, um" '/rows/*/gear_um' "$folder/first" '/rows/*/gear_um' 0
 prints '"from_cache": true'
 points='"points":[{"s_mm":2,"eta_mm":-5,"force_N":1000},{"s_mm":-3,"eta_mm":10},{"pair":1,"s_mm":2,"eta_mm":0}]'
 stage flexibility "{$pair,$elements,\"cache_directory\":\"$folder/cache\",$points,\"mesh\":{\"file\":\"$folder/mesh.inp\",\"member\":\"gear\",\"row\":2}}"
 cp "$folder/out" "$folder/first"
 [ "$(grep -c '^\*' "$folder/mesh.inp")" -ge 10 ] && grep -q 'TYPE=C3D8I' "$folder/mesh.inp"
-result $? "the mesh is written"
+result $? "the stage writes the mesh"
 points='"points":[{"s_mm":2,"eta_mm":-5},{"s_mm":-3,"eta_mm":10,"force_N":1000},{"pair":1,"s_mm":2,"eta_mm":0}]'
 stage flexibility "{$pair,$elements,\"cache_directory\":\"$folder/cache\",$points}"
 near "Maxwell and Betti: load and place exchanged" /pinion_point_um/0 "$folder/first" /pinion_point_um/1 1e-12 relative
 echo '[0]' >"$folder/expected"
-near "no coupling, no deflection of the next pair" /gear_point_um/2 "$folder/expected" "" 0
+near "deflection of the next pair without coupling, um" /gear_point_um/2 "$folder/expected" "" 0
 refuses 2 flexibility "{$pair,$elements,\"mesh\":{\"file\":\"$folder/none/mesh.inp\"}}" "none/mesh.inp"
 
 # The root of one tooth at one phase, with loads from the contact, and with the same loads stated point by point.
@@ -174,7 +174,7 @@ for member in pinion gear; do
   near "root stress of the $member, MPa" "/points/$member/max_MPa" "$folder/first" "/loads/0/left/$member/history_MPa/$tooth" 0.005 relative
 done
 "$numbers" "$folder/out" /points/pinion/face_stress_MPa | tr -d '[]' | tr ',' '\n' | sort -g | tail -1 | awk '{ print "[" $1 "]" }' >"$folder/expected"
-near "the largest is the largest over the face, MPa" /points/pinion/max_MPa "$folder/expected" "" 1e-9 relative
+near "largest root stress, that over the face, MPa" /points/pinion/max_MPa "$folder/expected" "" 1e-9 relative
 
 # ---- objectives ----
 
@@ -190,29 +190,29 @@ stage objective "$(cat "$folder/objective")"
 # By hand: f1 = (0.2 1 + 0.5 2 + 0.3 3)/3, f2 = (0.2 500 + 0.5 600 + 0.3 700)/3, f3 = (0.2 20 + 0.5 30 + 0.3 40)/3; unmodified 1.4, 406.667, 21.333;
 # J = 0.4 0.5 + 0.2 0.5 + 0.4 31/64; violation 60/50 - 1; fitness 1/J - 10 violation.
 awk 'BEGIN { j = 0.3 + 0.4 * 31 / 64; printf "{\"f\":[%.15g,%.15g,%.15g],\"J\":%.15g,\"fitness\":%.15g}", 2.1 / 3, 610 / 3, 31 / 3, j, 1 / j - 2 }' >"$folder/expected"
-near "f1, um" /objectives/f1_um "$folder/expected" /f/0 1e-12 relative
-near "f2, N" /objectives/f2_N "$folder/expected" /f/1 1e-12 relative
-near "f3, m/s2" /objectives/f3_m_per_s2 "$folder/expected" /f/2 1e-12 relative
-near "J" /objectives/J "$folder/expected" /J 1e-12 relative
-near "fitness" /objectives/fitness "$folder/expected" /fitness 1e-12 relative
+near "objective f1, um" /objectives/f1_um "$folder/expected" /f/0 1e-12 relative
+near "objective f2, N" /objectives/f2_N "$folder/expected" /f/1 1e-12 relative
+near "objective f3, m/s2" /objectives/f3_m_per_s2 "$folder/expected" /f/2 1e-12 relative
+near "objective J" /objectives/J "$folder/expected" /J 1e-12 relative
+near "fitness of the design" /objectives/fitness "$folder/expected" /fitness 1e-12 relative
 
 damping='"supports":{"pinion_bearing_stiffness_N_per_um":800,"gear_bearing_stiffness_N_per_um":1000,"gear_axial_stiffness_left_N_per_um":200,"gear_axial_stiffness_right_N_per_um":200,"mesh_damping_stiffness_N_per_um":1100,"torsional_coupling":"off"}'
 stage evaluation "{$pair,$aligned,$closed,$damping,\"load_cases\":[{\"torque_Nm\":828,\"speed_rpm\":2000}],\"resolution\":{\"tip_edge_contact\":false,\"te_harmonics\":10}}"
-near "PPLTE, um" /load_cases/0/values/peak_to_peak_um "$evaluations" /cases/2/out/PPLTE_um 1e-3 relative
-near "mean, um" /load_cases/0/mean_um "$evaluations" /cases/2/out/LTE_mean_um 1e-3 relative
-near "impact, N" /load_cases/0/values/impact_N "$evaluations" /cases/2/out/F_gen_N 1e-3 relative
-near "RMS normal, m/s2" /load_cases/0/rms_normal_m_per_s2 "$evaluations" /cases/2/out/rms_n 1e-3 relative
-near "RMS transverse, m/s2" /load_cases/0/rms_transverse_m_per_s2 "$evaluations" /cases/2/out/rms_t 1e-3 relative
-near "RMS rotational, m/s2" /load_cases/0/rms_rotational_m_per_s2 "$evaluations" /cases/2/out/rms_rot 1e-3 relative
+near "PPLTE of S01, um" /load_cases/0/values/peak_to_peak_um "$evaluations" /cases/2/out/PPLTE_um 1e-3 relative
+near "mean transmission error of S01, um" /load_cases/0/mean_um "$evaluations" /cases/2/out/LTE_mean_um 1e-3 relative
+near "impact of S01, N" /load_cases/0/values/impact_N "$evaluations" /cases/2/out/F_gen_N 1e-3 relative
+near "RMS of S01, normal, m/s2" /load_cases/0/rms_normal_m_per_s2 "$evaluations" /cases/2/out/rms_n 1e-3 relative
+near "RMS of S01, transverse, m/s2" /load_cases/0/rms_transverse_m_per_s2 "$evaluations" /cases/2/out/rms_t 1e-3 relative
+near "RMS of S01, rotational, m/s2" /load_cases/0/rms_rotational_m_per_s2 "$evaluations" /cases/2/out/rms_rot 1e-3 relative
 near "mean tangent stiffness, N/um" /load_cases/0/left/mean_tangent_N_per_um "$evaluations" /cases/2/ends/kt/0 1e-3 relative
 grep -q '"id": "S01"' "$evaluations"
-result $? "of case S01"
+result $? "the reference of these numbers is case S01"
 "$EASEOFF" example paper-case-a | sed '1s/{/{'"$closed"',/' >"$folder/design.json"
 "$EASEOFF" stage evaluation "$folder/design.json" >"$folder/out" 2>"$folder/err"
-result $? "a whole design is an input"
+result $? "the stage takes a whole design as its input"
 one=$("$EASEOFF" stage evaluation "$folder/design.json" | cksum)
 [ "$one" = "$(cksum <"$folder/out")" ]
-result $? "the same bytes on a second run"
+result $? "a second run gives the same bytes"
 
 # ---- wrong input ----
 
@@ -274,7 +274,7 @@ refuses 1 evaluation "{$pair,$closed,\"load_cases\":[{\"torque_Nm\":1,\"speed_rp
 
 for name in $("$EASEOFF" stage | cut -d' ' -f1); do
   "$EASEOFF" stage "$name" --help >"$folder/out" 2>"$folder/err"
-  result $? "stage $name --help"
+  result $? "the stage $name has its help"
   prints "^usage: easeoff stage $name INPUT.json"
   prints "^Output:"
 done

@@ -18,7 +18,7 @@ DESIGN
 study() # ARGUMENTS...: output in $folder/out
 {
   "$EASEOFF" study "$@" >"$folder/out" 2>"$folder/err"
-  result $? "study $*"
+  result $? "easeoff study $* succeeds"
 }
 
 refuses() # TEXT ARGUMENTS...: on one line of standard error
@@ -27,13 +27,13 @@ refuses() # TEXT ARGUMENTS...: on one line of standard error
   shift
   "$EASEOFF" study "$@" >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$text" "$folder/err"
-  result $? "says $text"
+  result $? "easeoff study $* is refused with $text"
 }
 
 prints() # TEXT
 {
   grep -q -e "$1" "$folder/out"
-  result $? "prints \"$1\""
+  result $? "the study prints \"$1\""
 }
 
 same() # FILE FILE WHAT
@@ -52,7 +52,7 @@ relief='modification.pinion.*.tip_relief_um' crowning='modification.pinion.both.
 study "$design" --data "$data" --vary "$relief=0:20:3" --vary "$crowning=0,12" --csv "$folder/a.csv"
 prints "6 of 6 variants, 0 known before, 6 computed now, 0 refused, 0 not converged"
 [ "$(cut -d, -f 1-3 "$folder/a.csv" | tr '\n' ' ')" = "variant,$relief,$crowning 0,0,0 1,0,12 2,10,0 3,10,12 4,20,0 5,20,12 " ]
-result $? "a full factorial, the last one fastest"
+result $? "a full factorial varies the last key fastest"
 
 # A row is what analyze says of its design.
 ends='"left": { "tip_relief_um": 10, "lead_crowning_um": 12 }, "right": { "tip_relief_um": 10, "lead_crowning_um": 12 }'
@@ -67,13 +67,13 @@ done
 study "$design" --data "$data" --vary "$relief=0:20:3" --vary "$crowning=0,6,12" --csv "$folder/b.csv"
 prints "9 of 9 variants, 6 known before, 3 computed now"
 [ "$(cell "$folder/b.csv" 5 objectives.J)" = "$(cell "$folder/a.csv" 3 objectives.J)" ]
-result $? "and they are the same"
+result $? "a row that was known is the same in another study"
 study "$design" --data "$data" --vary "$relief=0:20:3" --vary "$crowning=0,6,12" --csv "$folder/b2.csv"
 prints "taken up): 9 of 9 variants, 6 known before, 0 computed now"
 same "$folder/b.csv" "$folder/b2.csv" "the same study once more gives its table again"
 "$EASEOFF" history list --data "$data" >"$folder/out" 2>"$folder/err"
 grep -q "^ *1 .* 9 " "$folder/out"
-result $? "the history of searches has them"
+result $? "the history of searches has the rows"
 "$EASEOFF" optimize "$design" --data "$folder/search" >"$folder/out" 2>"$folder/err"
 "$EASEOFF" history export 1 --data "$folder/search" >"$folder/rows" 2>"$folder/err"
 awk -F, 'NR == 1 { split("pinion/left/lead_crowning_um pinion/left/tip_relief_um pinion/left/tip_relief_start_mm pinion/left/root_relief_um pinion/left/root_relief_start_mm", key, " ")
@@ -90,11 +90,11 @@ same "$folder/found.csv" "$folder/computed.csv" "rows of a search are, to the la
 # The table.
 study --job 2 --data "$data" --filter 'objectives.J<0.9, outcome=converged' --sort objectives.J --descending
 [ "$(awk 'NR > 1 && $7 >= 0.9' "$folder/out" | wc -l)" -eq 0 ] && [ "$(tail -n +2 "$folder/out" | wc -l)" -gt 1 ]
-result $? "is filtered"
+result $? "the table is filtered"
 study --job 2 --data "$data" --sort objectives.J --csv -
 [ "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "objectives.J") at = i } NR > 1 { print $at }' "$folder/out" | sort -g | tr '\n' ' ')" = \
   "$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "objectives.J") at = i } NR > 1 { print $at }' "$folder/out" | tr '\n' ' ')" ]
-result $? "is sorted"
+result $? "the table is sorted"
 study --job 2 --data "$data" --json --limit 2
 prints '"fits": 9'
 prints '"next": "2"'
@@ -111,9 +111,9 @@ study "$design" --data "$data" --vary gear_pair.pinion_teeth=16,17 --vary alignm
   --vary 'gear_pair.helix_angle_deg=24,80' --columns 'geometry.*,objectives.J' --csv "$folder/c.csv"
 prints "16 of 16 variants, 0 known before, 16 computed now, 8 refused"
 grep -q '^1,16,floating,0.5,80,.*,refused,.*helix_angle_deg' "$folder/c.csv"
-result $? "is a row with its reason"
+result $? "a variant that cannot be is a row with its reason"
 [ "$(cell "$folder/c.csv" 0 geometry.pinion_teeth)$(cell "$folder/c.csv" 8 geometry.pinion_teeth)" = 1617 ]
-result $? "each of its own pair"
+result $? "each row is of its own pair"
 
 # Rows of several folders.
 "$EASEOFF" history import "$folder/search" --data "$folder/merged" >"$folder/out" 2>"$folder/err"
@@ -130,7 +130,7 @@ same "$folder/found.csv" "$folder/merged.csv" "what was imported is what was fou
 study "$design" --data "$folder/none" --dry-run --vary gear_pair.pinion_teeth=16,17,18 --vary T=1:1000:1000
 prints "3000 variants of 3 gear pairs"
 [ ! -e "$folder/none/easeoff.db" ]
-result $? "nothing is written"
+result $? "a dry run makes no database"
 
 # Samples, and the same bytes for any number of threads and ranks, killed and gone on with or not; with sanitizers fewer of them go through
 # the same code.
@@ -156,7 +156,7 @@ for threads in $some_threads; do
   rm -rf "${folder:?}/run"
   # shellcheck disable=SC2086
   study "$design" --data "$folder/run" --cache "$folder/pairs/flexibility" --vary $many --threads $threads --csv "$folder/threads.csv"
-  same "$folder/one.csv" "$folder/threads.csv" "the same bytes with $threads threads"
+  same "$folder/one.csv" "$folder/threads.csv" "$threads threads give the same bytes"
 done
 
 # pid of a rank; empty: it is not there yet
@@ -180,7 +180,7 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 EASEOFF_TEST="$folder"
   for ranks in $some_ranks; do
     run ranks mpirun --oversubscribe -n $ranks
-    same "$folder/one.csv" "$folder/ranks.csv" "the same bytes with $ranks ranks"
+    same "$folder/one.csv" "$folder/ranks.csv" "$ranks ranks give the same bytes"
   done
   many="$many --columns *"
   run one mpirun --oversubscribe -n 2
@@ -201,7 +201,7 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
     mpirun --oversubscribe -n 3 "$EASEOFF" study "$design" --data "$folder/run" --cache "$folder/pairs/flexibility" --vary $many --csv "$folder/resumed.csv" \
       >"$folder/out" 2>"$folder/err"
     prints "taken up): 100 of 100 variants, 0 known before, $((101 - found)) computed now"
-    same "$folder/one.csv" "$folder/resumed.csv" "and the next start goes on with the same bytes"
+    same "$folder/one.csv" "$folder/resumed.csv" "the start after a kill goes on with the same bytes"
   done
   "$EASEOFF" optimize "$design" --data "$folder/alone" --cache "$folder/pairs/flexibility" --json 2>"$folder/err" | sed '/"timing_ms"/,/}/d; /"run"/,/}/d' >"$folder/alone.json"
   mpirun --oversubscribe -n 3 "$EASEOFF" optimize "$design" --data "$folder/ranked" --cache "$folder/pairs/flexibility" --json 2>"$folder/err" |

@@ -7,7 +7,7 @@ design=$folder/design.json
 sweep() # ARGUMENTS...: output in $folder/out
 {
   "$EASEOFF" sweep "$design" --data "$folder/data" "$@" >"$folder/out" 2>"$folder/err"
-  result $? "sweep $*"
+  result $? "easeoff sweep $* succeeds"
 }
 
 refuses() # TEXT ARGUMENTS...: on one line of standard error
@@ -16,7 +16,7 @@ refuses() # TEXT ARGUMENTS...: on one line of standard error
   shift
   "$EASEOFF" sweep "$@" >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$text" "$folder/err"
-  result $? "says $text"
+  result $? "easeoff sweep $* is refused with $text"
 }
 
 # near WHAT PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]: see json-numbers.c.
@@ -63,27 +63,27 @@ torques=14 several="1 2 5"
 sweep --torque 621:1035:3 --json
 cp "$folder/out" "$folder/torque.json"
 "$EASEOFF" analyze "$design" --data "$folder/data" --json >"$folder/analysis.json" 2>"$folder/err"
-result $? "the evaluation beside it"
+result $? "the analysis beside the sweep succeeds"
 near "torques are those of the load cases" /torque_Nm "$folder/analysis.json" '/load_cases/*/torque_Nm' 1e-12 relative
 near "speed of the case with the largest share" /speed_rpm "$folder/analysis.json" /load_cases/1/speed_rpm 1e-12 relative
-near "PPLTE" /modified/by_torque/peak_to_peak_um "$folder/analysis.json" '/load_cases/*/lte/peak_to_peak_um' 1e-6 relative
-near "mean LTE" /modified/by_torque/mean_um "$folder/analysis.json" '/load_cases/*/lte/mean_um' 1e-8 relative
-near "pressure" /modified/by_torque/left/max_pressure_MPa "$folder/analysis.json" '/load_cases/*/contact/max_pressure_MPa/left' 1e-5 relative
+near "PPLTE of each torque, um" /modified/by_torque/peak_to_peak_um "$folder/analysis.json" '/load_cases/*/lte/peak_to_peak_um' 1e-6 relative
+near "mean LTE of each torque, um" /modified/by_torque/mean_um "$folder/analysis.json" '/load_cases/*/lte/mean_um' 1e-8 relative
+near "largest pressure of each torque, MPa" /modified/by_torque/left/max_pressure_MPa "$folder/analysis.json" '/load_cases/*/contact/max_pressure_MPa/left' 1e-5 relative
 for end in left right; do
-  near "impact, $end" "/modified/points/$end/impact_force_N" "$folder/analysis.json" "/load_cases/*/impact/$end/general_force_N" 1e-5 relative
-  near "RMS, $end" "/modified/points/$end/rms_m_per_s2/normal" "$folder/analysis.json" "/load_cases/*/vibration/$end/rms_m_per_s2/normal" 1e-3 relative
+  near "impact of the $end end, N" "/modified/points/$end/impact_force_N" "$folder/analysis.json" "/load_cases/*/impact/$end/general_force_N" 1e-5 relative
+  near "RMS of the $end end, m/s2" "/modified/points/$end/rms_m_per_s2/normal" "$folder/analysis.json" "/load_cases/*/vibration/$end/rms_m_per_s2/normal" 1e-3 relative
 done
 for reading in normal transverse rotational; do
   near "RMS of the pair, $reading" "/modified/points/rms_m_per_s2/$reading" "$folder/analysis.json" "/load_cases/*/vibration/rms_m_per_s2/$reading" 1e-3 relative
 done
-near "unmodified PPLTE" /unmodified/by_torque/peak_to_peak_um "$folder/analysis.json" '/objectives/unmodified/load_cases/*/peak_to_peak_um' 1e-6 relative
-near "unmodified RMS" /unmodified/points/rms_m_per_s2/normal "$folder/analysis.json" '/objectives/unmodified/load_cases/*/rms_m_per_s2' 1e-3 relative
+near "PPLTE of the unmodified pair, um" /unmodified/by_torque/peak_to_peak_um "$folder/analysis.json" '/objectives/unmodified/load_cases/*/peak_to_peak_um' 1e-6 relative
+near "RMS of the unmodified pair, m/s2" /unmodified/points/rms_m_per_s2/normal "$folder/analysis.json" '/objectives/unmodified/load_cases/*/rms_m_per_s2' 1e-3 relative
 
 sweep --torque 50:2000:$torques --json
-ascends "mean LTE" /modified/by_torque/mean_um
+ascends "the mean LTE" /modified/by_torque/mean_um
 ascends "unmodified mean LTE" /unmodified/by_torque/mean_um
 ascends "tangent stiffness" /modified/by_torque/left/tangent_stiffness_N_per_um
-ascends "pressure" /modified/by_torque/left/max_pressure_MPa
+ascends "the largest pressure" /modified/by_torque/left/max_pressure_MPa
 ascends "the torsional eigenfrequency, which the mesh makes," '/eigenfrequencies/frequency_Hz/*/5'
 
 # ---- speed ----
@@ -92,12 +92,12 @@ sweep --speed 500:5000:10 --json
 cp "$folder/out" "$folder/speed.json"
 ascends "impact with speed" /modified/points/left/impact_force_N
 column /modified/points/left/impact_force_N | awk '{ f[NR] = $1 } END { r = f[8] / f[4]; exit !(r > 2 && r < 2.1) }' # v grows like the speed, the Hertz part stiffens
-result $? "twice the speed, a little more than twice the impact"
+result $? "twice the speed gives a little more than twice the impact"
 near "the first torque's transmission error has nothing to do with speed" /modified/by_torque/peak_to_peak_um "$folder/torque.json" /modified/by_torque/peak_to_peak_um/1 1e-9 relative
-near "2000 rpm as in the torque sweep" /modified/points/rms_m_per_s2/normal/3 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
-near "its impact" /modified/points/right/impact_force_N/3 "$folder/torque.json" /modified/points/right/impact_force_N/1 1e-9 relative
+near "RMS at 2000 rpm, as in the torque sweep, m/s2" /modified/points/rms_m_per_s2/normal/3 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
+near "impact at 2000 rpm, as in the torque sweep, N" /modified/points/right/impact_force_N/3 "$folder/torque.json" /modified/points/right/impact_force_N/1 1e-9 relative
 grep -q '"down": null' "$folder/out"
-result $? "in full contact both directions are the same"
+result $? "both directions are the same in full contact"
 for key in frequency_Hz order speed_rpm; do column "/crossings/$key" >"$folder/$key"; done
 paste "$folder/frequency_Hz" "$folder/order" "$folder/speed_rpm" |
   awk '{ e = 60 * $1 / (17 * $2) / $3 - 1; if (e * e > 1e-18 || $3 < 500 || $3 > 5000) bad = 1 } END { exit bad || NR < 20 }'
@@ -109,13 +109,13 @@ sweep --vary 'modification.pinion.*.tip_relief_um=10:18:3' --json
 cp "$folder/out" "$folder/vary.json"
 near "the values of the number" /vary/values "$folder/vary.json" /vary/values 0
 [ "$(column /vary/values | tr '\n' ' ')" = "10 14 18 " ] && [ "$(column /torque_Nm | tr '\n' ' ')" = "828 828 828 " ]
-result $? "a step for each value, at the torque of the case with the largest share"
+result $? "a varied number has a step for each value, at the torque of the case with the largest share"
 near "the design's own value is the design" /modified/by_torque/peak_to_peak_um/1 "$folder/torque.json" /modified/by_torque/peak_to_peak_um/1 1e-9 relative
-near "its vibration" /modified/points/rms_m_per_s2/normal/1 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
-near "the unmodified pair" /unmodified/by_torque/peak_to_peak_um/2 "$folder/torque.json" /unmodified/by_torque/peak_to_peak_um/1 1e-9 relative
+near "RMS at the own value of the design, m/s2" /modified/points/rms_m_per_s2/normal/1 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
+near "PPLTE of the unmodified pair at each value, um" /unmodified/by_torque/peak_to_peak_um/2 "$folder/torque.json" /unmodified/by_torque/peak_to_peak_um/1 1e-9 relative
 sweep --vary 'modification.pinion.*.tip_relief_um=10:18:3' --speed 1000:2000:2 --csv "$folder/vary.csv"
 [ "$(head -1 "$folder/vary.csv" | cut -d, -f1-3)" = "modification.pinion.*.tip_relief_um,torque_Nm,speed_rpm" ] && [ "$(wc -l <"$folder/vary.csv")" -eq 7 ]
-result $? "the number is a column of the CSV"
+result $? "a varied number is a column of the CSV"
 for end in left right; do
   grid='"grid": {"u_mm": [-5, 0, 5], "y_mm": [-27, 0, 27], "delta_um": [[0, 0, 0], [0, 0, 0], [0, 0, 0]]'
   sed "s/\"$end\": {/&$grid}, /" "$design" >"$folder/with-grid" && mv "$folder/with-grid" "$design"
@@ -126,9 +126,9 @@ near "a flat grid is none" /modified/by_torque/peak_to_peak_um/0 "$folder/torque
 near "the unmodified pair goes without any of it" /unmodified/by_torque/peak_to_peak_um/2 "$folder/torque.json" /unmodified/by_torque/peak_to_peak_um/1 1e-6 relative
 sed 's/, \[0, 0, 0\]\]/, [8, 8, 8]], "kind": "designed"/g' "$design" >"$folder/grid.json"
 "$EASEOFF" analyze "$folder/grid.json" --data "$folder/data" --json >"$folder/analysis.json" 2>"$folder/err"
-result $? "a design with the last of these grids"
-near "its PPLTE" /modified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /load_cases/1/lte/peak_to_peak_um 1e-6 relative
-near "and that of its unmodified pair" /unmodified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /objectives/unmodified/load_cases/1/peak_to_peak_um 1e-6 relative
+result $? "the design of a step has the last of its grids"
+near "PPLTE of the design with the last grid, um" /modified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /load_cases/1/lte/peak_to_peak_um 1e-6 relative
+near "PPLTE of its unmodified pair, um" /unmodified/by_torque/peak_to_peak_um/2 "$folder/analysis.json" /objectives/unmodified/load_cases/1/peak_to_peak_um 1e-6 relative
 refuses "another gear pair: a study varies it" "$design" --vary gear_pair.helix_angle_deg=24:25:2
 refuses "is not KEY=FIRST:LAST:POINTS" "$design" --vary alignment.coupling_thrust_N
 refuses "not both at once" "$design" --torque 600:700:2 --vary alignment.coupling_thrust_N=0:100:2
@@ -145,17 +145,17 @@ cp "$folder/speed.json" "$folder/out"
 near "the map's second row is the speed sweep" /modified/points/rms_m_per_s2/normal "$folder/row" "" 1e-9 relative
 for threads in $several; do
   sweep --torque 621:1035:3 --speed 500:5000:10 --json --threads $threads
-  same "$folder/out" "$folder/map.json" "the same bytes with $threads threads"
+  same "$folder/out" "$folder/map.json" "$threads threads give the same bytes"
 done
 sweep --torque 621:1035:3 --speed 500:5000:10 --csv "$folder/map.csv"
 [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/map.csv")" -eq 31 ] && [ "$(awk -F, '{ print NF }' "$folder/map.csv" | sort -u | wc -l)" -eq 1 ]
-result $? "a heading and 30 lines of CSV"
+result $? "the CSV has a heading and 30 lines"
 awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "rms_normal_m_per_s2") at = i } NR > 11 && NR < 22 { print $at }' "$folder/map.csv" | tr '\n' ',' | sed 's/.*/[&]/; s/,\]/]/' >"$folder/row"
 cp "$folder/speed.json" "$folder/out"
-near "the same numbers in CSV" /modified/points/rms_m_per_s2/normal "$folder/row" "" 1e-9 relative
+near "RMS in the CSV, m/s2" /modified/points/rms_m_per_s2/normal "$folder/row" "" 1e-9 relative
 sweep --torque 621:1035:3
 grep -q "converged" "$folder/out" && grep -q "Eigenfrequencies at 828 N m" "$folder/out" && [ "$(grep -c '^ *[0-9.]* *2000 ' "$folder/out")" -eq 3 ]
-result $? "a table for people"
+result $? "the table for people has every step"
 
 # ---- contact loss: less damping ----
 
@@ -170,12 +170,12 @@ column /modified/points/left/contact_loss >"$folder/loss"
 # The large period-one state of the balance, 600 m/s2 and more, is unstable here: it is left for the motion it leads to.
 paste "$folder/up" "$folder/down" | awk '{ d = ($2 - $1) / $1; if (d * d < 1e-8) same++; if ($1 > 590 || $2 > 590) large++ }
   END { exit !(same >= 11 && !large) }'
-result $? "unstable states are left; up and down end in the same motion, but where two are stable"
+result $? "unstable states are left: up and down end in the same motion, but where two are stable"
 paste "$folder/up" "$folder/loss" | awk '$2 > 0 { if (!seen++) first = $1 } END { exit !(seen > 5) }'
 result $? "contact loss is a share of the cycle"
 if [ ! "${SANITIZED-}" ]; then
   sweep --torque 100 --speed 8400:9000:13 --json --threads 1
-  same "$folder/out" "$folder/loss.json" "the same bytes with one thread"
+  same "$folder/out" "$folder/loss.json" "one thread gives the same bytes"
 fi
 
 # ---- one end; extremes; wrong input ----
@@ -184,9 +184,9 @@ cat >"$folder/single.json" <<END
 {"version": 1, "gear_pair": {"ends": 1, "pinion_teeth": 23, "gear_teeth": 37, "normal_module_mm": 4, "helix_angle_deg": 12, "face_width_mm": 30}, $coarse}
 END
 "$EASEOFF" sweep "$folder/single.json" --torque 50:200:3 --speed 1000:2000:2 --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
-result $? "a pair with one end"
+result $? "a pair with one end is swept"
 ! grep -q '"right": {$' "$folder/out" && ! grep -q '"right": {.*rms' "$folder/out"
-result $? "has no right end"
+result $? "a pair with one end has no right end"
 "$numbers" "$folder/out" /unmodified/points/rms_m_per_s2/normal >"$folder/expected"
 near "an unmodified design is the unmodified pair" /modified/points/rms_m_per_s2/normal "$folder/expected" "" 0
 write_design ""

@@ -17,7 +17,7 @@ EOF
 tolerance() # ARGUMENTS...: output in $folder/out
 {
   "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" "$@" >"$folder/out" 2>"$folder/err"
-  result $? "tolerance $*"
+  result $? "easeoff tolerance $* succeeds"
 }
 
 refuses() # TEXT BLOCK: on one line of standard error
@@ -25,7 +25,7 @@ refuses() # TEXT BLOCK: on one line of standard error
   write_design "$2"
   "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$1" "$folder/err"
-  result $? "says $1"
+  result $? "easeoff tolerance is refused with $1"
 }
 
 same() # FILE FILE WHAT
@@ -56,7 +56,7 @@ median=$("$numbers" "$folder/out" /outputs/3/percentiles/4/value | tr -d "[] ")
 awk "BEGIN { printf \"[%.9f]\", $median + 5.102461 }" >"$folder/expected"
 near "the 95 % percentile of a normal" /outputs/3/percentiles/7/value "$folder/expected" "" 0.25 absolute
 echo "[3.102076]" >"$folder/expected"
-near "its standard deviation" /outputs/3/std "$folder/expected" "" 0.02 relative
+near "standard deviation of a normal output" /outputs/3/std "$folder/expected" "" 0.02 relative
 echo "[1]" >"$folder/expected"
 near "R2 of a linear response" /outputs/3/R2 "$folder/expected" "" 1e-6 absolute
 echo "[0.64]" >"$folder/expected"
@@ -70,17 +70,17 @@ write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to
 tolerance --pairs 24 --json --threads 1 --worst "$folder/worst.json"
 cp "$folder/out" "$folder/one.json"
 tolerance --pairs 24 --json --threads 3
-same "$folder/out" "$folder/one.json" "the same bytes with 3 threads"
+same "$folder/out" "$folder/one.json" "3 threads give the same bytes"
 tolerance --pairs 24 --json --keep "$folder/pairs"
 # as a kill leaves it: a row cut off in its middle
 head -n 12 "$folder/pairs" >"$folder/cut"
 sed -n 13p "$folder/pairs" | cut -c 1-40 | tr -d '\n' >>"$folder/cut"
 tolerance --pairs 24 --json --keep "$folder/cut"
-same "$folder/out" "$folder/one.json" "the same bytes after a stop"
+same "$folder/out" "$folder/one.json" "an analysis after a stop gives the same bytes"
 [ "$(grep -c ';$' "$folder/cut")" -eq 24 ]
-result $? "every pair once in the file"
+result $? "the file has every pair once"
 tolerance --pairs 24 --json --keep "$folder/cut"
-same "$folder/out" "$folder/one.json" "and from the file alone"
+same "$folder/out" "$folder/one.json" "an analysis from its file alone gives the same bytes"
 
 # ---- coarse first: most pairs on a coarse grid, those that decide in full ----
 
@@ -88,20 +88,20 @@ write_design '{"preset": "iso_class", "class": 5, "method": "coarse_first", "lim
 tolerance --pairs 200 --json --threads 1 --keep "$folder/first" --csv "$folder/first.csv"
 cp "$folder/out" "$folder/first.json"
 tolerance --pairs 200 --json --threads 3
-same "$folder/out" "$folder/first.json" "coarse first: the same bytes with 3 threads"
+same "$folder/out" "$folder/first.json" "coarse first: 3 threads give the same bytes"
 full=$("$numbers" "$folder/out" /full_pairs | tr -d "[] ")
 [ "$full" -ge 64 ] && [ "$full" -lt 200 ] && [ "$(grep -c ';$' "$folder/first")" -eq "$full" ] && [ "$(wc -l <"$folder/first.csv")" -eq $((full + 1)) ]
-result $? "$full of 200 pairs in full, a row and a line for each"
+result $? "$full of 200 pairs are in full, and each has a row and a line"
 head -n 40 "$folder/first" >"$folder/cut"
 tolerance --pairs 200 --json --keep "$folder/cut"
-same "$folder/out" "$folder/first.json" "coarse first: the same bytes after a stop"
+same "$folder/out" "$folder/first.json" "coarse first: an analysis after a stop gives the same bytes"
 "$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs 200 >"$folder/out" 2>"$folder/err"
 grep -q "note: $full of 200 pairs were computed in full" "$folder/out"
-result $? "and says so"
+result $? "the analysis says how many pairs are in full"
 write_design '{"preset": "iso_class", "class": 5, "method": "full", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
 tolerance --pairs 200 --json --keep "$folder/first"
 [ "$(grep -c ';$' "$folder/first")" -eq 200 ]
-result $? "all in full goes on from those"
+result $? "an analysis in full goes on from the pairs of the coarse one, to all 200"
 cp "$folder/out" "$folder/all.json"
 cp "$folder/first.json" "$folder/out"
 near "95 % of the swing" /outputs/0/percentiles/7/value "$folder/all.json" /outputs/0/percentiles/7/value 0.02 relative
@@ -151,20 +151,20 @@ near "R2 of the gear's shaft order" /outputs/17/R2 "$folder/expected" "" 1e-6 ab
 awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
   NR > 1 { ratio = $at["load_cases.1.gear_order_um"] / $at["pitch.gear.eccentricity_um"]; if (ratio < 0.99 || ratio > 1 || $at["load_cases.1.pinion_order_um"] > 1e-6) bad++ }
   END { exit bad || NR != 9 }' "$folder/teeth.csv"
-result $? "it is the eccentricity, less what 44 teeth average"
+result $? "the order of the gear is the eccentricity, less what 44 teeth average"
 toothed='"preset": "iso_class", "class": 5, "vibration": false'
 write_design "{$toothed, \"single_teeth\": true}, \"pitch\": {\"positions_per_cycle\": 4}"
 tolerance --pairs 4 --json --threads 1 --worst "$folder/toothed.json" --keep "$folder/teeth"
 cp "$folder/out" "$folder/teeth.json"
 head -n 3 "$folder/teeth" >"$folder/cut"
 tolerance --pairs 4 --json --threads 3 --keep "$folder/cut"
-same "$folder/out" "$folder/teeth.json" "single teeth: the same bytes with 3 threads after a stop"
+same "$folder/out" "$folder/teeth.json" "single teeth: 3 threads after a stop give the same bytes"
 write_design "{$toothed}, \"pitch\": {\"positions_per_cycle\": 4}"
 tolerance --pairs 4 --single-teeth
 grep -q '[0-9] \.\. open' "$folder/out" && ! grep -qw nan "$folder/out"
-result $? "an interval that few pairs leave open says so"
+result $? "the analysis tells of an interval that few pairs leave open"
 tolerance --pairs 4 --json --single-teeth
-same "$folder/out" "$folder/teeth.json" "and asked for by the option"
+same "$folder/out" "$folder/teeth.json" "single teeth by the option give the same bytes"
 "$EASEOFF" analyze "$folder/toothed.json" --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
 "$numbers" "$folder/teeth.json" /outputs/15/histogram/largest >"$folder/expected"
 near "the worst pair has these teeth" /pitch/load_cases/0/lte/peak_to_peak_um "$folder/expected" "" 1e-6 relative
@@ -219,16 +219,16 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
   done
   write_design '{"preset": "iso_class", "class": 5, "method": "coarse_first", "limits": [{"output": "rms_m_per_s2", "at_most": 40}]}'
   ranked 3 --pairs 200 --json
-  same "$folder/out" "$folder/first.json" "coarse first: the same bytes with 3 ranks"
+  same "$folder/out" "$folder/first.json" "coarse first: 3 ranks give the same bytes"
   write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
   write_design "{$toothed, \"single_teeth\": true}, \"pitch\": {\"positions_per_cycle\": 4}"
   ranked 2 --pairs 4 --json
-  same "$folder/out" "$folder/teeth.json" "single teeth: the same bytes with 2 ranks"
+  same "$folder/out" "$folder/teeth.json" "single teeth: 2 ranks give the same bytes"
   write_design '{"preset": "iso_class", "class": 5, "limits": [{"output": "peak_to_peak_um", "at_most": 1.2}]}'
   ranked 2 --pairs 24 --json --threads 2 --cache "$folder/node"
-  same "$folder/out" "$folder/one.json" "the same bytes with threads of a rank, and a folder of pairs of its own"
+  same "$folder/out" "$folder/one.json" "threads of a rank with a folder of pairs of its own give the same bytes"
   [ -n "$(ls "$folder/node")" ]
-  result $? "which has the pair"
+  result $? "the folder of pairs of its own has the pair"
   tolerance --pairs 400 --json
   cp "$folder/out" "$folder/many.json"
   for end in $ends; do
@@ -247,11 +247,11 @@ if command -v mpirun >/dev/null && [ -e "$(dirname "$EASEOFF")/easeoff-mpi.so" ]
     [ "$found" -ge 10 ] && [ "$found" -lt 400 ]
     result $? "SIG${end%-*} to rank $victim after $found of 400 pairs ends the run"
     [ "${end%-*}" = KILL ] || grep -q "Stopped. The same command goes on from here." "$folder/err"
-    result $? "with a word where there is one"
+    result $? "a signal that ends the run leaves a word where there is one"
     ranked 3 --pairs 400 --json --keep "$folder/ranked"
-    same "$folder/out" "$folder/many.json" "and the next start goes on with the same bytes"
+    same "$folder/out" "$folder/many.json" "the start after a signal goes on with the same bytes"
     [ "$(kept)" -eq 400 ]
-    result $? "every pair once in the file"
+    result $? "the file has every pair once after a signal"
   done
 else
   count=$((count + 1))
@@ -291,9 +291,9 @@ result $? "positions that are too few for the vibration are told"
 write_design '{}'
 tolerance --pairs 8 --no-vibration --csv "$folder/pairs.csv"
 grep -q "class 5 of ISO 1328-1:2013 is taken" "$folder/out" && grep -q "Worst pair" "$folder/out"
-result $? "a table for people says what was assumed"
+result $? "the table for people says what was assumed"
 [ "$(wc -l <"$folder/pairs.csv")" -eq 9 ] && [ "$(awk -F, '{ print NF }' "$folder/pairs.csv" | sort -u | wc -l)" -eq 1 ]
-result $? "a heading and a line for each pair"
+result $? "the CSV has a heading and a line for each pair"
 
 refuses "there is no such number" '{"inputs": [{"key": "modification.pinion.left.profil_slope_um", "sigma": 1}]}'
 refuses "another gear pair is prepared anew" '{"inputs": [{"key": "gear_pair.normal_module_mm", "sigma": 1}]}'

@@ -7,7 +7,7 @@ command -v python3 >/dev/null || {
   exit 0
 }
 python3 "$SOURCES/doc/figures.py" "$EASEOFF" "$folder" quick >"$folder/out" 2>"$folder/err"
-result $? "they are drawn"
+result $? "the figures are drawn"
 for figure in "$folder"/*.svg; do
   # places are written to a tenth of a point, so another processor may round one differently
   python3 - "$figure" "$SOURCES/doc/figures/$(basename "$figure")" >"$folder/out" 2>"$folder/err" <<'END'

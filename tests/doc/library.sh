@@ -22,18 +22,18 @@ result $? "the example is built against the installed tree"
   s/"fillet_elements": 18/"fillet_elements": 6/; s/"sector_teeth": 5/"sector_teeth": 3/; s/"positions": 64/"positions": 32/; s/"te_harmonics": 16/"te_harmonics": 12/' \
   >"$folder/design.json"
 "$folder/transmission-error" "$folder/design.json" >"$folder/out" 2>"$folder/err"
-result $? "a gear in"
+result $? "the example prepares its gear"
 [ "$(grep -c '^[0-9.]* -*[0-9.]*$' "$folder/out")" -eq 96 ]
-result $? "its transmission error out, at each position of three load cases"
+result $? "the example prints its transmission error at each position of three load cases"
 mv "$folder/out" "$folder/library"
 "$EASEOFF" analyze "$folder/design.json" --no-cache --json >"$folder/result" 2>"$folder/err"
 printf '[%s]' "$(sed -n 's/^0.0000 //p' "$folder/library" | tr '\n' ',' | sed 's/,$//')" >"$folder/first"
 verdict=$("$numbers" "$folder/result" '/load_cases/*/lte/pair_um/0' "$folder/first" "" 5.1e-6)
-result $? "the numbers of the terminal, um: $verdict"
+result $? "the example has the numbers of the terminal, um: $verdict"
 echo '{"gear_pair": {"pinion_teeth": 17}}' >"$folder/wrong.json"
 "$folder/transmission-error" "$folder/wrong.json" >"$folder/out" 2>"$folder/err"
 [ $? -eq 1 ] && grep -q '^/gear_pair/gear_teeth: ' "$folder/err"
-result $? "what is wrong is named at its key"
+result $? "the example names what is wrong at its key"
 if command -v g++ >/dev/null; then
   echo '#include <easeoff.h>' >"$folder/header.cpp"
   # shellcheck disable=SC2046

@@ -9,7 +9,7 @@ fi
 texts=$(cd "$SOURCES/doc" && ls ./*.md theory/*.md | sed 's/^\.\///; s/\.md$/.html/' | sort)
 pages=$(cd "$PAGE/doc" && ls ./*.html theory/*.html | sed 's/^\.\///' | sort)
 [ "$texts" = "$pages" ]
-result $? "a page for each text"
+result $? "each text has a page"
 for page in $pages; do
   grep -oE '(href|src)="[^"#]+' "$PAGE/doc/$page" | sed 's/^[a-z]*="//' | sort -u | while read -r target; do
     case $target in
@@ -23,7 +23,7 @@ done >"$folder/out"
 result $? "every link leads somewhere"
 grep -lE '<script|<(img|link)[^>]*://| style="' "$PAGE"/doc/*.html "$PAGE"/doc/theory/*.html >"$folder/out"
 [ ! -s "$folder/out" ]
-result $? "no script, no style in a line, nothing from elsewhere"
+result $? "the pages have no script, no style in a line, nothing from elsewhere"
 wanted=$(cat "$SOURCES"/doc/theory/*.md | grep -c '\\tag{')
 shown=$(cat "$PAGE"/doc/theory/*.html | grep -c 'class="equation" id=')
 [ "$wanted" = "$shown" ]

@@ -8,9 +8,9 @@ command -v python3 >/dev/null && command -v dpkg >/dev/null || {
 }
 make_it() { python3 "$SOURCES/doc/sbom.py" "$EASEOFF" "$SOURCES/web/package-lock.json" 1.2.3; }
 make_it >"$folder/bill" 2>"$folder/err"
-result $? "it is made"
+result $? "the bill of materials is made"
 make_it 2>"$folder/err" | cmp -s - "$folder/bill"
-result $? "twice the same"
+result $? "a second bill has the same bytes"
 python3 - "$folder/bill" >"$folder/out" 2>"$folder/err" <<'END'
 import json, sys
 bill = json.load(open(sys.argv[1], encoding="utf-8"))
@@ -24,6 +24,6 @@ assert "uplot" in names.values() and "esbuild" not in names.values(), "of the pa
 for word in ("cholmod", "jansson", "sqlite3", "microhttpd", "sundials", "openblas"):
     assert any(word in name for name in names.values()), word
 END
-result $? "each package once, related, the ones that are linked"
+result $? "each package stands once, related, and those that are linked are there"
 echo "1..$count"
 exit $failed

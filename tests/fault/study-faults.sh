@@ -16,19 +16,19 @@ expect() # STATUS WHAT COMMAND...
   if [ "$status" -eq "$wanted" ]; then
     if [ "$wanted" -eq 0 ]; then [ "$lines" -eq 0 ] && good=0; else [ "$lines" -eq 1 ] && good=0; fi
   fi
-  result $good "$what: exit $status, expected $wanted; $(head -c 150 "$folder/err")"
+  result $good "$what: the program ends with $status, expected $wanted; $(head -c 150 "$folder/err")"
 }
 
 says() # TEXT
 {
   grep -q -e "$1" "$folder/err"
-  result $? "says \"$1\""
+  result $? "$what: the program says \"$1\""
 }
 
 prints() # TEXT
 {
   grep -q -e "$1" "$folder/out"
-  result $? "prints \"$1\""
+  result $? "$what: the program prints \"$1\""
 }
 
 skip() # WHAT
@@ -46,49 +46,49 @@ cat >"$folder/design.json" <<'DESIGN'
 DESIGN
 data="$folder/data"
 
-expect 0 "optimize" "$EASEOFF" optimize "$folder/design.json" --data "$data"
+expect 0 "a search" "$EASEOFF" optimize "$folder/design.json" --data "$data"
 prints "pinion/both/tip_relief_um"
 prints "40 true evaluations of 40 individuals"
 cp "$folder/out" "$folder/first"
-expect 0 "once more" "$EASEOFF" optimize "$folder/design.json" --data "$data" --threads 1
+expect 0 "the same search once more" "$EASEOFF" optimize "$folder/design.json" --data "$data" --threads 1
 prints "taken up, 0 evaluations computed"
-expect 0 "--json" "$EASEOFF" optimize - --data "$data" --json <"$folder/design.json"
+expect 0 "the search as a document" "$EASEOFF" optimize - --data "$data" --json <"$folder/design.json"
 prints '"pfc_percent": 100'
-expect 0 "list" "$EASEOFF" history list --data "$data"
+expect 0 "the list of searches" "$EASEOFF" history list --data "$data"
 prints "credibility-ga *done *40"
-expect 0 "list --json" "$EASEOFF" history list --data "$data" --json
+expect 0 "the list of searches as a document" "$EASEOFF" history list --data "$data" --json
 prints '"true_evaluations": 40'
-expect 0 "show" "$EASEOFF" history show 1 --data "$data"
+expect 0 "a search that is shown" "$EASEOFF" history show 1 --data "$data"
 grep -v -e '^Job' "$folder/out" >"$folder/a"
 grep -v -e '^Job' "$folder/first" >"$folder/b"
 cmp -s "$folder/a" "$folder/b"
-result $? "shows what was printed"
-expect 0 "export" "$EASEOFF" history export 1 --data "$data"
+result $? "the stored result shows what was printed"
+expect 0 "the rows of a search" "$EASEOFF" history export 1 --data "$data"
 [ "$(wc -l <"$folder/out")" -eq 42 ]
-result $? "has a heading and 41 rows"
-expect 0 "the path" "$EASEOFF" history export --job 1 --data "$data"
+result $? "the CSV of the rows has a heading and 41 rows"
+expect 0 "the path of a search" "$EASEOFF" history export --job 1 --data "$data"
 [ "$(grep -c computed "$folder/out")" -eq 40 ]
-result $? "has 40 steps"
+result $? "the path of the search has 40 steps"
 expect 0 "another algorithm" "$EASEOFF" optimize "$folder/design.json" --data "$data" --algorithm fpga --budget 60 --fresh
 prints "^fpga: 60 true evaluations of"
-expect 0 "prune" "$EASEOFF" history prune --data "$data"
+expect 0 "pruning" "$EASEOFF" history prune --data "$data"
 prints "^0 true rows and [1-9][0-9]* predictions removed"
 
-expect 1 "no such algorithm" "$EASEOFF" optimize "$folder/design.json" --data "$data" --algorithm luck
+expect 1 "an unknown algorithm" "$EASEOFF" optimize "$folder/design.json" --data "$data" --algorithm luck
 says '"luck" is no algorithm'
 expect 1 "a budget of nothing" "$EASEOFF" optimize "$folder/design.json" --data "$data" --budget 0
 says '"0"'
 expect 1 "threads in words" "$EASEOFF" optimize "$folder/design.json" --data "$data" --threads two
-expect 1 "no such job" "$EASEOFF" history show 99 --data "$data"
+expect 1 "a job that is not there" "$EASEOFF" history show 99 --data "$data"
 says "no job 99"
-expect 1 "no such problem" "$EASEOFF" history export 99 --data "$data"
+expect 1 "a problem that is not there" "$EASEOFF" history export 99 --data "$data"
 expect 1 "a word for a number" "$EASEOFF" history show best --data "$data"
-expect 1 "no action" "$EASEOFF" history
-expect 1 "no such action" "$EASEOFF" history forget --data "$data"
-expect 1 "no history" "$EASEOFF" history list --data "$folder/none"
+expect 1 "history without an action" "$EASEOFF" history
+expect 1 "an unknown action" "$EASEOFF" history forget --data "$data"
+expect 1 "a folder without a history" "$EASEOFF" history list --data "$folder/none"
 says "no history"
 [ ! -e "$folder/none" ]
-result $? "and none is made"
+result $? "a folder without a history is not made"
 sed 's/"true_evaluations"/"bounds": { "tip_relief_um": [20, 10] }, "true_evaluations"/' "$folder/design.json" >"$folder/bad.json"
 expect 1 "bounds that fall" "$EASEOFF" optimize "$folder/bad.json" --data "$data"
 says "/optimization/bounds/tip_relief_um"
@@ -105,8 +105,8 @@ kill -TERM $child # a background job of a script ignores SIGINT
 wait $child
 status=$?
 [ $status -eq 0 ] && grep -q "stopped: cancelled" "$folder/out"
-result $? "an interrupt: exit $status, the best so far"
-expect 0 "its state" "$EASEOFF" history list --data "$data"
+result $? "an interrupt ends with $status and the best so far"
+expect 0 "the list after an interrupt" "$EASEOFF" history list --data "$data"
 prints "credibility-ga *cancelled"
 
 # a folder that cannot be written: root may write everywhere, so try as nobody
@@ -125,9 +125,9 @@ fi
 if [ "$as_nobody" != none ]; then
   expect 2 "optimize in a folder that cannot be written" $as_nobody "$EASEOFF" optimize "$folder/design.json" --data "$folder/closed"
   says "cannot be written"
-  expect 0 "list there" $as_nobody "$EASEOFF" history list --data "$folder/closed"
+  expect 0 "the list in a folder that cannot be written" $as_nobody "$EASEOFF" history list --data "$folder/closed"
   prints "credibility-ga"
-  expect 2 "prune there" $as_nobody "$EASEOFF" history prune --data "$folder/closed"
+  expect 2 "pruning in a folder that cannot be written" $as_nobody "$EASEOFF" history prune --data "$folder/closed"
 else
   skip "a folder that cannot be written"
 fi
@@ -135,7 +135,7 @@ fi
 # files that are wrong
 mkdir "$folder/wrong"
 printf 'This is no database, and it is long enough to have been one once upon a time.........................' >"$folder/wrong/easeoff.db"
-expect 2 "no database" "$EASEOFF" optimize "$folder/design.json" --data "$folder/wrong"
+expect 2 "a file that is no database" "$EASEOFF" optimize "$folder/design.json" --data "$folder/wrong"
 says "damaged"
 cp "$data/easeoff.db" "$folder/wrong/easeoff.db"
 printf '\000\000\000\143' | dd of="$folder/wrong/easeoff.db" bs=1 seek=60 conv=notrunc 2>/dev/null
@@ -163,15 +163,15 @@ sed 's/40 }/3000, "algorithm": "ga" }/' "$folder/design.json" >"$folder/many.jso
 ln -s "$data/flexibility" "$full/flexibility"
 expect 2 "a full disk" fill "$EASEOFF" optimize "$folder/many.json" --data "$full"
 says "what was saved before is kept"
-expect 0 "its history" "$EASEOFF" history list --data "$full" --json
+expect 0 "the history on a full disk" "$EASEOFF" history list --data "$full" --json
 prints '"interrupted"'
 rows=$(sed -n 's/.*"evaluations": \([0-9]*\),.*/\1/p' "$folder/out" | head -n 1)
 [ "${rows:-0}" -gt 20 ]
-result $? "$rows rows are kept"
+result $? "the $rows rows are kept"
 rm -f "$folder/wrong"/easeoff.db*
 cp "$full"/easeoff.db* "$folder/wrong/"
 sed "s/3000/$((rows + 20))/" "$folder/many.json" >"$folder/more.json"
-expect 0 "with room again" "$EASEOFF" optimize "$folder/more.json" --data "$folder/wrong" --fresh
+expect 0 "a search with room again" "$EASEOFF" optimize "$folder/more.json" --data "$folder/wrong" --fresh
 prints "$((rows - 1)) of them known from the history"
 
 # two processes on one folder
@@ -186,10 +186,10 @@ wait $child || status=$?
 grep -v -e '^Job' -e ' true evaluations' "$folder/one" >"$folder/a"
 grep -v -e '^Job' -e ' true evaluations' "$folder/two" >"$folder/b"
 [ $status -eq 0 ] && cmp -s "$folder/a" "$folder/b" && [ ! -s "$folder/err" ]
-result $? "two processes on one folder: the same result"
+result $? "two processes on one folder give the same result"
 "$EASEOFF" history export 1 --data "$folder/shared" >"$folder/out" 2>"$folder/err"
 [ "$(wc -l <"$folder/out")" -eq 152 ]
-result $? "and each row once"
+result $? "two processes on one folder have each row once"
 
 echo "1..$count"
 exit $failed

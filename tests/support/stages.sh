@@ -6,7 +6,7 @@
 stage() # NAME INPUT: output in $folder/out
 {
   printf '%s' "$2" | "$EASEOFF" stage "$1" - >"$folder/out" 2>"$folder/err"
-  result $? "stage $1"
+  result $? "the stage $1 takes its input"
 }
 
 # near WHAT PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]: see json-numbers.c.
@@ -21,5 +21,5 @@ near()
 prints() # TEXT
 {
   grep -q -e "$1" "$folder/out"
-  result $? "prints $1"
+  result $? "the stage prints $1"
 }

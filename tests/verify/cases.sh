@@ -11,34 +11,34 @@ verify() # STATUS WHAT FILE...
   "$EASEOFF" verify "$@" >"$folder/out" 2>"$folder/err"
   status=$?
   [ "$status" -eq "$wanted" ]
-  result $? "$what: exit $status, expected $wanted"
+  result $? "$what: the program ends with $status, expected $wanted"
 }
 
 prints() # PATTERN
 {
   grep -q -e "$1" "$folder/out"
-  result $? "prints $1"
+  result $? "$what: the program prints $1"
 }
 
 checks() # LEAST: at least so many numbers are compared, each with a verdict in the document
 {
   passed=$(grep -c '"pass": true' "$folder/out")
   [ "$passed" -ge "$1" ]
-  result $? "$passed numbers within tolerance, at least $1 expected"
+  result $? "$what: $passed numbers are within tolerance, at least $1 expected"
 }
 
 changed() # FILE FROM TO: a copy with one change, which must have taken place
 {
   sed "$2" "$CASES/$1" >"$folder/$1"
   ! cmp -s "$CASES/$1" "$folder/$1"
-  result $? "$1 changed by $2"
+  result $? "$1 is changed by $2"
 }
 
 refuses() # POINTER SENTENCE FILE: one line for each fault, no verdict on numbers
 {
   verify 1 "$2" "$3"
   grep -q -e "^easeoff: .*$3: $1: $2" "$folder/err" && ! grep -q "within tolerance" "$folder/out"
-  result $? "says $1: $2"
+  result $? "the program refuses the file at $1: $2"
 }
 
 verify 0 "dynamics" --json "$CASES/dynamics.json"
@@ -52,7 +52,7 @@ prints "sdof  *2 *folds.A.up .* pass"
 prints "runs\[0\] .* pass"
 prints "All [0-9]* checks are within tolerance"
 [ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
-result $? "every key is read"
+result $? "every key of the files is read"
 
 verify 0 "flanks as made, pitch, coast flanks, apex offsets, unequal halves" --json "$CASES/deviations.json"
 checks 2400
@@ -79,7 +79,7 @@ checks 28
 verify 0 "encoder, for people" "$CASES/encoder.json"
 prints "enc1_clean_unwrapped_deg.csv .* pass"
 [ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
-result $? "every key is read"
+result $? "every key of encoder.json is read"
 cp "$CASES/enc1_clean_unwrapped_deg.csv" "$folder"
 changed encoder.json 's/"rms_mesh_lines_H8": 24.64585/"rms_mesh_lines_H8": 24.71/'
 verify 1 "a wrong RMS of a recording" "$folder/encoder.json"
@@ -119,7 +119,7 @@ refuses /dynamics/0/law "There is no law_K99 and no table_K99 in the file" "$fol
 changed optimizer.json 's/"fitness": "1\/(1+sum((x-c)^2)), c=\[0.3,0.6,0.45\]"/"fitnes": "1"/'
 refuses /runs/0 'The key "fitness" is missing' "$folder/optimizer.json"
 refuses /runs/0/fitnes "This key is not known here" "$folder/optimizer.json"
-verify 1 "as a document" --json "$folder/optimizer.json"
+verify 1 "a refused file as a document" --json "$folder/optimizer.json"
 prints '"pointer": "/runs/0/fitnes"'
 prints '"pass": false'
 
@@ -157,10 +157,10 @@ wrong() # FROM TO: what is said of a file with one change
 {
   sed "$1" "$folder/ring.json" >"$folder/wrong.json"
   ! cmp -s "$folder/ring.json" "$folder/wrong.json"
-  result $? "ring.json changed by $1"
+  result $? "ring.json is changed by $1"
   verify "$2" "ring.json with $1" "$folder/wrong.json"
   grep -q -e "$3" "$folder/out" "$folder/err"
-  result $? "says $3"
+  result $? "the program says $3"
 }
 wrong 's/"0": 0.0018619/"0": 0.0028619/' 1 "line .*mid_pitch.0 .*FAIL (1)"
 wrong 's/"mesh"/"mehs"/' 1 '/mehs: This block is not known'

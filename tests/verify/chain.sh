@@ -18,13 +18,13 @@ result() # status, what
 
 for kind in standards contact calculix evaluation; do
   "$EASEOFF" verify "$CASES/$kind.json" >"$folder/out" 2>"$folder/err"
-  result $? "$kind: every number within its tolerance"
+  result $? "$kind has every number within its tolerance"
 done
 
 # A wrong expectation is noticed, and a file of another gear pair runs unchanged.
 sed 's/"PPLTE_um": 0.631383/"PPLTE_um": 0.66/' "$CASES/evaluation.json" >"$folder/evaluation.json"
 ! cmp -s "$CASES/evaluation.json" "$folder/evaluation.json"
-result $? "evaluation.json changed"
+result $? "evaluation.json is changed"
 "$EASEOFF" verify "$folder/evaluation.json" >"$folder/out" 2>"$folder/err"
 [ $? -eq 1 ] && grep -q 'S01 .*FAIL' "$folder/out"
 result $? "a wrong PPLTE is noticed"
@@ -33,10 +33,10 @@ result $? "a wrong PPLTE is noticed"
 for change in 's/50.3908,/60.3908,/' '/50.3908,/{n;s/9.1667/-22.9/}'; do
   sed "$change" "$CASES/calculix.json" >"$folder/calculix.json"
   ! cmp -s "$CASES/calculix.json" "$folder/calculix.json"
-  result $? "calculix.json changed by $change"
+  result $? "calculix.json is changed by $change"
   "$EASEOFF" verify "$folder/calculix.json" >"$folder/out" 2>"$folder/err"
   [ $? -eq 1 ] && grep -q 'root_pinion_MPa_at_prescribed_Z.2.396.*FAIL' "$folder/out"
-  result $? "and noticed"
+  result $? "the change by $change is noticed"
 done
 
 echo "1..$count"

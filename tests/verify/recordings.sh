@@ -5,11 +5,11 @@
 . "$(dirname "$0")/../support/tap.sh"
 
 "$EASEOFF" verify "$CASES/rig-public/cases.json" >"$folder/out" 2>&1
-result $? "shapes of recordings: $(tail -n 1 "$folder/out")"
+result $? "recordings of known shapes are right or questioned: $(tail -n 1 "$folder/out")"
 "$EASEOFF" verify "$CASES/rig-public/speeds.json" >"$folder/out" 2>&1
-result $? "speeds that change: $(tail -n 1 "$folder/out")"
+result $? "recordings at speeds that change are right or questioned: $(tail -n 1 "$folder/out")"
 "$EASEOFF" verify "$CASES/rig-held-out/cases.json" >"$folder/out" 2>&1
-result $? "shapes nobody had tried: $(tail -n 1 "$folder/out")"
+result $? "recordings of shapes nobody had tried are right or questioned: $(tail -n 1 "$folder/out")"
 "$EASEOFF" example paper >"$folder/design.json"
 
 measure() # PATTERN WHAT ARGUMENT...
