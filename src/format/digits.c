@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "recording/decimal.h"
+#include "base/decimal.h"
 
 typedef unsigned __int128 wide;
 

@@ -2,7 +2,7 @@
 /* Blocks of MDF files: "##", two letters, 4 bytes, length, number of links, the links, then data. */
 #define _GNU_SOURCE /* memmem */
 #include "recording/mdf.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

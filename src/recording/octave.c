@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text that Octave saves: one variable after the other, each with "# name:", "# type:" and its size before its values.
    Scalars, texts, matrices, ranges, and structs and cells of such. */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/readers.h"
 #include "recording/source.h"
 #include "recording/tree_columns.h"

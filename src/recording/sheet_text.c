@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/sheet_text.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/source.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of how many samples of the converter a row was made: decimation, "every 4th sample is stored", averages. */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/letters.h"
 #include "recording/recorded_unit.h"
 #include "recording/stated_private.h"

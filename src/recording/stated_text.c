@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Facts that a file states as text. */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/stated.h"
 
 #include <ctype.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_number.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/letters.h"
 #include "recording/recorded_unit.h"
 #include "recording/text_cell.h"

@@ -2,7 +2,7 @@
 #define _GNU_SOURCE /* memrchr */
 /* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
    numbers are looked at twice. */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_facts.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_sections.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/text_cell.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* The data sets of a universal file as channels. Text is read once, into one column each; binary data are read where
    they are. */
 #include "recording/uff.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/readers.h"
 
 #include <ctype.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines and headers of universal files. */
 #include "recording/uff.h"
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "recording/recorded_unit.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE /* strtod_l */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 
 #include <locale.h>
 #include <math.h>

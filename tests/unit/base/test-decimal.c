@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decimal numbers against the C library's strtod, which rounds correctly. */
-#include "recording/decimal.h"
+#include "base/decimal.h"
 #include "support/tap.h"
 
 #include <stdlib.h>

@@ -3,8 +3,8 @@
    Up to 19 significant digits are read exactly without the C library: a mantissa below 2^53 with at most 22 powers of
    ten takes one rounded operation (Clinger 1990), other ones a product or quotient of 128 bits by a power of five. What
    is left goes to strtod. */
-#ifndef EASEOFF_RECORDING_DECIMAL_H
-#define EASEOFF_RECORDING_DECIMAL_H
+#ifndef EASEOFF_BASE_DECIMAL_H
+#define EASEOFF_BASE_DECIMAL_H
 
 #include <stddef.h>
 #include <stdint.h>
