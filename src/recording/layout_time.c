@@ -65,7 +65,7 @@ static bool counts_rows(const struct eo_guess *guess, int column)
 {
   const struct eo_column *look = &guess->look[column];
   bool counting = look->whole && look->step == 1 && look->spread < 1e-12 && !look->resets;
-  bool named = eo_column_named(eo_recording_name(guess->recording, column), EO_TIME_WORDS);
+  bool named = eo_column_named(eo_recording_name(guess->recording, column), EO_CLOCK_WORDS "|" EO_TICK_WORDS);
   return counting && look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_ANGLE &&
          (!named || eo_recording_clock(guess->recording, column).interval > 0);
 }

@@ -420,6 +420,16 @@ static void test_two_turns(void)
   eo_recording_free(r);
 }
 
+/* The name of an abscissa says nothing of whole numbers, one after the other, but that they number the rows. */
+static void test_numbers_of_rows(void)
+{
+  FILE *f = begin("x,pinion [deg],gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%d,%.12g,%.12g\n", i, degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  asked(f, NULL, "/sample_rate_Hz", "No column holds the time",
+        "a column x that numbers the rows holds no milliseconds");
+}
+
 int main(void)
 {
   fixture_open();
@@ -434,5 +444,6 @@ int main(void)
   test_late_rates();
   test_channels();
   test_arcs();
+  test_numbers_of_rows();
   return fixture_close();
 }
