@@ -144,9 +144,10 @@ static void find_remote(struct eo_root_loads *loads, const struct eo_root_tables
     for (int l = 0; l < position->lines; l++) {
       const struct eo_contact_line *line = &position->line[l];
       int first = position->first + line->first;
-      eo_root_modes_add(modes, line->cells, loads->force + first,
+      eo_root_modes_add(modes, 1, line->cells, loads->force + first, line->cells,
                         tables->remote[member] + (size_t)first * (size_t)stride, stride,
-                        remote_of(loads, tables, member, line->pair) + (size_t)(j / loads->step) * (size_t)stride);
+                        remote_of(loads, tables, member, line->pair) + (size_t)(j / loads->step) * (size_t)stride,
+                        stride);
     }
   }
 }
@@ -179,13 +180,14 @@ struct eo_root_workspace {
   const struct eo_root_tables *tables;
   float *coefficient; /* [ends][positions][stride] */
   float *room;        /* [ROWS][room of the modes] */
+  float *force;       /* [ends][most points of a position]: those of one line of contact */
 };
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_root_tables *tables, int ends,
                                    struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
-  long stride = 1, length = 1;
+  long stride = 1, length = 1, cells = 1;
   if (!ws)
     return eo_error_memory(error);
   ws->tables = tables;
@@ -195,9 +197,12 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
     stride = own > stride ? own : stride;
     length = all > length ? all : length;
   }
+  for (int j = 0; j < tables->grid->positions; j++)
+    cells = tables->grid->position[j].points > cells ? tables->grid->position[j].points : cells;
   ws->coefficient = eo_gram_allocate((long)ends * tables->grid->positions * stride / 2 + 1);
   ws->room = eo_gram_allocate(ROWS * length / 2 + 1);
-  if (!ws->coefficient || !ws->room) {
+  ws->force = malloc(sizeof *ws->force * (size_t)ends * (size_t)cells);
+  if (!ws->coefficient || !ws->room || !ws->force) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -211,6 +216,7 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
     return;
   free(ws->coefficient);
   free(ws->room);
+  free(ws->force);
   free(ws);
 }
 
@@ -231,7 +237,15 @@ static void find_stretches(const struct eo_root_tables *tables, int tooth, int s
   stretch[2] = (struct stretch){last, count, EO_ROOT_OTHERS};
 }
 
-/* What the tooth itself carries, of all ends at one position after the other: they read the same rows.
+/* The forces of a line of contact under the loads of all ends, one after the other. */
+static void gather_line(struct eo_root_workspace *ws, int first, int cells, int ends,
+                        const struct eo_root_loads *const *loads)
+{
+  for (int e = 0; e < ends; e++)
+    memcpy(ws->force + (size_t)e * (size_t)cells, loads[e]->force + first, sizeof *ws->force * (size_t)cells);
+}
+
+/* What the tooth itself carries, of all ends at a position at once: they read the same rows.
    coefficient[ends][positions of the stretch][stride]. */
 static void add_own(struct eo_root_workspace *ws, int member, int tooth, const struct stretch *stretch, int ends,
                     const struct eo_root_loads *const *loads)
@@ -244,10 +258,12 @@ static void add_own(struct eo_root_workspace *ws, int member, int tooth, const s
     for (int l = 0; l < position->lines; l++) {
       const struct eo_contact_line *line = &position->line[l];
       int first = position->first + line->first;
-      for (int e = 0; e < ends && line->pair == tooth; e++)
-        eo_root_modes_add(modes, line->cells, loads[e]->force + first,
-                          tables->own[member] + (size_t)first * (size_t)stride, stride,
-                          ws->coefficient + (size_t)(e * rows + j) * (size_t)stride);
+      if (line->pair != tooth)
+        continue;
+      gather_line(ws, first, line->cells, ends, loads);
+      eo_root_modes_add(modes, ends, line->cells, ws->force, line->cells,
+                        tables->own[member] + (size_t)first * (size_t)stride, stride,
+                        ws->coefficient + (size_t)j * (size_t)stride, rows * stride);
     }
   }
 }

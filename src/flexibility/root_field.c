@@ -25,10 +25,15 @@ enum eo_code eo_root_field_init(struct eo_root_field *field, int rank, int nodes
   for (int k = 0; k < rank; k++)
     for (int node = 0; node < nodes; node++)
       for (int part = 0; part < EO_STRESSES; part++)
-        field->shape[(size_t)k * (size_t)field->columns + (size_t)(node / BLOCK * SPAN + part * BLOCK + node % BLOCK)] =
+        eo_root_field_block(field, node / BLOCK)[k * SPAN + part * BLOCK + node % BLOCK] =
             (float)shape[((size_t)k * (size_t)nodes + (size_t)node) * EO_STRESSES + (size_t)part];
   eo_root_field_bound(field);
   return EO_OK;
+}
+
+float *eo_root_field_block(const struct eo_root_field *field, int block)
+{
+  return field->shape + (size_t)block * (size_t)field->rank * SPAN;
 }
 
 void eo_root_field_done(struct eo_root_field *field)
@@ -48,11 +53,10 @@ void eo_root_field_bound(struct eo_root_field *field)
 {
   for (int level = 0; level < field->levels; level++)
     for (int node = 0; node < field->blocks * BLOCK; node++) {
-      const float *stress = field->shape + node / BLOCK * SPAN + node % BLOCK;
+      const float *stress = eo_root_field_block(field, node / BLOCK) + node % BLOCK;
       double sum = 0;
       for (int k = shapes_until(field, level); k < field->rank; k++) {
-        double s = stress[k * field->columns], t = stress[k * field->columns + BLOCK],
-               u = stress[k * field->columns + 2 * BLOCK];
+        double s = stress[k * SPAN], t = stress[k * SPAN + BLOCK], u = stress[k * SPAN + 2 * BLOCK];
         sum += s * s + t * t + 2 * u * u; /* what a principal stress can change by is the norm of the tensor's change */
       }
       field->rest[level * field->blocks * BLOCK + node] = (float)sqrt(sum);
@@ -122,8 +126,8 @@ static void finish_block(struct search *search, int block)
     }
     int first = shapes_until(field, level), last = shapes_until(field, ++level);
     search->gram->multiply(1, last - first, SPAN, search->coefficient + first, last - first,
-                           field->shape + (size_t)first * (size_t)field->columns + block * SPAN, field->columns, true,
-                           search->stress + block * SPAN, SPAN);
+                           eo_root_field_block(field, block) + first * SPAN, SPAN, true, search->stress + block * SPAN,
+                           SPAN);
   } while (can_pass(search, block, level));
 }
 
@@ -143,8 +147,9 @@ void eo_root_field_find_largest(const struct eo_root_field *field, const struct 
                                 const float *coefficient, int stride, float *room, double *largest, int *node)
 {
   int first = shapes_until(field, 0), start = 0;
-  gram->multiply(rows, first, field->columns, coefficient, stride, field->shape, field->columns, false, room,
-                 field->columns);
+  for (int block = 0; block < field->blocks; block++)
+    gram->multiply(rows, first, SPAN, coefficient, stride, eo_root_field_block(field, block), SPAN, false,
+                   room + block * SPAN, field->columns);
   for (int j = 0; j < rows; j++) {
     struct search search = {.field = field,
                             .gram = gram,

@@ -13,7 +13,7 @@ struct eo_root_field {
   int rank;
   int blocks, columns; /* of a few nodes each; floats of all of them, with padding */
   int levels;          /* of a sum, each some shapes more */
-  float *shape;        /* [rank][columns]: [blocks][EO_STRESSES][nodes of a block] */
+  float *shape;        /* [blocks][rank][EO_STRESSES][nodes of a block] */
   float *rest;         /* [levels][nodes of all blocks]: norm of the shapes behind a level */
 };
 
@@ -21,6 +21,9 @@ struct eo_root_field {
 enum eo_code eo_root_field_init(struct eo_root_field *field, int rank, int nodes, const double *shape,
                                 struct eo_error *error);
 void eo_root_field_done(struct eo_root_field *field);
+
+/* [rank][columns of a block]: the shapes where a block has them. */
+float *eo_root_field_block(const struct eo_root_field *field, int block);
 
 /* After the shapes have changed. */
 void eo_root_field_bound(struct eo_root_field *field);

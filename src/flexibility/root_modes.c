@@ -320,7 +320,9 @@ enum eo_code eo_root_modes_turn(struct eo_root_modes *modes, const double *momen
     turn(rank, vectors, modes->table->flank.points, stride, 1, modes->own, values);
     if (shapes->passed)
       turn(rank, vectors, (2 * modes->reach + 1) * modes->remote_rank, stride, 1, shapes->passed, values);
-    turn(rank, vectors, shapes->field.columns, 1, shapes->field.columns, shapes->field.shape, values);
+    int span = shapes->field.columns / shapes->field.blocks;
+    for (int block = 0; block < shapes->field.blocks; block++)
+      turn(rank, vectors, span, 1, span, eo_root_field_block(&shapes->field, block), values);
     eo_root_field_bound(&shapes->field);
   }
   free(vectors);
@@ -352,10 +354,10 @@ void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_fla
   weigh(&modes->table->next, point->s[modes->member], point->eta, modes->remote_stride, modes->remote, remote);
 }
 
-void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *force, const float *row, int stride,
-                       float *sum)
+void eo_root_modes_add(const struct eo_root_modes *modes, int loads, int n, const float *force, int force_stride,
+                       const float *row, int stride, float *sum, int sum_stride)
 {
-  modes->gram->multiply(1, n, stride, force, n, row, stride, true, sum, stride);
+  modes->gram->multiply(loads, n, stride, force, force_stride, row, stride, true, sum, sum_stride);
 }
 
 void eo_root_modes_pass(const struct eo_root_modes *modes, enum eo_root_carriers carriers, int ahead_by, int count,

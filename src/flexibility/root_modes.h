@@ -40,10 +40,11 @@ void eo_root_modes_remote(const struct eo_root_modes *modes, const struct eo_fla
 /* All arrays of the following are aligned to EO_GRAM_ALIGN but for the forces, and a row of a result comes from its own
    rows alone, to the last bit, whatever else is asked for. */
 
-/* sum[stride] += what the forces force[n], N, at points are whose own (or remote) rows follow each other in
-   row[n][stride]. stride: that of own (EO_ROOT_ALL) or of remote rows. */
-void eo_root_modes_add(const struct eo_root_modes *modes, int n, const float *force, const float *row, int stride,
-                       float *sum);
+/* sum[stride] of each of the loads += what its forces, N, are at n points whose own (or remote) rows follow each other
+   in row[n][stride]: force[loads][n], force_stride apart, sum[loads], sum_stride apart. stride: that of own
+   (EO_ROOT_ALL) or of remote rows. */
+void eo_root_modes_add(const struct eo_root_modes *modes, int loads, int n, const float *force, int force_stride,
+                       const float *row, int stride, float *sum, int sum_stride);
 
 /* coefficient[count][stride] += that of remote[count][remote stride], the loads of the tooth `ahead_by` pairs ahead,
    not 0, within reach. */

@@ -18,5 +18,6 @@
 #define GATHER_UNITS 6
 #define TILE_ROWS 6
 #define TILE_LANES 2
+#define FEW_LANES 3
 #include "numerics/gram_body.h"
 #endif

@@ -18,5 +18,6 @@
 #define GATHER_UNITS 6
 #define TILE_ROWS 8
 #define TILE_LANES 3
+#define FEW_LANES 6
 #include "numerics/gram_body.h"
 #endif

@@ -10,6 +10,7 @@
    APPLY_ROWS           rows of a product with a vector at a time
    GATHER_UNITS         sets of eight sums over points at a time
    TILE_ROWS, TILE_LANES  rows and vectors of a product of matrices at a time
+   FEW_LANES            vectors at a time of the few rows that are left
    so that the sums of an inner loop stay in registers. Every sum is taken in the same order whatever the width, so
    versions that round alike (avx2 and avx512: MADD rounds once) give the same bytes. */
 #include "numerics/gram_private.h"
@@ -24,7 +25,9 @@ enum {
   PARTS_OF_FOUR = WIDTH / 4,
   FLOATS = 2 * WIDTH,
   PIVOTS = 4,
-  SOLVE_LANES = WIDTH == 8 ? 3 : 6
+  SOLVE_LANES = WIDTH == 8 ? 3 : 6,
+  FEW_ROWS = 3, /* one end under as many torques */
+  ROW_LANES = 6
 };
 
 /* A pivot above it is infinite, but for rounding. */
@@ -171,7 +174,7 @@ TARGET static void blend(int rows, int stride, const float *f, const double *loa
 INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_row, int a_column, const float *b,
                           int b_stride, bool add, float *c, int c_stride)
 {
-  float_lane sum[TILE_ROWS][TILE_LANES];
+  float_lane sum[TILE_ROWS][ROW_LANES];
   UNROLL
   for (int r = 0; r < rows; r++) {
     UNROLL
@@ -179,7 +182,7 @@ INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_
       sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
   }
   for (int k = 0; k < inner; k++) {
-    float_lane right[TILE_LANES];
+    float_lane right[ROW_LANES];
     UNROLL
     for (int l = 0; l < lanes; l++)
       right[l] = *(const float_lane *)(b + (long)k * b_stride + l * FLOATS);
@@ -357,36 +360,17 @@ TARGET static void solve(int n, const float *inverse, const double *b, double *x
     x[k] = (double)sum[k];
 }
 
-enum { ROW_LANES = 6 };
-
-/* Of one row, `lanes` vectors of columns. */
-INLINE void multiply_lanes(int lanes, int inner, const float *a, const float *b, int b_stride, bool add, float *c)
-{
-  float_lane sum[ROW_LANES];
-  UNROLL
-  for (int l = 0; l < lanes; l++)
-    sum[l] = add ? *(const float_lane *)(c + l * FLOATS) : (float_lane){0};
-  for (int k = 0; k < inner; k++) {
-    float_lane left = SPLAT_FLOAT(a[k]);
-    UNROLL
-    for (int l = 0; l < lanes; l++)
-      sum[l] = MADD_FLOAT(left, *(const float_lane *)(b + (long)k * b_stride + l * FLOATS), sum[l]);
-  }
-  UNROLL
-  for (int l = 0; l < lanes; l++)
-    *(float_lane *)(c + l * FLOATS) = sum[l];
-}
-
-/* One row: several vectors of columns at a time, as a sum has to wait for the one before it. */
-INLINE void multiply_row(int inner, int columns, const float *a, const float *b, int b_stride, bool add, float *c)
+/* Fewer rows than a tile has: more vectors of columns at a time, as a sum has to wait for the one before it. */
+INLINE void multiply_rows(int rows, int lanes, int inner, int columns, const float *a, int a_stride, const float *b,
+                          int b_stride, bool add, float *c, int c_stride)
 {
   int column = 0;
-  for (; column + ROW_LANES * FLOATS <= columns; column += ROW_LANES * FLOATS)
-    multiply_lanes(ROW_LANES, inner, a, b + column, b_stride, add, c + column);
-  for (; column + ROW_LANES / 2 * FLOATS <= columns; column += ROW_LANES / 2 * FLOATS)
-    multiply_lanes(ROW_LANES / 2, inner, a, b + column, b_stride, add, c + column);
+  for (; column + lanes * FLOATS <= columns; column += lanes * FLOATS)
+    multiply_tile(rows, lanes, inner, a, a_stride, 1, b + column, b_stride, add, c + column, c_stride);
+  for (; column + lanes / 2 * FLOATS <= columns; column += lanes / 2 * FLOATS)
+    multiply_tile(rows, lanes / 2, inner, a, a_stride, 1, b + column, b_stride, add, c + column, c_stride);
   for (; column < columns; column += FLOATS)
-    multiply_lanes(1, inner, a, b + column, b_stride, add, c + column);
+    multiply_tile(rows, 1, inner, a, a_stride, 1, b + column, b_stride, add, c + column, c_stride);
 }
 
 /* Strips of columns, so that b's strip stays in the cache while all rows pass over it. Every number of c is one sum in
@@ -404,8 +388,13 @@ TARGET static void multiply(int rows, int inner, int columns, const float *a, in
     for (int row = 0; row < tiled; row += TILE_ROWS)
       multiply_tile(TILE_ROWS, 1, inner, a + (long)row * a_stride, a_stride, 1, b + column, b_stride, add,
                     c + (long)row * c_stride + column, c_stride);
-  for (int row = tiled; row < rows; row++)
-    multiply_row(inner, columns, a + (long)row * a_stride, b, b_stride, add, c + (long)row * c_stride);
+  int row = tiled;
+  for (; row + FEW_ROWS <= rows; row += FEW_ROWS)
+    multiply_rows(FEW_ROWS, FEW_LANES, inner, columns, a + (long)row * a_stride, a_stride, b, b_stride, add,
+                  c + (long)row * c_stride, c_stride);
+  for (; row < rows; row++)
+    multiply_rows(1, ROW_LANES, inner, columns, a + (long)row * a_stride, a_stride, b, b_stride, add,
+                  c + (long)row * c_stride, c_stride);
 }
 
 /* s + t + sqrt((s - t)^2 + 4 u^2) > 2 largest, without the root; what is not a number passes. */

@@ -21,4 +21,5 @@
 #define GATHER_UNITS 3
 #define TILE_ROWS 4
 #define TILE_LANES 2
+#define FEW_LANES 3
 #include "numerics/gram_body.h"
