@@ -12,6 +12,8 @@ enum { MOST_DESIGNS = 200 };
 /* A number that the preprocessor knows, as text. */
 #define TEXT_OF(number) #number
 #define TEXT(number) TEXT_OF(number)
+#define ROWS TEXT(EO_EXPORT_ROWS)
+#define COLUMNS TEXT(EO_EXPORT_COLUMNS)
 
 static int list_formats(void)
 {
@@ -144,35 +146,22 @@ const struct eo_command eo_command_export = {
     "export", "DESIGN.json... --format NAME [-o FILE] [--rows N] [--columns N] [--units mm|inch]",
     "a file for another program: REXS, STEP, STL, tables, flank points, charts",
     "Without a design, the list of formats. Without -o the file goes to standard output.\n"
-    "--rows and --columns: points of flank-points and topography from root to tip (" TEXT(
-        EO_EXPORT_ROWS) ") and over\n"
-                        "the face (" TEXT(
-                            EO_EXPORT_COLUMNS) ").\n"
-                                               "--units inch gives the lengths of flank-points, topography and "
-                                               "modification-chart in inches and thousandths, as\n"
-                                               "their headings say.\n"
-                                               "\n"
-                                               "Points are in the frame of each member: z along the axis, from the "
-                                               "middle of the groove to the right; the working\n"
-                                               "flank of a tooth faces +x (-x, all mirrored, where the pinion turns "
-                                               "clockwise seen from its left end, as a\n"
-                                               "left-handed one with the apex trailing does) and would, unmodified, "
-                                               "pass through x = 0 at the working pitch radius\n"
-                                               "in mid face. Normals point out of the tooth. STEP and STL use the same "
-                                               "frame, in mm, without thickness allowance;\n"
-                                               "STL is for viewing and printing. Where the slope of a modification "
-                                               "jumps (the start of a linear relief, the border\n"
-                                               "of a grid or a corner relief), STEP faces end where both sides cross; "
-                                               "what a corner of the rack sweeps is a narrow\n"
-                                               "face of its own. Modified flanks reach from the start of the active "
-                                               "profile to the tip circle; a flank whose relief\n"
-                                               "is too steep for that ends where the end of the active profile is "
-                                               "generated. If a face stays more than 5 nm off, a\n"
-                                               "comment of the file says so: look for /*.\n"
-                                               "\n"
-                                               "Several designs go into one table (table, table-comma, table-rows, "
-                                               "workbook). Gear programs read rexs; GDE (VDI/VDE\n"
-                                               "2610) and the files of measuring and grinding machines have no public "
-                                               "layout: flank-points, topography and charts\n"
-                                               "hold what they need.\n",
+    "--rows and --columns: points of flank-points and topography from root to tip (" ROWS
+    ") and over the face (" COLUMNS ").\n"
+    "--units inch gives the lengths of flank-points, topography and modification-chart in inches and thousandths, as\n"
+    "their headings say.\n"
+    "\n"
+    "Points are in the frame of each member: z along the axis, from the middle of the groove to the right; the\n"
+    "working flank of a tooth faces +x (-x, all mirrored, where the pinion turns clockwise seen from its left end, as\n"
+    "a left-handed one with the apex trailing does) and would, unmodified, pass through x = 0 at the working pitch\n"
+    "radius in mid face. Normals point out of the tooth. STEP and STL use the same frame, in mm, without thickness\n"
+    "allowance; STL is for viewing and printing. Where the slope of a modification jumps (the start of a linear\n"
+    "relief, the border of a grid or a corner relief), STEP faces end where both sides cross; what a corner of the\n"
+    "rack sweeps is a narrow face of its own. Modified flanks reach from the start of the active profile to the tip\n"
+    "circle; a flank whose relief is too steep for that ends where the end of the active profile is generated. If a\n"
+    "face stays more than 5 nm off, a comment of the file says so: look for /*.\n"
+    "\n"
+    "Several designs go into one table (table, table-comma, table-rows, workbook). Gear programs read rexs; GDE\n"
+    "(VDI/VDE 2610) and the files of measuring and grinding machines have no public layout: flank-points, topography\n"
+    "and charts hold what they need.\n",
     run};
