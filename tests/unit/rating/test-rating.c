@@ -48,22 +48,28 @@ static void test_dynamic(void)
      "a contact ratio that cannot be is refused: %s", error.text);
 }
 
+/* y_alpha and y_beta, um, of a material with its limit, MPa, at a pitch line speed, m/s, of a deviation, um. */
+static const struct running_in {
+  double (*of)(enum eo_rating_material material, double flank_limit, double velocity, double deviation);
+  enum eo_rating_material material;
+  double limit, speed, deviation, right;
+  const char *label;
+} running_ins[] = {
+    {eo_pitch_running_in, EO_CASE_HARDENED, 1500, 20, 16, 1.2, "running in y_alpha, hardened, um"},
+    {eo_pitch_running_in, EO_CASE_HARDENED, 1500, 20, 80, 3, "running in y_alpha, hardened, at most 3 um"},
+    {eo_pitch_running_in, EO_THROUGH_HARDENED_ALLOY, 700, 3, 70, 16, "running in y_alpha, soft and slow, um"},
+    {eo_pitch_running_in, EO_THROUGH_HARDENED_ALLOY, 640, 7, 100, 20, "running in y_alpha, capped at 12800/sigma, um"},
+    {eo_pitch_running_in, EO_THROUGH_HARDENED_ALLOY, 640, 12, 100, 10, "running in y_alpha, capped at 6400/sigma, um"},
+    {eo_helix_running_in, EO_THROUGH_HARDENED_ALLOY, 640, 12, 100, 20, "running in y_beta, soft and fast, um"},
+    {eo_helix_running_in, EO_NITROCARBURISED, 650, 12, 20, 3, "running in y_beta, nitrocarburised, um"},
+};
+
 static void test_running_in(void)
 {
-  close_to(1e6 * eo_pitch_running_in(EO_CASE_HARDENED, 1500e6, 20, 16e-6), 1.2, 1e-12,
-           "running in y_alpha, hardened, um");
-  close_to(1e6 * eo_pitch_running_in(EO_CASE_HARDENED, 1500e6, 20, 80e-6), 3, 1e-12,
-           "running in y_alpha, hardened, at most 3 um");
-  close_to(1e6 * eo_pitch_running_in(EO_THROUGH_HARDENED_ALLOY, 700e6, 3, 70e-6), 16, 1e-12,
-           "running in y_alpha, soft and slow, um");
-  close_to(1e6 * eo_pitch_running_in(EO_THROUGH_HARDENED_ALLOY, 640e6, 7, 100e-6), 20, 1e-12,
-           "running in y_alpha, capped at 12800/sigma, um");
-  close_to(1e6 * eo_pitch_running_in(EO_THROUGH_HARDENED_ALLOY, 640e6, 12, 100e-6), 10, 1e-12,
-           "running in y_alpha, capped at 6400/sigma, um");
-  close_to(1e6 * eo_helix_running_in(EO_THROUGH_HARDENED_ALLOY, 640e6, 12, 100e-6), 20, 1e-12,
-           "running in y_beta, soft and fast, um");
-  close_to(1e6 * eo_helix_running_in(EO_NITROCARBURISED, 650e6, 12, 20e-6), 3, 1e-12,
-           "running in y_beta, nitrocarburised, um");
+  for (size_t i = 0; i < sizeof running_ins / sizeof *running_ins; i++) {
+    const struct running_in *t = &running_ins[i];
+    close_to(1e6 * t->of(t->material, 1e6 * t->limit, t->speed, 1e-6 * t->deviation), t->right, 1e-12, t->label);
+  }
 }
 
 /* K_Hbeta: both branches meet where the load just covers the face; f_sh of a straddle mounted pinion in mid span. */
