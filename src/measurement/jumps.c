@@ -10,6 +10,11 @@ static const double DEGREES = 180 / M_PI;
 static const double UNEVEN =
     0.2; /* range of the speed in a block, relative: above, steps are judged by their neighbours */
 static const double MOSTLY = 0.8; /* of the distances between gaps: even ones */
+/* Of values in order: between them nearly all, few enough left out that a fault in twenty rows is not usual. */
+static const double LOW = 0.05, MIDDLE = 0.5, HIGH = 0.95;
+/* What a step may differ from the usual one, at least: of the step of a row, of which a fault loses or adds a whole
+   one; of a count, which two readings may split; per time of a gap, by the speed that changes in it. */
+static const double OF_ROW = 0.4, OF_COUNT = 1.6, OF_GAP = 0.02;
 enum { LEAST_DISTANCES = 8 };
 
 static double step_of(const struct eo_sample *from, const struct eo_sample *to, int channel)
@@ -23,14 +28,14 @@ static void learn(struct eo_angles_maker *maker, const struct eo_sample *sample,
   bool uneven = false;
   for (int i = 1; i < count; i++)
     maker->scratch[n++] = sample[i].time - sample[i - 1].time;
-  usual->interval = eo_scan_quantile(maker->scratch, n, 0.5);
-  usual->gap = maker->scratch[(int)(0.95 * (n - 1))] + usual->interval / 2; /* uneven rows alone are no gap */
+  usual->interval = eo_scan_quantile(maker->scratch, n, MIDDLE);
+  usual->gap = maker->scratch[(int)(HIGH * (n - 1))] + usual->interval / 2; /* uneven rows alone are no gap */
   for (int c = 0; c < 2; c++) {
     n = 0;
     for (int i = lag; i < count; i++)
       maker->scratch[n++] = step_of(&sample[i - lag], &sample[i], c) / (sample[i].time - sample[i - lag].time);
-    usual->rate[c] = eo_scan_quantile(maker->scratch, n, 0.5);
-    double slow = maker->scratch[(int)(0.05 * (n - 1))], fast = maker->scratch[(int)(0.95 * (n - 1))];
+    usual->rate[c] = eo_scan_quantile(maker->scratch, n, MIDDLE);
+    double slow = maker->scratch[(int)(LOW * (n - 1))], fast = maker->scratch[(int)(HIGH * (n - 1))];
     uneven = uneven || fast - slow > UNEVEN * fmax(fabs(slow), fabs(fast));
     n = 0;
     for (int i = 1; i < count; i++)
@@ -38,8 +43,8 @@ static void learn(struct eo_angles_maker *maker, const struct eo_sample *sample,
           fabs(step_of(&sample[i - 1], &sample[i], c) - usual->rate[c] * (sample[i].time - sample[i - 1].time));
     double spread = eo_scan_quantile(maker->scratch, n, 0.9), most = maker->scratch[(int)(0.995 * (n - 1))];
     double row = fabs(usual->rate[c]) * usual->interval;
-    usual->limit[c] = fmax(fmax(4 * spread, 0.4 * row), 1.6 * maker->quantum[c]);
-    usual->fine[c] = fmax(fmax(8 * spread, 3 * most), 1.6 * maker->quantum[c]);
+    usual->limit[c] = fmax(fmax(4 * spread, OF_ROW * row), OF_COUNT * maker->quantum[c]);
+    usual->fine[c] = fmax(fmax(8 * spread, 3 * most), OF_COUNT * maker->quantum[c]);
   }
   usual->uneven = uneven;
 }
@@ -52,7 +57,7 @@ static bool odd_step(const struct eo_usual *usual, const double limit[2], const 
   double time = to->time - from->time, slack = fmax(0, time - 1.5 * usual->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
     excess[c] = step_of(from, to, c) - usual->rate[c] * time;
-    odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(usual->rate[c]) * slack;
+    odd = odd || fabs(excess[c]) > limit[c] + OF_GAP * fabs(usual->rate[c]) * slack;
   }
   return odd;
 }
@@ -66,7 +71,7 @@ static bool fits_beside(const struct eo_usual *usual, const struct eo_sample *fr
   *here = *usual;
   for (int c = 0; c < 2 && time > 0; c++) {
     here->rate[c] = step_of(a, b, c) / time;
-    here->limit[c] = fmax(usual->limit[c], 0.4 * fabs(here->rate[c]) * usual->interval);
+    here->limit[c] = fmax(usual->limit[c], OF_ROW * fabs(here->rate[c]) * usual->interval);
     fits = fits && fabs(step_of(from, to, c) - here->rate[c] * passed) <= here->limit[c];
   }
   return fits;
@@ -300,7 +305,7 @@ static bool is_even(struct eo_angles_maker *maker, double *distance)
   int count = (int)(maker->hidden <= EO_MOST_DISTANCES ? maker->hidden : EO_MOST_DISTANCES) - 1, even = 0;
   if (count < LEAST_DISTANCES)
     return false;
-  *distance = eo_scan_quantile(maker->distance, count, 0.5);
+  *distance = eo_scan_quantile(maker->distance, count, MIDDLE);
   for (int i = 0; i < count; i++)
     even += fabs(maker->distance[i] - *distance) <= 1;
   return even > MOSTLY * count;

@@ -129,7 +129,7 @@ static bool add_value(struct eo_scan_column *column, double value, int64_t at, i
     step = 0; /* what jumps over a gap is the way in it */
   column->last = at;
   bool wide = column->width > 0 ? fabs(step) > column->width / 2
-                                : fabs(step) > 3 * column->typical && fabs(step) > 0.5 * (column->high - column->low);
+                                : fabs(step) > 3 * column->typical && fabs(step) > (column->high - column->low) / 2;
   if (used && (wide || fabs(step) > 10 * column->typical) && column->typical > 0) {
     if (column->jumps < EO_SCAN_JUMPS) {
       column->jump[column->jumps] = fabs(step) + column->typical;
@@ -193,7 +193,7 @@ static void add_row(struct eo_scan *scan, const struct eo_tracks *tracks, const 
       scan->return_row[scan->returns - 1] = at;
     scan->standing += time == scan->time_last;
     scan->duplicate += time == scan->time_last && same;
-    scan->steady += pace > 0.5 * usual && pace < 1.5 * usual;
+    scan->steady += fabs(pace - usual) < usual / 2;
   } else if (scan->used && time - scan->time_last < LEAP * scan->interval)
     scan->risen += time - scan->time_last;
   else
@@ -266,6 +266,10 @@ enum eo_code eo_scan_run(struct eo_scan *scan, const struct eo_recording *record
   return code;
 }
 
+/* Jumps are taken from what is read before and behind them, rows apart: a period of theirs, or a turn, is met as nearly
+   as that. Most of them show the period where others are faults. */
+static const double NEAR = 0.1, A_TURN = 0.05, MOSTLY = 0.8;
+
 double eo_scan_period(const struct eo_scan_column *column, double turn)
 {
   int kept = column->jumps < EO_SCAN_JUMPS ? column->jumps : EO_SCAN_JUMPS, wide = 0, alike = 0;
@@ -273,18 +277,18 @@ double eo_scan_period(const struct eo_scan_column *column, double turn)
   if (!sorted)
     return NAN;
   for (int i = 0; i < kept; i++)
-    if (column->jump[i] > 0.5 * range)
+    if (column->jump[i] > range / 2)
       sorted[wide++] = column->jump[i];
   period = eo_scan_quantile(sorted, wide, 0.5);
-  if (wide == 2 && turn > 0 && fabs(sorted[1] / turn - 1) < 0.05)
+  if (wide == 2 && turn > 0 && fabs(sorted[1] / turn - 1) < A_TURN)
     period = sorted[1];
   for (int i = 0; i < wide; i++)
-    alike += fabs(sorted[i] / period - 1) < 0.1;
-  bool first_differs = kept > 1 && alike == wide - 1 && fabs(column->jump[0] / period - 1) >= 0.1;
+    alike += fabs(sorted[i] / period - 1) < NEAR;
+  bool first_differs = kept > 1 && alike == wide - 1 && fabs(column->jump[0] / period - 1) >= NEAR;
   free(sorted);
   /* What was zeroed in between reaches over more than a turn, but not over two. */
-  double widest = turn > 0 && fabs(period / turn - 1) < 0.05 ? 2 : 1.05;
-  return wide && (alike >= 0.8 * wide || first_differs) && range < widest * period ? period : NAN;
+  double widest = turn > 0 && fabs(period / turn - 1) < A_TURN ? 2 : 1 + A_TURN;
+  return wide && (alike >= MOSTLY * wide || first_differs) && range < widest * period ? period : NAN;
 }
 
 /* Values that come back after so many rows were wrong ones. */
@@ -315,18 +319,23 @@ int eo_scan_restarts(const struct eo_scan *scan, int64_t row[EO_SCAN_JUMPS])
   return same ? restarts : 0;
 }
 
+static const double OF_PERIOD = 1e-3; /* the typical step is a mean */
+
 int64_t eo_scan_index_row(const struct eo_scan_column *column, double period)
 {
   int below = 2 * column->falls < column->jumps;
   bool partial = column->landing[below] > 0 &&
-                 fabs(column->landed[below] + column->typical - period) > 2 * column->typical + 0.001 * period;
+                 fabs(column->landed[below] + column->typical - period) > 2 * column->typical + OF_PERIOD * period;
   return partial ? column->landing[below] : 0;
 }
+
+/* At a limit: more than a wave that is not cut is there, and than so few rows that noise could be. */
+static const double TIMES_EXPECTED = 3, FEW = 0.005;
 
 double eo_scan_clipped(const struct eo_scan_column *column, int64_t rows)
 {
   double amplitude = (column->high - column->low) / 2, step = fmin(column->quantum, amplitude);
   double expected = amplitude > 0 ? acos(1 - step / amplitude) / M_PI : 1;
   double share = (double)(column->at_low > column->at_high ? column->at_low : column->at_high) / (double)rows;
-  return share > 3 * expected + 0.005 ? share : 0;
+  return share > TIMES_EXPECTED * expected + FEW ? share : 0;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/units_probe.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -54,22 +55,27 @@ static double power_at(const struct probe *probe, double order)
   return creal(sum) * creal(sum) + cimag(sum) * cimag(sum);
 }
 
+static const double LEAST_TURNS = 3;      /* of a shaft, of which a line can be told from the drift */
+static const double BELOW_FOLDING = 0.45; /* of the rows per turn: above half of them orders fold */
+static const double ASIDE = 2.5;          /* resolutions beside a line, where its own window is down */
+
 /* How much the lines stand out when both angles are multiplied by the factor, in decades; NaN where the recording is
    too short or too coarse to show them. */
 static double lines_seen(const struct probe *probe, const int teeth[2], double factor)
 {
   const double order[LINES] = {(double)teeth[0] / teeth[1], 1, teeth[0], 2.0 * teeth[0], 3.0 * teeth[0]};
   double turns = fabs(probe->row[probe->rows - 1][1] - probe->row[0][1]) * factor / (2 * M_PI), seen = 0;
-  if (turns < 3 || teeth[0] > 0.45 * probe->rows / turns)
+  double highest = BELOW_FOLDING * probe->rows / turns;
+  if (turns < LEAST_TURNS || teeth[0] > highest)
     return NAN;
-  for (int k = 0; k < LINES && order[k] < 0.45 * probe->rows / turns; k++) {
+  for (int k = 0; k < LINES && order[k] < highest; k++) {
     double floor = 0;
     for (int j = 0; j < FLOOR; j++) {
       int step = j / 2;
-      double aside = (j % 2 ? 1 : -1) * (2.5 + step) / turns;
+      double aside = (j % 2 ? 1 : -1) * (ASIDE + step) / turns;
       floor += power_at(probe, (order[k] + aside) * factor) / FLOOR;
     }
-    seen += log10(1 + power_at(probe, order[k] * factor) / fmax(floor, 1e-300)) * (order[k] > 3 / turns);
+    seen += log10(1 + power_at(probe, order[k] * factor) / fmax(floor, DBL_MIN)) * (order[k] > LEAST_TURNS / turns);
   }
   return seen;
 }
