@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "design/check.h"
+#include "design/resolution.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -286,23 +287,22 @@ enum eo_code eo_design_check_search(const struct eo_design *design, const struct
 static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry, int cells)
 {
   return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) *
-         (cells + (resolution->tip_edge_contact ? 24 : 0));
+         (cells + (resolution->tip_edge_contact ? 2 * EO_EDGE_CELLS : 0));
 }
 
-/* At most 2000 points at a position and 1 GiB in all. */
+/* Of what a prepared pair may hold: contact points at a mesh position, and bytes of the matrices of all positions. */
+static const double MOST_POINTS = 2000, MOST_GIB = 1, GIB = 1 << 30;
+
 static bool is_too_fine(const struct eo_resolution *resolution, const struct eo_geometry *geometry, int cells)
 {
-  static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
   double points = contact_points(resolution, geometry, cells);
-  return points > MOST_POINTS || sizeof(float) * points * points * resolution->positions > MOST_BYTES;
+  return points > MOST_POINTS || sizeof(float) * points * points * resolution->positions > MOST_GIB * GIB;
 }
-
-enum { LEAST_CELLS = 4, USUAL_CELLS = 30 };
 
 int eo_resolution_usual_cells(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
 {
-  int cells = USUAL_CELLS;
-  while (cells > LEAST_CELLS && is_too_fine(resolution, geometry, cells))
+  int cells = EO_CELLS_USUAL;
+  while (cells > EO_CELLS_LEAST && is_too_fine(resolution, geometry, cells))
     cells--;
   return cells;
 }
@@ -311,14 +311,12 @@ static enum eo_code check_resolution(const struct eo_resolution *resolution, con
                                      struct eo_error *error)
 {
   double lines = ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio);
-  if (resolution->body == EO_BODY_SECTOR && resolution->sector_teeth == 4)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
-                        "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
+  EO_TRY(eo_flexibility_check_sector(&resolution->elements, error));
   if (2 * resolution->te_harmonics > resolution->positions)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics",
                         "%d harmonics cannot be told apart on %d mesh positions: at most %d.", resolution->te_harmonics,
                         resolution->positions, resolution->positions / 2);
-  if (is_too_fine(resolution, geometry, LEAST_CELLS))
+  if (is_too_fine(resolution, geometry, EO_CELLS_LEAST))
     return eo_error_set(
         error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
         "The face of %.6g mm holds up to %.0f contact lines at once, more than can be computed with at "
@@ -327,9 +325,10 @@ static enum eo_code check_resolution(const struct eo_resolution *resolution, con
   if (is_too_fine(resolution, geometry, resolution->cells_per_line))
     return eo_error_set(
         error, EO_ERROR_INPUT, "/resolution/cells_per_line",
-        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most 2000 "
-        "points at a position and 1 GiB in all, which %d cells keep.",
-        resolution->cells_per_line, lines, resolution->positions, eo_resolution_usual_cells(resolution, geometry));
+        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most %.0f "
+        "points at a position and %.0f GiB in all, which %d cells keep.",
+        resolution->cells_per_line, lines, resolution->positions, MOST_POINTS, MOST_GIB,
+        eo_resolution_usual_cells(resolution, geometry));
   return EO_OK;
 }
 

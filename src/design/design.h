@@ -11,7 +11,7 @@
 #include "contact/shaft.h"
 #include "design/drawn_pairs.h"
 #include "dynamics/parameters.h"
-#include "flexibility/body_model.h"
+#include "flexibility/flexibility.h"
 #include "gear/gear_pair.h"
 #include "gear/modification.h"
 #include "optimizer/settings.h"
@@ -165,25 +165,23 @@ struct eo_optimization {
 
 enum eo_mesh_law { EO_LAW_TANGENT, EO_LAW_SECANT, EO_LAW_TABLE };
 enum eo_solver { EO_SOLVER_HARMONIC_BALANCE, EO_SOLVER_TIME_INTEGRATION };
+/* Equal cells of a contact line: what may be stated, and what is taken where nothing is and the face is not so wide
+   that its contact lines would be too many points together. */
+enum { EO_CELLS_LEAST = 4, EO_CELLS_USUAL = 30, EO_CELLS_MOST = 400 };
+
 struct eo_resolution {
   int positions;      /* mesh positions over one base pitch */
-  int cells_per_line; /* 0: 30, fewer on faces that hold very many contact lines */
+  int cells_per_line; /* EO_CELLS_LEAST .. EO_CELLS_MOST; 0: derived */
   bool tip_edge_contact;
-  enum eo_body body;
-  enum eo_body_support body_support; /* of a ring */
-  bool hub_windup;                   /* state the wind-up of hubs that take their torque through a bore */
-  int sector_teeth;                  /* 3 or 5, with EO_BODY_SECTOR */
-  bool neighbour_coupling;           /* compliance between tooth pairs */
-  int layers;                        /* of the finite-element mesh over the face width */
-  int flank_rows;                    /* elements over the active profile */
-  int fillet_elements;               /* along the loaded fillet */
-  double impact_patch;               /* length of the impact patch, m; NaN: 5/6 m_n, at most the face width */
-  double marking_thickness;          /* of the contact pattern, m */
+  struct eo_flexibility_settings elements; /* of the finite-element model; used by eo_flexibility_settings_of() */
+  bool hub_windup;                         /* state the wind-up of hubs that take their torque through a bore */
+  double impact_patch;                     /* length of the impact patch, m; NaN: derived */
+  double marking_thickness;                /* of the contact pattern, m */
   enum eo_mesh_law mesh_law;
   enum eo_solver solver;
   enum eo_impact_in_dynamics impact_in_dynamics;
   int harmonics;    /* of the harmonic balance */
-  int te_harmonics; /* mesh harmonics kept of Z and k_tan; 0: 16, at most half the positions */
+  int te_harmonics; /* mesh harmonics kept of Z and k_tan; 0: derived */
 };
 
 enum { EO_STATED_WORDS = 8 };

@@ -54,13 +54,13 @@
   ROW("positions", resolution->positions)                                                  \
   ROW("cells_per_line", resolution->cells_per_line)                                        \
   ROW("tip_edge_contact", resolution->tip_edge_contact)                                    \
-  ROW("body", resolution->body)                                                            \
-  ROW("body_support", resolution->body_support)                                            \
-  ROW("sector_teeth", resolution->sector_teeth)                                            \
-  ROW("neighbour_coupling", resolution->neighbour_coupling)                                \
-  ROW("layers", resolution->layers)                                                        \
-  ROW("flank_rows", resolution->flank_rows)                                                \
-  ROW("fillet_elements", resolution->fillet_elements)                                      \
+  ROW("body", resolution->elements.body)                                                   \
+  ROW("body_support", resolution->elements.support)                                        \
+  ROW("sector_teeth", resolution->elements.sector_teeth)                                   \
+  ROW("neighbour_coupling", resolution->elements.neighbour_coupling)                       \
+  ROW("layers", resolution->elements.layers)                                               \
+  ROW("flank_rows", resolution->elements.flank_rows)                                       \
+  ROW("fillet_elements", resolution->elements.fillet_elements)                             \
   ROW("impact_patch", resolution->impact_patch)
 
 #define NAME(name, value) name,

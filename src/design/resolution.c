@@ -3,17 +3,15 @@
 
 #include <math.h>
 
+/* What no document states: across the loaded tooth, and from the root to the bore. */
+enum { COLUMNS = 8, RIM_ELEMENTS = 8 };
+
 struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
 {
-  return (struct eo_flexibility_settings){.body = resolution->body,
-                                          .support = resolution->body_support,
-                                          .sector_teeth = resolution->sector_teeth,
-                                          .neighbour_coupling = resolution->neighbour_coupling,
-                                          .layers = resolution->layers,
-                                          .flank_rows = resolution->flank_rows,
-                                          .fillet_elements = resolution->fillet_elements,
-                                          .columns = 8,
-                                          .rim_elements = 8};
+  struct eo_flexibility_settings settings = resolution->elements;
+  settings.columns = COLUMNS;
+  settings.rim_elements = RIM_ELEMENTS;
+  return settings;
 }
 
 struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution)
@@ -22,6 +20,6 @@ struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resoluti
                                            .cells = resolution->cells_per_line,
                                            .partial_cells = true,
                                            .tip_edges = resolution->tip_edge_contact,
-                                           .edge_cells = 12,
+                                           .edge_cells = EO_EDGE_CELLS,
                                            .edge_reach = NAN};
 }

@@ -8,10 +8,13 @@
 #include "design/design.h"
 #include "flexibility/flexibility.h"
 
-/* 8 columns across the loaded tooth and 8 elements from the root to the bore; the rest as the resolution says. */
+/* Cells on each of the two stretches of a tip edge outside the path of contact. */
+enum { EO_EDGE_CELLS = 12 };
+
+/* As the resolution says, with the usual columns across the loaded tooth and elements from the root to the bore. */
 struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution);
 
-/* 12 cells on each stretch of a tip edge; the rest as the resolution says. */
+/* As the resolution says, with EO_EDGE_CELLS on each stretch of a tip edge. */
 struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution);
 
 #endif

@@ -252,25 +252,20 @@ static void set_groove(struct eo_dynamics_parameters *parameters, const struct e
   }
 }
 
-static enum eo_code check_supports(const struct eo_supports *supports, double mean_mesh_stiffness,
-                                   struct eo_error *error)
+/* A root is drawn of it; all else that makes no equations is seen in the parameters. */
+static enum eo_code check_damping_stiffness(double stiffness, struct eo_error *error)
 {
-  const struct rule rule[] = {
-      {"bearing_damping_ratio", "damping ratio of the bearings", supports->bearing_damping_ratio, NOT_NEGATIVE},
-      {"groove_damping_ratio", "damping ratio of the groove", supports->groove_damping_ratio, NOT_NEGATIVE},
-      {"mesh_damping_ratio", "damping ratio of the mesh", supports->mesh_damping_ratio, NOT_NEGATIVE},
-      {"machine_damping_ratio", "damping ratio towards driver and load", supports->machine_damping_ratio, NOT_NEGATIVE},
-      {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping",
-       or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness), POSITIVE},
-  };
-  return check_rules(sizeof rule / sizeof *rule, rule, error);
+  const struct rule rule = {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping", stiffness,
+                            POSITIVE};
+  return check_rules(1, &rule, error);
 }
 
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
                                          int ends, double held, const struct eo_supports *supports, bool ends_differ,
                                          double mean_mesh_stiffness, struct eo_error *error)
 {
-  enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
+  double damping_stiffness = or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness);
+  enum eo_code code = check_damping_stiffness(damping_stiffness, error);
   if (code)
     return code;
   struct eo_dynamics_parameters dynamics_parameters = {
@@ -298,7 +293,7 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
   if (code)
     return code;
   dynamics_parameters.mesh_damping = mesh_damping(&dynamics_parameters, supports->mesh_damping_ratio,
-                                                  or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
+                                                  damping_stiffness);
   if ((code = eo_dynamics_parameters_check(&dynamics_parameters, error)))
     return code;
   *parameters = dynamics_parameters;

@@ -16,14 +16,14 @@ enum eo_torsional_coupling { EO_COUPLING_PAPER, EO_COUPLING_OFF, EO_COUPLING_ON 
 enum eo_impact_in_dynamics { EO_IMPACT_NONE, EO_IMPACT_PAPER, EO_IMPACT_CONSISTENT };
 
 struct eo_supports {
-  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m; NaN: by the size of the bodies */
-  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m; NaN: by k_gy */
-  double groove_axial_stiffness[2];              /* k_pz, k_gz, N/m; NaN: E A / L of the groove body */
-  double groove_torsional_stiffness[2];          /* N m/rad; NaN: G J / L of the groove body */
+  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m; NaN: derived */
+  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m; NaN: derived */
+  double groove_axial_stiffness[2];              /* k_pz, k_gz, N/m; NaN: derived */
+  double groove_torsional_stiffness[2];          /* N m/rad; NaN: derived */
   enum eo_torsional_coupling torsional_coupling; /* paper: off for equal ends, on when they differ or
                                                     pinion held */
-  double mass[2];                         /* of one end with half the groove, kg; NaN: solid of the pitch cylinder */
-  double inertia[2];                      /* likewise, kg m2 */
+  double mass[2];                                /* of one end with half the groove, kg; NaN: derived */
+  double inertia[2];                             /* likewise, kg m2 */
   double right_mass[2], right_inertia[2]; /* of the right end of halves of unequal width; not above 0: as the left one
                                            */
   double right_base_helix_angle; /* of the right end of halves of unequal helix, rad; not above 0: as the left one */
@@ -65,9 +65,11 @@ struct eo_dynamics_parameters {
   double mesh_damping;                             /* c_m, N s/m along the normal */
 };
 
-/* Refuses what is not finite (but for springs that may be rigid), masses, inertias, radii, bearing and axial
-   stiffnesses that are not positive, negative damping, a damper without its spring (its place would not be determined),
-   and a machine without its spring or a spring without its machine. Pointers are those of the design's `supports`. */
+/* Refuses what makes no equations of motion, whoever states it (the ranges of a design's supports stand in
+   document/gear_tables.c): what is not finite (but for springs that may be rigid), masses, inertias, radii, bearing and
+   axial stiffnesses that are not positive, negative damping, a damper without its spring (its place would not be
+   determined), and a machine without its spring or a spring without its machine. Pointers are those of the design's
+   `supports`. */
 enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *parameters, struct eo_error *error);
 
 /* Parameters of a design whose supports are resolved (eo_design_resolve(), design/): masses, inertias and the springs

@@ -35,12 +35,14 @@ enum {
   EO_FLANK_ROWS_MOST = 32,
   EO_FILLET_ELEMENTS_LEAST = 6,
   EO_FILLET_ELEMENTS_MOST = 64,
+  EO_SECTOR_TEETH_LEAST = 3,
+  EO_SECTOR_TEETH_MOST = 5,
 };
 
 struct eo_flexibility_settings {
   enum eo_body body;
   enum eo_body_support support; /* of a ring */
-  int sector_teeth;             /* of a sector: 3 or 5 */
+  int sector_teeth;             /* of a sector; odd, the loaded one is in the middle */
   bool neighbour_coupling;      /* compliance between tooth pairs; does not change what is computed and kept */
   int layers;                   /* over the face width */
   int flank_rows;               /* over the active profile */
@@ -69,6 +71,9 @@ struct eo_flexibility_report {
 };
 
 struct eo_flexibility;
+
+/* EO_ERROR_INPUT: a sector of other teeth than there may be. A ring states none. */
+enum eo_code eo_flexibility_check_sector(const struct eo_flexibility_settings *settings, struct eo_error *error);
 
 /* Prepares or reads from the cache. pair: bores and rim. cache_directory: NULL for none; it is made when missing (its
    parent must exist). Two processes that prepare the same pair at once are safe: the second waits and reads. A cache

@@ -92,6 +92,17 @@ struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibi
       .bore_radius = eo_flexibility_bore_radius(settings, geometry, pair, member)};
 }
 
+enum eo_code eo_flexibility_check_sector(const struct eo_flexibility_settings *settings, struct eo_error *error)
+{
+  int teeth = settings->sector_teeth;
+  bool fits = teeth >= EO_SECTOR_TEETH_LEAST && teeth <= EO_SECTOR_TEETH_MOST && teeth % 2;
+  return settings->body != EO_BODY_SECTOR || fits
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
+                            "The sector has its loaded tooth in the middle: %d or %d teeth, not %d.",
+                            EO_SECTOR_TEETH_LEAST, EO_SECTOR_TEETH_MOST, teeth);
+}
+
 static enum eo_code check(const struct eo_flexibility_settings *settings, struct eo_error *error)
 {
   const struct {
@@ -101,8 +112,7 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
                {settings->flank_rows, EO_FLANK_ROWS_LEAST, EO_FLANK_ROWS_MOST, "flank_rows"},
                {settings->fillet_elements, EO_FILLET_ELEMENTS_LEAST, EO_FILLET_ELEMENTS_MOST, "fillet_elements"},
                {settings->columns, 4, 32, "columns"},
-               {settings->rim_elements, 3, 32, "rim_elements"},
-               {settings->body == EO_BODY_SECTOR ? settings->sector_teeth : 3, 3, 5, "sector_teeth"}};
+               {settings->rim_elements, 3, 32, "rim_elements"}};
   for (size_t i = 0; i < sizeof range / sizeof *range; i++) {
     char pointer[64];
     snprintf(pointer, sizeof pointer, "/resolution/%s", range[i].key);
@@ -110,8 +120,7 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
       return eo_error_set(error, EO_ERROR_INPUT, pointer, "%s is %d, but must be between %d and %d.", range[i].key,
                           range[i].value, range[i].low, range[i].high);
   }
-  if (settings->body == EO_BODY_SECTOR && settings->sector_teeth == 4)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "sector_teeth is 4, but must be 3 or 5.");
+  EO_TRY(eo_flexibility_check_sector(settings, error));
   if (settings->columns % 2)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/columns", "columns is %d, but must be even.",
                         settings->columns);

@@ -347,7 +347,8 @@ struct eo_rack eo_gear_pair_rack(const struct eo_gear_pair *pair, int member)
       first_stated(own->fillet_radius_coefficient, pair->fillet_radius_coefficient, usual.fillet_radius_coefficient)};
 }
 
-/* k of both members at a centre distance a_w. */
+/* k of both members at a centre distance a_w; not stated: the clearance of the basic rack is kept there, k = a_w/m_n -
+   (z1 + z2)/(2 cos beta) - (x1 + x2), never above 0. */
 static double tip_alteration(const struct eo_gear_pair *pair, double centre_distance)
 {
   double sum = pair->profile_shift[0] + pair->profile_shift[1];

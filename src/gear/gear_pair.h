@@ -22,7 +22,8 @@ struct eo_gear_entry {
 };
 
 /* A number the user may leave out (JSON null) is NaN here until eo_design_resolve() (design/) puts the derived default
-   in its place. [2] is [member]: pinion, gear. */
+   in its place, whose rule stands where it is computed and in the help of its row (document/gear_tables.c). [2] is
+   [member]: pinion, gear. */
 struct eo_gear_pair {
   int ends;                     /* 2: herringbone; 1: single helical or spur */
   int teeth[2];                 /* [member]: pinion, gear */
@@ -36,21 +37,19 @@ struct eo_gear_pair {
   double right_face_width;     /* b of the right end, m; NaN: face_width, which is that of the left one then */
   double right_helix_angle;    /* beta of the right half, rad; NaN: helix_angle, which is that of the left one then. The
                                   halves share the transverse section: m_t, alpha_t and every radial length */
-  double groove_width;         /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
+  double groove_width;         /* tool withdrawal groove between the ends, m; NaN: derived */
   double addendum_coefficient; /* h_aP*; NaN, of all three: profile A of ISO 53 */
   double dedendum_coefficient; /* h_fP* = h_aP* + c* */
   double fillet_radius_coefficient; /* rho_fP* of the basic rack */
   struct eo_rack {                  /* what one member's basic rack has otherwise; not above 0, or NaN: as above */
     double addendum_coefficient, dedendum_coefficient, fillet_radius_coefficient;
   } rack[2];
-  double profile_shift[2]; /* x; NaN: of the gear what the centre distance asks for, else 0 (settled) */
-  double centre_distance;  /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
-  double tip_alteration;   /* k of d_a = d + 2 m_n (x + h_aP* + k); NaN: the clearance of the basic rack is kept at the
-                              centre distance, k = a_w/m_n - (z1 + z2)/(2 cos beta) - (x1 + x2), never above 0 */
-  double tip_diameter[2];  /* d_a, m; NaN: as above and, where k is not stated either, short enough to clear the
-                              mate's fillet or undercut and to be no sharper than 0.2 m_n */
-  double bore[2]; /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
-  double groove_diameter[2]; /* body diameter between the ends, m; NaN: root diameter - 2 mm, at least 0.9 of it */
+  double profile_shift[2];   /* x; NaN: of the gear what the centre distance asks for, else 0 (settled) */
+  double centre_distance;    /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
+  double tip_alteration;     /* k of d_a = d + 2 m_n (x + h_aP* + k); NaN: derived */
+  double tip_diameter[2];    /* d_a, m; NaN: derived */
+  double bore[2];            /* bore diameter, m, 0: solid; NaN: derived */
+  double groove_diameter[2]; /* body diameter between the ends, m; NaN: derived */
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
                                        Of a sector and a ring that is held */
   double backlash;                  /* 2 tau, normal, m; NaN: eo_gear_pair_backlash() */

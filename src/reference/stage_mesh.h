@@ -6,6 +6,7 @@
 
 #include "reference/stage_input.h"
 #include "contact/loaded.h"
+#include "design/resolution.h"
 #include "evaluation/pair.h"
 #include "flexibility/closed_form.h"
 
@@ -46,7 +47,7 @@ struct eo_stage_mesh_input {
                 "loads: on the pinion shaft, all ends together"),                                                     \
       EO_SERIES(type, mesh.force, "force_N", &eo_unit_N, EO_STAGE_LOADS, 1e-3, 1e9, 0,                                \
                 "instead of torque_Nm: normal force of each end"),                                                    \
-      EO_INTEGER(type, mesh.edge_cells, "tip_edge_cells", 1, 200, 12,                                                 \
+      EO_INTEGER(type, mesh.edge_cells, "tip_edge_cells", 1, 200, EO_EDGE_CELLS,                                      \
                  "cells on every stretch beyond the path of contact, with resolution.tip_edge_contact"),              \
       EO_NUMBER_DERIVED(type, mesh.edge_reach, "tip_edge_reach_mm", &eo_unit_mm, 1e-3, 100, "4/15 m_n",               \
                         "length of such a stretch along s"),                                                          \

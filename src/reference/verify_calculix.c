@@ -57,9 +57,9 @@ static enum eo_code read_file(struct calculix *calculix, struct eo_error *error)
     eo_case_design(input, design);
   else
     read_words(what, design);
-  design->resolution.body = EO_BODY_SECTOR;
-  design->resolution.sector_teeth = eo_case_count(calculix->file, "boundary", "-tooth sectors", 3);
-  design->resolution.neighbour_coupling = false;
+  design->resolution.elements.body = EO_BODY_SECTOR;
+  design->resolution.elements.sector_teeth = eo_case_count(calculix->file, "boundary", "-tooth sectors", 3);
+  design->resolution.elements.neighbour_coupling = false;
   design->resolution.tip_edge_contact = true;
   if (eo_case_faulty(calculix->file))
     return EO_OK;

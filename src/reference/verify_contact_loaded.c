@@ -249,9 +249,9 @@ static enum eo_code prepare_sector(struct eo_contact_case *contact_case, struct 
   if (contact_case->sector.evaluator)
     return EO_OK;
   contact_case->sector.design = contact_case->design;
-  resolution->body = EO_BODY_SECTOR;
-  resolution->sector_teeth = 3;
-  resolution->neighbour_coupling = table && eo_case_on(table, "neighbour_tooth_coupling", false);
+  resolution->elements.body = EO_BODY_SECTOR;
+  resolution->elements.sector_teeth = 3;
+  resolution->elements.neighbour_coupling = table && eo_case_on(table, "neighbour_tooth_coupling", false);
   resolution->tip_edge_contact = false;
   resolution->positions = table ? eo_case_count(table, "note", "positions", 32) : 32;
   resolution->cells_per_line = table ? eo_case_count(table, "note", "cells per line", 30) : 30;

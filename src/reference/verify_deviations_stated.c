@@ -17,9 +17,9 @@ void eo_case_deviation_pair(struct eo_case *pair, struct eo_design *design)
   design->resolution.positions = 64;
   design->resolution.cells_per_line = 30;
   design->resolution.tip_edge_contact = false;
-  design->resolution.body = EO_BODY_SECTOR;
-  design->resolution.sector_teeth = 3;
-  design->resolution.neighbour_coupling = false;
+  design->resolution.elements.body = EO_BODY_SECTOR;
+  design->resolution.elements.sector_teeth = 3;
+  design->resolution.elements.neighbour_coupling = false;
 }
 
 static enum eo_code check_pair(struct eo_verification *verification, struct eo_case *pair, struct eo_error *error)

@@ -104,9 +104,9 @@ static void read_pair(const struct bench *bench, struct eo_case *pair, struct eo
   resolution->cells_per_line = eo_case_whole_or(bench->defaults, "cells_per_line", 2, MOST_CELLS, 30);
   resolution->harmonics = eo_case_whole_or(bench->defaults, "hb_harmonics", 1, MOST_HARMONICS, 24);
   resolution->te_harmonics = HARMONICS;
-  resolution->body = EO_BODY_SECTOR;
-  resolution->sector_teeth = eo_case_count(bench->defaults, "fe_flexibility", "-tooth sector", 3);
-  resolution->neighbour_coupling = eo_case_on(bench->defaults, "neighbour_tooth_coupling", true);
+  resolution->elements.body = EO_BODY_SECTOR;
+  resolution->elements.sector_teeth = eo_case_count(bench->defaults, "fe_flexibility", "-tooth sector", 3);
+  resolution->elements.neighbour_coupling = eo_case_on(bench->defaults, "neighbour_tooth_coupling", true);
   design->supports.torsional_coupling = EO_COUPLING_OFF;
   design->supports.mesh_damping_stiffness = 20e9 * design->gear_pair.face_width;
 }

@@ -34,10 +34,10 @@ enum eo_code eo_ring_prepare(const struct eo_ring_case *ring_case, bool pairs, i
   struct eo_geometry geometry;
   struct eo_resolution *resolution = &design->resolution;
   enum eo_code code = eo_geometry_init(&geometry, &design->gear_pair, error);
-  resolution->layers = mesh_count(ring_case, pairs, " layers", resolution->layers);
-  resolution->flank_rows = mesh_count(ring_case, pairs, " rows", resolution->flank_rows);
-  resolution->fillet_elements = mesh_count(ring_case, pairs, pairs ? " root elements" : " elements along the root",
-                                           resolution->fillet_elements);
+  resolution->elements.layers = mesh_count(ring_case, pairs, " layers", resolution->elements.layers);
+  resolution->elements.flank_rows = mesh_count(ring_case, pairs, " rows", resolution->elements.flank_rows);
+  resolution->elements.fillet_elements = mesh_count(
+      ring_case, pairs, pairs ? " root elements" : " elements along the root", resolution->elements.fillet_elements);
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(resolution);
   settings.reach = reach;
   return code ? code
@@ -58,13 +58,13 @@ void eo_ring_support(const struct eo_ring_case *ring_case, const char *name, str
                {"sector5", EO_BODY_SECTOR, EO_SUPPORT_HELD},
                {"sector5 with next pair", EO_BODY_SECTOR, EO_SUPPORT_HELD}};
   struct eo_resolution *resolution = &design->resolution;
-  resolution->neighbour_coupling = true;
-  resolution->sector_teeth = 5;
+  resolution->elements.neighbour_coupling = true;
+  resolution->elements.sector_teeth = 5;
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     if (strcmp(name, known[i].name) != 0)
       continue;
-    resolution->body = known[i].body;
-    resolution->body_support = known[i].support;
+    resolution->elements.body = known[i].body;
+    resolution->elements.support = known[i].support;
     for (int m = 0; m < 2 && known[i].support == EO_SUPPORT_HELD_AT_BORE; m++)
       design->gear_pair.bore[m] = 2 * ring_case->held_radius[m];
     if (known[i].support == EO_SUPPORT_HELD_AT_BORE && isnan(ring_case->held_radius[0]))
@@ -172,7 +172,7 @@ static enum eo_code check_points(void *context, struct eo_case *block, struct eo
 static enum eo_code deflect(const struct eo_ring_case *ring_case, int member, double s, double eta, int d,
                             double *deflection, struct eo_error *error)
 {
-  int layers = mesh_count(ring_case, false, " layers", ring_case->design.resolution.layers), n = layers + 2;
+  int layers = mesh_count(ring_case, false, " layers", ring_case->design.resolution.elements.layers), n = layers + 2;
   double width = ring_case->geometry.face_width;
   struct eo_flank_point *point = calloc((size_t)n, sizeof *point);
   double *compliance = calloc((size_t)n * n, sizeof *compliance);
@@ -196,7 +196,7 @@ static double pitch_row(const struct eo_ring_case *ring_case)
 {
   const struct eo_geometry *geometry = &ring_case->geometry;
   double step = (geometry->path_end - geometry->path_start) /
-                mesh_count(ring_case, false, " rows", ring_case->design.resolution.flank_rows);
+                mesh_count(ring_case, false, " rows", ring_case->design.resolution.elements.flank_rows);
   return geometry->path_start + step * round(-geometry->path_start / step);
 }
 

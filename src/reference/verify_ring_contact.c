@@ -160,7 +160,7 @@ static void check_ratio(struct run *run, struct eo_case *wanted, const char *of_
 {
   static const double OF_RATIO = 0.01;
   double expected = eo_case_real(wanted);
-  if (isnan(expected) || run->design.resolution.body != EO_BODY_RING)
+  if (isnan(expected) || run->design.resolution.elements.body != EO_BODY_RING)
     return;
   for (int i = 0; i < run->stresses; i++) {
     const struct root_stress *other = &run->stress[i];

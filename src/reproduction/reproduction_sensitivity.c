@@ -89,17 +89,17 @@ static void no_edges(struct eo_design *design)
 }
 static void held_ring(struct eo_design *design)
 {
-  design->resolution.body_support = EO_SUPPORT_HELD;
+  design->resolution.elements.support = EO_SUPPORT_HELD;
 }
 static void sector(struct eo_design *design)
 {
-  design->resolution.body = EO_BODY_SECTOR;
+  design->resolution.elements.body = EO_BODY_SECTOR;
 }
 static void small_sector(struct eo_design *design)
 {
-  design->resolution.body = EO_BODY_SECTOR;
-  design->resolution.sector_teeth = 3;
-  design->resolution.neighbour_coupling = false;
+  design->resolution.elements.body = EO_BODY_SECTOR;
+  design->resolution.elements.sector_teeth = 3;
+  design->resolution.elements.neighbour_coupling = false;
 }
 
 static const struct alternative alternatives[] = {

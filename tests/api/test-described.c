@@ -96,12 +96,12 @@ static json_t *design_of_stroke(void)
   struct eo_design design;
   eo_example_build("paper-case-a", &design);
   design.alignment.shaft_angle_in_plane = 0.1 * M_PI / 180;
-  design.resolution.body = EO_BODY_SECTOR;
-  design.resolution.sector_teeth = 3;
-  design.resolution.neighbour_coupling = false;
-  design.resolution.layers = 6;
-  design.resolution.flank_rows = 4;
-  design.resolution.fillet_elements = 6;
+  design.resolution.elements.body = EO_BODY_SECTOR;
+  design.resolution.elements.sector_teeth = 3;
+  design.resolution.elements.neighbour_coupling = false;
+  design.resolution.elements.layers = 6;
+  design.resolution.elements.flank_rows = 4;
+  design.resolution.elements.fillet_elements = 6;
   return eo_design_encode(&design);
 }
 

@@ -65,8 +65,8 @@ static bool print_pair(const int z[2], double degrees)
   design.gear_pair.face_width = 55e-3;
   design.alignment.shaft_angle_in_plane = 0;
   design.resolution.positions = design.resolution.cells_per_line = 16;
-  design.resolution.layers = 14;
-  design.resolution.flank_rows = 8;
+  design.resolution.elements.layers = 14;
+  design.resolution.elements.flank_rows = 8;
   design.resolution.tip_edge_contact = false;
   printf("%3d/%-3d %4g", z[0], z[1], degrees);
   if (eo_gear_pair_settle(&design.gear_pair, &error) || eo_geometry_init(&geometry, &design.gear_pair, &error)) {
@@ -77,8 +77,8 @@ static bool print_pair(const int z[2], double degrees)
   design.load_cases = 1;
   design.load_case[0].torque = 2 * 135e3 * design.gear_pair.face_width * geometry.reference_radius[0];
   for (int i = 0; i < MODELS; i++) {
-    design.resolution.body = model[i].body;
-    design.resolution.body_support = model[i].support;
+    design.resolution.elements.body = model[i].body;
+    design.resolution.elements.support = model[i].support;
     c[i] = stiffness_of(&design, &input);
     computed = computed && isfinite(c[i]);
   }

@@ -18,9 +18,9 @@ static void build(const char *example, double degrees, bool edges, enum eo_mesh_
 {
   struct eo_error error;
   eo_example_build(example, &design);
-  design.resolution.body = EO_BODY_SECTOR;
-  design.resolution.sector_teeth = 3;
-  design.resolution.neighbour_coupling = false;
+  design.resolution.elements.body = EO_BODY_SECTOR;
+  design.resolution.elements.sector_teeth = 3;
+  design.resolution.elements.neighbour_coupling = false;
   design.resolution.tip_edge_contact = edges;
   design.resolution.mesh_law = law;
   design.supports.torsional_coupling = EO_COUPLING_OFF;

@@ -57,8 +57,8 @@ static void long_end_reliefs(struct eo_design *d)
 }
 static void even_sector(struct eo_design *d)
 {
-  d->resolution.body = EO_BODY_SECTOR;
-  d->resolution.sector_teeth = 4;
+  d->resolution.elements.body = EO_BODY_SECTOR;
+  d->resolution.elements.sector_teeth = 4;
 }
 static void many_harmonics(struct eo_design *d)
 {

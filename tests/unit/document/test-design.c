@@ -265,8 +265,8 @@ static void test_defaults(void)
          design.optimization.search.trust_threshold == 0.6 && design.optimization.search.redundancy_threshold == 1e-7,
      "the search by default is that of Table 2");
   ok(design.resolution.positions == 64 && design.resolution.cells_per_line == 30 &&
-         design.resolution.sector_teeth == 5 && design.resolution.tip_edge_contact &&
-         design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT &&
+         design.resolution.elements.sector_teeth == 5 && design.resolution.tip_edge_contact &&
+         design.resolution.elements.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT &&
          design.resolution.harmonics == 24 && design.resolution.te_harmonics == 16,
      "the resolution by default is that of the theory");
   close_to(design.optimization.tip_relief.high, 120e-6, 1e-18, "reliefs by default go up to 0.02 m_n");
@@ -376,7 +376,7 @@ static void test_body(void)
     struct eo_faults wrong = {0};
     json_t *document = json_loads(row[i].text, 0, NULL);
     eo_table_decode(&eo_resolution_table, document, NULL, &resolution, &wrong);
-    ok(wrong.count == 0 && resolution.body == row[i].body, "%s means the %s", row[i].text,
+    ok(wrong.count == 0 && resolution.elements.body == row[i].body, "%s means the %s", row[i].text,
        row[i].body == EO_BODY_RING ? "ring" : "sector");
     json_decref(document);
   }

@@ -34,11 +34,11 @@ static struct eo_design design_of(const char *name)
   struct eo_error error;
   eo_example_build(name, &design);
   design.alignment.shaft_angle_in_plane = 0;
-  design.resolution.layers = 8;
-  design.resolution.flank_rows = 5;
-  design.resolution.fillet_elements = 8;
-  design.resolution.body = EO_BODY_SECTOR;
-  design.resolution.sector_teeth = 3;
+  design.resolution.elements.layers = 8;
+  design.resolution.elements.flank_rows = 5;
+  design.resolution.elements.fillet_elements = 8;
+  design.resolution.elements.body = EO_BODY_SECTOR;
+  design.resolution.elements.sector_teeth = 3;
   design.resolution.positions = POSITIONS;
   design.resolution.cells_per_line = 15;
   if (eo_design_complete(&design, &geometry, &error))

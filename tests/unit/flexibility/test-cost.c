@@ -12,11 +12,11 @@ static struct eo_error error;
 static void make(struct eo_design *design, enum eo_body body, int layers, int rows, int fillet)
 {
   eo_example_build("paper", design);
-  design->resolution.body = body;
-  design->resolution.sector_teeth = 3;
-  design->resolution.layers = layers;
-  design->resolution.flank_rows = rows;
-  design->resolution.fillet_elements = fillet;
+  design->resolution.elements.body = body;
+  design->resolution.elements.sector_teeth = 3;
+  design->resolution.elements.layers = layers;
+  design->resolution.elements.flank_rows = rows;
+  design->resolution.elements.fillet_elements = fillet;
 }
 
 static void compare(const char *what, struct eo_design *design)
