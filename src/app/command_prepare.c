@@ -12,6 +12,7 @@
 #include "app/app.h"
 #include "app/data.h"
 #include "app/watch.h"
+#include "base/sanitized.h"
 #include "design/resolution.h"
 #include "flexibility/preparation_cost.h"
 #include "http/header_field.h"
@@ -44,18 +45,10 @@ static int tell_progress(void *context, const char *what, double fraction)
   return 0;
 }
 
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define SANITIZED 1
-#elif defined __has_feature
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-
-/* Bytes beyond the address space that is taken already; sanitizers take nearly all of it, so that none can be set. */
+/* Bytes beyond the address space that is taken already; none where sanitizers take nearly all of it. */
 static void limit_memory(double bytes)
 {
-#ifdef SANITIZED
+#ifdef EO_SANITIZED
   (void)bytes;
 #else
   FILE *file = fopen("/proc/self/statm", "re");

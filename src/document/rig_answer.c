@@ -17,15 +17,6 @@ enum eo_code eo_rig_measured_read(const char *summary, struct eo_measured *measu
   return code;
 }
 
-/* Takes the document over. */
-static void write(struct eo_text *text, json_t *document)
-{
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  text->failed = text->failed || !document;
-  json_decref(document);
-}
-
 static json_t *encode_ids(const struct eo_rig_selection *selection)
 {
   struct eo_object list = eo_list_open();
@@ -91,7 +82,7 @@ static json_t *encode_comparison(const struct eo_rig_selection *selection, const
 void eo_rig_comparison_write(const struct eo_rig_selection *selection, const struct eo_comparison *comparison,
                              const struct eo_measured *measured, const struct eo_design *design, struct eo_text *text)
 {
-  write(text, encode_comparison(selection, comparison, measured, design));
+  eo_json_write_new(text, encode_comparison(selection, comparison, measured, design), EO_JSON_COMPACT);
 }
 
 /* Sets in document what differs between two resolved designs, and nothing else: defaults that were not written stay
@@ -151,5 +142,5 @@ void eo_rig_fit_write(const struct eo_rig_selection *selection, const struct eo_
 {
   const struct fit_tail tail = {encode_ids(selection), encode_left_out(selection),
                                 changed_design(given, design, updated)};
-  write(text, unite(eo_update_encode(update), eo_outline_encode(&tail_outline, &tail)));
+  eo_json_write_new(text, unite(eo_update_encode(update), eo_outline_encode(&tail_outline, &tail)), EO_JSON_COMPACT);
 }

@@ -348,11 +348,7 @@ json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *de
 void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,
                     struct eo_text *text)
 {
-  json_t *document = eo_sweep_encode(sweep, design, warnings);
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  text->failed = text->failed || !document;
-  json_decref(document);
+  eo_json_write_new(text, eo_sweep_encode(sweep, design, warnings), EO_JSON_COMPACT);
 }
 
 static void add_headings(const struct eo_sweep *sweep, int columns, const struct column *column, const char *prefix,

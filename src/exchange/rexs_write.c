@@ -179,10 +179,7 @@ static void write_json(const struct eo_rexs_model *model, struct eo_text *text)
       "{s:{s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:{s:i, s:o}}}", "model", "version", model->version, "applicationId",
       model->application, "applicationVersion", model->application_version, "date", model->date, "applicationLanguage",
       "en", "relations", relations, "components", components, "load_spectrum", "id", 1, "load_cases", cases);
-  text->failed = text->failed || !document;
-  if (document)
-    eo_json_write(text, document, EO_JSON_PRETTY);
-  json_decref(document);
+  eo_json_write_new(text, document, EO_JSON_PRETTY);
 }
 
 /* Zip: one entry, by libarchive. */

@@ -28,6 +28,9 @@ enum eo_json_style {
 };
 void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style style);
 
+/* The same of a value that is taken over; NULL: there was no memory for it, and the text has failed. */
+void eo_json_write_new(struct eo_text *text, json_t *value, enum eo_json_style style);
+
 /* New values in the document's unit (NULL: dimensionless); what is not finite becomes null. */
 json_t *eo_json_real(double value, const struct eo_unit *unit);
 

@@ -218,6 +218,14 @@ void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style
     eo_text_add(text, "\n");
 }
 
+void eo_json_write_new(struct eo_text *text, json_t *value, enum eo_json_style style)
+{
+  if (value)
+    eo_json_write(text, value, style);
+  text->failed = text->failed || !value;
+  json_decref(value);
+}
+
 json_t *eo_json_real(double value, const struct eo_unit *unit)
 {
   double outside = eo_unit_out(unit, value);

@@ -15,11 +15,9 @@
 /* Takes the document over. */
 static enum eo_code put(struct eo_resource *resource, json_t *document, struct eo_error *error)
 {
-  struct eo_text text = {.failed = !document};
-  if (document)
-    eo_json_write(&text, document, EO_JSON_COMPACT);
+  struct eo_text text = {0};
+  eo_json_write_new(&text, document, EO_JSON_COMPACT);
   eo_text_add(&text, "\n");
-  json_decref(document);
   enum eo_code code = eo_resource_init(resource, "application/json", &text, error);
   eo_text_done(&text);
   return code;

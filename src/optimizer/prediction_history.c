@@ -2,6 +2,7 @@
 #include "optimizer/prediction_history.h"
 
 #include "optimizer/operators.h"
+#include "optimizer/rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,28 +35,19 @@ void eo_history_done(struct eo_history *history)
   *history = (struct eo_history){0};
 }
 
-static void *grow(void *array, size_t count, size_t size, bool *failed)
-{
-  void *larger = realloc(array, count * size + 1);
-  if (larger)
-    return larger;
-  *failed = true;
-  return array;
-}
-
 static enum eo_code enlarge(struct eo_history *history, int capacity, struct eo_error *error)
 {
   const size_t c = (size_t)capacity;
   bool failed = false;
-  history->x = grow(history->x, c * (size_t)history->variables, sizeof(double), &failed);
-  history->fitness = grow(history->fitness, c, sizeof(double), &failed);
-  history->credibility = grow(history->credibility, c, sizeof(double), &failed);
-  history->predicted = grow(history->predicted, c, sizeof(bool), &failed);
-  history->distance = grow(history->distance, c, sizeof(double), &failed);
-  history->weight = grow(history->weight, c, sizeof(double), &failed);
-  history->redundancy = grow(history->redundancy, c, sizeof(double), &failed);
-  history->removed = grow(history->removed, c, sizeof(bool), &failed);
-  history->order = grow(history->order, c, sizeof(struct projection), &failed);
+  history->x = eo_rows_grow(history->x, c * (size_t)history->variables, sizeof(double), &failed);
+  history->fitness = eo_rows_grow(history->fitness, c, sizeof(double), &failed);
+  history->credibility = eo_rows_grow(history->credibility, c, sizeof(double), &failed);
+  history->predicted = eo_rows_grow(history->predicted, c, sizeof(bool), &failed);
+  history->distance = eo_rows_grow(history->distance, c, sizeof(double), &failed);
+  history->weight = eo_rows_grow(history->weight, c, sizeof(double), &failed);
+  history->redundancy = eo_rows_grow(history->redundancy, c, sizeof(double), &failed);
+  history->removed = eo_rows_grow(history->removed, c, sizeof(bool), &failed);
+  history->order = eo_rows_grow(history->order, c, sizeof(struct projection), &failed);
   if (failed)
     return eo_error_memory(error);
   history->capacity = capacity;

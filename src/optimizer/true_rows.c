@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "optimizer/rows.h"
+
 enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int objectives, struct eo_error *error)
 {
   *archive = (struct eo_archive){.variables = variables, .objectives = objectives, .best = -1};
@@ -54,16 +56,6 @@ static void chain(struct eo_archive *archive, int row)
   *bucket = row;
 }
 
-/* The array enlarged, or as it was and *failed set. */
-static void *grow(void *array, size_t count, size_t size, bool *failed)
-{
-  void *larger = realloc(array, count * size + 1);
-  if (larger)
-    return larger;
-  *failed = true;
-  return array;
-}
-
 enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_error *error)
 {
   if (archive->count + rows <= archive->capacity)
@@ -71,17 +63,17 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
   const int capacity = archive->count + rows > 2 * archive->capacity ? archive->count + rows : 2 * archive->capacity;
   const size_t c = (size_t)capacity;
   bool failed = false;
-  archive->x = grow(archive->x, c * (size_t)archive->variables, sizeof(double), &failed);
-  archive->asked = grow(archive->asked, c * (size_t)archive->variables, sizeof(double), &failed);
-  archive->value = grow(archive->value, c, sizeof(double), &failed);
-  archive->violation = grow(archive->violation, c, sizeof(double), &failed);
-  archive->objective = grow(archive->objective, c * (size_t)archive->objectives, sizeof(double), &failed);
-  archive->part = grow(archive->part, c * (size_t)archive->parts, sizeof(double), &failed);
-  archive->whole = grow(archive->whole, c, sizeof(bool), &failed);
-  archive->generation = grow(archive->generation, c, sizeof(int), &failed);
-  archive->individual = grow(archive->individual, c, sizeof(int), &failed);
-  archive->next = grow(archive->next, c, sizeof(int), &failed);
-  archive->bucket = grow(archive->bucket, 2 * c, sizeof(int), &failed);
+  archive->x = eo_rows_grow(archive->x, c * (size_t)archive->variables, sizeof(double), &failed);
+  archive->asked = eo_rows_grow(archive->asked, c * (size_t)archive->variables, sizeof(double), &failed);
+  archive->value = eo_rows_grow(archive->value, c, sizeof(double), &failed);
+  archive->violation = eo_rows_grow(archive->violation, c, sizeof(double), &failed);
+  archive->objective = eo_rows_grow(archive->objective, c * (size_t)archive->objectives, sizeof(double), &failed);
+  archive->part = eo_rows_grow(archive->part, c * (size_t)archive->parts, sizeof(double), &failed);
+  archive->whole = eo_rows_grow(archive->whole, c, sizeof(bool), &failed);
+  archive->generation = eo_rows_grow(archive->generation, c, sizeof(int), &failed);
+  archive->individual = eo_rows_grow(archive->individual, c, sizeof(int), &failed);
+  archive->next = eo_rows_grow(archive->next, c, sizeof(int), &failed);
+  archive->bucket = eo_rows_grow(archive->bucket, 2 * c, sizeof(int), &failed);
   if (failed)
     return eo_error_memory(error);
   archive->capacity = capacity;

@@ -15,16 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/sanitized.h"
+
 #define BLOCK 4096  /* rows of one message at most */
 #define WAIT_MS 200 /* between questions whether to go on */
-
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define SANITIZED 1
-#elif defined __has_feature
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
 
 /* From the process to its parent: kind and count, then what the kind says. */
 enum {
@@ -98,7 +92,7 @@ static void set_limit(int resource, rlim_t limit)
    them. */
 static void limit_memory(void)
 {
-#ifndef SANITIZED
+#ifndef EO_SANITIZED
   char text[64];
   int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   ssize_t n = file >= 0 ? read(file, text, sizeof text - 1) : 0;

@@ -200,18 +200,9 @@ static json_t *encode_live(const struct eo_job_live *live)
   return eo_outline_encode(&kept_outline, &kept);
 }
 
-/* Takes the document over. */
-static void write(struct eo_text *text, json_t *document)
-{
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  text->failed = text->failed || !document;
-  json_decref(document);
-}
-
 void eo_job_live_write(const struct eo_job_live *live, struct eo_text *text)
 {
-  write(text, encode_live(live));
+  eo_json_write_new(text, encode_live(live), EO_JSON_COMPACT);
 }
 
 /* Of a terminal's job, or one that was not begun: what the table's columns tell. */
@@ -260,7 +251,7 @@ void eo_job_error_write(const struct eo_error *error, struct eo_text *text)
   if (error->code == EO_ERROR_FILE || error->code == EO_ERROR_FULL || error->code == EO_ERROR_BUSY ||
       error->code == EO_ERROR_DAMAGED) /* their sentences name files of this machine */
     snprintf(shown.text, sizeof shown.text, "The server's data cannot be read or written.");
-  write(text, eo_outline_encode(&error_outline, &shown));
+  eo_json_write_new(text, eo_outline_encode(&error_outline, &shown), EO_JSON_COMPACT);
 }
 
 enum { TEXTS = 10 };
@@ -421,7 +412,7 @@ json_t *eo_job_view_encode(const struct eo_job_view *view)
 
 void eo_job_view_write(const struct eo_job_view *view, struct eo_text *text)
 {
-  write(text, eo_job_view_encode(view));
+  eo_json_write_new(text, eo_job_view_encode(view), EO_JSON_COMPACT);
 }
 
 enum eo_code eo_job_convergence_copy(struct eo_job_convergence *convergence, const struct eo_job_live *live,

@@ -2,19 +2,15 @@
 /* A server with less memory than it wants: it says so and does not start, or it answers whatever it is asked and stops
    when told. OpenBLAS asks for its room again and again when there is none, so nothing may be left for it to ask. */
 #include "api/client.h"
+#include "base/sanitized.h"
 #include "support/tap.h"
 
 #include <sys/resource.h>
 
-#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-#define SHADOWED true /* a sanitizer takes terabytes of addresses */
-#elif defined __has_feature
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SHADOWED true
-#endif
-#endif
-#ifndef SHADOWED
-#define SHADOWED false
+#ifdef EO_SANITIZED
+static const bool shadowed = true; /* a sanitizer takes terabytes of addresses */
+#else
+static const bool shadowed = false;
 #endif
 
 static char *coarse;
@@ -64,7 +60,7 @@ int main(void)
 {
   static const rlim_t tried[] = {200, 1000, 2000, 2800, 3600, 8000};
   bool started = false;
-  if (SHADOWED) {
+  if (shadowed) {
     printf("1..0 # SKIP a sanitizer's addresses\n");
     return 0;
   }
