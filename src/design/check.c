@@ -1,24 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "design/check.h"
 #include "design/resolution.h"
+#include "gear/names.h"
 
 #include <math.h>
 #include <stdio.h>
-
-static const char *const member_name[2] = {"pinion", "gear"};
-static const char *const end_name[2] = {"left", "right"};
 
 static enum eo_code check_body(const struct eo_gear_pair *pair, const struct eo_geometry *geometry, int i,
                                struct eo_error *error)
 {
   double root = 2 * geometry->root_radius[i];
   char key[64];
-  snprintf(key, sizeof key, "/gear_pair/%s_bore_mm", member_name[i]);
+  snprintf(key, sizeof key, "/gear_pair/%s_bore_mm", eo_member_name[i]);
   if (pair->bore[i] > root - 2 * pair->normal_module)
     return eo_error_set(error, EO_ERROR_INPUT, key,
                         "The bore of %.6g mm leaves less than one module of rim below the root diameter of %.6g mm.",
                         1e3 * pair->bore[i], 1e3 * root);
-  snprintf(key, sizeof key, "/gear_pair/%s_groove_diameter_mm", member_name[i]);
+  snprintf(key, sizeof key, "/gear_pair/%s_groove_diameter_mm", eo_member_name[i]);
   if (pair->ends == 2 && (pair->groove_diameter[i] <= pair->bore[i] || pair->groove_diameter[i] > root))
     return eo_error_set(
         error, EO_ERROR_INPUT, key,
@@ -71,7 +69,7 @@ static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_erro
                           i ? "/gear_pair/gear_face_width_mm" : "/gear_pair/pinion_face_width_mm",
                           "The own faces of the %s, %.6g mm, leave %.6g mm of the groove of %.6g mm between them, less "
                           "than 0.1 mm: a wider groove or narrower faces.",
-                          member_name[i], 1e3 * pair->member_width[i], 1e3 * eo_gear_pair_groove_width(pair, i),
+                          eo_member_name[i], 1e3 * pair->member_width[i], 1e3 * eo_gear_pair_groove_width(pair, i),
                           1e3 * pair->groove_width);
   return EO_OK;
 }
@@ -86,7 +84,7 @@ struct flank_place {
 /* Pointer to a key of the flank; prefix and key make its name. */
 static void point_to(const struct flank_place *place, const char *prefix, const char *key, char pointer[128])
 {
-  snprintf(pointer, 128, "/modification/%s/%s/%s%s%s", member_name[place->member], end_name[place->end],
+  snprintf(pointer, 128, "/modification/%s/%s/%s%s%s", eo_member_name[place->member], eo_end_name[place->end],
            place->side == EO_COAST_FLANK ? "coast/" : "", prefix, key);
 }
 
@@ -340,13 +338,13 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
   for (int k = 0; k < 2; k++) {
     double face = eo_gear_pair_face_width(pair, k),
            half = (pair->ends == 2 ? pair->groove_width / 2 + face : face / 2) + eo_gear_pair_extra_width(pair, i) / 2;
-    snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);
+    snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", eo_member_name[i], eo_end_name[k]);
     if (k == EO_LEFT ? bearing[k] > -half : bearing[k] < half)
       return eo_error_set(error, EO_ERROR_INPUT, key,
                           "The %s bearing at %.6g mm is not outside the toothed body, which ends at %.6g mm.",
-                          end_name[k], 1e3 * bearing[k], 1e3 * (k == EO_LEFT ? -half : half));
+                          eo_end_name[k], 1e3 * bearing[k], 1e3 * (k == EO_LEFT ? -half : half));
   }
-  snprintf(key, sizeof key, "/shafts/%s_shaft_diameter_mm", member_name[i]);
+  snprintf(key, sizeof key, "/shafts/%s_shaft_diameter_mm", eo_member_name[i]);
   if (shafts->shaft_diameter[i] <= pair->bore[i])
     return eo_error_set(error, EO_ERROR_INPUT, key,
                         "The shaft, %.6g mm, must be thicker than the bore that runs through it, %.6g mm.",

@@ -6,6 +6,7 @@
 
 #include "format/json.h"
 #include "format/object.h"
+#include "gear/names.h"
 
 struct assumption {
   const char *key, *rule;
@@ -43,8 +44,6 @@ enum { GROUPS = sizeof groups / sizeof *groups, MODIFICATION_BITS = 4, WORD = 64
 /* Numbers of the bits that belong to no table: each flank, then the shares. */
 enum { FLANK_BIT = EO_STATED_WORDS * WORD - MODIFICATION_BITS - 1, SHARE_BIT = EO_STATED_WORDS * WORD - 1 };
 
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
-
 static void set_bit(struct eo_design *design, int bit, bool stated)
 {
   uint64_t mask = (uint64_t)1 << bit % WORD;
@@ -81,7 +80,8 @@ static void note_flanks(const json_t *document, struct eo_design *design)
   const json_t *modification = json_object_get(document, "modification");
   for (int i = 0; i < 2; i++)
     for (int end = 0; end < 2; end++)
-      set_bit(design, FLANK_BIT + 2 * i + end, is_there(json_object_get(modification, member_name[i]), end_name[end]));
+      set_bit(design, FLANK_BIT + 2 * i + end,
+              is_there(json_object_get(modification, eo_member_name[i]), eo_end_name[end]));
 }
 
 void eo_assumptions_note(const json_t *document, struct eo_design *design)
@@ -138,7 +138,7 @@ static void add_flanks(json_t *list, const struct eo_design *design, bool *faile
   for (int i = 0; i < 2; i++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
       char key[64];
-      snprintf(key, sizeof key, "/modification/%s/%s", member_name[i], end_name[end]);
+      snprintf(key, sizeof key, "/modification/%s/%s", eo_member_name[i], eo_end_name[end]);
       if (!bit_of(design, FLANK_BIT + 2 * i + end))
         add(list, key, json_object(), "unmodified", failed);
     }
@@ -153,7 +153,7 @@ static void add_coast_flanks(json_t *list, const struct eo_design *design, bool 
   for (int i = 0; i < 2 && needed; i++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
       char key[64];
-      snprintf(key, sizeof key, "/modification/%s/%s/coast", member_name[i], end_name[end]);
+      snprintf(key, sizeof key, "/modification/%s/%s/coast", eo_member_name[i], eo_end_name[end]);
       if (eo_modification_is_none(&design->modification.coast[i][end]) &&
           design->grids.place[EO_COAST_FLANK][i][end].u_knots == 0)
         add(list, key, json_object(), "unmodified", failed);

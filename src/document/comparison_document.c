@@ -5,9 +5,11 @@
 #include <stdlib.h>
 
 #include "format/json.h"
+#include "document/measure_order.h"
 #include "document/measurement_document.h"
 #include "document/result_private.h"
 #include "format/text_table.h"
+#include "gear/names.h"
 
 enum { CURVE = 128 };
 
@@ -63,8 +65,6 @@ static const struct column {
     [LIKENESS] = {likeness, NULL},
     [PREDICTED_PEAK] = {predicted_peak, &eo_unit_um},
 };
-
-static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
 /* What a document is written from. */
 struct source {
@@ -141,12 +141,12 @@ static json_t *file_of(const struct eo_measured *measured, const struct eo_compa
 
 static json_t *label_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)compared, json_string(labels[measured->unmodified]);
+  return (void)compared, json_string(eo_measure_label[measured->unmodified]);
 }
 
 static json_t *end_of(const struct eo_measured *measured, const struct eo_compared *compared)
 {
-  return (void)compared, json_string(ends[measured->end]);
+  return (void)compared, json_string(eo_end_name[measured->end]);
 }
 
 static json_t *outlier_of(const struct eo_measured *measured, const struct eo_compared *compared)
@@ -187,8 +187,8 @@ static json_t *write_reasons(const void *source)
 enum { FIRST_NUMBER = 3 }; /* row of the first of the numbers, which stand in the order of `columns` */
 static const struct eo_outline_row column_rows[] = {
     EO_KEY("file", "[text]", "as it was uploaded", .write = write_files),
-    EO_KEY("label", "[word]", "which pair was measured", .words = labels, .write = write_labels),
-    EO_KEY("end", "[word]", "where the encoders sat", .words = ends, .write = write_ends),
+    EO_KEY("label", "[word]", "which pair was measured", .words = eo_measure_label, .write = write_labels),
+    EO_KEY("end", "[word]", "where the encoders sat", .words = eo_end_name, .write = write_ends),
     EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm, .write = write_torques),
     EO_KEY("speed_rpm", "[number]", "measured mean speed of the pinion", .unit = &eo_unit_rpm, .write = write_speeds),
     EO_KEY("measured_rms_m_per_s2", "[number?]", "rotational acceleration of the mesh orders",
@@ -403,7 +403,7 @@ static void fill_sheet(const struct eo_comparison *comparison, const struct eo_m
 {
   for (int i = 0; i < comparison->count; i++) {
     eo_text_table_string(sheet, measured[i].name);
-    eo_text_table_string(sheet, measured[i].unmodified ? "unmodified" : "modified");
+    eo_text_table_string(sheet, eo_measure_label[measured[i].unmodified]);
     for (int k = 0; k < COLUMNS; k++)
       eo_text_table_number(sheet, columns[k].value(&measured[i], &comparison->point[i]), columns[k].unit, digits);
     eo_text_table_string(sheet, comparison->point[i].reason);

@@ -17,6 +17,7 @@
 #include "evaluation/evaluator.h"
 #include "evaluation/objective_terms.h"
 #include "design/check.h"
+#include "gear/names.h"
 
 static void add_warning(struct eo_warnings *warnings, const char *key, const char *format, va_list arguments)
 {
@@ -47,14 +48,13 @@ void eo_warnings_at(struct eo_warnings *warnings, const char *key, const char *f
 /* A pair with one end has no right flanks. */
 static void drop_right_end(const json_t *document, struct eo_design *design, struct eo_warnings *warnings)
 {
-  static const char *const member[2] = {"pinion", "gear"};
   const json_t *modification = json_object_get(document, "modification");
   for (int i = 0; i < 2 && design->gear_pair.ends == 1; i++) {
-    const json_t *right = json_object_get(json_object_get(modification, member[i]), "right");
+    const json_t *right = json_object_get(json_object_get(modification, eo_member_name[i]), "right");
     if (right)
       eo_warnings_add(warnings,
                       "The modification of the %s's right end is ignored: the pair has one end, the left one.",
-                      member[i]);
+                      eo_member_name[i]);
     eo_table_defaults(&eo_flank_modification_table, &design->modification.flank[i][EO_RIGHT]);
     eo_table_defaults(&eo_flank_modification_table, &design->modification.coast[i][EO_RIGHT]);
   }
@@ -236,11 +236,7 @@ json_t *eo_design_encode(const struct eo_design *design)
 
 void eo_design_write(const struct eo_design *design, struct eo_text *text)
 {
-  json_t *document = eo_design_encode(design);
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  text->failed = text->failed || !document;
-  json_decref(document);
+  eo_json_write_new(text, eo_design_encode(design), EO_JSON_COMPACT);
 }
 
 static enum eo_code decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,

@@ -12,11 +12,10 @@
 #include "document/flank_chart.h"
 #include "document/tolerance_export.h"
 #include "format/json.h"
+#include "gear/names.h"
 #include "gear/surface.h"
 
 enum { CHART_POINTS = 61 };
-
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
 static void put(struct eo_text *text, double value, const struct eo_unit *unit)
 {
@@ -26,7 +25,7 @@ static void put(struct eo_text *text, double value, const struct eo_unit *unit)
 
 static void put_place(struct eo_text *text, int member, int end)
 {
-  eo_text_print(text, "%s,%s", member_name[member], end_name[end]);
+  eo_text_print(text, "%s,%s", eo_member_name[member], eo_end_name[end]);
 }
 
 static void end_row(struct eo_text *text)
@@ -288,7 +287,7 @@ static void write_flank_grid(const struct eo_design *design, const struct eo_geo
       delta[i * size[1] + j] = eo_modification_at(&shape, u[i], y[j]);
   }
   struct eo_flank_grid grid = {.u_knots = size[0], .y_knots = size[1], .u = u, .y = y, .delta = delta};
-  eo_text_print(text, "# %s, %s, %s\n", member_name[member], end_name[end],
+  eo_text_print(text, "# %s, %s, %s\n", eo_member_name[member], eo_end_name[end],
                 side == EO_DRIVE_FLANK ? "drive flank" : "coast flank");
   if (!text->failed)
     eo_flank_grid_to_text(&grid, text);

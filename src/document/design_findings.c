@@ -8,9 +8,9 @@
 #include "document/flank_grid_document.h"
 #include "document/search_space.h"
 #include "format/object.h"
+#include "gear/names.h"
 #include "gear/surface.h"
 
-static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
 
 struct finding {
@@ -49,7 +49,7 @@ static void note_undercut(const struct eo_geometry *geometry, int i, struct eo_w
     eo_warnings_at(warnings, shift_key[i],
                    "The %s is undercut up to the radius %.6g mm; its active profile starts at %.6g mm. From a profile "
                    "shift of %.4g on there is none.",
-                   member_name[i], 1e3 * geometry->form_radius[i], 1e3 * geometry->start_radius[i],
+                   eo_member_name[i], 1e3 * geometry->form_radius[i], 1e3 * geometry->start_radius[i],
                    geometry->least_shift[i]);
 }
 
@@ -63,7 +63,7 @@ static void note_notch(const struct eo_design *design, int i, struct eo_warnings
                    "The stock of the %s, %.4g um, is %.4g um more than the protuberance of its tool: grinding leaves a "
                    "notch in the fillet, which is not modelled; the root is taken as cut at once. A protuberance of at "
                    "least the stock avoids it.",
-                   member_name[i], 1e6 * design->gear_pair.grinding_stock[i], 1e6 * beyond);
+                   eo_member_name[i], 1e6 * design->gear_pair.grinding_stock[i], 1e6 * beyond);
 }
 
 /* A distance far from what the shifts ask for: backlash that no thickness allowance makes. */
@@ -112,13 +112,13 @@ static void note_clearance(const struct eo_design *design, const struct eo_geome
     eo_warnings_at(warnings, key[i],
                    "Only %.3g m_n (%.4g mm) of clearance is left between the tip of the %s and the root of its mate; "
                    "usual is 0.25 m_n, the least %.2g m_n. A tip alteration (null: derived) keeps that of the rack.",
-                   clearance, 1e3 * geometry->tip_clearance[i], member_name[i], LEAST);
+                   clearance, 1e3 * geometry->tip_clearance[i], eo_member_name[i], LEAST);
   else if (clearance < rack - NOTABLE)
     eo_warnings_at(warnings, key[i],
                    "The tip clearance of the %s, %.3g m_n, is below the %.3g m_n of the basic rack: the tips are not "
                    "shortened as much as the profile shifts bring the gears together. With tip_alteration_coefficient "
                    "null they are.",
-                   member_name[i], clearance, rack);
+                   eo_member_name[i], clearance, rack);
 }
 
 static void note_shortened(const struct eo_geometry *geometry, int i, struct eo_warnings *warnings)
@@ -130,7 +130,7 @@ static void note_shortened(const struct eo_geometry *geometry, int i, struct eo_
         "The tip diameter of the %s is taken as %.6g mm, %.4g mm less than its rack makes it, so that it clears "
         "the root of its mate and is not pointed. Profile shifts or another basic rack avoid that; a stated "
         "tip diameter is taken as it is.",
-        member_name[i], 2e3 * geometry->tip_radius[i], 2e3 * geometry->shortened[i]);
+        eo_member_name[i], 2e3 * geometry->tip_radius[i], 2e3 * geometry->shortened[i]);
 }
 
 /* s_an in the normal section. */
@@ -143,7 +143,7 @@ static void note_tip(const struct eo_geometry *geometry, int i, struct eo_warnin
     eo_warnings_at(warnings, shift_key[i],
                    "The teeth of the %s are %.3g m_n thick at their tips; usual is at least %.2g m_n, of surface "
                    "hardened ones 0.4 m_n. Less profile shift or a smaller tip diameter thickens them.",
-                   member_name[i], thickness, LEAST);
+                   eo_member_name[i], thickness, LEAST);
 }
 
 static void note_proportions(const struct eo_design *design, const struct eo_geometry *geometry,
@@ -233,7 +233,7 @@ static double most_relief(const struct eo_geometry *geometry, int member, const 
 static void note_fold(const struct eo_design *design, const struct eo_geometry *geometry, enum eo_flank_side side,
                       int member, int end, struct eo_warnings *warnings)
 {
-  static const char *const end_name[2] = {"left", "right"}, *const relief_name[2] = {"root", "tip"};
+  static const char *const relief_name[2] = {"root", "tip"};
   const struct eo_geometry half = eo_geometry_of_half(geometry, &design->gear_pair, end);
   const struct eo_flank_modification *flank = side == EO_COAST_FLANK ? &design->modification.coast[member][end]
                                                                      : &design->modification.flank[member][end];
@@ -246,7 +246,7 @@ static void note_fold(const struct eo_design *design, const struct eo_geometry *
   if (fold_of(&half, member, &shape, fold) > 0) {
     int relief = fold[0] + fold[1] > 0 ? EO_TIP_SIDE : EO_ROOT_SIDE;
     double amount = relief == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief;
-    int length = snprintf(key, sizeof key, "/modification/%s/%s%s", member_name[member], end_name[end],
+    int length = snprintf(key, sizeof key, "/modification/%s/%s%s", eo_member_name[member], eo_end_name[end],
                           side == EO_COAST_FLANK ? "/coast" : "");
     double most = amount > 0 ? most_relief(&half, member, flank, &shape, relief) : 0;
     if (most > 0) {

@@ -3,8 +3,10 @@
 #include "document/design_document.h"
 #include "document/design_migration.h"
 #include "document/pitch_document.h"
+#include "document/search_space.h"
 #include "evaluation/scalar.h"
 #include "flexibility/flexibility.h"
+#include "gear/names.h"
 
 /* clang-format off */
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
@@ -12,7 +14,6 @@
 
 static const char *const power[] = {"power_kW", NULL};
 static const char *const directions[] = {"ahead", "astern", NULL};
-static const char *const drivers[] = {"pinion", "gear", NULL};
 
 static const struct eo_field case_alignment[] = {
     EO_NUMBER_DERIVED(struct eo_case_alignment, in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2,
@@ -52,7 +53,7 @@ static const struct eo_field load_case[] = {
     EO_CHOICE(struct eo_load_case, direction, "direction", directions, EO_AHEAD,
               "of rotation; astern the coast flanks carry"),
     EO_CHOICE(
-        struct eo_load_case, driver, "driver", drivers, EO_PINION,
+        struct eo_load_case, driver, "driver", eo_member_name, EO_PINION,
         "which member drives; a gear that drives only here, as in overrun, does so with the coast flanks, one that "
         "drives in every load case, as in a speed increaser, with the drive flanks"),
     EO_OPTIONAL(struct eo_load_case, alignment, has_alignment, "alignment", &case_alignment_table,
@@ -174,8 +175,6 @@ static const struct eo_field objective[] = {
 
 static const char *const fronts[] = {"objectives", "nominal_and_robust", "terms", NULL};
 static const char *const variables[] = {"shared", "per_end", "listed", NULL};
-static const char *const variable_members[] = {"pinion", "gear", NULL};
-static const char *const variable_ends[] = {"left", "right", "both", NULL};
 static const char *const variable_flanks[] = {"drive", "coast", "both", NULL};
 /* clang-format off */
 /* What a row of EO_OPTIMIZER_SETTINGS (optimizer/settings.h) becomes here. */
@@ -213,8 +212,8 @@ static const struct eo_field bounds[] = {
 static const struct eo_table bounds_table = EO_TABLE("bounds", struct eo_optimization, bounds);
 
 static const struct eo_field listed_variable[] = {
-    EO_CHOICE(struct eo_listed_variable, member, "member", variable_members, EO_PINION, "whose flank"),
-    EO_CHOICE(struct eo_listed_variable, end, "end", variable_ends, EO_BOTH_ENDS,
+    EO_CHOICE(struct eo_listed_variable, member, "member", eo_member_name, EO_PINION, "whose flank"),
+    EO_CHOICE(struct eo_listed_variable, end, "end", eo_variable_end_name, EO_BOTH_ENDS,
               "which end; both: one variable for both ends"),
     EO_CHOICE(struct eo_listed_variable, flank, "flank", variable_flanks, EO_DRIVE_FLANK,
               "which flank; both: one variable for the drive and the coast flank"),

@@ -10,11 +10,10 @@
 #include "format/band_chart.h"
 #include "format/unit.h"
 #include "gear/modification.h"
+#include "gear/names.h"
 #include "rating/gear_rating.h"
 
 enum { POINTS = EO_FLANK_CHART_POINTS };
-
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
 /* Roll length of the place s, and back. */
 static double roll_of(const struct eo_geometry *geometry, int member, double s)
@@ -168,7 +167,7 @@ static void fill_drawing(struct drawing *drawing, const struct eo_flank_chart *c
     drawing->lower[i] = in->deviation * chart->band[i][1];
   }
   snprintf(drawing->title, sizeof drawing->title, "%s, %s of the %s%s%s", chart->helix ? "Helix" : "Profile",
-           chart->helix ? "at the pitch point" : "mid face", member_name[chart->member],
+           chart->helix ? "at the pitch point" : "mid face", eo_member_name[chart->member],
            chart->side == EO_COAST_FLANK ? ", coast flank" : "",
            design->gear_pair.ends == 1 ? ""
            : chart->end                ? ", right end"
@@ -263,7 +262,7 @@ static void write_rows(const struct eo_flank_chart *chart, const struct eo_desig
 {
   (void)design;
   for (int i = 0; i < POINTS; i++) {
-    eo_text_print(text, "%s,%s,%s", member_name[chart->member], end_name[chart->end],
+    eo_text_print(text, "%s,%s,%s", eo_member_name[chart->member], eo_end_name[chart->end],
                   chart->helix ? "helix" : "profile");
     put(text, chart->helix ? NAN : chart->x[i], 1e3);
     put(text, chart->roll_angle[i], 180 / M_PI);

@@ -7,6 +7,7 @@
 
 #include "format/json.h"
 #include "gear/gear_pair.h"
+#include "gear/names.h"
 
 enum { MOST_TEXT = 1 << 20 };
 
@@ -191,8 +192,6 @@ void eo_flank_grid_to_text(const struct eo_flank_grid *grid, struct eo_text *tex
 
 /* Documents: */
 
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
-
 /* The three arrays belong together, and two knots at least make a surface. */
 static bool fits(const struct grid_document *document, const struct eo_path *path, struct eo_faults *faults)
 {
@@ -272,11 +271,11 @@ void eo_flank_grids_decode(const json_t *modification, int ends, struct eo_flank
   struct eo_path top = {NULL, "modification", 0};
   memset(grids, 0, sizeof *grids);
   for (int member = 0; member < 2; member++) {
-    struct eo_path of_member = {&top, member_name[member], 0};
-    const json_t *ends_of_member = json_object_get(modification, member_name[member]);
+    struct eo_path of_member = {&top, eo_member_name[member], 0};
+    const json_t *ends_of_member = json_object_get(modification, eo_member_name[member]);
     for (int end = 0; end < ends; end++) {
-      struct eo_path of_end = {&of_member, end_name[end], 0}, of_coast = {&of_end, "coast", 0};
-      const json_t *flank = json_object_get(ends_of_member, end_name[end]);
+      struct eo_path of_end = {&of_member, eo_end_name[end], 0}, of_coast = {&of_end, "coast", 0};
+      const json_t *flank = json_object_get(ends_of_member, eo_end_name[end]);
       add_grid(flank, &of_end, EO_DRIVE_FLANK, member, end, grids, faults);
       add_grid(json_object_get(flank, "coast"), &of_coast, EO_COAST_FLANK, member, end, grids, faults);
     }
@@ -318,7 +317,7 @@ void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t 
         struct eo_flank_grid grid = eo_flank_grid_at(grids, (enum eo_flank_side)side, member, end);
         if (grid.u_knots == 0)
           continue;
-        json_t *flank = reach(reach(modification, member_name[member], failed), end_name[end], failed);
+        json_t *flank = reach(reach(modification, eo_member_name[member], failed), eo_end_name[end], failed);
         flank = side == EO_COAST_FLANK ? reach(flank, "coast", failed) : flank;
         eo_json_put(flank, "grid", encode_grid(&grid), failed);
       }

@@ -2,6 +2,7 @@
 /* Field tables of the gear pair, its material, alignment, supports and flank modifications. Ranges are in the
    document's units. */
 #include "document/design_document.h"
+#include "gear/names.h"
 
 enum { TO_MM = 1000000 };
 
@@ -12,8 +13,6 @@ enum { TO_MM = 1000000 };
   "Internal gears (a negative number of teeth) and planetary stages are not modelled: both members are external."
 static const char *const other_modules[] = {"transverse_module_mm", "normal_diametral_pitch_per_inch",
                                             "transverse_diametral_pitch_per_inch", NULL};
-
-static const char *const hands[] = {"left", "right", NULL};
 
 static const char *const own_widths[] = {"pinion_face_width_mm", "gear_face_width_mm", NULL};
 
@@ -90,7 +89,7 @@ static const struct eo_field gear_pair[] = {
      .fallback = NAN,
      .below = "The angle has no sign here: state it without the sign and the hand as gear_pair.hand.",
      .help = "helix angle beta at the pitch cylinder; 0: spur"},
-    EO_WORD_DERIVED(struct eo_gear_pair, hand, "hand", hands, 0, NULL,
+    EO_WORD_DERIVED(struct eo_gear_pair, hand, "hand", eo_end_name, 0, NULL,
                     "that of a pinion which turns counterclockwise, seen from its left end: right with the apex "
                     "trailing, left with the apex leading",
                     "hand of the helix of the pinion's left half (of its only one); its right half and the gear have "
@@ -363,8 +362,6 @@ static const struct eo_field supports[] = {
               "of the torsion towards driver and load"),
 };
 
-static const char *const side[] = {"left", "right", NULL};
-
 static const struct eo_field shafts[] = {
     EO_FLAG(struct eo_shafts, enabled, "enabled", 0,
             "torsional wind-up and bending of both bodies, iterated with the load distribution"),
@@ -386,9 +383,9 @@ static const struct eo_field shafts[] = {
     EO_NUMBER_DERIVED(struct eo_shafts, shaft_diameter[EO_GEAR], "gear_shaft_diameter_mm", &eo_unit_mm, 1e-3, TO_MM,
                       "0.8 of the groove diameter, at least midway from the bore to it",
                       "outside the toothed body; the bore runs through"),
-    EO_CHOICE(struct eo_shafts, drive_side[EO_PINION], "pinion_drive_side", side, EO_DRIVE_LEFT,
+    EO_CHOICE(struct eo_shafts, drive_side[EO_PINION], "pinion_drive_side", eo_end_name, EO_DRIVE_LEFT,
               "where torque enters the pinion"),
-    EO_CHOICE(struct eo_shafts, drive_side[EO_GEAR], "gear_drive_side", side, EO_DRIVE_LEFT,
+    EO_CHOICE(struct eo_shafts, drive_side[EO_GEAR], "gear_drive_side", eo_end_name, EO_DRIVE_LEFT,
               "where torque leaves the gear"),
 };
 

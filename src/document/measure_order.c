@@ -3,8 +3,10 @@
 
 #include <math.h>
 
+#include "gear/names.h"
+
 static const char *const run_ups[] = {"left out", "included", NULL};
-static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
+const char *const eo_measure_label[3] = {"modified", "unmodified", NULL};
 
 #define LABEL_HELP "whether the pair had its modification"
 
@@ -14,7 +16,7 @@ static const char *const labels[] = {"modified", "unmodified", NULL}, *const end
                     "as recorded, else asked for", "on the pinion"),                                        \
       EO_NUMBER_DERIVED(struct eo_measure_order, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "as measured", \
                         "of the pinion"),                                                                   \
-      EO_CHOICE(struct eo_measure_order, end, "end", ends, EO_RIGHT, "where the encoders sit"),             \
+      EO_CHOICE(struct eo_measure_order, end, "end", eo_end_name, EO_RIGHT, "where the encoders sit"),      \
       EO_INTEGER_DERIVED(struct eo_measure_order, harmonics, "harmonics", 1, EO_MESH_ORDERS, "8",           \
                          "mesh orders that are measured"),                                                  \
       EO_INTEGER_DERIVED(struct eo_measure_order, part, "part", 1, EO_PARTS, "the one with the most turns", \
@@ -40,7 +42,7 @@ static const struct eo_field form_fields[] = {
      .kind = EO_FIELD_CHOICE,
      .flags = EO_FIELD_REQUIRED,
      .offset = offsetof(struct eo_measure_order, label),
-     .choices = labels,
+     .choices = eo_measure_label,
      .fallback = NAN,
      .help = LABEL_HELP},
     COMMON_ROWS,
@@ -48,7 +50,7 @@ static const struct eo_field form_fields[] = {
 const struct eo_table eo_measure_form_table = EO_TABLE("a measurement", struct eo_measure_order, form_fields);
 
 #define OPTION_ROWS \
-  EO_CHOICE(struct eo_measure_order, label, "label", labels, EO_MEASURE_MODIFIED, LABEL_HELP), COMMON_ROWS
+  EO_CHOICE(struct eo_measure_order, label, "label", eo_measure_label, EO_MEASURE_MODIFIED, LABEL_HELP), COMMON_ROWS
 static const struct eo_field option_fields[] = {OPTION_ROWS};
 const struct eo_table eo_measure_option_table = EO_TABLE("what is said of the recordings", struct eo_measure_order,
                                                          option_fields);

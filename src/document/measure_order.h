@@ -11,6 +11,7 @@
 
 enum eo_run_up { EO_RUN_UP_LEFT_OUT, EO_RUN_UP_INCLUDED };
 enum { EO_MEASURE_MODIFIED, EO_MEASURE_UNMODIFIED }; /* label */
+extern const char *const eo_measure_label[3];        /* of these, then NULL */
 
 struct eo_measure_order {
   uint64_t design; /* of an upload: number of the stored design */

@@ -7,11 +7,10 @@
 
 #include "format/json.h"
 #include "document/layout_document.h"
+#include "document/measure_order.h"
 #include "document/measurement_parts.h"
 #include "document/result_private.h"
-
-static const char *const channel_name[] = {"pinion", "gear", NULL}, *const labels[] = {"modified", "unmodified", NULL},
-                         *const ends[] = {"left", "right", NULL};
+#include "gear/names.h"
 
 static json_t *column(int count, const double *value, const struct eo_unit *unit)
 {
@@ -20,7 +19,7 @@ static json_t *column(int count, const double *value, const struct eo_unit *unit
 
 static const char *label_name(bool unmodified)
 {
-  return labels[unmodified];
+  return eo_measure_label[unmodified];
 }
 
 static json_t *write_finding_row(const void *finding)
@@ -39,7 +38,7 @@ static const struct eo_outline_row finding_rows[] = {
     EO_KEY("kind", "word", "what it is about", .words = eo_finding_names, EO_AT(struct eo_finding, kind)),
     EO_KEY("severity", "word", "repaired: taken care of; refused: there is no result", .words = eo_severity_names,
            EO_AT(struct eo_finding, severity)),
-    EO_KEY("channel", "word?", "null: both", .words = channel_name, EO_AT(struct eo_finding, channel)),
+    EO_KEY("channel", "word?", "null: both", .words = eo_member_name, EO_AT(struct eo_finding, channel)),
     EO_KEY("row", "integer?", "of the recording, from 1", .write = write_finding_row),
     EO_KEY("line", "integer?", "of the file, from 1", .write = write_finding_line),
     EO_KEY("value", "number?", "what was found, in the unit that text says", EO_AT(struct eo_finding, value)),
@@ -146,7 +145,7 @@ static json_t *write_torque(const void *source)
 
 static json_t *write_end(const void *source)
 {
-  return json_string(ends[label_of(source)->end]);
+  return json_string(eo_end_name[label_of(source)->end]);
 }
 
 static json_t *write_notes(const void *source)
@@ -196,10 +195,10 @@ static json_t *write_result(const void *source)
 
 static const struct eo_outline_row measurement_rows[] = {
     EO_KEY("file", "text?", "name as it came", .write = write_file),
-    EO_KEY("label", "word", "which pair was measured", .words = labels, .write = write_label),
+    EO_KEY("label", "word", "which pair was measured", .words = eo_measure_label, .write = write_label),
     EO_KEY("torque_Nm", "number?", "on the pinion shaft; null: neither stated nor recorded", .unit = &eo_unit_Nm,
            .write = write_torque),
-    EO_KEY("end", "word", "where the encoders sat", .words = ends, .write = write_end),
+    EO_KEY("end", "word", "where the encoders sat", .words = eo_end_name, .write = write_end),
     EO_KEY("notes", "[text]", "what the reader of the file has to say", .write = write_notes),
     EO_KEY("layout", "object?", "what the columns hold, as it was found", .outline = &eo_layout_outline,
            .write = write_layout),
@@ -238,9 +237,9 @@ static const struct eo_outline brief_result = EO_OUTLINE("BriefResult", brief_re
 
 static const struct eo_outline_row brief_rows[] = {
     EO_KEY("file", "text?", "name as it came"),
-    EO_KEY("label", "word", "which pair was measured", .words = labels),
+    EO_KEY("label", "word", "which pair was measured", .words = eo_measure_label),
     EO_KEY("torque_Nm", "number?", "on the pinion shaft; null: neither stated nor recorded", .unit = &eo_unit_Nm),
-    EO_KEY("end", "word", "where the encoders sat", .words = ends),
+    EO_KEY("end", "word", "where the encoders sat", .words = eo_end_name),
     EO_KEY("refused", "flag", "there is no result"),
     EO_KEY("findings", "[object]", "what is remarkable", .outline = &brief_finding),
     EO_KEY("result", "object", "without its curves", .outline = &brief_result),
@@ -277,7 +276,7 @@ enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *meas
     return eo_error_set(error, EO_ERROR_INPUT, "/result", "The measurement has no result: its recording was refused.");
   snprintf(measured->name, sizeof measured->name, "%s", file ? file : "");
   measured->unmodified = label && strcmp(label, label_name(true)) == 0;
-  measured->end = end && strcmp(end, eo_result_end[EO_LEFT]) == 0 ? EO_LEFT : EO_RIGHT;
+  measured->end = end && strcmp(end, eo_end_name[EO_LEFT]) == 0 ? EO_LEFT : EO_RIGHT;
   measured->torque = eo_unit_in(&eo_unit_Nm, number_at(document, "torque_Nm", -1));
   measured->speed = eo_unit_in(&eo_unit_rpm, number_at(document, "result/speed_rpm/mean", -1));
   measured->rms = number_at(document, "result/rms_m_per_s2/value", -1);

@@ -6,10 +6,9 @@
 
 #include "format/json.h"
 #include "format/object.h"
+#include "gear/names.h"
 
 enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
-
-static const char *const channel_name[] = {"pinion", "gear", NULL};
 
 static json_t *column(int count, const double *value, const struct eo_unit *unit)
 {
@@ -98,7 +97,7 @@ static json_t *write_sideband_amplitude(const void *sideband)
 
 static const struct eo_outline_row sideband_rows[] = {
     EO_KEY("mesh_order", "integer", "beside which it stands", EO_AT(struct sideband, mesh_order)),
-    EO_KEY("shaft", "word", "whose turns", .words = channel_name, EO_AT(struct sideband, shaft)),
+    EO_KEY("shaft", "word", "whose turns", .words = eo_member_name, EO_AT(struct sideband, shaft)),
     EO_KEY("turns", "integer", "away from the mesh order, in orders of that shaft", EO_AT(struct sideband, turns)),
     EO_KEY("order", "number", "per turn of the pinion", EO_AT(struct sideband, line.order)),
     EO_KEY("amplitude_um", "number?", "of the transmission error", .unit = &eo_unit_um,

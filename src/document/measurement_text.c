@@ -4,8 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "document/measure_order.h"
 #include "document/measurement_document.h"
 #include "document/result_private.h"
+#include "gear/names.h"
 
 static const double CHANGING = 0.02; /* range of the speed, relative, from which the stretches are told */
 
@@ -28,8 +30,7 @@ void eo_measurement_summary(const struct eo_measurement *measurement, const stru
   if (label->torque > 0)
     snprintf(torque, sizeof torque, "%.6g N m", label->torque);
   eo_text_print(text, "%s: %s, %s, %s end, %lld rows\n", label->file ? label->file : "recording",
-                label->unmodified ? "unmodified" : "modified", torque, eo_result_end[label->end],
-                (long long)measurement->rows);
+                eo_measure_label[label->unmodified], torque, eo_end_name[label->end], (long long)measurement->rows);
   for (int i = 0; label->notes && i < label->notes->count && i < EO_NOTES; i++)
     eo_text_print(text, "  note: %s\n", label->notes->text[i]);
   for (int i = 0; i < measurement->findings.count && i < EO_MAX_FINDINGS; i++)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "gear/names.h"
 
 enum { MOST_TEETH = 2000, MOST_TEXT = 1 << 20 };
 
@@ -26,7 +27,6 @@ struct pitch_document {
 
 static const char *const term_key[EO_TOOTH_TERMS] = {"index_um", "profile_slope_um", "helix_slope_um",
                                                      "profile_crowning_um", "lead_crowning_um"};
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
 
 #define FLANK_ROWS(side)                                                                                              \
   EO_SERIES(struct end_document, side.term[EO_TOOTH_INDEX], "index_um", &eo_unit_um, MOST_TEETH, -1000, 1000, 0,      \
@@ -158,9 +158,9 @@ static json_t *expand(const json_t *object, const struct eo_path *path, struct e
   expand_text(copy, true, path, faults);
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < 2; end++) {
-      struct eo_path of_member = {path, member_name[member], 0}, of_end = {&of_member, end_name[end], 0},
+      struct eo_path of_member = {path, eo_member_name[member], 0}, of_end = {&of_member, eo_end_name[end], 0},
                      of_coast = {&of_end, "coast", 0};
-      json_t *flank = json_object_get(json_object_get(copy, member_name[member]), end_name[end]);
+      json_t *flank = json_object_get(json_object_get(copy, eo_member_name[member]), eo_end_name[end]);
       expand_text(flank, false, &of_end, faults);
       expand_text(json_object_get(flank, "coast"), false, &of_coast, faults);
     }
@@ -176,7 +176,7 @@ static void add_table(const struct eo_numbers *series, const struct eo_path *pat
     return;
   if (series->count != teeth)
     eo_faults_at(faults, &place, "There are %d numbers, but the %s has %d teeth: state one for each.", series->count,
-                 member_name[member], teeth);
+                 eo_member_name[member], teeth);
   else if (eo_tooth_tables_add(&pitch->tables, side, member, end, (enum eo_tooth_term)term, teeth, series->value,
                                &error))
     eo_faults_at(faults, &place, "%s", error.text);
@@ -192,7 +192,7 @@ static void take(const struct pitch_document *document, const struct eo_path *pa
     pitch->member[member] = document->member[member].own;
     for (int i = 0; i < 2 * pair->ends * EO_TOOTH_TERMS; i++) {
       int term = i % EO_TOOTH_TERMS, end = i / EO_TOOTH_TERMS / 2, side = i / EO_TOOTH_TERMS % 2;
-      struct eo_path of_member = {path, member_name[member], 0}, of_end = {&of_member, end_name[end], 0};
+      struct eo_path of_member = {path, eo_member_name[member], 0}, of_end = {&of_member, eo_end_name[end], 0};
       add_table(&document->member[member].end[end].side[side].term[term], &of_end, (enum eo_flank_side)side, member,
                 end, term, pair->teeth[member], pitch, faults);
     }
@@ -240,6 +240,6 @@ json_t *eo_pitch_encode(const struct eo_pitch *pitch, int ends)
   }
   json_t *object = eo_table_encode(&eo_pitch_table, &document);
   for (int member = 0; member < 2 && ends == 1; member++)
-    json_object_del(json_object_get(object, member_name[member]), "right");
+    json_object_del(json_object_get(object, eo_member_name[member]), "right");
   return object;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables of teeth as text: what measuring machines and spreadsheets write. */
 #include "document/pitch_document.h"
+#include "gear/names.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -25,8 +26,6 @@ enum heading {
 static const char *const heading_name[HEADINGS] = {
     "tooth",  "index_um", "single_um", "profile_slope_um", "helix_slope_um", "profile_crowning_um", "lead_crowning_um",
     "member", "end",      "flank"};
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"},
-                         *const side_name[2] = {"drive", "coast"};
 
 /* Where the reading stands. */
 struct reading {
@@ -159,7 +158,7 @@ static int decimals_of(const char *cell)
 /* One row: its numbers, the tooth and the flank they belong to. */
 static enum eo_code read_row(struct reading *reading, struct eo_error *error)
 {
-  static const char *const *const words[3] = {member_name, end_name, side_name};
+  static const char *const *const words[3] = {eo_member_name, eo_end_name, eo_flank_side_name};
   char cell[MOST_CELL];
   double number[HEADINGS] = {0};
   int place[3] = {0}, i = 0, decimals = 0;
@@ -214,8 +213,8 @@ static enum eo_code check_closed(const struct reading *reading, bool whole, int 
   if (fabs(sum) <= fmax(rounding, CLOSED * sqrt(squares)))
     return EO_OK;
   if (whole)
-    snprintf(whose, sizeof whose, " of the %s, %s end, %s flank,", member_name[flank / 4], end_name[flank / 2 % 2],
-             side_name[flank % 2]);
+    snprintf(whose, sizeof whose, " of the %s, %s end, %s flank,", eo_member_name[flank / 4],
+             eo_end_name[flank / 2 % 2], eo_flank_side_name[flank % 2]);
   return eo_error_set(
       error, EO_ERROR_INPUT, NULL,
       "The single pitch deviations (single_um)%s add up to %.4g um over %g teeth; round a gear they add "
@@ -259,7 +258,7 @@ static enum eo_code put_all(const struct reading *reading, bool whole, json_t *o
     if (reading->line_of[flank] == 0)
       continue;
     if (whole) {
-      place = reach(reach(object, member_name[flank / 4]), end_name[flank / 2 % 2]);
+      place = reach(reach(object, eo_member_name[flank / 4]), eo_end_name[flank / 2 % 2]);
       place = flank % 2 ? reach(place, "coast") : place;
     }
     EO_TRY(put_flank(reading, whole, flank, place, error));

@@ -9,6 +9,7 @@
 #include "document/completion.h"
 #include "document/geometry_table.h"
 #include "document/result_private.h"
+#include "gear/names.h"
 
 #include <config.h>
 
@@ -20,8 +21,6 @@ static int outcome_of(const struct eo_case_result *case_result)
 }
 
 static const char *const directions[] = {"ahead", "astern", NULL};
-static const char *const drivers[] = {"pinion", "gear", NULL};
-static const char *const flank_sides[] = {"drive", "coast", NULL};
 static const char *const sequences[] = {"forwards", "backwards", NULL};
 
 struct contact_half {
@@ -38,8 +37,9 @@ static const struct eo_outline_row contact_rows[] = {
     EO_KEY("share", "number", "of the operating time", EO_AT(struct contact_half, load_case.share)),
     EO_KEY("name", "text", "for people", EO_AT(struct contact_half, load_case.name)),
     EO_KEY("direction", "word", "of rotation", .words = directions, EO_AT(struct contact_half, load_case.direction)),
-    EO_KEY("driver", "word", "which member drives", .words = drivers, EO_AT(struct contact_half, load_case.driver)),
-    EO_KEY("flank", "word", "which flanks carry", .words = flank_sides, EO_AT(struct contact_half, flank)),
+    EO_KEY("driver", "word", "which member drives", .words = eo_member_name,
+           EO_AT(struct contact_half, load_case.driver)),
+    EO_KEY("flank", "word", "which flanks carry", .words = eo_flank_side_name, EO_AT(struct contact_half, flank)),
     EO_KEY("sequence", "word",
            "forwards: positions follow each other in time; backwards: the gear drives, time runs "
            "against position",

@@ -7,6 +7,7 @@
 #include "format/json.h"
 #include "document/result.h"
 #include "format/text_table.h"
+#include "gear/names.h"
 
 enum { MOST_COLUMNS = 64, HEADING = 64 };
 
@@ -163,15 +164,14 @@ static void save_pattern(const json_t *result, const json_t *load_case, const ch
 static void save_modification(const json_t *result, struct eo_text *text)
 {
   struct table table = {0};
-  static const char *const member[2] = {"pinion", "gear"};
   const json_t *modification = json_object_get(result, "modification");
   for (int i = 0; i < 2; i++) {
     char heading[HEADING], path[64];
-    snprintf(heading, sizeof heading, "%s_u_mm", member[i]);
-    snprintf(path, sizeof path, "%s/u_mm", member[i]);
+    snprintf(heading, sizeof heading, "%s_u_mm", eo_member_name[i]);
+    snprintf(path, sizeof path, "%s/u_mm", eo_member_name[i]);
     add_column(&table, eo_json_find(modification, path), heading);
-    snprintf(heading, sizeof heading, "%s_%%s_profile_um", member[i]);
-    snprintf(path, sizeof path, "%s/%%s/profile_um", member[i]);
+    snprintf(heading, sizeof heading, "%s_%%s_profile_um", eo_member_name[i]);
+    snprintf(path, sizeof path, "%s/%%s/profile_um", eo_member_name[i]);
     add_ends(&table, modification, heading, path);
   }
   add_column(&table, json_object_get(modification, "eta_mm"), "eta_mm");
@@ -267,12 +267,11 @@ static void save_period_orders(const json_t *load_case, struct eo_text *text)
 /* Tooth by tooth: what it is off on drive flanks, and what it carries. */
 static void save_teeth(const json_t *pitch, const json_t *load_case, struct eo_text *text)
 {
-  static const char *const member[2] = {"pinion", "gear"};
   struct table table = {0};
   size_t most = 0;
   for (int i = 0; i < 2; i++) {
     char path[64];
-    snprintf(path, sizeof path, "teeth/%s/left/load_N", member[i]);
+    snprintf(path, sizeof path, "teeth/%s/left/load_N", eo_member_name[i]);
     size_t own = json_array_size(eo_json_find(load_case, path));
     most = own > most ? own : most;
   }
@@ -280,14 +279,14 @@ static void save_teeth(const json_t *pitch, const json_t *load_case, struct eo_t
   add_column(&table, tooth, "tooth");
   for (int i = 0; i < 2; i++) {
     char heading[HEADING], path[96];
-    snprintf(heading, sizeof heading, "%s_%%s_index_um", member[i]);
-    snprintf(path, sizeof path, "deviations/%s/%%s/drive/index_um", member[i]);
+    snprintf(heading, sizeof heading, "%s_%%s_index_um", eo_member_name[i]);
+    snprintf(path, sizeof path, "deviations/%s/%%s/drive/index_um", eo_member_name[i]);
     add_ends(&table, pitch, heading, path);
-    snprintf(heading, sizeof heading, "%s_%%s_load_N", member[i]);
-    snprintf(path, sizeof path, "teeth/%s/%%s/load_N", member[i]);
+    snprintf(heading, sizeof heading, "%s_%%s_load_N", eo_member_name[i]);
+    snprintf(path, sizeof path, "teeth/%s/%%s/load_N", eo_member_name[i]);
     add_ends(&table, load_case, heading, path);
-    snprintf(heading, sizeof heading, "%s_%%s_root_stress_MPa", member[i]);
-    snprintf(path, sizeof path, "teeth/%s/%%s/root_stress_MPa", member[i]);
+    snprintf(heading, sizeof heading, "%s_%%s_root_stress_MPa", eo_member_name[i]);
+    snprintf(path, sizeof path, "teeth/%s/%%s/root_stress_MPa", eo_member_name[i]);
     add_ends(&table, load_case, heading, path);
   }
   save_table(&table, text);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "document/result_pitch_private.h"
+#include "gear/names.h"
 
 /* One load case. */
 struct pitch_case {
@@ -174,8 +175,6 @@ static json_t *write_spectrum(const void *source)
 
 /* The largest: */
 
-static const char *const ends[] = {"left", "right", NULL};
-
 /* The largest of something, and where it is. */
 struct pitch_largest {
   double value, share;
@@ -186,7 +185,7 @@ struct pitch_largest {
 
 #define OF_LARGEST(member) EO_AT(struct pitch_largest, member)
 static const struct eo_outline_row place_rows[] = {
-    EO_KEY("end", "word", "which end", .words = ends, OF_LARGEST(end)),
+    EO_KEY("end", "word", "which end", .words = eo_end_name, OF_LARGEST(end)),
     EO_KEY("cycle", "integer", "mesh cycle of the period, from 0", OF_LARGEST(cycle)),
     EO_KEY("position", "integer?", "of the cycle, from 0, positions_per_cycle to a cycle; null: of the cycle",
            OF_LARGEST(position)),

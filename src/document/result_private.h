@@ -25,10 +25,6 @@ struct eo_result_source {
   double (*edge_pressure)[2];         /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
 };
 
-/* "left", "right". */
-extern const char *const eo_result_end[2];
-extern const char *const eo_result_member[2];
-
 /* Whether what EO_RESULT_NO_... stands for is written; of a load case (NULL: of none). */
 bool eo_result_has(const struct eo_result_source *source, unsigned part, const struct eo_case_result *load_case);
 

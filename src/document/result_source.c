@@ -4,9 +4,6 @@
 
 #include <stdlib.h>
 
-const char *const eo_result_end[2] = {"left", "right"};
-const char *const eo_result_member[2] = {"pinion", "gear"};
-
 bool eo_result_has(const struct eo_result_source *source, unsigned part, const struct eo_case_result *load_case)
 {
   int only = (int)(source->left_out >> 16 & 0xff) - 1;

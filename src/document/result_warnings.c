@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "document/result_private.h"
+#include "gear/names.h"
 
 struct list {
   json_t *array;
@@ -221,12 +222,12 @@ static void say_body(struct list *list, const struct eo_result_source *source)
           "The %s is a narrow disc that carries thrust: it also dishes, which the floating body leaves to the shaft "
           "and "
           "which can be as much as the teeth's own deflection.",
-          eo_result_member[m]);
+          eo_member_name[m]);
     if (bore > THIN * geometry->root_radius[m])
       say(list,
           "The rim of the %s is thin, but the floating body takes its bore as filled: with a web or a soft hub choose "
           "body_support \"held_at_bore\".",
-          eo_result_member[m]);
+          eo_member_name[m]);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "format/json.h"
 #include "document/result_private.h"
+#include "gear/names.h"
 
 static const struct eo_unit unit_us = {"us", "us", 1e6, true}, unit_mV = {"mV", "mV", 1e3, true},
                             unit_V = {"V", "V", 1, false};
@@ -13,9 +14,7 @@ static const struct eo_unit unit_us = {"us", "us", 1e6, true}, unit_mV = {"mV", 
 enum { MOST_ORDERS = 8 };                                       /* of which the truth tells */
 static const double SPEED_CHANGES = 0.02, TORQUE_CHANGES = 0.1; /* relative, over the recording: said by a finding */
 
-static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts",     "sine-cosine",
-                                                                               "pulses", "increments", "square",
-                                                                               NULL};
+static const char *const outputs[] = {"angles", "counts", "sine-cosine", "pulses", "increments", "square", NULL};
 static const char *const faults[] = {"none",         "swapped",      "reversed",       "teeth", "radians",
                                      "radians-gear", "dropped",      "dropped-silent", "slip",  "lost-count",
                                      "constant",     "stuck",        "saturated",      "time",  "nan",
@@ -30,7 +29,7 @@ static const struct eo_field fields[] = {
                       "of the load case with the largest share", "torque on the pinion"),
     EO_NUMBER_DERIVED(struct eo_rig_request, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6,
                       "of the load case with the largest share", "mean speed of the pinion"),
-    EO_CHOICE(struct eo_rig_request, end, "end", ends, EO_RIGHT, "where the encoders sit"),
+    EO_CHOICE(struct eo_rig_request, end, "end", eo_end_name, EO_RIGHT, "where the encoders sit"),
     EO_FLAG(struct eo_rig_request, unmodified, "unmodified", 0, "record the pair without its modification"),
     EO_INTEGER(struct eo_rig_request, harmonics, "harmonics", 1, EO_SYNTHETIC_ORDERS, 12,
                "mesh orders of the response in the recording"),

@@ -9,6 +9,7 @@
 #include "document/design_document.h"
 #include "format/json.h"
 #include "design/check.h"
+#include "gear/names.h"
 
 static bool is_node(const struct eo_study_variable *variable)
 {
@@ -372,15 +373,16 @@ static void name_knot(int row, int column, char knot[40])
   snprintf(knot, 40, "[u%s y%s]", of_row, of_column);
 }
 
+const char *const eo_variable_end_name[4] = {"left", "right", "both", NULL};
+
 void eo_study_variable_name(const struct eo_study_variable *variable, char *name, size_t size)
 {
-  static const char *const member[2] = {"pinion", "gear"}, *const end[3] = {"left", "right", "both"};
   static const char *const flank[3] = {"", "coast/", "drive+coast/"};
   char knot[40] = "";
   if (is_node(variable))
     name_knot(variable->row, variable->column, knot);
-  snprintf(name, size, "%s/%s/%s%s%s", member[variable->member], end[variable->end], flank[variable->side],
-           variable->field->key, knot);
+  snprintf(name, size, "%s/%s/%s%s%s", eo_member_name[variable->member], eo_variable_end_name[variable->end],
+           flank[variable->side], variable->field->key, knot);
 }
 
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1])
@@ -434,7 +436,6 @@ static void put_unless_empty(json_t *object, const char *key, json_t *value, boo
 enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text,
                                    struct eo_error *error)
 {
-  static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   json_t *document = json_object(), *standard = encode_standard_flank();
   bool failed = !document || !standard;
   for (int i = 0; i < 2; i++) {
@@ -444,9 +445,9 @@ enum eo_code eo_modification_write(const struct eo_modification *modification, i
       json_t *flank = encode_flank(&modification->flank[i][end], standard);
       failed |= !flank;
       put_unless_empty(flank, "coast", encode_flank(&modification->coast[i][end], standard), &failed);
-      put_unless_empty(member, end_name[end], flank, &failed);
+      put_unless_empty(member, eo_end_name[end], flank, &failed);
     }
-    put_unless_empty(document, member_name[i], member, &failed);
+    put_unless_empty(document, eo_member_name[i], member, &failed);
   }
   if (!failed)
     eo_json_write(text, document, EO_JSON_CANONICAL);

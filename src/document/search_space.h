@@ -19,6 +19,8 @@ struct eo_study_variable {
   int row, column;              /* of the grid, from 1 on; 0: all; of numbers of a grid */
 };
 
+extern const char *const eo_variable_end_name[4]; /* [EO_LEFT, EO_RIGHT, EO_BOTH_ENDS], then NULL */
+
 struct eo_study_space {
   int count;
   struct eo_study_variable variable[EO_MAX_LISTED];

@@ -8,6 +8,7 @@
 #include "format/json.h"
 #include "document/result_private.h"
 #include "evaluation/objective_terms.h"
+#include "gear/names.h"
 
 #include <config.h>
 
@@ -27,8 +28,6 @@ void eo_study_result_done(struct eo_study_result *result)
   eo_made_check_done(&result->check);
   *result = (struct eo_study_result){.knee = -1, .weighted = -1};
 }
-
-static const char *const members[] = {"pinion", "gear", NULL}, *const ends[] = {"left", "right", "both", NULL};
 
 struct variable {
   char name[80];
@@ -52,8 +51,8 @@ static json_t *write_best_value(const void *source)
 
 static const struct eo_outline_row variable_rows[] = {
     EO_KEY("name", "text", "MEMBER/END/PARAMETER", EO_AT(struct variable, name)),
-    EO_KEY("member", "word", "whose flank", .words = members, EO_AT(struct variable, member)),
-    EO_KEY("end", "word", "both: the same on both ends", .words = ends, EO_AT(struct variable, end)),
+    EO_KEY("member", "word", "whose flank", .words = eo_member_name, EO_AT(struct variable, member)),
+    EO_KEY("end", "word", "both: the same on both ends", .words = eo_variable_end_name, EO_AT(struct variable, end)),
     EO_KEY("parameter", "word", "key of the flank's modification, with its unit", .words = eo_variable_parameters,
            EO_AT(struct variable, parameter)),
     EO_KEY("row", "integer", "of the grid, from 1 on, of " EO_GRID_PARAMETER "; 0: all, or another parameter",

@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
-
-static const char *const member_name[2] = {"pinion", "gear"};
+#include "gear/names.h"
 
 /* Symbols of ISO 21771, ISO 53, ISO 1328-1 and ISO 6336, as tables spell them. %: both ends. */
 static const struct {
@@ -132,10 +131,10 @@ static bool member_path(const char *name, int member, char path[EO_KEY_PATH])
   const char *last = strrchr(name, '.'), *first = strchr(name, '.');
   if (!last)
     return false;
-  snprintf(path, EO_KEY_PATH, "%.*s.%s_%s", (int)(last - name), name, member_name[member], last + 1);
+  snprintf(path, EO_KEY_PATH, "%.*s.%s_%s", (int)(last - name), name, eo_member_name[member], last + 1);
   if (field_at(path))
     return true;
-  snprintf(path, EO_KEY_PATH, "%.*s.%s.%s", (int)(first - name), name, member_name[member], first + 1);
+  snprintf(path, EO_KEY_PATH, "%.*s.%s.%s", (int)(first - name), name, eo_member_name[member], first + 1);
   return field_at(path) != NULL;
 }
 
@@ -157,13 +156,12 @@ static bool find_path(struct eo_design_key *key, const char *name, int member)
 
 static bool find_symbol(struct eo_design_key *key, const char *pattern, int member, int ends)
 {
-  static const char *const end_name[2] = {"left", "right"};
   char name[EO_KEY_PATH];
   const char *mark = strchr(pattern, '%');
   if (!mark)
     return find_path(key, pattern, member);
   for (int end = 0; end < ends; end++) {
-    snprintf(name, sizeof name, "%.*s%s%s", (int)(mark - pattern), pattern, end_name[end], mark + 1);
+    snprintf(name, sizeof name, "%.*s%s%s", (int)(mark - pattern), pattern, eo_end_name[end], mark + 1);
     if (!find_path(key, name, member))
       return false;
   }
@@ -197,8 +195,8 @@ void eo_design_key_name(const char *path, char name[EO_KEY_PATH], int *member)
   snprintf(name, EO_KEY_PATH, "%s", path);
   for (int i = 0; i < 2; i++) {
     char part[12], twin[12];
-    snprintf(part, sizeof part, ".%s", member_name[i]);
-    snprintf(twin, sizeof twin, ".%s", member_name[!i]);
+    snprintf(part, sizeof part, ".%s", eo_member_name[i]);
+    snprintf(twin, sizeof twin, ".%s", eo_member_name[!i]);
     const char *at = strstr(path, part);
     size_t length = strlen(part);
     if (!at || (at[length] != '.' && at[length] != '_'))

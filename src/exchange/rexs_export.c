@@ -9,6 +9,7 @@
 #include "document/design_document.h"
 #include "exchange/rexs_schema.h"
 #include "format/json.h"
+#include "gear/names.h"
 
 #include <config.h>
 
@@ -42,13 +43,11 @@ struct writer {
   double overhang; /* from the outer face to the end of the shaft, mm */
 };
 
-static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
-
 /* A number of an object by the key "MEMBER_KEY", else "KEY"; NaN: absent or null. */
 static double number_of(const json_t *object, int member, const char *key)
 {
   char own[80];
-  snprintf(own, sizeof own, "%s_%s", member_name[member], key);
+  snprintf(own, sizeof own, "%s_%s", eo_member_name[member], key);
   const json_t *value = json_object_get(object, own);
   if (!json_is_number(value))
     value = json_object_get(object, key);
@@ -170,7 +169,7 @@ static void write_bearings(struct writer *writer, int member)
   bool fixed = member == EO_GEAR || writer->design->alignment.pinion_axial == EO_AXIAL_FIXED || writer->ends == 1;
   for (int side = 0; side < 2; side++) {
     char key[60];
-    snprintf(key, sizeof key, "%s_%s_bearing_mm", member_name[member], end_name[side]);
+    snprintf(key, sizeof key, "%s_%s_bearing_mm", eo_member_name[member], eo_end_name[side]);
     const json_t *value = json_object_get(writer->shafts, key);
     int id = BEARING + 2 * member + side;
     if (!json_is_number(value))
@@ -188,7 +187,7 @@ static void write_bearings(struct writer *writer, int member)
 static void write_load(struct writer *writer, int member)
 {
   char key[60];
-  snprintf(key, sizeof key, "%s_drive_side", member_name[member]);
+  snprintf(key, sizeof key, "%s_drive_side", eo_member_name[member]);
   const char *side = json_string_value(json_object_get(writer->shafts, key));
   eo_rexs_build(&writer->builder, LOAD + member, "external_load", member == EO_PINION ? "driver" : "driven");
   eo_rexs_build_number(&writer->builder, "u_coordinate_on_shaft",
@@ -232,7 +231,7 @@ static void write_flank(struct writer *writer, int member, int end, int side, in
       tool = TOOL + member + (end == EO_RIGHT && writer->right ? 6 : 0);
   const json_t *pair = pair_of(writer, end);
   const json_t *block = json_object_get(
-      json_object_get(json_object_get(writer->document, "modification"), member_name[member]), end_name[end]);
+      json_object_get(json_object_get(writer->document, "modification"), eo_member_name[member]), eo_end_name[end]);
   bool loaded = side == (writer->mirror < 0);
   block = loaded ? block : json_object_get(block, "coast");
   double offset = json_number_value(json_object_get(block, "lead_offset_um"));
@@ -267,7 +266,7 @@ static void write_gear(struct writer *writer, int member, int end, int *modifica
 {
   int id = GEAR + 2 * member + end;
   char name[40];
-  snprintf(name, sizeof name, writer->ends == 2 ? "%s %s" : "%s", member_name[member], end_name[end]);
+  snprintf(name, sizeof name, writer->ends == 2 ? "%s %s" : "%s", eo_member_name[member], eo_end_name[end]);
   eo_rexs_build(&writer->builder, id, "cylindrical_gear", name);
   eo_rexs_build_whole(&writer->builder, "number_of_teeth", writer->geometry->teeth[member]);
   eo_rexs_build_number(&writer->builder, "normal_module",
@@ -398,7 +397,7 @@ static double overhang(const struct writer *writer)
          reach = fmax(left, right) + face_width(writer, EO_LEFT);
   for (int i = 0; i < 4; i++) {
     char key[60];
-    snprintf(key, sizeof key, "%s_%s_bearing_mm", member_name[i / 2], end_name[i % 2]);
+    snprintf(key, sizeof key, "%s_%s_bearing_mm", eo_member_name[i / 2], eo_end_name[i % 2]);
     reach = fmax(reach, fabs(json_number_value(json_object_get(writer->shafts, key))));
   }
   return reach - fmin(left, right);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "gear/names.h"
 
 /* The table of a flank's keys. */
 static const struct eo_table *flank_table(void)
@@ -221,7 +222,6 @@ static void set_up(struct eo_rexs_flank *flank, struct eo_rexs_import *import, i
 
 static void read_flank(struct eo_rexs_import *import, json_t *modification, int member, int end, bool coast)
 {
-  static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   struct eo_rexs_flank flank;
   int side = eo_rexs_loaded_side(import, member, end);
   const struct eo_rexs_component *component = import->wheel[member][end].flank[coast ? !side : side], *found;
@@ -245,7 +245,7 @@ static void read_flank(struct eo_rexs_import *import, json_t *modification, int 
     flank.lead_offset = (isnan(flank.lead_offset) ? 0 : flank.lead_offset) + offset * flank.amount;
   any = any || !isnan(offset);
   if (any && (!coast || takes("coast"))) {
-    json_t *object = eo_rexs_part(import, eo_rexs_part(import, modification, member_name[member]), end_name[end]);
+    json_t *object = eo_rexs_part(import, eo_rexs_part(import, modification, eo_member_name[member]), eo_end_name[end]);
     put_flank(&flank, coast ? eo_rexs_part(import, object, "coast") : object);
     eo_import_say(import->out, import->out->assumed,
                   import->options->transverse ? "amounts stand in the transverse section and were turned to the normal"

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "exchange/flank_rest.h"
+#include "gear/names.h"
 
 #include <config.h>
 
@@ -148,15 +149,15 @@ static int put_face(struct writer *writer, struct eo_step_part *part, const stru
 
 static int put_shell(struct writer *writer, struct eo_step_part *part, int number)
 {
-  static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct eo_tooth *tooth = part->tooth;
   double turn = number * 2 * M_PI / tooth->geometry->teeth[tooth->member];
   int face[EO_FLANK_PIECES];
   memset(part->id, 0, sizeof *part->id * (size_t)(part->edges + part->vertices));
   for (int k = 0; k < part->faces; k++)
     face[k] = put_face(writer, part, &part->face[k], turn);
-  eo_text_print(writer->text, "#%d=OPEN_SHELL('%s %s end, tooth %d, %s',", ++writer->last, member_name[tooth->member],
-                tooth->two_ends ? end_name[tooth->end] : "single", number + 1, eo_tooth_part_names[part->part]);
+  eo_text_print(writer->text, "#%d=OPEN_SHELL('%s %s end, tooth %d, %s',", ++writer->last,
+                eo_member_name[tooth->member], tooth->two_ends ? eo_end_name[tooth->end] : "single", number + 1,
+                eo_tooth_part_names[part->part]);
   add_list(writer->text, part->faces, face, 1);
   eo_text_add(writer->text, ");\n");
   return writer->last;
@@ -251,14 +252,13 @@ static bool write_shells(struct writer *writer, const struct eo_tooth *tooth, bo
 void eo_step_write(const struct eo_design *design, const struct eo_geometry *geometry, int member, bool whole,
                    struct eo_text *text)
 {
-  static const char *const member_name[2] = {"pinion", "gear"};
   struct writer writer = {text, 0};
   char name[200], product[220];
   int context, shells = 0, ends = design->gear_pair.ends;
   int *shell = malloc((size_t)ends * EO_TOOTH_PARTS * (size_t)geometry->teeth[member] * sizeof *shell);
   bool good = shell != NULL;
   clean_name(design->name, name);
-  snprintf(product, sizeof product, "%s%s%s", name, *name ? ", " : "", member_name[member]);
+  snprintf(product, sizeof product, "%s%s%s", name, *name ? ", " : "", eo_member_name[member]);
   write_header(text, product);
   int shape = write_product(&writer, product, &context);
   for (int end = 0; end < ends && good; end++) {

@@ -2,18 +2,18 @@
 /* What both ways to solve a member share: progress, the unknowns of flank and root, displacements in the root. */
 #include "flexibility/member_private.h"
 #include "base/clock.h"
+#include "gear/names.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum eo_code eo_member_report(const struct eo_member_job *job, const char *step, double fraction)
 {
-  static const char *const name[2] = {"pinion", "gear"};
   char what[64];
   if (!job->progress)
     return EO_OK;
   what[0] = 0;
-  strcat(strcat(strcat(what, name[job->member]), ": "), step);
+  strcat(strcat(strcat(what, eo_member_name[job->member]), ": "), step);
   if (eo_progress_report(job->progress, what, fraction))
     return eo_error_set(job->error, EO_ERROR_CANCELLED, "", "The preparation of the flexibility was stopped.");
   return EO_OK;

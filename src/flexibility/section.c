@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/names.h"
+
 enum { MAX_TEETH = 5, MOST_RINGS = 64 };
 
 /* The nodes of one tooth, as grids of node numbers. */
@@ -323,16 +325,15 @@ static enum eo_code allocate(struct builder *builder)
 
 static enum eo_code check(const struct builder *builder, struct eo_error *error)
 {
-  static const char *const name[2] = {"pinion", "gear"};
   if (builder->settings->teeth >= builder->geometry->teeth[builder->member])
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
                         "A sector of %d teeth does not fit round the %s with its %d teeth.", builder->settings->teeth,
-                        name[builder->member], builder->geometry->teeth[builder->member]);
+                        eo_member_name[builder->member], builder->geometry->teeth[builder->member]);
   if (!(builder->section->bore_radius > 0 &&
         builder->section->bore_radius < 0.98 * builder->geometry->root_radius[builder->member]))
     return eo_error_set(error, EO_ERROR_INPUT,
                         builder->member ? "/gear_pair/gear_bore_mm" : "/gear_pair/pinion_bore_mm",
-                        "The bore of the %s leaves no rim below its teeth.", name[builder->member]);
+                        "The bore of the %s leaves no rim below its teeth.", eo_member_name[builder->member]);
   return EO_OK;
 }
 

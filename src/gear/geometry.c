@@ -7,8 +7,8 @@
 
 #include "gear/entry.h"
 #include "gear/fillet.h"
+#include "gear/names.h"
 
-static const char *const name[2] = {"pinion", "gear"};
 static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
 static const char *const tip_key[2] = {"/gear_pair/pinion_tip_diameter_mm", "/gear_pair/gear_tip_diameter_mm"};
 
@@ -197,7 +197,7 @@ static enum eo_code set_root(struct eo_geometry *geometry, int i, struct eo_erro
                 flank_end / sin(geometry->transverse_pressure_angle);
   if (geometry->root_radius[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
-                        "The root radius of the %s, %.6g mm, is not positive.", name[i],
+                        "The root radius of the %s, %.6g mm, is not positive.", eo_member_name[i],
                         1e3 * geometry->root_radius[i]);
   double tip_half = M_PI * geometry->normal_module / 4 -
                     (geometry->dedendum[i] - geometry->fillet_radius[i]) * tan(geometry->normal_pressure_angle);
@@ -206,7 +206,8 @@ static enum eo_code set_root(struct eo_geometry *geometry, int i, struct eo_erro
         error, EO_ERROR_INPUT, "/gear_pair/fillet_radius_coefficient",
         "The fillet radius of the %s, %.6g m_n, does not fit into the tip of the basic rack: with a "
         "dedendum of %.6g m_n at most %.4g m_n.",
-        name[i], geometry->fillet_radius[i] / geometry->normal_module, geometry->dedendum[i] / geometry->normal_module,
+        eo_member_name[i], geometry->fillet_radius[i] / geometry->normal_module,
+        geometry->dedendum[i] / geometry->normal_module,
         eo_gear_rack_largest_fillet(geometry->dedendum[i] / geometry->normal_module, geometry->normal_pressure_angle));
   geometry->undercut[i] = roll <= 0;
   geometry->least_shift[i] = geometry->profile_shift[i] -
@@ -285,7 +286,7 @@ static enum eo_code set_path(struct eo_geometry *geometry, const struct eo_gear_
           error, EO_ERROR_INPUT, isnan(pair->tip_diameter[i]) ? shift_key[i] : tip_key[i],
           "The flank of the %s ends at %.6g mm, not above its working pitch radius, %.6g mm: more profile "
           "shift on this member and less on the other.",
-          name[i], 1e3 * geometry->tip_form_radius[i], 1e3 * geometry->working_radius[i]);
+          eo_member_name[i], 1e3 * geometry->tip_form_radius[i], 1e3 * geometry->working_radius[i]);
     length[i] = sqrt(geometry->tip_form_radius[i] * geometry->tip_form_radius[i] -
                      geometry->base_radius[i] * geometry->base_radius[i]) -
                 geometry->tangent_length[i];
@@ -304,7 +305,7 @@ static enum eo_code set_path(struct eo_geometry *geometry, const struct eo_gear_
           "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of "
           "the %s%s: at most "
           "%.6g mm of tip radius.",
-          name[1 - i], -1e3 * roll, name[i], geometry->undercut[i] ? ", which is undercut" : "",
+          eo_member_name[1 - i], -1e3 * roll, eo_member_name[i], geometry->undercut[i] ? ", which is undercut" : "",
           1e3 * hypot(geometry->base_radius[1 - i], geometry->tangent_length[0] + geometry->tangent_length[1]));
     geometry->start_radius[i] = hypot(geometry->base_radius[i], roll);
   }
@@ -328,20 +329,21 @@ static enum eo_code check_tip(struct eo_geometry *geometry, int i, const struct 
         error, EO_ERROR_INPUT, shift_key[i],
         "The teeth of the %s are pointed below the tip radius %.6g mm: less profile shift, or a smaller tip "
         "diameter.",
-        name[i], 1e3 * geometry->tip_radius[i]);
+        eo_member_name[i], 1e3 * geometry->tip_radius[i]);
   if (geometry->start_radius[i] < geometry->form_radius[i])
     return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(geometry, pair, i),
                         "The tip of the %s interferes with the fillet of the %s: the active profile would start at "
                         "radius %.6g mm, the involute at %.6g mm%s: a tip radius of at most %.6g mm clears it.",
-                        name[other], name[i], 1e3 * geometry->start_radius[i], 1e3 * geometry->form_radius[i],
-                        geometry->undercut[i] ? ", where the undercut ends" : "", 1e3 * clearing_tip(geometry, i, 0));
+                        eo_member_name[other], eo_member_name[i], 1e3 * geometry->start_radius[i],
+                        1e3 * geometry->form_radius[i], geometry->undercut[i] ? ", where the undercut ends" : "",
+                        1e3 * clearing_tip(geometry, i, 0));
   geometry->tip_clearance[i] = geometry->centre_distance - geometry->tip_radius[i] - geometry->root_radius[other];
   if (geometry->tip_clearance[i] <= 0)
     return eo_error_set(
         error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
         "The tip of the %s touches the root of the %s (clearance %.4g mm): a smaller tip diameter, a deeper "
         "dedendum of the %s, or a larger centre distance.",
-        name[i], name[other], 1e3 * geometry->tip_clearance[i], name[other]);
+        eo_member_name[i], eo_member_name[other], 1e3 * geometry->tip_clearance[i], eo_member_name[other]);
   return EO_OK;
 }
 

@@ -9,6 +9,8 @@
 #include "document/design_document.h"
 #include "gear/modification.h"
 
+const char *const eo_case_end_name[4] = {"left", "right", "single", NULL};
+
 /* Whichever of two spellings is there; the other then stays unread and is a fault. */
 static double either(struct eo_case *object, const char *a, const char *b, double missing)
 {

@@ -10,6 +10,8 @@
 #include "gear/geometry.h"
 #include "reference/verify.h"
 
+extern const char *const eo_case_end_name[4]; /* left, right, single: the one end of a pair that has one; then NULL */
+
 /* A design with the defaults of everything the block does not say, aligned, without modification, with one load case.
    Angles in degrees, with or without "_deg". */
 void eo_case_design(struct eo_case *input, struct eo_design *design);

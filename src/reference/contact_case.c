@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "gear/names.h"
+
 enum { WORD_SIZE = 41 };
 
 enum eo_code eo_contact_rig_prepare(struct eo_contact_rig *rig, const struct eo_pair_options *options,
@@ -52,14 +54,13 @@ void eo_contact_case_modification(struct eo_contact_case *contact_case, const ch
 
 void eo_contact_case_modify(struct eo_contact_case *contact_case, struct eo_case *item, struct eo_design *design)
 {
-  static const char *const side[2] = {"left", "right"};
   const char *both = eo_case_word_given(item, "mod"),
              *name = eo_case_word_given(item, eo_case_find(item, "case") ? "case" : "name");
   char word[WORD_SIZE] = "";
   if (name)
     snprintf(word, sizeof word, "%.*s", (int)strcspn(name, " ,"), name);
   for (int end = 0; end < 2; end++) {
-    const char *own = eo_case_word_given(item, side[end]), *use = own ? own : both ? both : word;
+    const char *own = eo_case_word_given(item, eo_end_name[end]), *use = own ? own : both ? both : word;
     eo_contact_case_modification(contact_case, use, item, &design->modification.flank[EO_PINION][end]);
   }
 }

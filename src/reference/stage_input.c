@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const eo_stage_members[] = {"pinion", "gear", NULL};
-const char *const eo_stage_ends[] = {"left", "right", NULL};
 const char *const eo_stage_pivots[] = {"groove", "mid_face", NULL};
 
 enum eo_code eo_stage_complete(struct eo_design *design, struct eo_geometry *geometry, int end, struct eo_error *error)

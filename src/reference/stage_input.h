@@ -6,6 +6,7 @@
 #include "contact/field.h"
 #include "document/design_document.h"
 #include "evaluation/objective.h"
+#include "gear/names.h"
 
 /* Rows of an input table whose struct starts with `struct eo_design design`. */
 #define EO_STAGE_GEAR_PAIR(type) \
@@ -19,10 +20,10 @@
 #define EO_STAGE_RESOLUTION(type) \
   EO_OBJECT(type, design.resolution, "resolution", &eo_resolution_table, "as in a design document")
 
-extern const char *const eo_stage_members[], *const eo_stage_ends[], *const eo_stage_pivots[];
-#define EO_STAGE_MEMBER(type, member) EO_CHOICE(type, member, "member", eo_stage_members, EO_PINION, "whose flank")
-#define EO_STAGE_END(type, member)                       \
-  EO_CHOICE(type, member, "end", eo_stage_ends, EO_LEFT, \
+extern const char *const eo_stage_pivots[];
+#define EO_STAGE_MEMBER(type, member) EO_CHOICE(type, member, "member", eo_member_name, EO_PINION, "whose flank")
+#define EO_STAGE_END(type, member)                     \
+  EO_CHOICE(type, member, "end", eo_end_name, EO_LEFT, \
             "of the two helical halves; a pair with one end has the left one")
 
 enum eo_stage_pivot { EO_PIVOT_GROOVE, EO_PIVOT_MID_FACE };

@@ -7,11 +7,11 @@
 
 #include "design/resolution.h"
 #include "evaluation/meeting_field.h"
+#include "gear/names.h"
+#include "reference/case_pair.h"
 #include "reference/verify_deviations.h"
 #include "tolerance/pair_sampler.h"
 
-static const char *const end_name[3] = {"left", "right", "single"};
-static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const output_name[EO_BENCH_OUTPUTS] = {
     "PPLTE_um",       "LTE_mean_um",           "max_pressure_MPa",       "PPLTE_left_um",
     "PPLTE_right_um", "max_pressure_left_MPa", "max_pressure_right_MPa", "float_mean_um",
@@ -55,7 +55,7 @@ static bool find_flank(const struct eo_tolerance_bench *bench, const char *name,
     for (int member = 0; member < 2; member++)
       for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
         char key[96];
-        snprintf(key, sizeof key, "%s.%s.%s", end_name[end], member_name[member], terms[i].key);
+        snprintf(key, sizeof key, "%s.%s.%s", eo_case_end_name[end], eo_member_name[member], terms[i].key);
         if (strcmp(name, key) != 0 || (end == 2) != (bench->ends == 1))
           continue;
         const struct eo_flank_modification *flank = bench->flank == EO_COAST_FLANK
@@ -175,13 +175,13 @@ static void read_flanks(struct eo_tolerance_bench *bench, struct eo_case *flanks
 {
   struct eo_modification *modification = &bench->nominal.modification;
   for (int end = 0; end < bench->ends; end++) {
-    struct eo_case *of_end = flanks ? eo_case_find(flanks, end_name[bench->ends == 1 ? 2 : end]) : NULL;
+    struct eo_case *of_end = flanks ? eo_case_find(flanks, eo_case_end_name[bench->ends == 1 ? 2 : end]) : NULL;
     if (flanks && !of_end)
       eo_case_fault(flanks, "The flanks of every end are expected here.");
     if (eo_case_find(eo_case_find(of_end, "pinion"), "grid") || eo_case_find(eo_case_find(of_end, "gear"), "grid"))
       eo_case_fault(of_end, "Flanks of this kind of file have terms by name, no grids.");
     for (int member = 0; member < 2; member++)
-      eo_case_flank(eo_case_find(of_end, member_name[member]), bench->flank, member, end,
+      eo_case_flank(eo_case_find(of_end, eo_member_name[member]), bench->flank, member, end,
                     bench->flank == EO_COAST_FLANK ? &modification->coast[member][end]
                                                    : &modification->flank[member][end],
                     &bench->nominal.grids);
@@ -192,7 +192,6 @@ enum eo_code eo_bench_read(struct eo_tolerance_bench *bench, struct eo_case *ite
                            struct eo_error *error)
 {
   static const char *const ways[] = {"floating", "fixed", "spring", "single", NULL};
-  static const char *const sides[] = {"drive", "coast", NULL};
   static const char *const flexibilities[] = {"closed_form", "fe", NULL};
   struct eo_case *name = eo_case_need(item, "pair"), *errors = eo_case_find(nominal, "shaft_error_deg");
   struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(bench->file, "pairs"), eo_case_text(name))
@@ -204,7 +203,7 @@ enum eo_code eo_bench_read(struct eo_tolerance_bench *bench, struct eo_case *ite
   eo_case_deviation_pair(pair, &bench->nominal);
   bench->ends = bench->nominal.gear_pair.ends;
   bench->torque = eo_case_number(item, "T_Nm");
-  bench->flank = eo_case_choice(item, "flank_used", sides, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+  bench->flank = eo_case_choice(item, "flank_used", eo_flank_side_name, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
   int way = eo_case_need(item, "pinion_axial") ? eo_case_choice(item, "pinion_axial", ways, 0) : 0;
   bench->hold = (struct eo_axial_hold){.stiffness = way == 1   ? INFINITY
                                                     : way == 2 ? eo_case_number(item, "pinion_axial_stiffness_N_per_m")

@@ -8,6 +8,7 @@
 #include "contact/hertz.h"
 #include "contact/iso6336.h"
 #include "contact/unloaded.h"
+#include "gear/names.h"
 #include "reference/contact_case.h"
 
 static enum eo_code check_macro(void *context, struct eo_case *macro, struct eo_error *error)
@@ -154,10 +155,9 @@ static void compare_places(struct eo_contact_case *contact_case, struct eo_case 
 /* +1, "right": the right end; -1, "left". */
 static int side_of(struct eo_case *item)
 {
-  static const char *const names[] = {"left", "right", NULL};
   struct eo_case *end = eo_case_find(item, "end");
   if (eo_case_is_text(end))
-    return eo_case_choice(item, "end", names, 1) == 0 ? EO_LEFT : EO_RIGHT;
+    return eo_case_choice(item, "end", eo_end_name, 1) == 0 ? EO_LEFT : EO_RIGHT;
   double sign = end ? eo_case_real(end) : 1;
   if (!isnan(sign) && fabs(sign) != 1)
     eo_case_fault(end, "An end is 1 (right) or -1 (left).");

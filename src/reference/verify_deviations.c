@@ -8,6 +8,7 @@
 #include "contact/pattern.h"
 #include "design/resolution.h"
 #include "evaluation/meeting_field.h"
+#include "gear/names.h"
 #include "reference/case_pair.h"
 
 enum { MOST_POSITIONS = 4096, MOST_POINTS = 4096 };
@@ -44,8 +45,6 @@ struct trial {
   double constant[2]; /* of the gaps, m */
 };
 
-static const char *const end_name[3] = {"left", "right", "single"};
-static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const flexibilities[] = {"closed_form", "fe", NULL};
 
 static enum eo_code check_pairs(void *context, struct eo_case *pairs, struct eo_error *error)
@@ -97,7 +96,7 @@ static enum eo_code prepare_half(struct bench *bench, struct half *half, const s
 
 static struct eo_case *end_of(struct eo_case *object, const struct trial *trial, int end)
 {
-  return object ? eo_case_find(object, end_name[trial->ends == 1 ? 2 : end]) : NULL;
+  return object ? eo_case_find(object, eo_case_end_name[trial->ends == 1 ? 2 : end]) : NULL;
 }
 
 /* How the pinion is held. The constants of the gaps that a file gives are those of its apex offset. */
@@ -109,7 +108,7 @@ static void read_axial(struct trial *trial, double lean)
   double spring = way == 2 ? eo_case_number(trial->item, "pinion_axial_stiffness_N_per_m") : 0;
   trial->hold.stiffness = way == 1 ? INFINITY : spring;
   for (int member = 0; member < 2 && offset; member++)
-    trial->design.alignment.apex_offset[member] = 1e-6 * eo_case_number(offset, member_name[member]);
+    trial->design.alignment.apex_offset[member] = 1e-6 * eo_case_number(offset, eo_member_name[member]);
   if (offset)
     eo_case_remark(offset, "definition");
   struct eo_case *constant = eo_case_find(trial->item, "gap_constant_um");
@@ -133,7 +132,7 @@ static void read_flanks(struct trial *trial)
     if (!of_end)
       eo_case_fault(flanks, "The flanks of every end are expected here.");
     for (int member = 0; member < 2; member++)
-      eo_case_flank(eo_case_find(of_end, member_name[member]), trial->running.flank, member, end,
+      eo_case_flank(eo_case_find(of_end, eo_member_name[member]), trial->running.flank, member, end,
                     coast ? &trial->design.modification.coast[member][end]
                           : &trial->design.modification.flank[member][end],
                     &trial->design.grids);
@@ -142,7 +141,6 @@ static void read_flanks(struct trial *trial)
 
 static enum eo_code read_case(struct trial *trial, struct eo_error *error)
 {
-  static const char *const flanks[] = {"drive", "coast", NULL};
   struct bench *bench = trial->bench;
   struct eo_case *name = eo_case_need(trial->item, "pair"), *errors = eo_case_find(trial->item, "shaft_error_deg"),
                  *widths = eo_case_find(trial->item, "face_width_mm");
@@ -158,7 +156,8 @@ static enum eo_code read_case(struct trial *trial, struct eo_error *error)
   trial->design.resolution.positions = wanted.positions = eo_case_whole_or(trial->item, "positions_per_cycle", 8, 1024,
                                                                            64);
   trial->ends = trial->design.gear_pair.ends;
-  trial->running.flank = eo_case_choice(trial->item, "flank_used", flanks, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+  trial->running.flank = eo_case_choice(trial->item, "flank_used", eo_flank_side_name, 0) == 1 ? EO_COAST_FLANK
+                                                                                               : EO_DRIVE_FLANK;
   trial->running.inwards = trial->running.flank == EO_COAST_FLANK;
   trial->running.in_plane = eo_case_number_or(errors, "inplane", 0) * M_PI / 180;
   trial->running.out_of_plane = eo_case_number_or(errors, "crossing", 0) * M_PI / 180;
@@ -170,7 +169,7 @@ static enum eo_code read_case(struct trial *trial, struct eo_error *error)
     EO_TRY(eo_geometry_init(&geometry, &trial->design.gear_pair, error));
   read_axial(trial, eo_case_faulty(trial->item) ? 0 : sin(geometry.base_helix_angle));
   for (int end = 0; end < trial->ends && !eo_case_faulty(trial->item); end++) {
-    wanted.face_width = widths ? 1e-3 * eo_case_number(widths, end_name[end]) : width;
+    wanted.face_width = widths ? 1e-3 * eo_case_number(widths, eo_case_end_name[end]) : width;
     wanted.phase = end == EO_RIGHT ? lag : 0;
     if (!eo_case_faulty(trial->item))
       EO_TRY(prepare_half(bench, &bench->half[end], &wanted, &trial->design, error));
@@ -354,8 +353,7 @@ static void check_curve(struct trial *trial, struct eo_case *block)
 
 static int end_index(const struct trial *trial, struct eo_case *row)
 {
-  static const char *const names[] = {"left", "right", "single", NULL};
-  int end = eo_case_need(row, "hand") ? eo_case_choice(row, "hand", names, -1) : -1;
+  int end = eo_case_need(row, "hand") ? eo_case_choice(row, "hand", eo_case_end_name, -1) : -1;
   return end == 2 ? 0 : end < trial->ends ? end : -1;
 }
 
@@ -385,12 +383,11 @@ static void check_gap_points(struct trial *trial, struct eo_case *rows)
 
 static void check_interpolation(const struct trial *trial, struct eo_case *rows)
 {
-  static const char *const members[] = {"pinion", "gear", NULL};
   for (int i = 0; i < eo_case_size(rows); i++) {
     struct eo_case *row = eo_case_at(rows, i), *delta = eo_case_need(row, "delta_um"),
                    *this_case = eo_case_need(row, "u_mm"), *the_case = eo_case_need(row, "y_mm");
     int end = end_index(trial, row),
-        member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
+        member = eo_case_need(row, "member") ? eo_case_choice(row, "member", eo_member_name, -1) : -1;
     const struct eo_flank_spline *spline = end < 0 || member < 0 ? NULL : trial->spline[member][end];
     if (!spline)
       eo_case_fault(row, "This flank has no grid.");

@@ -9,6 +9,7 @@
 
 #include "design/resolution.h"
 #include "evaluation/evaluator.h"
+#include "gear/names.h"
 #include "numerics/fourier.h"
 #include "reference/case_pair.h"
 
@@ -358,13 +359,12 @@ static void check_harmonics(const struct expected *expected, struct eo_case *ite
 static enum eo_code read_case(struct bench *bench, struct eo_case *item, struct eo_design *design,
                               struct eo_error *error)
 {
-  static const char *const end_name[2] = {"left", "right"};
   struct eo_case *mods = eo_case_find(bench->file, "mods"), *all = eo_case_find(bench->file, "dynamics_params"),
                  *usual = all ? eo_case_find(all, bench->pair_name) : NULL,
                  *changes = eo_case_find(item, "dyn_changes");
   eo_case_misalignment(eo_case_need(item, "mis_rad"), &design->alignment);
   for (int end = 0; end < 2; end++)
-    eo_case_named_modification(mods, eo_case_word(item, end_name[end]), eo_case_find(item, end_name[end]),
+    eo_case_named_modification(mods, eo_case_word(item, eo_end_name[end]), eo_case_find(item, eo_end_name[end]),
                                &design->gear_pair, &design->modification.flank[EO_PINION][end]);
   design->load_case[0] = (struct eo_load_case){
       .torque = eo_case_number(item, "T_Nm"), .speed = eo_case_number(item, "rpm") * M_PI / 30, .share = 1};

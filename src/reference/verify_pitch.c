@@ -9,6 +9,7 @@
 
 #include "contact/hunting.h"
 #include "numerics/periodic.h"
+#include "reference/case_pair.h"
 
 enum { MOST_TEETH = 1024, CURVES = 4, PAIR = 2, FLOAT = 3 };
 
@@ -31,7 +32,7 @@ static const char *const tooth_key[2] = {"pinion_tooth", "gear_tooth"};
 
 static const char *end_key(const struct trial *trial, int end)
 {
-  return trial->ends == 1 ? "single" : end == EO_LEFT ? "left" : "right";
+  return eo_case_end_name[trial->ends == 1 ? 2 : end];
 }
 
 static void read_tables(struct trial *trial)
@@ -183,10 +184,9 @@ static void check_cycles(const struct trial *trial, struct eo_case *block)
 static void check_most_load(const struct trial *trial, struct eo_case *block)
 {
   const struct eo_hunting *hunting = &trial->hunting;
-  static const char *const hands[] = {"left", "right", "single", NULL};
   double relative = eo_case_relative_or(trial->tolerance, "max_tooth_load_rel", 0.005),
          most = fmax(hunting->most_load[0].value, hunting->most_load[1].value);
-  int hand = eo_case_find(block, "hand") ? eo_case_choice(block, "hand", hands, 0) : 0,
+  int hand = eo_case_find(block, "hand") ? eo_case_choice(block, "hand", eo_case_end_name, 0) : 0,
       end = hand == 1 ? trial->ends - 1 : 0;
   int line = eo_case_whole(block, "line", hunting->first_line, hunting->first_line + hunting->lines - 1),
       cycle = eo_case_whole(block, "cycle", 0, hunting->cycles - 1),

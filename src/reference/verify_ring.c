@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/names.h"
 #include "reference/case_pair.h"
-
-static const char *const member_name[] = {"pinion", "gear", NULL};
 
 enum { MOST_DISTANCE = 6, MOST_POINTS = 40 };
 
@@ -143,8 +142,8 @@ static int read_points(struct eo_case *list, double (*place)[2])
 static const char *support_of(struct eo_case *value, int *member)
 {
   for (*member = 0; *member < 2; ++*member) {
-    size_t length = strlen(member_name[*member]);
-    if (strncmp(eo_case_key(value), member_name[*member], length) == 0 && eo_case_key(value)[length] == '_')
+    size_t length = strlen(eo_member_name[*member]);
+    if (strncmp(eo_case_key(value), eo_member_name[*member], length) == 0 && eo_case_key(value)[length] == '_')
       return eo_case_key(value) + length + 1;
   }
   return NULL;
@@ -263,7 +262,7 @@ static enum eo_code check_lines(void *context, struct eo_case *block, struct eo_
 {
   enum eo_code code = EO_OK;
   for (int member = 0; member < 2 && !code; member++) {
-    struct eo_case *supports = eo_case_find(block, member_name[member]);
+    struct eo_case *supports = eo_case_find(block, eo_member_name[member]);
     for (int i = 0; i < eo_case_size(supports) && !code && !eo_case_faulty(block); i++)
       code = check_line(context, member, eo_case_at(supports, i), error);
   }

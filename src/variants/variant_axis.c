@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "variants/variant_axis.h"
 #include "format/json.h"
+#include "gear/names.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,7 +53,7 @@ static bool add_key(struct eo_variant_axis *axis, const char *name, const char *
 static bool add_name(struct eo_variant_axis *axis, const char *name, const struct eo_design *design,
                      const char *pointer, struct eo_faults *faults)
 {
-  static const char *const wild[] = {".*.", ".both."}, *const end[] = {"left", "right"};
+  static const char *const wild[] = {".*.", ".both."};
   char before[EO_KEY_PATH], path[EO_KEY_PATH + 16];
   for (int w = 0; w < 2; w++) {
     const char *at = strstr(name, wild[w]);
@@ -65,7 +66,7 @@ static bool add_name(struct eo_variant_axis *axis, const char *name, const struc
       if (of_case)
         snprintf(path, sizeof path, "%s%d.%s", before, i + 1, at + strlen(wild[w]));
       else
-        snprintf(path, sizeof path, "%s%s.%s", before, end[i], at + strlen(wild[w]));
+        snprintf(path, sizeof path, "%s%s.%s", before, eo_end_name[i], at + strlen(wild[w]));
       if (!add_key(axis, path, pointer, faults))
         return false;
     }
