@@ -167,12 +167,13 @@ static double find_start(const struct corner *corner, double reach)
 static void corner_init(struct corner *corner, const struct eo_geometry *geometry,
                         const struct eo_modification_shape shape[2], int side, double reach)
 {
+  static const double INSIDE = 1e-4; /* of the active profile: the point a little inside */
   corner->geometry = geometry;
   corner->shape = shape;
   corner->tip = side == 0 ? EO_GEAR : EO_PINION;
   corner->flank = 1 - corner->tip;
   double top = corner->tip == EO_PINION ? geometry->rack_top : -geometry->rack_bottom,
-         inside = 1e-4 * (geometry->rack_top - geometry->rack_bottom), unused[2];
+         inside = INSIDE * (geometry->rack_top - geometry->rack_bottom), unused[2];
   static const struct eo_modification_shape none = {0};
   place_profile(geometry, corner->tip, &shape[corner->tip], top, corner->point[0], unused);
   place_profile(geometry, corner->tip, &shape[corner->tip], top - inside, corner->point[1], unused);
@@ -252,6 +253,8 @@ static void make(struct eo_corner_gap *table, const struct corner *corner, const
   advance(table);
 }
 
+static const double REACH = 0.25; /* p_bt: how far beyond the path of contact the corners' gaps are kept */
+
 void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry *geometry)
 {
   static const struct eo_modification_shape none[2];
@@ -259,7 +262,7 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
     struct corner corner;
     table[side].rule = EO_TILT_ROTATED;
     table[side].start = 0;
-    table[side].reach = 0.25 * geometry->transverse_base_pitch;
+    table[side].reach = REACH * geometry->transverse_base_pitch;
     corner_init(&corner, geometry, none, side, table[side].reach);
     make(&table[side], &corner, NULL);
   }
@@ -269,14 +272,15 @@ void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geome
                             const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice)
 {
   static const struct eo_modification_shape none[2];
+  static const double LATEST = 0.9; /* of the reach: a table needs some of it behind its start */
+  enum { LEAST_NODES = 8 }; /* fewer: relief so steep that the flank has no outline where the corner strikes; without */
   for (int side = 0; side < 2; side++) {
     struct corner corner;
-    table[side].reach = 0.25 * geometry->transverse_base_pitch;
+    table[side].reach = REACH * geometry->transverse_base_pitch;
     corner_init(&corner, geometry, shape, side, table[side].reach);
-    if (corner.outline.nodes <
-        8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
+    if (corner.outline.nodes < LEAST_NODES)
       corner_init(&corner, geometry, none, side, table[side].reach);
-    table[side].start = find_start(&corner, 0.9 * table[side].reach);
+    table[side].start = find_start(&corner, LATEST * table[side].reach);
     make(&table[side], &corner, slice);
   }
 }

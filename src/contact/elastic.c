@@ -10,6 +10,7 @@
 enum { MODES = EO_SHAFT_MODES, PART = 2 * EO_DEFLECTION_NODES };
 
 static const double MOST_SHIFT = 0.999; /* of P: an axially held pinion may all but unload one end */
+static const double ROUNDING = 1e-12;   /* m */
 
 /* Where a point stands among the nodes of its end. */
 struct place {
@@ -199,7 +200,7 @@ static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *el
   if (elastic_case->hold.play > 0 && stopped == 0) { /* free between the stops: the thrust alone decides */
     *held = false;
     el->shift = elastic_case->hold.shift;
-    return fabs(miss) > 1e-12 ? miss : 0;
+    return fabs(miss) > ROUNDING ? miss : 0;
   }
   *held = fabs(el->shift) < MOST_SHIFT * elastic_case->load || miss * el->shift > 0;
   return *held ? miss : 0;

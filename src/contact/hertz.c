@@ -39,14 +39,16 @@ double eo_local_law_load(const struct eo_local_law *law, double approach)
     return 0;
   if (approach >= eo_local_law_approach(law, most))
     return most;
+  enum { STEPS = 100 };
+  static const double ROUNDING = 1e-16; /* of the load */
   /* The approach is concave: Newton's steps from a load that is too small approach the root from below, each one
      shorter. */
   double load = approach / law->slope / (law->constant - log(approach / law->slope) + 1);
   while (eo_local_law_approach(law, load) > approach)
     load /= 2;
-  for (int i = 0; i < 100; i++) {
+  for (int i = 0; i < STEPS; i++) {
     double step = (approach - eo_local_law_approach(law, load)) / eo_local_law_derivative(law, load);
-    if (!(step > 1e-16 * load))
+    if (!(step > ROUNDING * load))
       break;
     load += step;
   }

@@ -157,10 +157,11 @@ static const double place_error = 5e-7;
 static double closing_slope(const struct search *search, double s, double eta)
 {
   const struct eo_gap_field *field = search->field;
-  const double half = search->grid->geometry.face_width / 2, step = 1e-5;
+  static const double LEVEL = 1e-9; /* of the lean: spur teeth touch all along the face at once */
+  const double half = search->grid->geometry.face_width / 2, step = 1e-5; /* m, of the slope along the kink */
   double slope, before, after;
   eo_gap_field_at(field, s, eta, &slope, NULL);
-  if (search->stations > 1 || field->lean < 1e-9 || fabs(eta) > half - step)
+  if (search->stations > 1 || field->lean < LEVEL || fabs(eta) > half - step)
     return slope;
   eo_gap_field_at(field, s - place_error, eta, &before, NULL);
   eo_gap_field_at(field, s + place_error, eta, &after, NULL);
@@ -178,16 +179,18 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
          length = fmin(settings->patch, geometry->face_width) / cos(geometry->base_helix_angle);
   double law = eo_contact_local_constant(geometry, &grid->material, s),
          mass = eo_impact_mass(geometry, settings->inertia);
+  enum { ROUNDS = 200 };
+  static const double SETTLED = 1e-12; /* of the force */
   if (!impact->touched)
     return;
   impact->speed = fmax(0, -impact->slope) * speed * geometry->base_radius[EO_PINION]; /* theory (I2) */
   /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
   double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
-  for (int i = 0; i < 200; i++) {
+  for (int i = 0; i < ROUNDS; i++) {
     impact->compliance = compliance_factor *
                          (impact->bulk + grid->compliance_scale / length * (law - log(force / length)));
     double next = impact->speed * sqrt(mass / impact->compliance);
-    bool settled = fabs(next - force) <= 1e-12 * next;
+    bool settled = fabs(next - force) <= SETTLED * next;
     force = next;
     if (settled || force == 0)
       break;

@@ -85,12 +85,14 @@ double eo_loaded_blend(struct eo_loaded_workspace *ws, const struct eo_contact_p
   return change;
 }
 
-/* The same, and how far cells reach into contact. */
+/* The same, and how far cells reach into contact: a change of that moves the loads of those at the edge of contact
+   alone, and counts a fiftieth of a deflection. */
 static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *position)
 {
+  static const double OF_SPREAD = 0.02;
   double change = eo_loaded_blend(ws, position);
   if (ws->partial)
-    change = fmax(change, 0.02 * eo_loaded_spread_cells(ws, position));
+    change = fmax(change, OF_SPREAD * eo_loaded_spread_cells(ws, position));
   return change;
 }
 
@@ -104,14 +106,16 @@ bool eo_loaded_factorise(struct eo_loaded_workspace *ws, const struct eo_contact
 /* Raises Z until the loads at a = 0 carry P: a start from nowhere, with every point that matters in contact. */
 static void start_cold(struct eo_loaded_workspace *ws, const struct eo_loaded_problem *problem, double *mode)
 {
+  enum { RISES = 60 };
+  static const double FIRST = 1e-6, FACTOR = 1.5; /* m, from one rise to the next */
   int rank = problem->position->rank;
-  double lowest = INFINITY, rise = 1e-6;
+  double lowest = INFINITY, rise = FIRST;
   for (int i = 0; i < problem->position->points; i++)
     lowest = fmin(lowest, problem->gap[i]);
   memset(mode, 0, sizeof *mode * (size_t)rank);
   memset(ws->correction, 0, sizeof *ws->correction * (size_t)problem->position->points);
   spread_gaps(ws, problem);
-  for (int i = 0; i < 60; i++, rise *= 1.5) {
+  for (int i = 0; i < RISES; i++, rise *= FACTOR) {
     mode[rank] = lowest + rise;
     evaluate(ws, problem, mode);
     if (ws->residual[rank] > 0)
@@ -124,7 +128,9 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct eo_loaded_pr
 static void advance(struct eo_loaded_workspace *ws, const struct eo_loaded_problem *problem)
 {
   enum { CUTS = 30 };
-  static const double SMALL = 1e-13;
+  static const double SMALL = 1e-13;  /* of the load: rounding */
+  static const double PASSED = 0.5;   /* of the slope at the start: as far beyond the minimum a step may end */
+  static const double SHORTEST = 0.1; /* of a step: the secant of a slope that jumps may ask for next to nothing */
   int n = problem->position->rank + 1;
   double slope = eo_dot(n, ws->residual, ws->step), length = 1;
   for (int cut = 0; cut < CUTS; cut++) {
@@ -132,9 +138,9 @@ static void advance(struct eo_loaded_workspace *ws, const struct eo_loaded_probl
       ws->trial[k] = ws->mode[k] + length * ws->step[k];
     evaluate(ws, problem, ws->trial);
     double there = eo_dot(n, ws->residual, ws->step);
-    if (there <= 0 || there < -0.5 * slope || fabs(there) < SMALL * problem->force)
+    if (there <= 0 || there < -PASSED * slope || fabs(there) < SMALL * problem->force)
       break;
-    length *= fmax(0.1, slope / (slope - there));
+    length *= fmax(SHORTEST, slope / (slope - there));
   }
   memcpy(ws->mode, ws->trial, sizeof *ws->mode * (size_t)n);
 }

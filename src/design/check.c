@@ -59,18 +59,19 @@ static enum eo_code check_right_half(const struct eo_gear_pair *pair, const stru
 
 static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_error *error)
 {
-  if (pair->ends == 2 && pair->groove_width < 1e-4)
+  static const double LEAST = 1e-4; /* m: the groove's springs are as stiff as it is narrow */
+  if (pair->ends == 2 && pair->groove_width < LEAST)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
-                        "Two ends need a groove of at least 0.1 mm between them, not %.6g mm.",
+                        "Two ends need a groove of at least %.6g mm between them, not %.6g mm.", 1e3 * LEAST,
                         1e3 * pair->groove_width);
   for (int i = 0; i < 2 && pair->ends == 2; i++)
-    if (eo_gear_pair_groove_width(pair, i) < 1e-4)
+    if (eo_gear_pair_groove_width(pair, i) < LEAST)
       return eo_error_set(error, EO_ERROR_INPUT,
                           i ? "/gear_pair/gear_face_width_mm" : "/gear_pair/pinion_face_width_mm",
                           "The own faces of the %s, %.6g mm, leave %.6g mm of the groove of %.6g mm between them, less "
-                          "than 0.1 mm: a wider groove or narrower faces.",
+                          "than %.6g mm: a wider groove or narrower faces.",
                           eo_member_name[i], 1e3 * pair->member_width[i], 1e3 * eo_gear_pair_groove_width(pair, i),
-                          1e3 * pair->groove_width);
+                          1e3 * pair->groove_width, 1e3 * LEAST);
   return EO_OK;
 }
 

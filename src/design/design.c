@@ -343,7 +343,9 @@ static void add_scenario(struct eo_objective *objective, double in_plane, double
 static void resolve_scenarios(struct eo_objective *objective, const struct eo_alignment *alignment)
 {
   double in = alignment->shaft_angle_in_plane, out = alignment->shaft_angle_out_of_plane;
-  double step = fmax(0.2 * fabs(in), 0.01 * M_PI / 180);
+  /* Of the misalignment, and rad at least; of the compliance; of the speed. */
+  static const double MISALIGNED = 0.2, LEAST = 0.01 * M_PI / 180, SOFTER = 0.1, FASTER = 0.05;
+  double step = fmax(MISALIGNED * fabs(in), LEAST);
   for (int i = 0; i < objective->scenarios; i++) {
     fill(&objective->scenario[i].in_plane, in);
     fill(&objective->scenario[i].out_of_plane, out);
@@ -353,8 +355,8 @@ static void resolve_scenarios(struct eo_objective *objective, const struct eo_al
   add_scenario(objective, in, out, 1, 1);
   for (int sign = -1; sign <= 1; sign += 2) {
     add_scenario(objective, in + sign * step, out, 1, 1);
-    add_scenario(objective, in, out, 1 + 0.1 * sign, 1);
-    add_scenario(objective, in, out, 1, 1 + 0.05 * sign);
+    add_scenario(objective, in, out, 1 + SOFTER * sign, 1);
+    add_scenario(objective, in, out, 1, 1 + FASTER * sign);
   }
 }
 

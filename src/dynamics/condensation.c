@@ -107,14 +107,15 @@ static int solve_responses(const struct eo_oscillator *oscillator, double w, dou
 static void condense_one(const struct eo_oscillator *oscillator, double frequency, int k, bool slopes,
                          struct eo_harmonic *harmonic)
 {
+  static const double OTHER_SHIFT = 1.37, HAIR = 1e-10; /* of the shift: no simple ratio; of the frequency */
   int n = oscillator->n, ends = oscillator->ends;
   double complex b[5 * N], compliance[2][2] = {0}, impact[2][2] = {0}, inverse[2][2], mean[2] = {0};
   double shift = oscillator->shift, w = k * frequency;
   /* An undamped resonance just here: another shift moves it if the meshes feel it, a hair's breadth in frequency avoids
      it if not. */
   for (int attempt = 0; attempt < ATTEMPTS && solve_responses(oscillator, w, shift, b); attempt++) {
-    shift *= 1.37;
-    w *= 1 + 1e-10;
+    shift *= OTHER_SHIFT;
+    w *= 1 + HAIR;
   }
   memset(harmonic, 0, sizeof *harmonic);
   for (int end = 0; end < ends; end++) {

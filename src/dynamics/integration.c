@@ -139,10 +139,11 @@ static void set_tolerances(const struct run *run, double relative, double *toler
 
 static double longest_step(const struct eo_cycle *cycle, int ends)
 {
-  double step = 0.05;
+  static const double LONGEST = 0.05, OF_PULSE = 0.125; /* of the period; of a pulse: none may be stepped over */
+  double step = LONGEST;
   for (int end = 0; end < ends; end++)
     if (cycle->pulse[end].shape == EO_PULSE_HALF_SINE)
-      step = fmin(step, cycle->pulse[end].duration / 8);
+      step = fmin(step, cycle->pulse[end].duration * OF_PULSE);
   return step;
 }
 

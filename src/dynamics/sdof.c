@@ -20,6 +20,10 @@ enum {
   LEAD_PERIODS = 3
 };
 
+static const double BELOW = 0.999;       /* of the frequency where a branch starts: the start lies inside */
+static const double LONGEST_STEP = 0.04; /* along a branch: as of eo_branch_options */
+static const double LOW = 0.2, HIGH = 3; /* frequencies, of the natural one, that a branch covers at least */
+
 /* The oscillator, its law and the workspace. */
 struct setup {
   struct eo_oscillator oscillator;
@@ -172,10 +176,10 @@ static enum eo_code follow_from(struct setup *setup, const struct eo_sdof *sdof,
   if (!report.converged)
     return eo_error_set(error, EO_ERROR_NUMERIC, "",
                         "No periodic response was found at the frequency %g where the branch starts.", low);
-  options.low = low * 0.999;
+  options.low = low * BELOW;
   options.high = high;
   options.size = sdof->mean_force;
-  options.longest_step = 0.04;
+  options.longest_step = LONGEST_STEP;
   return eo_branch_follow(setup->balance, &setup->oscillator, &setup->cycle, x, 1, &options, visit, context, &end,
                           error);
 }
@@ -202,7 +206,7 @@ static enum eo_code solve_by_branch(const struct eo_sdof *sdof, enum eo_sdof_sta
     return eo_error_memory(error);
   passages->frequency = sdof->frequency;
   passages->terms = 1 + 2 * BRANCH_HARMONICS;
-  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage,
+  enum eo_code code = follow(sdof, fmin(LOW, 0.5 * sdof->frequency), fmax(HIGH, 2 * sdof->frequency), note_passage,
                              passages, error);
   *response = (struct eo_sdof_response){0};
   for (int i = 0; i < passages->count && !code; i++) {

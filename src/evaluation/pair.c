@@ -173,7 +173,7 @@ struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *
                               2, /* ISO 6336-1 C_B of unlike racks: the mean */
       .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
       .blank_factor = 1,
-      .theory_factor = 0.8,
+      .theory_factor = 0.8, /* C_M of ISO 6336-1, solid discs measured against theory */
       .youngs_modulus = eo_material_mean_modulus(&pair->material)};
 }
 

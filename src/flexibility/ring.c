@@ -276,11 +276,12 @@ enum eo_code eo_ring_solve(struct eo_ring_motion *motion, const struct eo_ring_t
                            enum eo_ring_method method, const struct eo_progress *progress, const char *what,
                            double first, double last, struct eo_error *error)
 {
+  static const double RIGID_SHARE = 0.1; /* of the progress, where chains leave two harmonics alone */
   struct job job = {.tooth = tooth, .motion = motion};
   bool chains = (method ? method : eo_ring_cheapest(tooth, motion->reach, NULL)) == EO_RING_CHAINS &&
                 isfinite(eo_chain_cost(tooth, motion->reach));
   int count = chains ? EO_RING_RIGID : tooth->teeth / 2 + 1, rooms = threads < MOST_THREADS ? threads : MOST_THREADS;
-  double end = chains ? first + 0.1 * (last - first) : last;
+  double end = chains ? first + RIGID_SHARE * (last - first) : last;
   rooms = rooms < count ? rooms : count;
   enum eo_code code = make_room(&job, rooms, error);
   for (; job.harmonic < count && !code; job.harmonic += rooms) {

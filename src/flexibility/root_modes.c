@@ -136,6 +136,8 @@ static enum eo_code fit(int rows, int rank, int stride, const double *factor, in
 
 /* Of squares, of the largest influence there is; of the others less, since several carry at once. */
 static const double TOLERANCE[EO_ROOT_CARRIERS] = {[EO_ROOT_ALL] = 3e-6, [EO_ROOT_OTHERS] = 3e-7};
+static const double REMOTE_TOLERANCE = 1e-8; /* of the largest influence, as the others */
+static const double MOST_LEFT_OUT = 0.5;     /* of what is taken apart: one shape stays, however small all are */
 
 static int first_row(const struct influence *influence, enum eo_root_carriers carriers)
 {
@@ -168,8 +170,8 @@ static enum eo_code find_shapes(struct eo_root_modes *modes, struct influence *i
   double most = 0;
   for (size_t i = 0; i < (size_t)rows; i++)
     most = fmax(most, gram[i * (size_t)rows + i]);
-  EO_TRY(eo_lowrank_factor(rows, gram, fmin(TOLERANCE[carriers] * influence->largest / most, 0.5), &shapes->rank,
-                           &influence->factor_stride[carriers], &influence->factor[carriers], error));
+  EO_TRY(eo_lowrank_factor(rows, gram, fmin(TOLERANCE[carriers] * influence->largest / most, MOST_LEFT_OUT),
+                           &shapes->rank, &influence->factor_stride[carriers], &influence->factor[carriers], error));
   shapes->stride = padded(shapes->rank);
   return fit_shapes(modes, influence, carriers, error);
 }
@@ -205,7 +207,8 @@ static enum eo_code find_remote(struct eo_root_modes *modes, const struct influe
   int stride = 0;
   for (size_t i = 0; i < n; i++)
     most = fmax(most, influence->far[i * n + i]);
-  enum eo_code code = eo_lowrank_factor((int)n, influence->far, fmin(1e-8 * influence->largest / most, 0.5),
+  enum eo_code code = eo_lowrank_factor((int)n, influence->far,
+                                        fmin(REMOTE_TOLERANCE * influence->largest / most, MOST_LEFT_OUT),
                                         &modes->remote_rank, &stride, &remote, error);
   modes->remote_stride = padded(modes->remote_rank);
   if (!code)

@@ -325,17 +325,26 @@ static enum eo_code allocate(struct builder *builder)
 
 static enum eo_code check(const struct builder *builder, struct eo_error *error)
 {
+  static const double BORE_MOST = 0.98; /* of the root radius: a thinner rim is no mesh */
   if (builder->settings->teeth >= builder->geometry->teeth[builder->member])
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
                         "A sector of %d teeth does not fit round the %s with its %d teeth.", builder->settings->teeth,
                         eo_member_name[builder->member], builder->geometry->teeth[builder->member]);
   if (!(builder->section->bore_radius > 0 &&
-        builder->section->bore_radius < 0.98 * builder->geometry->root_radius[builder->member]))
+        builder->section->bore_radius < BORE_MOST * builder->geometry->root_radius[builder->member]))
     return eo_error_set(error, EO_ERROR_INPUT,
                         builder->member ? "/gear_pair/gear_bore_mm" : "/gear_pair/pinion_bore_mm",
                         "The bore of the %s leaves no rim below its teeth.", eo_member_name[builder->member]);
   return EO_OK;
 }
+
+/* The core narrows towards the foot, so that the lines from the fillet down have room beside it: to this share of the
+   tooth's half angle at the start of its active profile, of which at most so much of the pitch counts; roots may be so
+   thick that no room would be left. */
+static const double CORE_SHARE = 0.6, CORE_PITCH_MOST = 0.35;
+
+/* An involute below the active profile that is shorter than this share of the fillet gets no elements of its own. */
+static const double INVOLUTE_LEAST = 1e-6;
 
 /* Everything that the nodes are placed by. */
 static enum eo_code plan(struct builder *builder)
@@ -348,9 +357,9 @@ static enum eo_code plan(struct builder *builder)
   if (!builder->level)
     return EO_ERROR_MEMORY;
   builder->pitch_angle = 2 * M_PI / geometry->teeth[builder->member];
-  builder->involute_share = involute > 1e-6 * fillet ? involute / (involute + fillet) : 0;
+  builder->involute_share = involute > INVOLUTE_LEAST * fillet ? involute / (involute + fillet) : 0;
   eo_geometry_involute(geometry, builder->member, start, point, normal);
-  builder->inner_angle = 0.6 * fmin(atan2(point[0], point[1]), 0.35 * builder->pitch_angle);
+  builder->inner_angle = CORE_SHARE * fmin(atan2(point[0], point[1]), CORE_PITCH_MOST * builder->pitch_angle);
   builder->foot_radius = fmax(bore, builder->settings->foot_radius);
   double depth = geometry->root_radius[builder->member] - builder->foot_radius;
   grade_levels(builder->level, rim, (fillet + involute) / builder->settings->loaded.fillet[1] / depth);

@@ -255,14 +255,15 @@ static double whole_nanometres(double radius, double usual)
   return radius < usual ? floor(radius * 1e9) / 1e9 : usual;
 }
 
-/* A tip that nobody stated clears the mate's root with a hundredth of a module to spare. */
+/* A tip that nobody stated clears the mate's root. */
 static void shorten_tips(struct eo_geometry *geometry, const struct eo_gear_pair *pair)
 {
+  static const double SPARE = 0.01; /* m_n, along the line of action */
   for (int i = 0; i < 2; i++) {
     double usual = geometry->tip_radius[i];
     if (isnan(pair->tip_diameter[i]) && isnan(pair->tip_alteration))
       geometry->tip_radius[i] = whole_nanometres(
-          fmin(blunt_tip(geometry, i, usual), clearing_tip(geometry, 1 - i, 0.01 * geometry->normal_module)), usual);
+          fmin(blunt_tip(geometry, i, usual), clearing_tip(geometry, 1 - i, SPARE * geometry->normal_module)), usual);
     geometry->shortened[i] = usual - geometry->tip_radius[i];
     geometry->tip_form_radius[i] = geometry->tip_radius[i] - pair->tip_chamfer[i];
   }

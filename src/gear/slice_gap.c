@@ -66,7 +66,7 @@ static int collect_breaks(const struct eo_slice_walk *lead, const struct eo_slic
                           double breaks[MOST_BREAKS])
 {
   const struct eo_geometry *geometry = lead->geometry;
-  double margin = 0.15 * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
+  double margin = EO_TABLE_MARGIN * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
   double low =
       eo_slice_walk_place(lead, (lead->member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top) - margin, 0);
   double high =
@@ -160,15 +160,18 @@ static bool meet(const struct eo_geometry *geometry, const struct eo_slice_walk 
 static bool touch_at_kink(const struct eo_geometry *geometry, const struct eo_modification_shape slice[2],
                           const bool modified[2], double c, struct node *node)
 {
-  enum { STEPS = 60 };
+  enum { STEPS = 60, WIDENINGS = 6 };
+  static const double SPAN = 0.02;                  /* of the active profile: the first stretch */
+  static const double DONE = 1e-11, NARROW = 1e-15; /* m, of the phase and of the stretch: rounding */
+  static const double ENOUGH = 1e-8;                /* m, of the phase when the steps are used up */
   struct eo_slice_walk walk[2];
-  double w = -geometry->rack_factor * c, span = 0.02 * (geometry->rack_top - geometry->rack_bottom), end[2],
+  double w = -geometry->rack_factor * c, span = SPAN * (geometry->rack_top - geometry->rack_bottom), end[2],
          miss[2] = {1, -1};
   for (int member = 0; member < 2; member++)
     eo_slice_walk_init(&walk[member], geometry, member, &slice[member]);
   double place = modified[EO_PINION] ? eo_slice_walk_place(&walk[EO_PINION], geometry->rack_factor * c, 0)
                                      : geometry->rack_factor * c;
-  for (int widen = 0; widen < 6 && !(miss[0] <= 0 && miss[1] >= 0); widen++, span *= 2)
+  for (int widen = 0; widen < WIDENINGS && !(miss[0] <= 0 && miss[1] >= 0); widen++, span *= 2)
     for (int i = 0; i < 2; i++) {
       end[i] = place + (i ? span : -span);
       if (!meet(geometry, walk, modified, end[i], &w, node))
@@ -177,12 +180,12 @@ static bool touch_at_kink(const struct eo_geometry *geometry, const struct eo_mo
     }
   if (!(miss[0] <= 0 && miss[1] >= 0))
     return false;
-  for (int i = 0, last = -1; i < STEPS && end[1] - end[0] > 1e-15; i++) {
+  for (int i = 0, last = -1; i < STEPS && end[1] - end[0] > NARROW; i++) {
     double at = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
     if (!meet(geometry, walk, modified, at, &w, node))
       return false;
     double here = node->phase - c;
-    if (fabs(here) < 1e-11)
+    if (fabs(here) < DONE)
       return true;
     int side = here > 0 ? 1 : 0;
     end[side] = at;
@@ -191,7 +194,7 @@ static bool touch_at_kink(const struct eo_geometry *geometry, const struct eo_mo
       miss[1 - side] /= 2;
     last = side;
   }
-  return fabs(node->phase - c) < 1e-8;
+  return fabs(node->phase - c) < ENOUGH;
 }
 
 /* Newton for the places of both flanks with the derivatives of the involutes: phase = c, and the distances along the
@@ -239,7 +242,7 @@ bool eo_slice_touch_at(const struct eo_geometry *geometry, const struct eo_modif
 {
   const bool modified[2] = {eo_modification_has_profile(&slice[EO_PINION]),
                             eo_modification_has_profile(&slice[EO_GEAR])};
-  double margin = 0.15 * (geometry->path_end - geometry->path_start),
+  double margin = EO_TABLE_MARGIN * (geometry->path_end - geometry->path_start),
          inside = fmin(geometry->path_end + margin, fmax(geometry->path_start - margin, c));
   struct node node;
   if (!touch_smoothly(geometry, slice, modified, inside, &node) &&

@@ -6,7 +6,8 @@
 
 #include "gear/surface.h"
 
-static const double FAN = 1e-3; /* m of w for each kink */
+static const double FAN = 1e-3;   /* m of w for each kink */
+static const double BEND = 1e-12; /* the slope changes by more than rounding: a kink */
 
 struct eo_slice_rack eo_slice_rack_of(const struct eo_geometry *geometry)
 {
@@ -94,7 +95,7 @@ double eo_slice_common_angle(const struct eo_geometry *geometry, const struct eo
 void eo_slice_walk_init(struct eo_slice_walk *walk, const struct eo_geometry *geometry, int member,
                         const struct eo_modification_shape *shape)
 {
-  double margin = 0.3 * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
+  double margin = EO_WALK_MARGIN * (geometry->rack_top - geometry->rack_bottom), vertex[EO_MOST_VERTICES];
   *walk = (struct eo_slice_walk){.geometry = geometry, .shape = shape, .member = member};
   walk->low = (member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top) - margin;
   walk->high = (member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom) + margin;
@@ -102,7 +103,7 @@ void eo_slice_walk_init(struct eo_slice_walk *walk, const struct eo_geometry *ge
   for (int i = 0; i < vertices; i++) {
     double slope[2];
     eo_modification_profile(shape, vertex[i], slope);
-    if (fabs(slope[1] - slope[0]) > 1e-12) {
+    if (fabs(slope[1] - slope[0]) > BEND) {
       walk->kink[walk->kinks++] = vertex[i];
       walk->high += FAN;
     }
@@ -143,9 +144,12 @@ double eo_slice_miss(const struct eo_geometry *geometry, const struct eo_slice_r
 bool eo_slice_walk_in_line(const struct eo_slice_walk *walk, const struct eo_slice_ray *other, double *w,
                            struct eo_slice_ray *ray)
 {
-  enum { STEPS = 80 };
-  double span = 0.01 * (walk->high - walk->low), end[2], miss[2] = {-1, 1};
-  for (int widen = 0; widen < 7 && !(miss[0] >= 0 && miss[1] <= 0); widen++, span *= 2)
+  enum { STEPS = 80, WIDENINGS = 7 };
+  static const double SPAN = 0.01;                  /* of the walk: the first stretch */
+  static const double DONE = 1e-14, NARROW = 1e-15; /* m, of the miss and of the stretch: rounding */
+  static const double ENOUGH = 1e-10;               /* m, of the miss when the steps are used up */
+  double span = SPAN * (walk->high - walk->low), end[2], miss[2] = {-1, 1};
+  for (int widen = 0; widen < WIDENINGS && !(miss[0] >= 0 && miss[1] <= 0); widen++, span *= 2)
     for (int i = 0; i < 2; i++) {
       end[i] = fmin(walk->high, fmax(walk->low, *w + (i ? span : -span)));
       *ray = eo_slice_walk_ray(walk, end[i]);
@@ -157,7 +161,7 @@ bool eo_slice_walk_in_line(const struct eo_slice_walk *walk, const struct eo_sli
     *w = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
     *ray = eo_slice_walk_ray(walk, *w);
     double here = eo_slice_miss(walk->geometry, other, ray);
-    if (fabs(here) < 1e-14 || end[1] - end[0] < 1e-15)
+    if (fabs(here) < DONE || end[1] - end[0] < NARROW)
       return true;
     int side = here > 0 ? 0 : 1;
     end[side] = *w;
@@ -166,7 +170,7 @@ bool eo_slice_walk_in_line(const struct eo_slice_walk *walk, const struct eo_sli
       miss[1 - side] /= 2;
     last = side;
   }
-  return fabs(eo_slice_miss(walk->geometry, other, ray)) < 1e-10;
+  return fabs(eo_slice_miss(walk->geometry, other, ray)) < ENOUGH;
 }
 
 struct eo_slice_ray eo_slice_involute_in_line(const struct eo_geometry *geometry, int member,

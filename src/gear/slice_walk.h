@@ -34,6 +34,10 @@ double eo_slice_common_angle(const struct eo_geometry *geometry, const struct eo
 double eo_slice_miss(const struct eo_geometry *geometry, const struct eo_slice_ray *ray,
                      const struct eo_slice_ray *this_ray);
 
+/* How far beyond the active profile, in parts of it, a touch is looked for: in the table of gaps, and in the walk over
+   a flank, which has to hold every place that the table asks for. */
+static const double EO_TABLE_MARGIN = 0.15, EO_WALK_MARGIN = 0.3;
+
 /* A walk is every normal of a flank in order, so that the one in line with a given normal of the partner can be found.
    The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex. */
 struct eo_slice_walk {

@@ -46,13 +46,14 @@ static void apply_basis(struct eo_saddle *saddle, char side, char transposed, do
 
 static bool basis_has_full_rank(const struct eo_saddle *saddle)
 {
+  static const double ROUNDING = 1e-12;
   double largest = 0, smallest = INFINITY;
   for (int k = 0; k < saddle->columns; k++) {
     const double r = fabs(saddle->basis[k * saddle->rows + k]);
     largest = fmax(largest, r);
     smallest = fmin(smallest, r);
   }
-  return smallest > 1e-12 * largest;
+  return smallest > ROUNDING * largest;
 }
 
 bool eo_saddle_factor(struct eo_saddle *saddle, int rows, int columns, const double *a, const double *p)

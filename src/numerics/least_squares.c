@@ -55,6 +55,7 @@ static bool find_step(const struct search *search, const double *x, double dampi
     if (!held)
       at[free_unknowns++] = j;
   }
+  static const double BARE = 1e-12; /* on the diagonal: of an unknown that moves nothing */
   double solution[MOST];
   for (int a = 0; a < free_unknowns; a++) {
     solution[a] = -gradient[at[a]];
@@ -62,7 +63,7 @@ static bool find_step(const struct search *search, const double *x, double dampi
       double sum = 0;
       for (int i = 0; i < search->m; i++)
         sum += search->jacobian[i * search->n + at[a]] * search->jacobian[i * search->n + at[b]];
-      matrix[a * free_unknowns + b] = a == b ? sum * (1 + damping) + 1e-12 : sum;
+      matrix[a * free_unknowns + b] = a == b ? sum * (1 + damping) + BARE : sum;
     }
   }
   if (!free_unknowns || eo_dense_solve(free_unknowns, matrix, pivot, 1, solution))

@@ -50,14 +50,16 @@ static double first_length(const struct iterate *it, const double *direction)
 static bool search_line(struct iterate *next, const struct iterate *it, eo_smooth_function *function, void *context,
                         const double *direction, double length)
 {
-  for (int halving = 0; halving < 20; halving++, length /= 2) {
+  enum { HALVINGS = 20 };
+  static const double ARMIJO = 1e-4; /* of the fall that the gradient promises */
+  for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
     double predicted = 0;
     for (int k = 0; k < it->n; k++) {
       next->x[k] = fmin(fmax(it->x[k] + length * direction[k], it->low[k]), it->high[k]);
       predicted += it->gradient[k] * (next->x[k] - it->x[k]);
     }
     next->value = function(context, next->x, next->gradient);
-    if (predicted < 0 && next->value <= it->value + 1e-4 * predicted)
+    if (predicted < 0 && next->value <= it->value + ARMIJO * predicted)
       return true;
   }
   return false;
@@ -66,6 +68,7 @@ static bool search_line(struct iterate *next, const struct iterate *it, eo_smoot
 /* BFGS on the inverse; skipped when the curvature along the step is not positive. */
 static void update_inverse(struct iterate *it, const double *step, const double *change)
 {
+  static const double FLAT = 1e-10; /* of the product of step and change */
   const int n = it->n;
   double curvature = 0, scaled[EO_MINIMISE_MAX], quadratic = 0, length = 0, turn = 0;
   for (int k = 0; k < n; k++) {
@@ -73,7 +76,7 @@ static void update_inverse(struct iterate *it, const double *step, const double 
     length += step[k] * step[k];
     turn += change[k] * change[k];
   }
-  if (!(curvature > 1e-10 * sqrt(length * turn)))
+  if (!(curvature > FLAT * sqrt(length * turn)))
     return;
   for (int k = 0; k < n; k++) {
     scaled[k] = 0;

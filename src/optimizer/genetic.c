@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { FIRST_ROWS = 1024 }; /* of the history, which grows */
 enum kind { KIND_TRUE, KIND_PREDICTED, KIND_REUSED };
 
 struct genetic {
@@ -100,7 +101,7 @@ static enum eo_code start(struct eo_optimizer *optimizer, struct eo_error *error
       !genetic->row || !genetic->kind || !genetic->order)
     return eo_error_memory(error);
   EO_TRY(eo_optimizer_reserve_batch(optimizer, optimizer->settings.population + 1, error));
-  EO_TRY(eo_history_init(&genetic->history, optimizer->settings.variables, 1024, error));
+  EO_TRY(eo_history_init(&genetic->history, optimizer->settings.variables, FIRST_ROWS, error));
   for (int row = 0; row < optimizer->archive.count; row++)
     EO_TRY(remember_true(optimizer, row, error));
   eo_random_points(genetic->x, optimizer->settings.population, optimizer->settings.variables, optimizer->settings.seed);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { SAMPLES = 300, STEPS = 32 };
+static const double ENOUGH = 1e-4; /* of the model: less tells no two minima apart */
 static const double start_apart = 0.1, minimum_apart = 0.01, doubt_apart = 0.1; /* distances to keep, over sqrt n */
 
 enum eo_code eo_global_minima_init(struct eo_global_minima *global, int variables, struct eo_error *error)
@@ -101,7 +102,7 @@ static int find_minima(struct eo_global_minima *global, struct eo_credibility_mo
   }
   for (int i = 0; i < count; i++) {
     double *x = starts + (size_t)i * (size_t)n;
-    const double value = eo_composite_minimise(&model->composite, low, high, STEPS, 1e-4, x);
+    const double value = eo_composite_minimise(&model->composite, low, high, STEPS, ENOUGH, x);
     int j = i;
     for (; j > 0 && global->value[j - 1] > value; j--) {
       global->value[j] = global->value[j - 1];

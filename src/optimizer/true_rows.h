@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -45,7 +46,7 @@ int eo_archive_find(const struct eo_archive *archive, const double *asked);
 
 static inline bool eo_archive_failed(const struct eo_archive *archive, int row)
 {
-  return archive->value[row] > 1.7e308;
+  return isinf(archive->value[row]);
 }
 
 #endif
