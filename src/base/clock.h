@@ -26,6 +26,7 @@ struct eo_stopwatch {
   double *slot, start; /* ms */
 };
 
+/* Adds the wall time since the start to the slot, ms. */
 static inline void eo_stopwatch_stop(const struct eo_stopwatch *stopwatch)
 {
   *stopwatch->slot += eo_clock_milliseconds() - stopwatch->start;

@@ -14,6 +14,7 @@ struct eo_hash {
   SHA2_CTX state;
 };
 
+/* SHA-256: empty, then bytes as they come. Nothing to let go of. */
 void eo_hash_init(struct eo_hash *hash);
 void eo_hash_add(struct eo_hash *hash, const void *data, size_t size);
 

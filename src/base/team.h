@@ -23,6 +23,7 @@ struct eo_work_list {
 /* One per calling thread. */
 struct eo_team;
 
+/* The second thread starts with the first work. Errors: memory. */
 enum eo_code eo_team_new(struct eo_team **team, struct eo_error *error);
 
 /* Ends the second thread. */

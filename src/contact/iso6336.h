@@ -33,6 +33,7 @@ struct eo_iso_stiffness {
   double mesh_beta;        /* c_gamma_beta = 0.85 c_gamma_alpha */
 };
 
+/* Single and mesh stiffness by method B (ISO 6336-1 9.3.1, 9.3.2); the input is taken as it is. */
 void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_stiffness_input *input);
 
 /* C_R of a web of thickness b_s in a rim of thickness s_R (9.3.2.3): ratios b_s / b, within 0.2 .. 1.2, and s_R / m_n,
@@ -57,6 +58,8 @@ struct eo_iso_section {
   double stress_correction; /* Y_S */
 };
 
+/* Place of the 30 degree tangent by the iteration of ISO 6336-3 and what follows from it. A root that the tangents do
+   not touch has a chord, an arm or a radius that is not above 0: for the caller to refuse. */
 void eo_iso_section(struct eo_iso_section *section, const struct eo_iso_section_input *input);
 
 /* ISO 6336-3 method B, load at the outer point of single pair contact; no rounding of the tip, Y_DT = 1. */

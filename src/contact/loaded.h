@@ -28,9 +28,11 @@ struct eo_loaded_gaps {
   double *unloaded; /* [positions]: Z0, the approach at first contact, m */
 };
 
+/* Room for a grid, unset. Errors: memory. */
 enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                                  struct eo_error *error);
 void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps);
+/* Gaps at all points, and Z0 of all positions. */
 void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
                         const struct eo_gap_field *field);
 /* Of positions first <= j < last alone, which do not depend on the others. */
@@ -52,6 +54,7 @@ struct eo_loaded_end {
   int failures;      /* positions that did not converge: 0 in a sound result */
 };
 
+/* Room for the positions and points of a grid, zero. Errors: memory. */
 enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_contact_grid *grid, struct eo_error *error);
 void eo_loaded_end_done(struct eo_loaded_end *end);
 

@@ -33,6 +33,7 @@ struct eo_loaded_problem {
   double within;     /* what the approach may be off, m */
 };
 
+/* fmax() without its rules for NaN, which loops over points would pay for. */
 static inline double eo_loaded_larger(double a, double b)
 {
   return a > b ? a : b;

@@ -50,6 +50,7 @@ struct eo_shaft_influence {
   double *mode;   /* [EO_SHAFT_MODES][size]: matrix = sum of mode' mode, nearly */
 };
 
+/* Every number and choice of both is the same: what was bent for one serves the other. */
 bool eo_shafts_equal(const struct eo_shafts *a, const struct eo_shafts *b);
 
 /* pair: resolved; geometry: of its left end. inwards: eta runs towards the groove on both ends, as where the face ends

@@ -29,6 +29,8 @@ struct eo_crew_letter {
   struct eo_text text; /* owned */
 };
 
+/* A message of the tag to a rank. text: NULL for one without words; one that has failed is not sent. Errors: memory,
+   EO_ERROR_FILE of the ranks. */
 enum eo_code eo_crew_send(const struct eo_crew *crew, int to, enum eo_crew_tag tag, const struct eo_text *text,
                           struct eo_error *error);
 

@@ -35,6 +35,7 @@ static inline int eo_crew_bench_look(void *bench, const char *what, double fract
   return atomic_load(((const struct eo_crew_bench *)bench)->stopped);
 }
 
+/* The same as what long computations take. */
 static inline struct eo_progress eo_crew_bench_progress(struct eo_crew_bench *bench)
 {
   return (struct eo_progress){eo_crew_bench_look, bench};

@@ -24,6 +24,7 @@ extern const struct eo_outline eo_update_outline;
 /* New; NULL without memory. */
 json_t *eo_update_encode(const struct eo_update *update);
 
+/* For the terminal: the fitted inputs with their intervals, the misfit before and behind. */
 void eo_update_summary(const struct eo_update *update, struct eo_text *text);
 
 #endif

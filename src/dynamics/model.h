@@ -37,6 +37,7 @@ struct eo_dynamics_model {
   double zero_mode_load; /* largest |load . zero| / (|load| |zero|) of the torques: zero but for roundoff */
 };
 
+/* Place of a motion in q: [member][end][motion]. */
 static inline int eo_dynamics_freedom(int ends, int member, int end, enum eo_motion motion)
 {
   return 3 * (ends * member + end) + (int)motion;

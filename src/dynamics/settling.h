@@ -19,6 +19,8 @@ struct eo_settling {
   int idle[EO_LONGEST_REPEAT];                               /* periods since the best was last bettered */
 };
 
+/* n: coordinates, at most EO_MAX_COORDINATES; settled: share of the swing; max_repeat: 1..EO_LONGEST_REPEAT periods
+   after which the state may come back. Nothing to let go of. */
 void eo_settling_init(struct eo_settling *settling, int n, double settled, int max_repeat);
 
 /* A period begins at y; returns where the largest size of a position within it is to be kept, 0 at first. */

@@ -31,6 +31,7 @@ struct eo_analysis {
                                          over before it would */
 };
 
+/* pair: borrowed for as long as the analysis lives. One thread at a time. Errors: memory. */
 enum eo_code eo_analysis_new(struct eo_analysis **analysis, const struct eo_pair *pair, struct eo_error *error);
 void eo_analysis_free(struct eo_analysis *analysis);
 

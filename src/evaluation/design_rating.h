@@ -37,6 +37,7 @@ struct eo_design_rating {
   double film_ratio, contact_temperature; /* least and largest over load cases and ends */
 };
 
+/* Room for so many load cases. Errors: memory. */
 enum eo_code eo_design_rating_new(struct eo_design_rating **rating, int most_cases, struct eo_error *error);
 void eo_design_rating_free(struct eo_design_rating *rating);
 

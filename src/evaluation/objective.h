@@ -50,6 +50,8 @@ static const double EO_FITNESS_WORST = -1e9;
 /* No number at all, failed. */
 struct eo_objective_case eo_objective_nothing(void);
 
+/* f1, f2, f3 as means over load_case[cases] with their shares, SI (theory (O1)); value[cases]. failed: one of the cases
+   failed or a sum is no number. */
 void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
                       struct eo_objective_sums *sums);
 

@@ -17,6 +17,7 @@ struct eo_flank_frame {
   double tangent[3];
 };
 
+/* What the pieces were made of; borrowed from them. */
 const struct eo_modification_shape *eo_flank_shape_of(const struct eo_flank_pieces *pieces);
 
 /* u of line k at y, within the flank. */
@@ -34,6 +35,7 @@ void eo_flank_swept_at(const struct eo_flank_pieces *pieces, const struct eo_fla
 /* What the rack generates at (u, y), whichever piece that is of. */
 void eo_flank_rack_at(const struct eo_flank_pieces *pieces, double u, double y, struct eo_surface_point *point);
 
+/* The frame at a place, lengths in m. */
 struct eo_flank_frame eo_flank_frame_at(const struct eo_flank_pieces *pieces, double u, double y);
 
 /* How far a point lies beyond the frame's origin towards the tip, and how far out of the tooth. */

@@ -24,6 +24,7 @@ struct eo_patch {
   double control[EO_PATCH_MOST * EO_PATCH_MOST][3]; /* [along p][along q], m */
 };
 
+/* count sites, 2..EO_PATCH_MOST, evenly over 0..1. */
 struct eo_patch_sites eo_patch_even_sites(int count);
 
 /* Halves the intervals that are wide, as many as there is room for; false: for none. */

@@ -52,6 +52,8 @@ const char *eo_rexs_attribute_in(const char *attribute, int version);
 bool eo_rexs_type_known(const char *type);
 
 enum eo_rexs_unit_verdict { EO_REXS_UNIT_RIGHT, EO_REXS_UNIT_SPELT, EO_REXS_UNIT_WRONG, EO_REXS_UNIT_UNKNOWN };
+/* What a file gives as the unit of a rule, against it: right as the version spells it, spelt otherwise, of another
+   size, or no unit that is known. */
 enum eo_rexs_unit_verdict eo_rexs_unit_judge(const char *unit, const char *given, int version);
 /* How the version spells a unit of a rule. */
 const char *eo_rexs_unit_in(const char *unit, int version);

@@ -87,6 +87,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
 void eo_flexibility_free(struct eo_flexibility *flexibility);
 const struct eo_flexibility_report *eo_flexibility_report(const struct eo_flexibility *flexibility);
 
+/* What the settings come to for a member: without a bore it cannot be held there and floats. */
 enum eo_member_support eo_flexibility_support(const struct eo_flexibility_settings *settings,
                                               const struct eo_gear_pair *pair, int member);
 

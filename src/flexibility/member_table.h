@@ -70,6 +70,7 @@ enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_m
 /* Makes the splines from the data; width: of the face. */
 enum eo_code eo_flank_table_connect(struct eo_flank_table *table, double width, struct eo_error *error);
 
+/* Nodes and weights with which a table is read at (s, eta), m. */
 static inline void eo_grid_weights(const struct eo_grid *grid, double s, double eta, struct eo_grid_weights *out)
 {
   double across[EO_SPLINE_WIDTH], along[EO_SPLINE_WIDTH];

@@ -35,6 +35,7 @@ struct eo_ring_tooth {
   double complex *rigid_flank[EO_RING_RIGID]; /* [flank]: N_o, the same motion on the loaded unknowns */
 };
 
+/* Room for a tooth with so many unknowns, unset; teeth: of the ring. Errors: memory. */
 enum eo_code eo_ring_tooth_init(struct eo_ring_tooth *tooth, int teeth, int inner, int flank, int face, bool floating,
                                 struct eo_error *error);
 void eo_ring_tooth_done(struct eo_ring_tooth *tooth);
@@ -58,6 +59,7 @@ enum eo_ring_method { EO_RING_CHEAPEST, EO_RING_HARMONICS, EO_RING_CHAINS };
 /* The cheaper of both. operations: NULL, or what it takes, floating-point operations. */
 enum eo_ring_method eo_ring_cheapest(const struct eo_ring_tooth *tooth, int reach, double *operations);
 
+/* Room for what the loads of a tooth do to teeth up to reach away. Errors: memory. */
 enum eo_code eo_ring_motion_init(struct eo_ring_motion *motion, const struct eo_ring_tooth *tooth, int reach,
                                  struct eo_error *error);
 void eo_ring_motion_done(struct eo_ring_motion *motion);

@@ -23,6 +23,7 @@ struct eo_stress_operator {
   struct eo_stress_stencil (*stencil)[3]; /* [points] */
 };
 
+/* From the root nodes of a meshed sector. Errors: memory. */
 enum eo_code eo_stress_operator_init(struct eo_stress_operator *operator, const struct eo_sector * sector,
                                      const struct eo_material *material, struct eo_error *error);
 void eo_stress_operator_done(struct eo_stress_operator *operator);

@@ -26,6 +26,7 @@ enum eo_json_style {
   EO_JSON_COMPACT,   /* no spaces, in the order of insertion */
   EO_JSON_CANONICAL, /* no spaces, keys sorted by their bytes: for hashes */
 };
+/* Adds a value to the text, which fails without memory. NaN and infinity do not occur in JSON values. */
 void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style style);
 
 /* The same of a value that is taken over; NULL: there was no memory for it, and the text has failed. */

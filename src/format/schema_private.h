@@ -13,6 +13,7 @@
    without memory. */
 json_t *eo_schema_defaults(const struct eo_table *table);
 
+/* Whether a document may leave the key out, and what then holds can be written down. */
 bool eo_schema_has_default(const struct eo_field *field);
 
 /* Of these; null for what is read and never written. New; NULL without memory. */

@@ -16,6 +16,7 @@ struct eo_double_helix {
                       of the end's Z' in the rotation of the pair */
 };
 
+/* From the base helix angles of both ends, rad. */
 static inline struct eo_double_helix eo_double_helix_of(double left_base_helix_angle, double right_base_helix_angle)
 {
   double ratio = cos(left_base_helix_angle) / cos(right_base_helix_angle), left = sin(left_base_helix_angle),

@@ -39,6 +39,7 @@ struct eo_flank_grid {
   bool kind_stated;
 };
 
+/* The grid of one flank; u_knots 0 where it has none. */
 struct eo_flank_grid eo_flank_grid_at(const struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end);
 
 /* Adds or replaces a grid; u_knots 0 takes it away. EO_ERROR_INPUT: the grids together do not fit. */

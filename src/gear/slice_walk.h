@@ -16,6 +16,7 @@ struct eo_slice_rack {
   double sa, ca, sb, cb; /* sin and cos of alpha_n and beta */
 };
 
+/* Of the pair as it is. */
 struct eo_slice_rack eo_slice_rack_of(const struct eo_geometry *geometry);
 
 /* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about
@@ -48,8 +49,10 @@ struct eo_slice_walk {
   double low, high;              /* w at the ends */
 };
 
+/* geometry and shape: borrowed. The walk goes EO_WALK_MARGIN beyond the active profile. */
 void eo_slice_walk_init(struct eo_slice_walk *walk, const struct eo_geometry *geometry, int member,
                         const struct eo_modification_shape *shape);
+/* The normal at w; within a fan it turns about the vertex. */
 struct eo_slice_ray eo_slice_walk_ray(const struct eo_slice_walk *walk, double w);
 
 /* The coordinate of a place u: before (side 0) or behind (side 1) the fan of a kink there. */

@@ -17,6 +17,7 @@ struct eo_surface_point {
   double roll; /* generating roll angle phi, rad */
 };
 
+/* *point: of the flank with its modification at (u, v). theory/surface.md. */
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                          double u, double v, struct eo_surface_point *point);
 
@@ -38,6 +39,7 @@ struct eo_slice_point {
   double normal[2]; /* unit, transverse, out of the tooth */
 };
 
+/* *point at u, m; at a kink with the slope below it. */
 void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                        double u, struct eo_slice_point *point);
 

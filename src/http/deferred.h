@@ -6,7 +6,9 @@
 
 #include "http/request.h"
 
+/* Announces that the reply comes later, from another thread. */
 void eo_request_defer(struct eo_request *request);
+/* The reply is there: the connection wakes. From any thread, once. */
 void eo_request_finish(struct eo_request *request);
 
 /* True when the request has no reply yet and now sleeps. */

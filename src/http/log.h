@@ -11,6 +11,8 @@
 
 struct eo_log;
 
+/* Lines of this level and above, on standard error, by a thread of their own. Errors: memory, which a thread that
+ * cannot start counts as. */
 enum eo_code eo_log_new(struct eo_log **log, enum eo_log_level level, struct eo_error *error);
 
 /* Waits for the reader of what is left, a second at most. NULL is fine. */

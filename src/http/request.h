@@ -53,6 +53,7 @@ struct eo_request {
   size_t sent;                        /* bytes of the reply's body, for the log */
 };
 
+/* path, method: as they came, copied. NULL without memory. */
 struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path,
                                   const char *method);
 void eo_request_free(struct eo_request *request); /* after its upload */
@@ -61,6 +62,7 @@ void eo_request_free(struct eo_request *request); /* after its upload */
 const char *eo_method_name(unsigned method);
 
 const char *eo_request_header(const struct eo_request *request, const char *name); /* NULL: it is not there */
+/* The value of a parameter, decoded; NULL: it is not there. */
 const char *eo_request_query(const struct eo_request *request, const char *name);
 
 /* Zeroed memory for a handler, its to free; NULL: the reply says so. */

@@ -27,6 +27,7 @@ enum eo_code eo_storage_watch_new(struct eo_storage_watch **watch, const char *d
                                   struct eo_error *error);
 void eo_storage_watch_free(struct eo_storage_watch *watch); /* NULL is fine */
 
+/* What is known at the moment; asks no disk, from any thread. */
 struct eo_storage eo_storage_now(struct eo_storage_watch *watch);
 
 /* A request failed so; from any thread. watch may be NULL. Damage stays until the next start. */

@@ -19,6 +19,7 @@ struct eo_found_measurement {
 /* Visits a row; context: a struct eo_found_measurement. */
 enum eo_code eo_measurement_take(void *context, const struct eo_stored_measurement *row, struct eo_error *error);
 
+/* 404: there is no such recording. */
 void eo_reply_no_measurement(struct eo_reply *reply);
 
 #endif

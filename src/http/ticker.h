@@ -7,6 +7,8 @@
 
 struct eo_http;
 
+/* The watchdog: closes slow connections, keeps streams alive. Errors: memory, which a thread that cannot start counts
+ * as. */
 enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error);
 void eo_ticker_stop(struct eo_http *http); /* after http->closing was set */
 

@@ -24,6 +24,7 @@ int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b);
 int eo_dense_factor(int n, double *a, int *pivot);
 void eo_dense_substitute(int n, const double *a, const int *pivot, int columns, double *b);
 
+/* The same as eo_dense_solve() for complex numbers. */
 int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, double complex *b);
 
 /* y[rows] = a[rows][columns] x[columns], and y[columns] = a' x[rows]. */

@@ -4,6 +4,7 @@
 #ifndef EASEOFF_NUMERICS_FOURIER_H
 #define EASEOFF_NUMERICS_FOURIER_H
 
+/* Length of a series of an order. */
 static inline int eo_fourier_terms(int order)
 {
   return 1 + 2 * order;
@@ -16,6 +17,7 @@ void eo_fourier_series(int n, const double *sample, int order, double *series);
 /* basis[1 + 2 order] = 1, cos, sin, ... at one phase: a series' value is its scalar product with it. */
 void eo_fourier_basis(int order, double phase, double *basis);
 
+/* f(phase); any phase. */
 double eo_fourier_value(int order, const double *series, double phase);
 
 #endif

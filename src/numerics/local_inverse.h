@@ -24,6 +24,7 @@ struct eo_local_inverse {
   double (*node)[2]; /* [OCTAVES][CELLS + 1], owned: w, and its slope times the width of the octave's cells */
 };
 
+/* Makes the table. Errors: memory. */
 enum eo_code eo_local_inverse_init(struct eo_local_inverse *inverse, struct eo_error *error);
 void eo_local_inverse_done(struct eo_local_inverse *inverse);
 

@@ -22,6 +22,7 @@ struct eo_composite {
   double softness;                  /* of the largest parts, in sizes; 0: as they are */
 };
 
+/* Room for rows_max rows of so many variables. anatomy: borrowed. Errors: memory. */
 enum eo_code eo_composite_init(struct eo_composite *composite, const struct eo_anatomy *anatomy, int variables,
                                int rows_max, enum eo_tail tail, struct eo_error *error);
 void eo_composite_done(struct eo_composite *composite);

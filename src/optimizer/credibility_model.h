@@ -23,6 +23,8 @@ struct eo_credibility_model {
   int ranked_capacity;
 };
 
+/* Room for settings->model_rows rows; settings and anatomy are borrowed. eo_credibility_model_done() also after an
+   error, which is memory alone. */
 enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings,
                                        const struct eo_anatomy *anatomy, struct eo_error *error);
 void eo_credibility_model_done(struct eo_credibility_model *model);

@@ -19,6 +19,7 @@ struct eo_credibility_pool {
   double *parents, *parent_score; /* [population][n], [population] */
 };
 
+/* Room for the children and parents that the settings ask for; settings: borrowed. Errors: memory. */
 enum eo_code eo_credibility_pool_init(struct eo_credibility_pool *pool, const struct eo_optimizer_settings *settings,
                                       struct eo_error *error);
 void eo_credibility_pool_done(struct eo_credibility_pool *pool);

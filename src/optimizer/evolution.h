@@ -21,6 +21,7 @@ struct eo_evolution {
   double *move;               /* scratch [2 variables] */
 };
 
+/* Room for so many variables, not begun. Errors: memory. */
 enum eo_code eo_evolution_init(struct eo_evolution *evolution, int variables, struct eo_error *error);
 void eo_evolution_done(struct eo_evolution *evolution);
 

@@ -17,6 +17,7 @@ struct eo_global_minima {
   double value[EO_GLOBAL_STARTS];
 };
 
+/* Room for the samples and the minima of so many variables. Errors: memory. */
 enum eo_code eo_global_minima_init(struct eo_global_minima *global, int variables, struct eo_error *error);
 void eo_global_minima_done(struct eo_global_minima *global);
 

@@ -25,11 +25,13 @@ enum eo_stream {
   EO_STREAM_EVOLUTION = 41,    /* evolution strategy: generation = batch, individual = sample, draw = axis */
 };
 
+/* Into 0..1. */
 static inline double eo_unit_clip(double x)
 {
   return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
+/* Euclidean, of a[n] and b[n]. */
 static inline double eo_unit_distance(const double *a, const double *b, int n)
 {
   double sum = 0;

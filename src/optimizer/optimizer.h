@@ -114,6 +114,7 @@ int eo_optimizer_rows(const struct eo_optimizer *optimizer);
 struct eo_row eo_optimizer_row(const struct eo_optimizer *optimizer, int index);
 int eo_optimizer_best(const struct eo_optimizer *optimizer);
 
+/* Of this run so far. */
 struct eo_counters eo_optimizer_counters(const struct eo_optimizer *optimizer);
 
 /* Finished generations; borrowed until the next ask or tell. */

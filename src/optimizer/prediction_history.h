@@ -40,6 +40,7 @@ struct eo_history_estimate {
   double fitness;     /* weighted, NaN for an empty region */
 };
 
+/* Empty, with room for capacity rows. Errors: memory. */
 enum eo_code eo_history_init(struct eo_history *history, int variables, int capacity, struct eo_error *error);
 void eo_history_done(struct eo_history *history);
 

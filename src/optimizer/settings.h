@@ -133,6 +133,7 @@ struct eo_optimizer_settings {
 const char *eo_optimizer_algorithm_name(int algorithm);
 int eo_optimizer_algorithm_find(const char *name);
 
+/* The defaults of the list above, of an algorithm and so many variables. */
 void eo_optimizer_defaults(struct eo_optimizer_settings *settings, int algorithm, int variables);
 
 /* Ranges, and what must fit together; the first fault goes to *error with the pointer /optimization/KEY. */

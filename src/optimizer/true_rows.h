@@ -27,6 +27,7 @@ struct eo_archive {
   int best; /* row with the least value, -1 when none is finite */
 };
 
+/* Empty. Errors: memory. */
 enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int objectives, struct eo_error *error);
 void eo_archive_done(struct eo_archive *archive);
 
@@ -44,6 +45,7 @@ int eo_archive_add(struct eo_archive *archive, const double *x, const double *as
 /* The row asked for by the same bits, or -1. */
 int eo_archive_find(const struct eo_archive *archive, const double *asked);
 
+/* Whether the row has no value. */
 static inline bool eo_archive_failed(const struct eo_archive *archive, int row)
 {
   return isinf(archive->value[row]);

@@ -22,6 +22,7 @@ struct eo_local {
   double low, high; /* the least and the largest of them */
 };
 
+/* Room for the rows that a quadratic of so many variables takes; anatomy: borrowed. Errors: memory. */
 enum eo_code eo_local_init(struct eo_local *local, const struct eo_anatomy *anatomy, int variables,
                            struct eo_error *error);
 void eo_local_done(struct eo_local *local);

@@ -17,6 +17,7 @@ struct eo_view_distance {
   double *point; /* [numbers] of the point last looked at */
 };
 
+/* Without rows. warp: borrowed. Errors: memory. */
 enum eo_code eo_view_distance_init(struct eo_view_distance *distance, const struct eo_cube_warp *warp,
                                    struct eo_error *error);
 void eo_view_distance_done(struct eo_view_distance *distance);
@@ -29,6 +30,7 @@ enum eo_code eo_view_distance_follow(struct eo_view_distance *distance, const st
 void eo_view_distance_visit(struct eo_view_distance *distance, const double *x);
 double eo_view_distance_from(const struct eo_view_distance *distance, int row);
 
+/* Of two rows. */
 double eo_view_distance_between(const struct eo_view_distance *distance, int row, int other);
 
 #endif

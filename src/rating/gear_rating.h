@@ -95,6 +95,8 @@ struct eo_rated_case {
   double flank_static[2], root_static[2]; /* static strength over its stress */
 };
 
+/* Load factors, stresses, what is permissible and safeties of one load case by the basis. Errors: EO_ERROR_INPUT where
+   the load or the pair lies outside what the standard rates. */
 enum eo_code eo_rated_case_find(struct eo_rated_case *rated, const struct eo_rating_basis *basis,
                                 const struct eo_rating_load *load, struct eo_error *error);
 

@@ -21,6 +21,8 @@ struct eo_life_line {
 struct eo_life_line eo_life_flank(enum eo_rating_material material, bool some_pitting, double long_life);
 struct eo_life_line eo_life_root(enum eo_rating_material material, double long_life);
 
+/* Z_NT or Y_NT at a number of cycles, straight between the points of the line in logarithms; the end values beyond
+ * them. */
 double eo_life_factor(const struct eo_life_line *line, double cycles);
 
 /* Cycles to failure at stress over the endurance limit. Both ends go on with the slope beside them: above the static

@@ -47,6 +47,7 @@ struct eo_dynamic_factor {
   double pitch_share, profile_share, relief_share; /* B_p, B_f, B_k */
 };
 
+/* K_V by method B (ISO 6336-1 6.5). EO_ERROR_INPUT: a total contact ratio that is not above 1, no load. */
 enum eo_code eo_dynamic_factor(struct eo_dynamic_factor *dynamic, const struct eo_dynamic_input *input,
                                struct eo_error *error);
 
@@ -114,6 +115,7 @@ struct eo_transverse_input {
 struct eo_transverse_factor {
   double flank, root; /* K_Halpha, K_Falpha */
 };
+/* K_Halpha and K_Falpha by method B (ISO 6336-1 8.3), within their limits. */
 struct eo_transverse_factor eo_transverse_factor(const struct eo_transverse_input *input);
 
 #endif

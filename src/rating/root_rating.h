@@ -34,6 +34,8 @@ struct eo_tooth_root {
   double nominal;                   /* sigma_F0, Y_B = 1 */
 };
 
+/* Factors and nominal stress of a member, 0 or 1, by method B of ISO 6336-3. EO_ERROR_INPUT: the 30 degree tangents do
+   not touch its fillet. */
 enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pair *pair,
                            const struct eo_rating_geometry *geometry, int member,
                            const struct eo_tooth_root_input *input, struct eo_error *error);

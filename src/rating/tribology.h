@@ -27,6 +27,7 @@ struct eo_tribology_state {
    log log (nu + 0.7) straight over log T, nu in mm2/s. */
 double eo_walther_viscosity(double viscosity_40, double viscosity_100, double temperature);
 
+/* geometry: borrowed. Oil and roughness are the rating's; pinion_speed: rad/s. */
 void eo_tribology_state_init(struct eo_tribology_state *state, const struct eo_geometry *geometry,
                              const struct eo_material *material, const struct eo_rating_settings *rating,
                              double pinion_speed);
@@ -48,6 +49,7 @@ struct eo_tribology {
   double film, film_ratio;    /* least */
   double power_loss;          /* friction of the mesh, mean over the mesh cycle, W */
 };
+/* *tribology over the loaded points of an end; where nothing is loaded the film is infinite and all else 0. */
 void eo_tribology_find(struct eo_tribology *tribology, const struct eo_tribology_state *state,
                        const struct eo_contact_grid *grid, const struct eo_loaded_end *end);
 

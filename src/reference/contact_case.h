@@ -13,6 +13,7 @@ struct eo_contact_rig {
   struct eo_evaluator *evaluator;
 };
 
+/* Pair and evaluator of rig->design. eo_contact_rig_done() also after an error: of eo_pair_new(), memory. */
 enum eo_code eo_contact_rig_prepare(struct eo_contact_rig *rig, const struct eo_pair_options *options,
                                     struct eo_error *error);
 void eo_contact_rig_done(struct eo_contact_rig *rig);

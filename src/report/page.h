@@ -15,7 +15,9 @@ struct eo_page {
   bool inches;
 };
 
+/* Head of the HTML file with its style; title: escaped here. */
 void eo_page_begin(const struct eo_page *page, const char *title);
+/* Closes what eo_page_begin() opened. */
 void eo_page_end(const struct eo_page *page);
 
 /* How a key, or a pointer or path that ends in one, is spelt here: the key itself, or spelt. */

@@ -41,6 +41,7 @@ enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t 
                                  struct eo_error *error);
 void eo_events_unsubscribe(struct eo_events *events, int64_t subscription);
 
+/* How many there are at the moment. */
 int eo_events_subscribers(struct eo_events *events);
 int64_t eo_events_published(struct eo_events *events); /* since the start */
 

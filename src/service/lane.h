@@ -44,6 +44,7 @@ struct eo_lane_settings {
   void *context;
 };
 
+/* Starts the threads. Errors: memory, which a thread that cannot start counts as. */
 enum eo_code eo_lane_new(struct eo_lane **lane, const struct eo_lane_settings *settings, struct eo_error *error);
 
 /* False: full, or the lane is stopping (*closed); the task stays the caller's. */
@@ -56,6 +57,7 @@ void eo_lane_wake(struct eo_lane *lane, int64_t job, const struct eo_error *erro
 void eo_lane_stop(struct eo_lane *lane);
 void eo_lane_free(struct eo_lane *lane); /* stops, waits for the threads; NULL is fine */
 
+/* Tasks that no thread has begun. */
 int eo_lane_waiting(struct eo_lane *lane);
 
 /* Lowers the priority of the calling thread, and of those it makes, by nice steps; also elsewhere in this folder. */

@@ -18,6 +18,7 @@ struct eo_pairs_settings {
   double cache_bytes;                         /* of all pairs that are kept on disk */
 };
 
+/* Empty. Errors: memory. */
 enum eo_code eo_pairs_new(struct eo_pairs **pairs, const struct eo_pairs_settings *settings, struct eo_error *error);
 void eo_pairs_free(struct eo_pairs *pairs); /* nothing may be held any more; NULL is fine */
 
@@ -33,6 +34,7 @@ enum eo_code eo_pairs_obtain(struct eo_pairs *pairs, const struct eo_design *des
                              struct eo_held_pair **held, struct eo_error *error);
 void eo_pairs_release(struct eo_pairs *pairs, struct eo_held_pair *held); /* NULL is fine */
 
+/* The pair itself, until it is released. */
 const struct eo_pair *eo_held_pair(const struct eo_held_pair *held);
 
 /* An analysis on the pair for one thread: the one that last served this user (a number that tells users apart, 0:

@@ -172,6 +172,8 @@ struct eo_analysis_question {
   unsigned left_out;
 };
 
+/* Into the lane of what-if questions, in the place of a waiting one of the same token; the question is copied. The
+   answer is the result as text. *job: of EO_ADMISSION_PREPARING. Errors: memory. */
 enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_analysis_question *question,
                                 enum eo_admission *admission, int64_t *job, struct eo_error *error);
 
@@ -212,6 +214,7 @@ struct eo_service_status {
   int64_t true_evaluations, reused_evaluations; /* of this service's jobs since the start */
   int64_t events, cache_bytes;                  /* cache_bytes: of prepared pairs on disk */
 };
+/* Counts at the moment. Errors: of the store, and status->database is false then. */
 enum eo_code eo_service_status(struct eo_service *service, struct eo_service_status *status, struct eo_error *error);
 
 #endif

@@ -86,6 +86,7 @@ enum eo_code eo_store_remove_problem(struct eo_store *store, int64_t problem, in
 /* Looks at every row: how many there are, how many do not have their sum. */
 enum eo_code eo_store_count_damaged(struct eo_store *store, int64_t *rows, int64_t *wrong, struct eo_error *error);
 
+/* Takes the rows away whose check sum is wrong; *removed: how many. */
 enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, struct eo_error *error);
 
 #endif

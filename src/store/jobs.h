@@ -99,6 +99,7 @@ struct eo_stored_prediction {
   const double *x;
   int size;
 };
+/* Keeps what a model foretold for an individual, x[size] in the unit cube; one that is there already stays as it is. */
 enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *prediction,
                                      struct eo_error *error);
 

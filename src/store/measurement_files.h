@@ -37,6 +37,7 @@ enum eo_code eo_measurement_folder_mark(const struct eo_store *store, int64_t id
 /* A marked folder goes away. */
 void eo_measurement_folder_drop(const struct eo_store *store, int64_t id);
 
+/* Whatever stands under the number, marked or not. */
 bool eo_measurement_folder_is_there(const struct eo_store *store, int64_t id);
 
 /* The highest number of a recording here, deleted half-way or set aside; 0: none. What has no number of ours does not

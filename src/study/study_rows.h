@@ -33,6 +33,7 @@ enum eo_code eo_rows_add(struct eo_rows *rows, const struct eo_modification *mod
 void eo_rows_drop(struct eo_rows *rows, int first);
 void eo_rows_done(struct eo_rows *rows);
 
+/* Row 0..count - 1; its address holds while rows are added. */
 static inline struct eo_row_data *eo_rows_at(const struct eo_rows *rows, int index)
 {
   return rows->row[index];

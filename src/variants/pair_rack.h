@@ -22,6 +22,7 @@ enum eo_code eo_pair_rack_take(struct eo_pair_rack *rack, const struct eo_design
                                struct eo_error *error);
 void eo_pair_rack_put(struct eo_pair_rack *rack, struct eo_racked_pair *held); /* NULL is fine */
 
+/* The pair itself, until it is put back. */
 const struct eo_pair *eo_racked_pair(const struct eo_racked_pair *held);
 
 #endif

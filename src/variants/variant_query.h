@@ -32,6 +32,7 @@ enum eo_code eo_variant_query_read(const struct eo_variant_table *table, const s
 double eo_variant_number(const struct eo_variant_table *table, const struct eo_variant_name *name,
                          const struct eo_stored_variant *row);
 
+/* Whether a row meets all conditions; of a number that it does not have only `not equal` holds. */
 bool eo_variant_fits(const struct eo_variant_table *table, const struct eo_variant_conditions *conditions,
                      const struct eo_stored_variant *row);
 
