@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "flexibility/flexibility.h"
 
-#include "flexibility/prepared.h"
+#include "flexibility/flexibility_private.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "flexibility/flexibility.h"
-#include "flexibility/prepared.h"
+#include "flexibility/flexibility_private.h"
 
 #include <config.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "flexibility/root_modes.h"
 
-#include "flexibility/prepared.h"
+#include "flexibility/flexibility_private.h"
 #include "flexibility/root_field.h"
 #include "numerics/dense.h"
 #include "numerics/gram.h"

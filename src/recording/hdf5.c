@@ -2,7 +2,7 @@
 /* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, of two with one channel per column, of records with
    one channel per field, and references to such. Runs in a process of its own. */
 #define H5_USE_110_API
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 #include "recording/hdf5_private.h"
 
 #include <stdbool.h>

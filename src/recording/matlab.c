@@ -3,7 +3,7 @@
    structs, arrays of structs and cells at any depth. Runs in a process of its own. Version 7.3 is HDF5 and read as
    such. */
 #include "recording/bytes.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 #include "recording/source.h"
 #include "recording/tree_columns.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of ASAM MDF 4 files. */
 #include "recording/mdf.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 
 #include <math.h>
 #include <stdlib.h>

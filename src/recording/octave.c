@@ -2,7 +2,7 @@
 /* Text that Octave saves: one variable after the other, each with "# name:", "# type:" and its size before its values.
    Scalars, texts, matrices, ranges, and structs and cells of such. */
 #include "base/decimal.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 #include "recording/source.h"
 #include "recording/tree_columns.h"
 

@@ -3,7 +3,7 @@
 #include "recording/reader.h"
 #include "recording/compound.h"
 #include "recording/isolate.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 #include "recording/tables.h"
 #include "recording/zip_files.h"
 

@@ -3,7 +3,7 @@
 #include "recording/tdms.h"
 #include "recording/bytes.h"
 #include "recording/namesakes.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>

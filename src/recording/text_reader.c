@@ -3,7 +3,7 @@
 /* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
    numbers are looked at twice. */
 #include "base/decimal.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 #include "recording/text_cell.h"
 #include "recording/text_facts.h"
 #include "recording/text_format.h"

@@ -3,7 +3,7 @@
    they are. */
 #include "recording/uff.h"
 #include "base/decimal.h"
-#include "recording/readers.h"
+#include "recording/reader_private.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The readers behind eo_reader_read, one per kind. Internal to the floor. Each makes a new recording or fails; what
-   eo_reader_read says of errors and notes holds for them; options and its progress are never NULL. */
-#ifndef EASEOFF_RECORDING_READERS_H
-#define EASEOFF_RECORDING_READERS_H
+/* The readers behind eo_reader_read(), one per kind, shared by the files that are them. Each makes a new recording or
+   fails; what eo_reader_read says of errors and notes holds for them; options and its progress are never NULL. */
+#ifndef EASEOFF_RECORDING_READER_PRIVATE_H
+#define EASEOFF_RECORDING_READER_PRIVATE_H
 
 #include "recording/reader.h"
 #include "recording/series.h"

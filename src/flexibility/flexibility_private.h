@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The inside of a prepared flexibility, shared by its making and its evaluation. */
-#ifndef EASEOFF_FLEXIBILITY_PREPARED_H
-#define EASEOFF_FLEXIBILITY_PREPARED_H
+/* The inside of a prepared flexibility, shared by the files that make it and read it. */
+#ifndef EASEOFF_FLEXIBILITY_FLEXIBILITY_PRIVATE_H
+#define EASEOFF_FLEXIBILITY_FLEXIBILITY_PRIVATE_H
 
 #include "flexibility/flexibility.h"
 #include "flexibility/member_table.h"
