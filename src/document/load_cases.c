@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "gear/names.h"
 
 /* T = P / omega. */
 static void settle_power(struct eo_load_case *load_case, int i, struct eo_faults *faults)
@@ -68,7 +69,7 @@ static void settle_signs(const json_t *row, struct eo_load_case *load_case, int 
     snprintf(key, sizeof key, "/load_cases/%d/%s", i, astern ? "speed_rpm" : "torque_Nm");
     eo_warnings_at(warnings, key, "%.9g N m at %.9g rpm is read as: %s, the %s drives.", load_case->torque,
                    eo_unit_out(&eo_unit_rpm, load_case->speed), load_case->direction == EO_ASTERN ? "astern" : "ahead",
-                   load_case->driver == EO_GEAR ? "gear" : "pinion");
+                   eo_member_name[load_case->driver]);
   }
   load_case->torque = fabs(load_case->torque);
   load_case->speed = fabs(load_case->speed);

@@ -96,7 +96,7 @@ static json_t *write_sideband_amplitude(const void *sideband)
 }
 
 static const struct eo_outline_row sideband_rows[] = {
-    EO_KEY("mesh_order", "integer", "beside which it stands", EO_AT(struct sideband, mesh_order)),
+    EO_KEY("mesh_order", "integer", "next to which it stands", EO_AT(struct sideband, mesh_order)),
     EO_KEY("shaft", "word", "whose turns", .words = eo_member_name, EO_AT(struct sideband, shaft)),
     EO_KEY("turns", "integer", "away from the mesh order, in orders of that shaft", EO_AT(struct sideband, turns)),
     EO_KEY("order", "number", "per turn of the pinion", EO_AT(struct sideband, line.order)),
@@ -202,7 +202,7 @@ static const struct eo_outline_row rms_rows[] = {
            .write = write_rms_upto),
     EO_KEY("spectrum", "number?", "the same from the spectrum", .unit = &eo_unit_m_per_s2,
            EO_AT(struct eo_transmission, rms_spectrum)),
-    EO_KEY("band", "number?", "with what stands beside the mesh orders", .unit = &eo_unit_m_per_s2,
+    EO_KEY("band", "number?", "with what stands next to the mesh orders", .unit = &eo_unit_m_per_s2,
            EO_AT(struct eo_transmission, rms_band)),
 };
 static const struct eo_outline rms_outline = EO_OUTLINE("MeasuredRms", rms_rows);

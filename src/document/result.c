@@ -221,7 +221,7 @@ static const struct eo_outline_row value_rows[] = {
            EO_AT(struct eo_objective_value, violation)),
     EO_KEY("terms", "[number?]", "of objective.terms, in their order and units", .when = "of an objective with terms",
            .write = write_terms, .there = has_terms),
-    EO_KEY("nominal_J", "number?", "J of the nominal pair, beside the robust one",
+    EO_KEY("nominal_J", "number?", "J of the nominal pair alone, where J is the robust one",
            .when = "of a front of the nominal against the robust objective", EO_AT(struct eo_objective_value, nominal),
            .there = has_nominal),
 };
@@ -280,9 +280,9 @@ static const struct eo_outline_row timing_rows[] = {
     EO_KEY("impact", "number", "entering impact", .unit = &eo_unit_ms, EO_AT(struct timing, impact)),
     EO_KEY("root", "number", "root stress", .unit = &eo_unit_ms, EO_AT(struct timing, root)),
     EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms, EO_AT(struct timing, dynamics)),
-    EO_KEY("rating", "number", "rating and tribology, beside the evaluation", .unit = &eo_unit_ms,
+    EO_KEY("rating", "number", "rating and tribology, on top of the evaluation", .unit = &eo_unit_ms,
            EO_AT(struct timing, rating)),
-    EO_KEY("pitch", "number", "the hunting period, beside the evaluation", .unit = &eo_unit_ms,
+    EO_KEY("pitch", "number", "the hunting period, on top of the evaluation", .unit = &eo_unit_ms,
            EO_AT(struct timing, pitch)),
     EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms, EO_AT(struct timing, evaluation)),
 };

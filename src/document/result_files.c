@@ -59,7 +59,7 @@ static void add_ends(struct table *table, const json_t *value, const char *headi
 {
   for (int end = 0; end < 2; end++) {
     char at[128], name[HEADING];
-    const char *word = end ? "right" : "left", *place = strstr(path, "%s"), *mark = strstr(heading, "%s");
+    const char *word = eo_end_name[end], *place = strstr(path, "%s"), *mark = strstr(heading, "%s");
     snprintf(at, sizeof at, "%.*s%s%s", (int)(place - path), path, word, place + 2);
     snprintf(name, sizeof name, "%.*s%s%s", (int)(mark - heading), heading, word, mark + 2);
     add_column(table, eo_json_find(value, at), name);
@@ -79,7 +79,7 @@ static void save_curves(const json_t *load_case, struct eo_text *text)
   for (int end = 0; end < 2; end++)
     for (size_t i = 0; i < json_array_size(pairs); i++) {
       char heading[HEADING];
-      const char *word = end ? "right" : "left";
+      const char *word = eo_end_name[end];
       snprintf(heading, sizeof heading, "load_share_%s_pair_%d", word,
                (int)json_integer_value(json_array_get(pairs, i)));
       add_column(&table, json_array_get(json_object_get(eo_json_find(load_case, "contact/load_share"), word), i),
@@ -104,11 +104,11 @@ static void add_channels(struct table *table, const json_t *load_case, const cha
   json_t *value;
   for (int end = 0; end < 2; end++) {
     char path[64];
-    snprintf(path, sizeof path, "vibration/%s/%s", end ? "right" : "left", kind);
+    snprintf(path, sizeof path, "vibration/%s/%s", eo_end_name[end], kind);
     json_object_foreach((json_t *)eo_json_find(load_case, path), key, value)
     {
       char heading[HEADING];
-      snprintf(heading, sizeof heading, "%s_%s", end ? "right" : "left", key);
+      snprintf(heading, sizeof heading, "%s_%s", eo_end_name[end], key);
       add_column(table, value, heading);
     }
   }
@@ -321,8 +321,8 @@ void eo_result_files(const json_t *result, struct eo_file_set *bundle)
     if (json_is_object(json_object_get(load_case, "root_stress")))
       save_root(load_case, eo_file_set_add(bundle, "case-%d-root-stress.csv", number));
     for (int end = 0; end < 2; end++)
-      if (json_object_get(eo_json_find(load_case, "contact/pattern"), end ? "right" : "left"))
-        save_pattern(result, load_case, end ? "right" : "left",
-                     eo_file_set_add(bundle, "case-%d-pattern-%s.csv", number, end ? "right" : "left"));
+      if (json_object_get(eo_json_find(load_case, "contact/pattern"), eo_end_name[end]))
+        save_pattern(result, load_case, eo_end_name[end],
+                     eo_file_set_add(bundle, "case-%d-pattern-%s.csv", number, eo_end_name[end]));
   }
 }

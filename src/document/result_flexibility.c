@@ -71,8 +71,8 @@ static const struct eo_outline_row flexibility_rows[] = {
     EO_KEY("gear", "object?", "the same of the gear", .outline = &member_outline,
            EO_AT(struct flexibility, member[EO_GEAR])),
     EO_KEY("iso_c_gamma_N_per_mm_um", "object",
-           "mesh stiffness c_gamma_alpha by ISO 6336-1 method B, solid discs, transverse, per face width, beside "
-           "the mean stiffness of the load cases",
+           "mesh stiffness c_gamma_alpha by ISO 6336-1 method B, solid discs, transverse, per face width, to compare "
+           "with the mean stiffness of the load cases",
            .outline = &iso_outline, EO_AT(struct flexibility, iso)),
 };
 const struct eo_outline eo_outline_flexibility = EO_OUTLINE("Flexibility", flexibility_rows);

@@ -53,9 +53,8 @@ static const struct eo_outline_row rated_member_rows[] = {
     EO_KEY("S_H", "number", "flank safety of this load case alone over its own cycles", OF_RATED(safety)),
     EO_KEY("S_H_static", "number", "flank, against the static strength", OF_RATED(flank_static)),
     EO_KEY("sigma_H_local_MPa", "number?",
-           "beside it, method A: largest pressure of the analysis as designed, without tolerances, tip edges included, "
-           "times "
-           "sqrt(K_A K_V); does not rate",
+           "for comparison, method A: largest pressure of the analysis as designed, without tolerances, tip edges "
+           "included, times sqrt(K_A K_V); does not rate",
            .unit = &eo_unit_MPa, OF_RATED(local_stress)),
     EO_KEY("S_H_local", "number?", "limit at N_L over it", OF_RATED(local_safety)),
     EO_KEY("Y_NT", "number", "life factor, root", OF_RATED(root_life)),
@@ -64,11 +63,11 @@ static const struct eo_outline_row rated_member_rows[] = {
     EO_KEY("sigma_FG_MPa", "number", "limit at N_L, without S_Fmin", .unit = &eo_unit_MPa, OF_RATED(root_permissible)),
     EO_KEY("S_F", "number", "root safety of this load case alone over its own cycles", OF_RATED(root_safety)),
     EO_KEY("S_F_static", "number", "root, against the static strength", OF_RATED(root_static)),
-    EO_KEY(
-        "sigma_F_local_MPa", "number?",
-        "beside it, method A: largest root stress of the analysis as designed, without tolerances, times K_A K_V; does "
-        "not rate; null without root stress",
-        .unit = &eo_unit_MPa, OF_RATED(local_root)),
+    EO_KEY("sigma_F_local_MPa", "number?",
+           "for comparison, method A: largest root stress of the analysis as designed, without tolerances, times K_A "
+           "K_V; does "
+           "not rate; null without root stress",
+           .unit = &eo_unit_MPa, OF_RATED(local_root)),
     EO_KEY("S_F_local", "number?", "limit at N_L over it", OF_RATED(local_root_safety)),
 };
 static const struct eo_outline rated_member = EO_OUTLINE("RatedMember", rated_member_rows);

@@ -162,10 +162,11 @@ static const struct eo_outline_row stiffness_mean_rows[] = {
     EO_KEY("left_N_per_um", "number?", "left end", .unit = &eo_unit_N_per_um, OF_MEAN(end[EO_LEFT].secant)),
     EO_KEY("tangent_left_N_per_um", "number?", "left end, tangent", .unit = &eo_unit_N_per_um,
            OF_MEAN(end[EO_LEFT].tangent)),
-    EO_KEY("mesh_left_N_per_mm_um", "number?",
-           "left end, transverse per face width: left_N_per_um cos^2(beta_b)/b; beside iso_c_gamma_N_per_mm_um, which "
-           "means an aligned, unmodified pair",
-           .unit = &eo_unit_N_per_mm_um, OF_MEAN(end[EO_LEFT].mesh)),
+    EO_KEY(
+        "mesh_left_N_per_mm_um", "number?",
+        "left end, transverse per face width: left_N_per_um cos^2(beta_b)/b; to compare with iso_c_gamma_N_per_mm_um, "
+        "which means an aligned, unmodified pair",
+        .unit = &eo_unit_N_per_mm_um, OF_MEAN(end[EO_LEFT].mesh)),
     EO_KEY("right_N_per_um", "number?", "right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS,
            OF_MEAN(end[EO_RIGHT].secant), IF_TWO_MEANS),
     EO_KEY("tangent_right_N_per_um", "number?", "right end, tangent", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS,

@@ -120,7 +120,7 @@ static const struct eo_outline_row import_rows[] = {
            .write = write_design),
     EO_KEY("assumed", "[text]", "what the file leaves open, and what was taken", .write = write_assumed),
     EO_KEY("refused", "[text]", "modifications that a design cannot say; the rest was read", .write = write_refused),
-    EO_KEY("not_used", "[text]", "what the file states besides", .write = write_not_used),
+    EO_KEY("not_used", "[text]", "what else the file states", .write = write_not_used),
     EO_KEY("notes", "[text]", "what was found in reading", .write = write_notes),
     EO_KEY("faults", "[object]", "what is wrong; nothing was read then", .outline = &eo_import_fault_outline,
            EO_ROWS_AT(struct eo_import, fault, faults)),

@@ -105,8 +105,7 @@ static void read_shaft_diameter(struct eo_rexs_import *import, json_t *shafts, i
   eo_rexs_put(import, &eo_shafts_table, shafts, key[member], taken);
   if (!isnan(diameter[0]) && !isnan(diameter[1]) && diameter[0] != diameter[1])
     eo_import_say(import->out, import->out->notes,
-                  "Shaft %d has %.6g mm beside the left face and %.6g mm beside the "
-                  "right one; the left was taken.",
+                  "Shaft %d has %.6g mm next to the left face and %.6g mm next to the right one; the left was taken.",
                   shaft.component->id, diameter[0], diameter[1]);
 }
 

@@ -131,8 +131,8 @@ static void settle_shapes(struct eo_rexs_flank *flank)
     return;
   bool tip_goes = flank->tip_relief < flank->root_relief;
   eo_import_say(flank->import->out, flank->import->out->refused,
-                "%s_relief of the %s's flank: shape %s beside a larger relief of shape %s", tip_goes ? "tip" : "root",
-                flank->member == EO_PINION ? "pinion" : "gear", tip_goes ? flank->tip_shape : flank->root_shape,
+                "%s_relief of the %s's flank: shape %s, but the larger relief has shape %s", tip_goes ? "tip" : "root",
+                eo_member_name[flank->member], tip_goes ? flank->tip_shape : flank->root_shape,
                 tip_goes ? flank->root_shape : flank->tip_shape);
   *(tip_goes ? &flank->tip_relief : &flank->root_relief) = NAN;
   *(tip_goes ? &flank->tip_start : &flank->root_start) = NAN;
@@ -148,7 +148,7 @@ static void add_crowning(struct eo_rexs_flank *flank)
   if (other) {
     eo_import_say(flank->import->out, flank->import->out->refused,
                   "profile_crowning of the %s's flank: together with a relief that is not parabolic it has no key",
-                  flank->member == EO_PINION ? "pinion" : "gear");
+                  eo_member_name[flank->member]);
     flank->crowning = NAN;
     return;
   }
@@ -172,7 +172,7 @@ static void put_shapes(struct eo_rexs_flank *flank, json_t *object)
     bool plain = !flank->end_shape[i] || strcmp(flank->end_shape[i], "parabolic") == 0;
     if (!plain && !eo_rexs_put_word(flank->import, table, object, end_key[i], flank->end_shape[i])) {
       eo_import_say(flank->import->out, flank->import->out->refused, "end relief of the %s's flank: shape %s",
-                    flank->member == EO_PINION ? "pinion" : "gear", flank->end_shape[i]);
+                    eo_member_name[flank->member], flank->end_shape[i]);
       flank->end_relief[i] = flank->end_length[i] = NAN;
     }
   }
@@ -190,7 +190,7 @@ static void put_flank(struct eo_rexs_flank *flank, json_t *object)
   if (!isnan(flank->barrel) && !takes("profile_crowning_um"))
     eo_import_say(flank->import->out, flank->import->out->refused,
                   "profile_crowning of the %s's flank: its highest point is not the pitch point",
-                  flank->member == EO_PINION ? "pinion" : "gear");
+                  eo_member_name[flank->member]);
   if (flank->grid)
     json_object_set(object, "grid", flank->grid);
 }

@@ -8,6 +8,7 @@
 #include "gear/entry.h"
 #include "document/design_document.h"
 #include "exchange/rexs_import.h"
+#include "gear/names.h"
 
 static const double degree = M_PI / 180;
 static const double same = 1e-9; /* relative: one number stated twice */
@@ -125,7 +126,7 @@ static void put_member(struct eo_rexs_import *import, json_t *gear_pair, int mem
   eo_rexs_put(import, &eo_gear_pair_table, gear_pair, shift[member], x);
   if (isnan(x))
     eo_import_say(import->out, import->out->assumed, "profile shift of the %s: the file states none",
-                  member == EO_PINION ? "pinion" : "gear");
+                  eo_member_name[member]);
   /* less than the deepest root there can be: a placeholder */
   if (diameter < reference - 2.5 * wheel->module)
     eo_import_say(import->out, import->out->notes,

@@ -6,6 +6,7 @@
 
 #include "exchange/flank_amount.h"
 #include "exchange/rexs_flank.h"
+#include "gear/names.h"
 
 /* Axial coordinate towards the face that meets first, from the common mid face, of a coordinate of a modification (from
    the gear's mid face, - at the datum face). */
@@ -30,15 +31,14 @@ const char *eo_rexs_helix_crowning(struct eo_rexs_flank *flank, const struct eo_
   double a[2] = {amount[0] / pow(at[0] - highest, 2), amount[1] / pow(at[1] - highest, 2)};
   double curvature = isnan(a[0]) ? a[1] : a[0];
   if (!isfinite(curvature))
-    return "no amount, or none beside its highest point";
+    return "no amount, or none away from its highest point";
   if (fabs(a[1] - a[0]) > agree * fabs(curvature))
     return "its parabola differs on both sides of the highest point";
   double place = axial_place(flank, highest);
   if (flank->wheel->face_width > flank->width * (1 + 1e-9) && highest == 0) {
     place = 0;
     eo_import_say(flank->import->out, flank->import->out->assumed,
-                  "a crowning of the %s is centred on the common face width",
-                  flank->member == EO_PINION ? "pinion" : "gear");
+                  "a crowning of the %s is centred on the common face width", eo_member_name[flank->member]);
   }
   flank->lead_crowning = curvature * half * half;
   if (place != 0) {

@@ -5,6 +5,7 @@
 
 #include "document/design_document.h"
 #include "exchange/rexs_import.h"
+#include "gear/names.h"
 
 static const double degree = M_PI / 180;
 static const double same = 1e-9; /* relative: one number stated twice */
@@ -81,7 +82,7 @@ static struct rack rack_of(struct eo_rexs_import *import, int member)
     eo_import_say(import->out, import->out->notes,
                   "The %s's root is made by a tool before the finishing one, further out by %.6g of the module: the "
                   "dedendum is less by that.",
-                  member == EO_PINION ? "pinion" : "gear", generated - wheel->shift);
+                  eo_member_name[member], generated - wheel->shift);
   }
   double root = eo_rexs_value(wheel->gear, "root_diameter");
   if (isnan(rack.dedendum) && root > 0) {
@@ -123,7 +124,7 @@ void eo_rexs_put_rack(struct eo_rexs_import *import, json_t *gear_pair)
   for (int member = 0; member < 2; member++)
     if (rack[member].by_root_diameter)
       eo_import_say(import->out, import->out->assumed, "the dedendum of the %s follows from its root diameter",
-                    member == EO_PINION ? "pinion" : "gear");
+                    eo_member_name[member]);
 }
 
 /* Where the program cannot make a tooth of it the pair goes without, and the reason is said. */

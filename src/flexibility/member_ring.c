@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/names.h"
+
 /* Unknowns of the tooth in the order in which the solver keeps them: root, flank, left face, right face. The root's
    last node lies on the right face and is not repeated. */
 struct kept {
@@ -248,7 +250,7 @@ static void describe(const struct eo_member_job *job, const struct eo_ring_tooth
   double operations;
   eo_ring_cheapest(tooth, job->settings->reach, &operations);
   double estimate = operations / OPERATIONS_PER_SECOND;
-  int length = snprintf(what, size, "%s: all %d teeth", job->member ? "gear" : "pinion", tooth->teeth);
+  int length = snprintf(what, size, "%s: all %d teeth", eo_member_name[job->member], tooth->teeth);
   if (estimate > WORTH_SAYING)
     snprintf(what + length, size - (size_t)length, ", about %.0f s", estimate);
 }

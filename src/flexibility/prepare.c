@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/names.h"
+
 /* Raise whenever the same input may give other numbers. */
 #define TABLE_FORMAT "2"
 
@@ -226,7 +228,7 @@ static enum eo_code refuse_undercut(struct worker *worker)
       m == EO_PINION ? "/gear_pair/pinion_profile_shift" : "/gear_pair/gear_profile_shift",
       "The %s is undercut so far that finite elements of its tooth root fold: its profile shift is %.4g, and from %.4g "
       "on there is no undercut. A shift nearer to that, more teeth, or a shallower dedendum helps.",
-      m == EO_PINION ? "pinion" : "gear", geometry->profile_shift[m], geometry->least_shift[m]);
+      eo_member_name[m], geometry->profile_shift[m], geometry->least_shift[m]);
 }
 
 static void *compute_member(void *context)

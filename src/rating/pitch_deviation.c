@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "gear/names.h"
 
 const double *eo_tooth_table_at(const struct eo_tooth_tables *tables, enum eo_flank_side side, int member, int end,
                                 enum eo_tooth_term term)
@@ -106,7 +107,7 @@ static enum eo_code class_tolerance(struct eo_flank_tolerance *tolerance, const 
                                            .helix_angle = geometry->helix_angle};
   enum eo_code code = eo_flank_tolerance(tolerance, member->edition, &input, error);
   if (code == EO_ERROR_INPUT && error)
-    snprintf(error->pointer, sizeof error->pointer, "/pitch/%s/%s", of == EO_PINION ? "pinion" : "gear", key);
+    snprintf(error->pointer, sizeof error->pointer, "/pitch/%s/%s", eo_member_name[of], key);
   return code;
 }
 

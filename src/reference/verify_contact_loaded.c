@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/names.h"
 #include "reference/contact_case.h"
 
 struct synthetic {
@@ -285,7 +286,7 @@ static enum eo_code check_bulk(struct eo_contact_case *contact_case, const struc
                                struct eo_case *block, int member, struct eo_error *error)
 {
   double relative = eo_case_relative_or(block, "tol_rel", 0.06), deflection[3];
-  struct eo_case *rows = eo_case_find(block, member ? "gear" : "pinion");
+  struct eo_case *rows = eo_case_find(block, eo_member_name[member]);
   enum eo_code code = EO_OK;
   for (int i = 0; i < eo_case_size(rows) && !code; i++) {
     struct eo_case *row = eo_case_at(rows, i);

@@ -196,7 +196,7 @@ static void check_findings(struct eo_verification *verification, struct eo_case 
       surprises++;
       eo_verify_note(verification, "not expected: %s", found->finding[i].text);
     }
-  eo_verify_fact(verification, list, "no finding besides", surprises == 0);
+  eo_verify_fact(verification, list, "no other finding", surprises == 0);
 }
 
 /* An order may deviate by four standard deviations of the noise beside it. */

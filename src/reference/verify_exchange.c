@@ -225,7 +225,7 @@ static void check_faults(struct eo_verification *verification, struct eo_case *f
     if (!expected)
       eo_verify_note(verification, "not expected: %s", import->fault[n].text);
   }
-  eo_verify_fact(verification, faults, "no fault besides", surprises == 0);
+  eo_verify_fact(verification, faults, "no other fault", surprises == 0);
 }
 
 static void check_case(struct eo_verification *verification, struct eo_case *item, const struct eo_import *import)

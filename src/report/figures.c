@@ -8,6 +8,7 @@
 
 #include "format/json.h"
 #include "format/plot.h"
+#include "gear/names.h"
 
 enum { MOST_CASES = 6, MOST_POINTS = 1024 };
 
@@ -167,7 +168,7 @@ static void label_end(const struct map *map, int end, double x, double y, double
   size_t last_eta = json_array_size(map->eta) - 1, last_s = json_array_size(map->s) - 1;
   const char *unit = eo_page_unit(page, &eo_unit_mm);
   eo_text_print(page->text, "<text x=\"%.1f\" y=\"%.1f\">%s%s%s %.5g %s</text>\n", x, y - 6,
-                map->end[1] ? end ? "right" : "left" : "", map->end[1] ? " end, " : "", map->thin ? "least" : "largest",
+                map->end[1] ? eo_end_name[end] : "", map->end[1] ? " end, " : "", map->thin ? "least" : "largest",
                 extreme(map, end), map->unit);
   eo_text_print(page->text,
                 "<text x=\"%.1f\" y=\"%.1f\">%.4g %s</text><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.4g %s, "

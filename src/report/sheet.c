@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "format/plot.h"
+#include "gear/names.h"
 #include "report/page.h"
 
 /* Heading of the values of an object that stands alone. */
@@ -108,8 +109,8 @@ static void put_ends_head(const struct eo_page *page, const struct columns *colu
   eo_text_add(page->text, "<table><tr><th>quantity</th><th>key</th>");
   for (int i = 0; i < columns->count; i++)
     for (int end = 0; end < 2; end++)
-      if (json_object_get(eo_page_member(page, columns->object[i], key), end ? "right" : "left"))
-        eo_text_print(page->text, "<th class=\"n\">%s</th>", end ? "right" : "left");
+      if (json_object_get(eo_page_member(page, columns->object[i], key), eo_end_name[end]))
+        eo_text_print(page->text, "<th class=\"n\">%s</th>", eo_end_name[end]);
   eo_text_add(page->text, "<th>unit</th></tr>\n");
 }
 
@@ -122,7 +123,7 @@ static void put_ends_line(const struct eo_page *page, const struct eo_outline_ro
   for (int i = 0; i < columns->count; i++)
     for (int end = 0; end < 2; end++) {
       const json_t *object = eo_page_member(page, columns->object[i], row->key),
-                   *value = json_object_get(object, end ? "right" : "left");
+                   *value = json_object_get(object, eo_end_name[end]);
       if (!value)
         continue;
       eo_text_add(page->text, "<td class=\"n\">");

@@ -168,7 +168,7 @@ static enum eo_code expect_own_database(struct eo_store *store, const char *root
   if (code || used || !recordings)
     return code;
   return eo_error_set(error, EO_ERROR_FILE, "",
-                      "%.150s holds %d recording%s, but the database beside it is new and knows none: put the "
+                      "%.150s holds %d recording%s, but the database next to it is new and knows none: put the "
                       "easeoff.db that belongs to them back, or move that folder to another place.",
                       root, recordings, recordings == 1 ? "" : "s");
 }

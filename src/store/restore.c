@@ -137,8 +137,8 @@ static enum eo_code put_whole(const char *directory, const char *folder, struct 
   if (access(from, F_OK) == 0 && rename(from, to))
     return errno == ENOTEMPTY || errno == EEXIST
                ? eo_error_set(error, EO_ERROR_INPUT, "",
-                              "%.200s holds recordings already, but no database is beside "
-                              "them: move that folder to another place.",
+                              "%.200s holds recordings already, but there is no database next "
+                              "to them: move that folder to another place.",
                               to)
                : fault(to, error);
   snprintf(from, sizeof from, "%.4000s/easeoff.db", folder);

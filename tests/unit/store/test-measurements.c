@@ -345,7 +345,7 @@ static void test_other_databases(void)
   snprintf(journal, sizeof journal, "%s/easeoff.db-wal", folder);
   eo_store_close(store);
   store = NULL;
-  ok(rename(path, away) == 0 && is_refused("4 recordings, but the database beside it is new"),
+  ok(rename(path, away) == 0 && is_refused("4 recordings, but the database next to it is new"),
      "recordings beside a new database are refused: %s", error.text);
   ok(is_refused("is new"), "recordings beside a new database are refused at the next start too");
   ok(truncate(path, 0) == 0 && is_refused("is new"), "recordings beside an empty file are refused");
