@@ -16,29 +16,37 @@ static const double LARGE_CONDITION = 1e6;
 struct ranges {
   double range[EO_UNKNOWNS][2];
 };
-#define RANGE(unknown, key, unit, low, high, help)                                                                 \
-  EO_NUMBERS(struct ranges, range[unknown], key, 2, unit, low, high, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, \
-             "not fitted", help)
-static const struct eo_field range_fields[] = {
-    RANGE(EO_UNKNOWN_PINION_BEARING, "pinion_bearing_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
-          "lowest, highest; transverse, per end of the pinion"),
-    RANGE(EO_UNKNOWN_GEAR_BEARING, "gear_bearing_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
-          "lowest, highest; transverse, per end of the gear"),
-    RANGE(EO_UNKNOWN_MESH_DAMPING, "mesh_damping_ratio", NULL, 1e-6, 1, "lowest, highest; of the mesh"),
-    RANGE(EO_UNKNOWN_GEAR_AXIAL, "gear_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
-          "lowest, highest; at either end of the gear"),
-    RANGE(EO_UNKNOWN_PINION_AXIAL, "pinion_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
-          "lowest, highest; from the pinion to the ground"),
-    RANGE(EO_UNKNOWN_IN_PLANE, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, "lowest, highest"),
-    RANGE(EO_UNKNOWN_OUT_OF_PLANE, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2, "lowest, highest"),
-    RANGE(EO_UNKNOWN_IMPACT_PATCH, "impact_patch_mm", &eo_unit_mm, 0.1, 100,
-          "lowest, highest; length of the patch at entering impacts"),
-};
+/* Unit, lowest and highest that may be asked for, what a form starts with, help; in the order of the inputs. */
+#define STIFFNESS &eo_unit_N_per_um, 1e-3, 1e6
+#define ANGLE &eo_unit_deg, -2, 2, -0.1, 0.1
+#define PINION_BEARING_RANGE STIFFNESS, 100, 5000, "lowest, highest; transverse, per end of the pinion"
+#define GEAR_BEARING_RANGE STIFFNESS, 100, 5000, "lowest, highest; transverse, per end of the gear"
+#define MESH_DAMPING_RANGE NULL, 1e-6, 1, 0.02, 0.3, "lowest, highest; of the mesh"
+#define GEAR_AXIAL_RANGE STIFFNESS, 10, 2000, "lowest, highest; at either end of the gear"
+#define PINION_AXIAL_RANGE STIFFNESS, 1, 1000, "lowest, highest; from the pinion to the ground"
+#define IN_PLANE_RANGE ANGLE, "lowest, highest"
+#define OUT_OF_PLANE_RANGE ANGLE, "lowest, highest"
+#define IMPACT_PATCH_RANGE &eo_unit_mm, 0.1, 100, 0.5, 10, "lowest, highest; length of the patch at entering impacts"
+#define FIELD(number, key_, unit_, low_, high_, usual_low, usual_high, help_) \
+  {.key = key_,                                                               \
+   .kind = EO_FIELD_NUMBERS,                                                  \
+   .flags = EO_FIELD_ASCENDING | EO_FIELD_NULLABLE,                           \
+   .offset = offsetof(struct ranges, range[number]),                          \
+   .unit = unit_,                                                             \
+   .low = low_,                                                               \
+   .high = high_,                                                             \
+   .count = 2,                                                                \
+   .usual = (const double[]){usual_low, usual_high},                          \
+   .derived = "not fitted",                                                   \
+   .help = help_},
+#define FILLED(...) FIELD(__VA_ARGS__)
+#define ROW(name, key) FILLED(EO_UNKNOWN_##name, key, name##_RANGE)
+static const struct eo_field range_fields[] = {EO_UNKNOWN_INPUTS(ROW)};
 static const struct eo_table range_table = EO_TABLE("the inputs to be fitted", struct ranges, range_fields);
 
 static const struct eo_unit *unit_of(enum eo_unknown unknown)
 {
-  return range_fields[unknown].unit; /* in the order of the inputs */
+  return range_fields[unknown].unit;
 }
 
 struct order {

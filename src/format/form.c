@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "format/json.h"
 #include "format/object.h"
 #include "format/schema_private.h"
 
@@ -47,6 +48,17 @@ static json_t *write_default(const void *source)
 {
   const struct view *view = source;
   return eo_schema_default(view->field, view->defaults);
+}
+
+static bool has_usual(const void *source)
+{
+  return ((const struct view *)source)->field->usual != NULL;
+}
+
+static json_t *write_usual(const void *source)
+{
+  const struct eo_field *field = ((const struct view *)source)->field;
+  return eo_json_reals(field->count, field->usual, 1, NULL, EO_DIGITS_NUMBER);
 }
 
 static bool has_choices(const void *source)
@@ -96,6 +108,8 @@ static const struct eo_outline_row field_rows[] = {
            .write = write_number_high),
     EO_KEY("count", "integer", "how many", APPLIES, OF_FIELD(count), EO_IF(struct view, counted)),
     EO_KEY("default", "any", "as the document says it", APPLIES, .there = has_default, .write = write_default),
+    EO_KEY("usual", "[number]", "what a form starts with; nothing assumes it",
+           .when = "where there is no default to start with", .there = has_usual, .write = write_usual),
     EO_KEY("choices", "[text]", "one of these", APPLIES, .there = has_choices, .write = write_choices),
     EO_KEY("help", "text", "one line for people", APPLIES, OF_FIELD(help), EO_FILLED),
     EO_KEY("required", "flag", "there is no default", OF_FIELD(required)),

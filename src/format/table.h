@@ -72,6 +72,7 @@ struct eo_field {
                        TEXT: low is the least number of bytes */
   double fallback;  /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
   const double *fallbacks;    /* NUMBERS: [count]; NULL: null. NUMBER with choices: what each of them stands for */
+  const double *usual;        /* NUMBERS: [count], what a form starts with and nothing assumes; NULL: none */
   const char *fallback_text;  /* TEXT */
   const char *const *choices; /* CHOICE, TEXT: ends with NULL. NUMBER: words that may stand for numbers */
   const char *document;       /* DOCUMENT: name of its schema */

@@ -44,5 +44,6 @@ const struct eo_outline eo_outline_examples = EO_OUTLINE("Examples", examples_ro
 static const struct eo_outline_row form_rows[] = {
     EO_KEY("design", "object", "of a design", .outline = &eo_fields_outline, EO_AT(struct eo_form, design)),
     EO_KEY("sweep", "object", "of a sweep", .outline = &eo_fields_outline, EO_AT(struct eo_form, sweep)),
+    EO_KEY("fit", "object", "of an order of a fit", .outline = &eo_fields_outline, EO_AT(struct eo_form, fit)),
 };
 const struct eo_outline eo_outline_form = EO_OUTLINE("Form", form_rows);

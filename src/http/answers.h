@@ -22,7 +22,7 @@ extern const struct eo_outline eo_outline_health, eo_outline_live; /* of a struc
 
 /* What a page makes its forms of; taken over. */
 struct eo_form {
-  json_t *design, *sweep;
+  json_t *design, *sweep, *fit;
 };
 extern const struct eo_outline eo_outline_form;
 

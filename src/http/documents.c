@@ -10,6 +10,7 @@
 #include "format/json.h"
 #include "format/form.h"
 #include "document/sweep_document.h"
+#include "document/update_document.h"
 #include "http/openapi.h"
 
 /* Takes the document over. */
@@ -47,7 +48,8 @@ static enum eo_code put_all(struct eo_documents *documents, const struct eo_rout
                             const struct eo_http_limits *http, const struct eo_service_limits *work,
                             struct eo_error *error)
 {
-  const struct eo_form form = {eo_table_fields(&eo_design_table), eo_table_fields(&eo_sweep_request_table)};
+  const struct eo_form form = {eo_table_fields(&eo_design_table), eo_table_fields(&eo_sweep_request_table),
+                               eo_table_fields(&eo_update_table)};
   EO_TRY(put(&documents->schema, eo_outline_encode(&eo_outline_form, &form), error));
   EO_TRY(put(&documents->openapi, eo_openapi(routes, http, work), error));
   return put_examples(documents, error);

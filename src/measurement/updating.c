@@ -13,15 +13,8 @@ static const double POOR = 0.2; /* model error that the misfit would need: beyon
 static const double TWIN = 0.95, OPEN = 0.5;
 enum { ROUNDS = 3 }; /* of the model error with the minima */
 
-const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {"pinion_bearing_stiffness_N_per_um",
-                                                       "gear_bearing_stiffness_N_per_um",
-                                                       "mesh_damping_ratio",
-                                                       "gear_axial_stiffness_N_per_um",
-                                                       "pinion_axial_stiffness_N_per_um",
-                                                       "shaft_angle_error_in_plane_deg",
-                                                       "shaft_angle_error_out_of_plane_deg",
-                                                       "impact_patch_mm",
-                                                       NULL};
+#define KEY(name, key) key,
+const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {EO_UNKNOWN_INPUTS(KEY) NULL};
 
 const char *eo_unknown_name(enum eo_unknown unknown)
 {

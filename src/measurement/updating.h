@@ -8,17 +8,19 @@
 
 #include "measurement/comparison.h"
 
-enum eo_unknown {
-  EO_UNKNOWN_PINION_BEARING, /* supports.bearing_stiffness[EO_PINION], N/m */
-  EO_UNKNOWN_GEAR_BEARING,
-  EO_UNKNOWN_MESH_DAMPING, /* supports.mesh_damping_ratio */
-  EO_UNKNOWN_GEAR_AXIAL,   /* both ends' supports.gear_axial_stiffness, N/m */
-  EO_UNKNOWN_PINION_AXIAL, /* alignment.pinion_axial_stiffness, N/m; holds the pinion by a spring */
-  EO_UNKNOWN_IN_PLANE,     /* alignment.shaft_angle_in_plane, rad */
-  EO_UNKNOWN_OUT_OF_PLANE,
-  EO_UNKNOWN_IMPACT_PATCH, /* resolution.impact_patch, m; acts only where impacts act in the dynamics */
-  EO_UNKNOWNS
-};
+/* What can be fitted, and its key for people and documents. Gear axial: at both ends; pinion axial: holds the pinion by
+   a spring; impact patch: acts only where impacts act in the dynamics. */
+#define EO_UNKNOWN_INPUTS(ROW)                             \
+  ROW(PINION_BEARING, "pinion_bearing_stiffness_N_per_um") \
+  ROW(GEAR_BEARING, "gear_bearing_stiffness_N_per_um")     \
+  ROW(MESH_DAMPING, "mesh_damping_ratio")                  \
+  ROW(GEAR_AXIAL, "gear_axial_stiffness_N_per_um")         \
+  ROW(PINION_AXIAL, "pinion_axial_stiffness_N_per_um")     \
+  ROW(IN_PLANE, "shaft_angle_error_in_plane_deg")          \
+  ROW(OUT_OF_PLANE, "shaft_angle_error_out_of_plane_deg")  \
+  ROW(IMPACT_PATCH, "impact_patch_mm")
+#define EO_UNKNOWN_NUMBER(name, key) EO_UNKNOWN_##name,
+enum eo_unknown { EO_UNKNOWN_INPUTS(EO_UNKNOWN_NUMBER) EO_UNKNOWNS };
 
 struct eo_update_range {
   enum eo_unknown unknown;
@@ -69,7 +71,7 @@ struct eo_update {
   bool converged;
 };
 
-/* "pinion_bearing_stiffness", ... : keys for people and documents. */
+/* The key of the list above. */
 const char *eo_unknown_name(enum eo_unknown unknown);
 extern const char *const eo_unknown_names[]; /* by number; ends with NULL */
 double eo_unknown_get(const struct eo_design *design, enum eo_unknown unknown);

@@ -6,7 +6,7 @@ import { halfAngle, halfTooth } from '../../web/src/base/involute.js';
 import { differences, leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
 import { guess } from '../../web/src/base/recording.js';
 import { parseNumber, readQuantity } from '../../web/src/base/quantity.js';
-import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
+import { complete, fieldAt, fittedFields, numberFault, placesOf } from '../../web/src/base/schema.js';
 
 globalThis.document ??= { baseURI: 'http://localhost/' };
 globalThis.sessionStorage ??= { getItem: () => null, setItem: () => {} };
@@ -253,6 +253,24 @@ is(
 );
 is(fieldAt(fields, '/rows/3/share')?.key, 'share', 'the field of a row is found');
 is(fieldAt(fields, '/pair/none'), undefined, 'a field that is not there is undefined');
+const fitted = [{ key: 'axial_N', kind: 'numbers', unit: 'N', usual: [1, 1000] }];
+is(
+  fittedFields({ fit: { fields: [{ key: 'unknowns', kind: 'object', fields: fitted }] } }),
+  fitted,
+  'the inputs that can be fitted are those of the order',
+);
+const springs = ['axial_N', 'axial_left_N', 'axial_right_N', 'axial_back_N'].map(key => ({ key, kind: 'number' }));
+is(
+  placesOf(
+    [
+      { key: 'held', kind: 'object', fields: springs },
+      { key: 'cases', kind: 'list', fields: springs },
+    ],
+    'axial_N',
+  ),
+  ['/held/axial_N', '/held/axial_left_N', '/held/axial_right_N'],
+  'a fitted input stands under its key, or once for each end',
+);
 ok(
   numberFault(fields[1].fields[0], 3) !== '' &&
     numberFault(fields[1].fields[0], 4.5) !== '' &&

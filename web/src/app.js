@@ -35,15 +35,17 @@ export class App extends EventTarget {
    * @param {Entry[]} entries
    * @param {{ store: import('./base/store.js').DesignStore, analyst: import('./base/analyst.js').Analyst,
    *   form: import('./form/form.js').Form, fields: import('./base/schema.js').Field[],
+   *   fitted: import('./base/schema.js').Field[],
    *   library: import('./base/library.js').Library, jobs: import('./base/jobs.js').Jobs }} shared
    */
-  constructor(entries, { store, analyst, form, fields, library, jobs }) {
+  constructor(entries, { store, analyst, form, fields, fitted, library, jobs }) {
     super();
     this.entries = entries;
     this.store = store;
     this.analyst = analyst;
     this.form = form;
     this.fields = fields;
+    this.fitted = fitted;
     this.library = library;
     this.examples = library.examples;
     this.jobs = jobs;

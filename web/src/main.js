@@ -6,7 +6,7 @@ import { Away, Refusal, connection, get, post } from './base/api.js';
 import { h } from './base/dom.js';
 import { Jobs } from './base/jobs.js';
 import { Library, Missing } from './base/library.js';
-import { complete, designFields } from './base/schema.js';
+import { complete, designFields, fittedFields } from './base/schema.js';
 import { DesignStore } from './base/store.js';
 import { App } from './app.js';
 import { Form } from './form/form.js';
@@ -59,7 +59,7 @@ async function start(page) {
   analyst.update();
   const form = new Form(store, fields);
   const jobs = new Jobs();
-  const app = new App(VIEWS, { store, analyst, form, fields, library, jobs });
+  const app = new App(VIEWS, { store, analyst, form, fields, fitted: fittedFields(description), library, jobs });
   const shell = new Shell(app);
   app.addEventListener('stored', () => shell.menu.open());
   page.replaceChildren(...shell.elements);

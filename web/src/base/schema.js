@@ -14,6 +14,25 @@ export function designFields(description) {
   return description.design.fields;
 }
 
+/** The inputs that can be fitted. @param {Api.Form} description of GET /schema @returns {Field[]} */
+export function fittedFields(description) {
+  return fieldAt(description.fit.fields, '/unknowns')?.fields ?? [];
+}
+
+/**
+ * Where a design holds a fitted input: under its key in one of its objects, or once for each end.
+ * @param {Field[]} fields @param {string} key
+ */
+export function placesOf(fields, key) {
+  return fields
+    .filter(group => group.kind === 'object')
+    .flatMap(group =>
+      (group.fields ?? [])
+        .filter(field => field.key.replace(/_(left|right)_/, '_') === key)
+        .map(field => `/${group.key}/${field.key}`),
+    );
+}
+
 /** @param {Field[]} fields @param {string} pointer @returns {Field | undefined} */
 export function fieldAt(fields, pointer) {
   /** @type {Field | undefined} */

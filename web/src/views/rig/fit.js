@@ -3,58 +3,11 @@
 import { fill, h, newId } from '../../base/dom.js';
 import { labelOf, plain, sig, unitText } from '../../base/format.js';
 import { parseNumber } from '../../base/quantity.js';
+import { placesOf } from '../../base/schema.js';
 import { Lane } from '../../base/lane.js';
 import { valueAt } from '../../base/pointer.js';
 import { group } from '../../form/group.js';
 import { shownSentence } from '../../base/units.js';
-
-/** Unknowns: key, unit, where it stands in the design, usual range. */
-const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low: number, high: number }[]} */ ([
-  {
-    key: 'pinion_bearing_stiffness_N_per_um',
-    unit: 'N_per_um',
-    pointers: ['/supports/pinion_bearing_stiffness_N_per_um'],
-    low: 100,
-    high: 5000,
-  },
-  {
-    key: 'gear_bearing_stiffness_N_per_um',
-    unit: 'N_per_um',
-    pointers: ['/supports/gear_bearing_stiffness_N_per_um'],
-    low: 100,
-    high: 5000,
-  },
-  { key: 'mesh_damping_ratio', unit: '', pointers: ['/supports/mesh_damping_ratio'], low: 0.02, high: 0.3 },
-  {
-    key: 'gear_axial_stiffness_N_per_um',
-    unit: 'N_per_um',
-    pointers: ['/supports/gear_axial_stiffness_left_N_per_um', '/supports/gear_axial_stiffness_right_N_per_um'],
-    low: 10,
-    high: 2000,
-  },
-  {
-    key: 'pinion_axial_stiffness_N_per_um',
-    unit: 'N_per_um',
-    pointers: ['/alignment/pinion_axial_stiffness_N_per_um'],
-    low: 1,
-    high: 1000,
-  },
-  {
-    key: 'shaft_angle_error_in_plane_deg',
-    unit: 'deg',
-    pointers: ['/alignment/shaft_angle_error_in_plane_deg'],
-    low: -0.1,
-    high: 0.1,
-  },
-  {
-    key: 'shaft_angle_error_out_of_plane_deg',
-    unit: 'deg',
-    pointers: ['/alignment/shaft_angle_error_out_of_plane_deg'],
-    low: -0.1,
-    high: 0.1,
-  },
-  { key: 'impact_patch_mm', unit: 'mm', pointers: ['/resolution/impact_patch_mm'], low: 0.5, high: 10 },
-]);
 
 /** Why a measurement was left out. @param {Api.LeftOut} item */
 const reasonOf = item => `measurement ${item.id} (${shownSentence(item.reason)})`;
@@ -69,7 +22,7 @@ export class FitPanel {
   constructor(app, designId) {
     this.app = app;
     this.designId = designId;
-    this.rows = UNKNOWNS.map(unknown => this.#unknown(unknown));
+    this.rows = app.fitted.map(unknown => this.#unknown(unknown));
     this.start = h('button', { type: 'button', onclick: () => this.#run() }, 'Fit to the measurements');
     this.note = h('p.figure-note', { role: 'status' });
     this.element = group('fit', 'Fit unknown inputs', false, [
@@ -91,11 +44,11 @@ export class FitPanel {
     });
   }
 
-  /** @param {typeof UNKNOWNS[number]} unknown */
+  /** @param {import('../../base/schema.js').Field} unknown */
   #unknown(unknown) {
     const id = newId('unknown');
     const box = h('input', { type: 'checkbox', id, checked: unknown.key === 'mesh_damping_ratio' });
-    const [low, high] = [unknown.low, unknown.high].map((value, i) =>
+    const [low, high] = (unknown.usual ?? []).map((value, i) =>
       h('input.tiny', {
         type: 'text',
         inputmode: 'decimal',
@@ -141,7 +94,7 @@ export class FitPanel {
     const answer = this.#answer;
     if (!answer) return;
     const rows = answer.unknowns.map(unknown => {
-      const unit = UNKNOWNS.find(each => each.key === unknown.key)?.unit ?? '';
+      const unit = this.app.fitted.find(each => each.key === unknown.key)?.unit ?? '';
       return h(
         'tr',
         null,
@@ -221,7 +174,7 @@ export class FitPanel {
     const { design, unknowns } = this.#answer;
     /** @type {string[]} */
     const keys = unknowns.map(unknown => unknown.key);
-    const pointers = UNKNOWNS.filter(({ key }) => keys.includes(key)).flatMap(unknown => unknown.pointers);
+    const pointers = keys.flatMap(key => placesOf(this.app.fields, key));
     for (const pointer of [
       ...pointers,
       ...(keys.includes('pinion_axial_stiffness_N_per_um') ? ['/alignment/pinion_axial'] : []),
