@@ -43,7 +43,7 @@ static bool read_cells(struct reader *reader, struct eo_rexs_attribute *attribut
     if (json_is_array(json_array_get(list, i)))
       count += json_array_size(json_array_get(list, i));
   if (count + (size_t)reader->model->cells > EO_REXS_CELLS)
-    return eo_rexs_refuse(reader->problem, "too_large", 0, 0, "The arrays of the file hold more than 4000000 values.");
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_CELLS);
   double *value = count ? eo_rexs_memory(reader->model, count * sizeof *value) : NULL;
   for (size_t i = 0; value && i < json_array_size(list); i++) {
     const json_t *cell = json_array_get(list, i);
@@ -102,8 +102,7 @@ static bool read_attribute(struct reader *reader, struct eo_rexs_component *comp
   const char *key;
   json_t *value;
   if (reader->model->attributes >= EO_REXS_ATTRIBUTES)
-    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
-                          "The file has more than 200000 attributes; leave out results that a design does not need.");
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_ATTRIBUTES);
   struct eo_rexs_attribute *attribute = eo_rexs_add_attribute(reader->model, component);
   if (!attribute)
     return false;
@@ -134,12 +133,14 @@ static bool read_component(struct reader *reader, struct eo_rexs_component *comp
 
 static bool read_relation(struct reader *reader, const json_t *object, int index)
 {
-  struct eo_rexs_relation *relation = reader->model->relations < EO_REXS_RELATIONS ? eo_rexs_add_relation(reader->model)
-                                                                                   : NULL;
   const json_t *references = json_object_get(object, "refs");
-  if (!relation || json_array_size(references) > EO_REXS_REFERENCES)
-    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
-                          "The file has more than 40000 relations, or one with more than 12 references.");
+  if (reader->model->relations >= EO_REXS_RELATIONS)
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_RELATIONS);
+  if (json_array_size(references) > EO_REXS_REFERENCES)
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_REFERENCES);
+  struct eo_rexs_relation *relation = eo_rexs_add_relation(reader->model);
+  if (!relation)
+    return false;
   relation->place.index = index;
   relation->type = kept(reader, object, "type");
   if (!whole(reader, object, "id", true, &relation->id) || !whole(reader, object, "order", false, &relation->order))
@@ -158,10 +159,10 @@ static bool read_relation(struct reader *reader, const json_t *object, int index
 static bool read_load_case(struct reader *reader, const json_t *object)
 {
   const json_t *components = json_object_get(object, "components");
-  if (reader->model->load_cases >= EO_REXS_LOAD_CASES ||
-      json_array_size(components) + (size_t)reader->model->varying > EO_REXS_COMPONENTS)
-    return eo_rexs_refuse(reader->problem, "too_large", 0, 0,
-                          "The file has more than 2000 load cases, or more than 20000 components vary in them.");
+  if (reader->model->load_cases >= EO_REXS_LOAD_CASES)
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_LOAD_CASES);
+  if (json_array_size(components) + (size_t)reader->model->varying > EO_REXS_COMPONENTS)
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_COMPONENTS);
   struct eo_rexs_load_case *load_case = eo_rexs_add_load_case(reader->model);
   if (!load_case || !whole(reader, object, "id", false, &load_case->id))
     return false;
@@ -193,7 +194,7 @@ static bool read_model(struct reader *reader, const json_t *top)
   reader->model->application_version = kept(reader, top, "applicationVersion");
   reader->model->date = kept(reader, top, "date");
   if (json_array_size(components) > EO_REXS_COMPONENTS)
-    return eo_rexs_refuse(reader->problem, "too_large", 0, 0, "The file has more than 20000 components.");
+    return eo_rexs_refuse_many(reader->problem, 0, 0, EO_REXS_COMPONENTS);
   for (size_t i = 0; i < json_array_size(relations); i++)
     if (!read_relation(reader, json_array_get(relations, i), (int)i))
       return false;

@@ -35,6 +35,23 @@ bool eo_rexs_refuse(struct eo_rexs_problem *problem, const char *kind, int line,
   return false;
 }
 
+bool eo_rexs_refuse_many(struct eo_rexs_problem *problem, int line, int column, int limit)
+{
+  static const struct {
+    int limit;
+    const char *what;
+  } many[] = {{EO_REXS_ATTRIBUTES, "attributes; leave out results that a design does not need"},
+              {EO_REXS_COMPONENTS, "components"},
+              {EO_REXS_RELATIONS, "relations"},
+              {EO_REXS_LOAD_CASES, "load cases"},
+              {EO_REXS_CELLS, "values in arrays"},
+              {EO_REXS_REFERENCES, "references in a relation"}};
+  size_t i = 0;
+  while (i + 1 < sizeof many / sizeof *many && many[i].limit != limit)
+    i++;
+  return eo_rexs_refuse(problem, "too_large", line, column, "The file has more than %d %s.", limit, many[i].what);
+}
+
 static int base64_digit(char c)
 {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -106,7 +123,8 @@ static bool read_bytes(struct eo_rexs_model *model, const char *bytes, size_t si
   static const char mark[] = "\xEF\xBB\xBF";
   size_t skip = size >= 3 && memcmp(bytes, mark, 3) == 0 ? 3 : 0;
   if (size > EO_REXS_BYTES)
-    return eo_rexs_refuse(problem, "too_large", 0, 0, "The file has more than 64 MB; that is no model.");
+    return eo_rexs_refuse(problem, "too_large", 0, 0, "The file has more than %zu MB; that is no model.",
+                          EO_REXS_BYTES >> 20);
   while (skip < size && strchr(" \t\r\n", bytes[skip]) && bytes[skip])
     skip++;
   if (skip < size && bytes[skip] == '{')

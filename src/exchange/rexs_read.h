@@ -17,6 +17,10 @@ struct eo_rexs_problem {
 bool eo_rexs_refuse(struct eo_rexs_problem *problem, const char *kind, int line, int column, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
+/* The same of a file that holds more of something than a limit allows. limit: EO_REXS_ATTRIBUTES ..., or
+   EO_REXS_REFERENCES. */
+bool eo_rexs_refuse_many(struct eo_rexs_problem *problem, int line, int column, int limit);
+
 /* All of these begin with an empty model; false: *problem says why, and the model is to be released all the same. */
 bool eo_rexs_read_xml(struct eo_rexs_model *model, const char *bytes, size_t size, struct eo_rexs_problem *problem);
 bool eo_rexs_read_json(struct eo_rexs_model *model, const char *bytes, size_t size, struct eo_rexs_problem *problem);

@@ -70,19 +70,32 @@ struct reader {
   bool stopped, seen_model;
 };
 
-static void refuse(struct reader *reader, const char *kind, const char *text)
-{
-  if (!reader->stopped)
-    eo_rexs_refuse(reader->problem, kind, (int)XML_GetCurrentLineNumber(reader->parser),
-                   (int)XML_GetCurrentColumnNumber(reader->parser) + 1, "%s", text);
-  reader->stopped = true;
-  XML_StopParser(reader->parser, XML_FALSE);
-}
-
 static struct eo_rexs_place here(const struct reader *reader)
 {
   return (struct eo_rexs_place){(int)XML_GetCurrentLineNumber(reader->parser),
                                 (int)XML_GetCurrentColumnNumber(reader->parser) + 1, 0};
+}
+
+static void stop(struct reader *reader)
+{
+  reader->stopped = true;
+  XML_StopParser(reader->parser, XML_FALSE);
+}
+
+static void refuse(struct reader *reader, const char *kind, const char *text)
+{
+  struct eo_rexs_place place = here(reader);
+  if (!reader->stopped)
+    eo_rexs_refuse(reader->problem, kind, place.line, place.column, "%s", text);
+  stop(reader);
+}
+
+static void refuse_many(struct reader *reader, int limit)
+{
+  struct eo_rexs_place place = here(reader);
+  if (!reader->stopped)
+    eo_rexs_refuse_many(reader->problem, place.line, place.column, limit);
+  stop(reader);
 }
 
 /* Names come with or without the prefix of a name space. */
@@ -125,7 +138,7 @@ static void begin_ref(struct reader *reader, const char **attributes)
   if (!reader->relation)
     return;
   if (reader->relation->count >= EO_REXS_REFERENCES) {
-    refuse(reader, "too_large", "A relation has more than 12 references; no relation of REXS has so many.");
+    refuse_many(reader, EO_REXS_REFERENCES);
     return;
   }
   struct eo_rexs_reference *reference = &reader->relation->reference[reader->relation->count++];
@@ -137,7 +150,7 @@ static void begin_ref(struct reader *reader, const char **attributes)
 static void begin_relation(struct reader *reader, const char **attributes)
 {
   if (reader->model->relations >= EO_REXS_RELATIONS) {
-    refuse(reader, "too_large", "The file has more than 40000 relations.");
+    refuse_many(reader, EO_REXS_RELATIONS);
     return;
   }
   reader->relation = eo_rexs_add_relation(reader->model);
@@ -152,7 +165,7 @@ static void begin_relation(struct reader *reader, const char **attributes)
 static void begin_component(struct reader *reader, const char **attributes)
 {
   if (reader->model->components + reader->model->varying >= EO_REXS_COMPONENTS) {
-    refuse(reader, "too_large", "The file has more than 20000 components.");
+    refuse_many(reader, EO_REXS_COMPONENTS);
     return;
   }
   reader->component = reader->load_case ? eo_rexs_add_varying(reader->model, reader->load_case)
@@ -168,8 +181,7 @@ static void begin_component(struct reader *reader, const char **attributes)
 static void begin_attribute(struct reader *reader, const char **attributes)
 {
   if (reader->model->attributes >= EO_REXS_ATTRIBUTES) {
-    refuse(reader, "too_large",
-           "The file has more than 200000 attributes; leave out results that a design does not need.");
+    refuse_many(reader, EO_REXS_ATTRIBUTES);
     return;
   }
   reader->attribute = reader->component ? eo_rexs_add_attribute(reader->model, reader->component) : NULL;
@@ -201,7 +213,7 @@ static void begin_known(struct reader *reader, enum element element, const char 
     break;
   case LOAD_CASE:
     if (model->load_cases >= EO_REXS_LOAD_CASES) {
-      refuse(reader, "too_large", "The file has more than 2000 load cases.");
+      refuse_many(reader, EO_REXS_LOAD_CASES);
       break;
     }
     reader->load_case = eo_rexs_add_load_case(model);
@@ -236,7 +248,10 @@ static void XMLCALL begin(void *context, const char *name, const char **attribut
   if (reader->stopped)
     return;
   if (reader->depth >= EO_REXS_DEPTH) {
-    refuse(reader, "too_deep", "Elements stand in elements more than 16 deep; a REXS file never does that.");
+    char text[100];
+    snprintf(text, sizeof text, "Elements stand in elements more than %d deep; a REXS file never does that.",
+             EO_REXS_DEPTH);
+    refuse(reader, "too_deep", text);
     return;
   }
   enum element within = reader->depth ? reader->stack[reader->depth - 1] : NOTHING, element = NOTHING;
@@ -271,7 +286,7 @@ static const char *trimmed(struct reader *reader)
 static void add_cell(struct reader *reader)
 {
   if (reader->model->cells >= EO_REXS_CELLS) {
-    refuse(reader, "too_large", "The arrays of the file hold more than 4000000 values.");
+    refuse_many(reader, EO_REXS_CELLS);
     return;
   }
   if (reader->cells == reader->room) {
