@@ -7,7 +7,6 @@
 
 #include "gear/geometry.h"
 
-static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
 static const char *const shift_mm_key[2] = {"/gear_pair/pinion_profile_shift_mm", "/gear_pair/gear_profile_shift_mm"};
 static const char *const tip_key[2] = {"/gear_pair/pinion_tip_diameter_mm", "/gear_pair/gear_tip_diameter_mm"};
 static const double MM = 1e-3, DEGREE = M_PI / 180;
@@ -395,9 +394,7 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
   EO_TRY(settle_right_helix(&settled, error));
   EO_TRY(settle_shifts(&settled, error));
   if (isnan(tight_distance(&settled)))
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
-                        "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
-                        settled.profile_shift[0] + settled.profile_shift[1]);
+    return eo_geometry_refuse_shifts(&settled, error);
   for (int i = 0; i < 2; i++)
     EO_TRY(settle_tip(&settled, i, error));
   for (int i = 0; i < 2; i++)

@@ -123,6 +123,23 @@ static enum eo_code refuse_jam(const struct eo_geometry *geometry, const struct 
                                             geometry->transverse_pressure_angle, geometry->working_pressure_angle));
 }
 
+enum eo_code eo_geometry_check_distance(double centre_distance, double base_radii, const char *pointer,
+                                        struct eo_error *error)
+{
+  return centre_distance > base_radii
+             ? EO_OK
+             : eo_error_set(error, EO_ERROR_INPUT, pointer,
+                            "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.",
+                            1e3 * centre_distance, 1e3 * base_radii);
+}
+
+enum eo_code eo_geometry_refuse_shifts(const struct eo_gear_pair *pair, struct eo_error *error)
+{
+  return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
+                      "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
+                      pair->profile_shift[0] + pair->profile_shift[1]);
+}
+
 /* Working centre distance and pressure angle; the backlash that a larger centre distance adds. */
 static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
 {
@@ -133,9 +150,7 @@ static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_ge
                  2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(geometry->normal_pressure_angle) /
                      (geometry->teeth[0] + geometry->teeth[1]);
   if (value <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
-                        "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
-                        pair->profile_shift[0] + pair->profile_shift[1]);
+    return eo_geometry_refuse_shifts(pair, error);
   /* Exactly the reference values when nothing shifts them. */
   double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? geometry->transverse_pressure_angle
                                                                       : eo_geometry_involute_inverse(value);
@@ -149,10 +164,7 @@ static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_ge
                                         : pair->backlash;
   geometry->normal_backlash = geometry->stated_backlash = stated;
   if (!isnan(pair->centre_distance)) {
-    if (pair->centre_distance <= base)
-      return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/centre_distance_mm",
-                          "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.",
-                          1e3 * pair->centre_distance, 1e3 * base);
+    EO_TRY(eo_geometry_check_distance(pair->centre_distance, base, "/gear_pair/centre_distance_mm", error));
     geometry->centre_distance = pair->centre_distance;
     geometry->working_pressure_angle = acos(base / pair->centre_distance);
     /* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b */

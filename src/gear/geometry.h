@@ -66,6 +66,13 @@ double eo_geometry_right_lead(const struct eo_geometry *geometry, const struct e
    backlash, no tip clearance. */
 enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error);
 
+/* EO_ERROR_INPUT at the pointer: a centre distance, m, that is not above the sum of the base radii, m. */
+enum eo_code eo_geometry_check_distance(double centre_distance, double base_radii, const char *pointer,
+                                        struct eo_error *error);
+
+/* EO_ERROR_INPUT, always: shifts so negative that the tight mesh has no pressure angle. */
+enum eo_code eo_geometry_refuse_shifts(const struct eo_gear_pair *pair, struct eo_error *error);
+
 /* Sum of the profile shift coefficients without backlash at the working pressure angle alpha_wt (ISO 21771 (56)). */
 double eo_geometry_shift_sum(const int teeth[2], double normal_pressure_angle, double transverse_pressure_angle,
                              double working_pressure_angle);

@@ -22,10 +22,7 @@ enum eo_code eo_backlash(struct eo_backlash *backlash, const struct eo_backlash_
   double base = in->normal_module / cos(in->helix_angle) * (in->teeth[0] + in->teeth[1]) / 2 * cos(transverse);
   double allowance = in->allowance[0] + in->allowance[1];
   double unthinned = tight_involute(in, transverse, 0), thinned = tight_involute(in, transverse, allowance);
-  if (!(in->centre_distance > base))
-    return eo_error_set(error, EO_ERROR_INPUT, "/centre_distance_mm",
-                        "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.",
-                        1e3 * in->centre_distance, 1e3 * base);
+  EO_TRY(eo_geometry_check_distance(in->centre_distance, base, "/centre_distance_mm", error));
   if (!(thinned > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/x",
                         "Profile shifts and allowances are so negative that both flanks never touch.");

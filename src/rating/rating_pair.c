@@ -5,13 +5,6 @@
 
 #include "gear/geometry.h"
 
-static enum eo_code refuse_distance(double distance, double least, struct eo_error *error)
-{
-  return eo_error_set(error, EO_ERROR_INPUT, "/centre_distance_mm",
-                      "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.", 1e3 * distance,
-                      1e3 * least);
-}
-
 static void set_angles(struct eo_rating_geometry *geometry, const struct eo_rating_pair *rating_pair)
 {
   double helix = cos(rating_pair->helix_angle);
@@ -35,8 +28,7 @@ enum eo_code eo_rating_geometry(struct eo_rating_geometry *geometry, const struc
   struct eo_rating_geometry rating_geometry = {0};
   set_angles(&rating_geometry, rating_pair);
   double base = (rating_geometry.base_diameter[0] + rating_geometry.base_diameter[1]) / 2;
-  if (!(rating_pair->centre_distance > base))
-    return refuse_distance(rating_pair->centre_distance, base, error);
+  EO_TRY(eo_geometry_check_distance(rating_pair->centre_distance, base, "/centre_distance_mm", error));
   rating_geometry.working_pressure_angle = acos(base / rating_pair->centre_distance);
   for (int i = 0; i < 2; i++) {
     double ratio = rating_pair->tip_diameter[i] / rating_geometry.base_diameter[i];
@@ -63,8 +55,7 @@ enum eo_code eo_shift_split(struct eo_shift_split *split, const struct eo_rating
   struct eo_rating_geometry geometry = {0};
   set_angles(&geometry, rating_pair);
   double base = (geometry.base_diameter[0] + geometry.base_diameter[1]) / 2;
-  if (!(rating_pair->centre_distance > base))
-    return refuse_distance(rating_pair->centre_distance, base, error);
+  EO_TRY(eo_geometry_check_distance(rating_pair->centre_distance, base, "/centre_distance_mm", error));
   double sum = eo_geometry_shift_sum(rating_pair->teeth, rating_pair->normal_pressure_angle,
                                      geometry.transverse_pressure_angle, acos(base / rating_pair->centre_distance));
   double reference = (geometry.reference_diameter[0] + geometry.reference_diameter[1]) / 2;
