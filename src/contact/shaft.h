@@ -33,9 +33,8 @@
 enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
 struct eo_shafts {
   bool enabled;
-  double bearing_position[2][2]; /* [member][left, right], m; NaN: its own face end + half a face width outside */
-  double shaft_diameter[2]; /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the
-                               bore to it */
+  double bearing_position[2][2];    /* [member][left, right], m; NaN: derived (design/) */
+  double shaft_diameter[2];         /* outside the toothed body, m; NaN: derived */
   enum eo_drive_side drive_side[2]; /* where torque enters the pinion and leaves the gear */
 };
 

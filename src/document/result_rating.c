@@ -114,7 +114,7 @@ static const struct eo_outline verdict = EO_OUTLINE("RatingVerdict", verdict_row
 struct basis_member {
   double flank_limit, root_limit, hardness, shift, virtual_teeth;
   struct eo_tooth_root root;
-  double nominal_shape, rim;
+  double rim;
   struct eo_root_influence influence;
   struct eo_flank_tolerance tolerance;
   double base_pitch;

@@ -30,8 +30,7 @@ struct eo_supports {
   double bearing_damping_ratio;
   double groove_damping_ratio;
   double mesh_damping_ratio;
-  double mesh_damping_stiffness; /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load
-                                    case */
+  double mesh_damping_stiffness; /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: derived of each load case */
   double machine_inertia[2];     /* of the driver on the pinion's shaft, of the load on the gear's, each on its own
                                     shaft, kg m2; 0: none */
   double machine_stiffness[2];   /* of the shaft and coupling between it and the gear, N m/rad; 0: none */

@@ -49,7 +49,7 @@ enum eo_teeth_level { EO_TEETH_SOLVED, EO_TEETH_FOLLOWED, EO_TEETH_SKETCHED };
 struct eo_pitch {
   bool stated;               /* false: teeth are alike, and the hunting period is not computed */
   enum eo_teeth_level level; /* no document says so */
-  int positions;             /* of a mesh cycle; 0: 32, at most those of the resolution */
+  int positions;             /* of a mesh cycle; 0: derived */
   int gear_tooth;            /* whose drive flank meets that of the pinion's tooth 0 */
   struct eo_pitch_member {
     int tolerance_class; /* of ISO 1328-1, from which flanks without a table of index deviations are drawn; 0: none */
