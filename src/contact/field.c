@@ -176,6 +176,8 @@ void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geomet
   field->lean = tan(geometry->base_helix_angle);
   field->stretch = 1 / cos(geometry->helix_angle);
   memcpy(field->shape, shape, sizeof field->shape);
+  for (int member = 0; member < 2; member++)
+    eo_modification_move(&field->shape[member], geometry, member);
   memcpy(field->corner, corner, sizeof field->corner);
   field->pivot = pivot;
   field->offset = 0;

@@ -114,6 +114,8 @@ static void fill_line(struct eo_contact_position *position, int first, const str
     double s = position->phase + pair * geometry->transverse_base_pitch + point->eta * tangent,
            clamped = fmin(fmax(s, geometry->path_start), geometry->path_end);
     eo_gap_field_at(field, s, point->eta, NULL, point->s);
+    for (int member = 0; member < 2; member++)
+      point->s[member] = eo_geometry_drawn_path(geometry, member, point->s[member]);
     position->path[first + i] = s;
     position->kind[first + i] = stretch->kind;
     position->length[first + i] = width / cos(geometry->base_helix_angle);

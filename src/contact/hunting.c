@@ -40,9 +40,9 @@ static int floored(int number, int by)
 static double form_at(const struct eo_geometry *geometry, const struct eo_flank_point *point, bool inwards, int member,
                       const struct eo_tooth_deviation *tooth)
 {
-  double middle = (geometry->path_start + geometry->path_end) / 2,
-         half = (geometry->path_end - geometry->path_start) / 2,
-         xi = eo_geometry_own_path(member, point->s[member] - middle) / half,
+  double start = eo_geometry_drawn_path(geometry, EO_GEAR, geometry->path_start), /* where the gear's tip meets */
+      end = eo_geometry_drawn_path(geometry, EO_PINION, geometry->path_end), middle = (start + end) / 2,
+         half = (end - start) / 2, xi = eo_geometry_own_path(member, point->s[member] - middle) / half,
          zeta = (inwards ? -2 : 2) * point->eta / geometry->face_width;
   return (tooth->profile_slope * xi + tooth->helix_slope * zeta) / 2 + tooth->profile_crowning * xi * xi +
          tooth->lead_crowning * zeta * zeta;

@@ -140,7 +140,10 @@ static double patch_bulk(const struct eo_geometry *geometry, struct eo_kernel ke
   double matrix[POINTS * POINTS], sum = 0, half = geometry->face_width / 2, length = fmin(patch, geometry->face_width);
   double low = fmax(-half, fmin(half - length, eta - length / 2));
   for (int i = 0; i < POINTS; i++)
-    point[i] = (struct eo_flank_point){.pair = 0, .s = {s, s}, .eta = low + length * (i + 0.5) / POINTS};
+    point[i] = (struct eo_flank_point){
+        .pair = 0,
+        .s = {eo_geometry_drawn_path(geometry, EO_PINION, s), eo_geometry_drawn_path(geometry, EO_GEAR, s)},
+        .eta = low + length * (i + 0.5) / POINTS};
   kernel.evaluate(kernel.context, POINTS, point, matrix);
   for (int i = 0; i < POINTS * POINTS; i++)
     sum += matrix[i];

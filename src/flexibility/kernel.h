@@ -7,7 +7,8 @@
 /* A point where a pair of teeth may touch. */
 struct eo_flank_point {
   int pair;    /* index of the tooth pair; pair k + 1 meets one base pitch ahead of pair k (greater s) */
-  double s[2]; /* [member]: transverse path coordinate of the point on each flank, m; equal but for tip-edge contact */
+  double s[2]; /* [member]: transverse path coordinate of the point on each flank, at the distance that the pair is
+                  drawn for, m; equal there but for tip-edge contact */
   double eta;  /* axial from mid face, + on the side that meets first, m */
 };
 

@@ -140,6 +140,26 @@ enum eo_code eo_geometry_refuse_shifts(const struct eo_gear_pair *pair, struct e
                       pair->profile_shift[0] + pair->profile_shift[1]);
 }
 
+/* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b. */
+static double backlash_beyond(const struct eo_geometry *geometry, double tight)
+{
+  /* theory (G8) */
+  return 2 * (geometry->base_radius[0] + geometry->base_radius[1]) * cos(geometry->base_helix_angle) *
+         (eo_geometry_involute_function(geometry->working_pressure_angle) - eo_geometry_involute_function(tight));
+}
+
+/* Where the pitch point lies on both members. */
+static void set_pitch_point(struct eo_geometry *geometry)
+{
+  for (int i = 0; i < 2; i++) {
+    geometry->working_radius[i] = geometry->centre_distance * geometry->teeth[i] /
+                                  (geometry->teeth[0] + geometry->teeth[1]);
+    geometry->tangent_length[i] = geometry->base_radius[i] * tan(geometry->working_pressure_angle);
+    geometry->rack_offset[i] = geometry->rack_factor * geometry->base_radius[i] *
+                               (tan(geometry->working_pressure_angle) - tan(geometry->transverse_pressure_angle));
+  }
+}
+
 /* Working centre distance and pressure angle; the backlash that a larger centre distance adds. */
 static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
 {
@@ -167,24 +187,15 @@ static enum eo_code set_working(struct eo_geometry *geometry, const struct eo_ge
     EO_TRY(eo_geometry_check_distance(pair->centre_distance, base, "/gear_pair/centre_distance_mm", error));
     geometry->centre_distance = pair->centre_distance;
     geometry->working_pressure_angle = acos(base / pair->centre_distance);
-    /* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b */
-    /* theory (G8) */
-    geometry->normal_backlash +=
-        2 * base * cos(geometry->base_helix_angle) *
-        (eo_geometry_involute_function(geometry->working_pressure_angle) - eo_geometry_involute_function(tight));
+    geometry->normal_backlash += backlash_beyond(geometry, tight);
   }
   if (geometry->normal_backlash <= 0)
     return refuse_jam(geometry, pair, base / cos(tight), error);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 2; i++)
     geometry->tip_radius[i] = isnan(pair->tip_diameter[i])
                                   ? eo_gear_pair_tip_diameter(pair, geometry->centre_distance, i) / 2
                                   : pair->tip_diameter[i] / 2;
-    geometry->working_radius[i] = geometry->centre_distance * geometry->teeth[i] /
-                                  (geometry->teeth[0] + geometry->teeth[1]);
-    geometry->tangent_length[i] = geometry->base_radius[i] * tan(geometry->working_pressure_angle);
-    geometry->rack_offset[i] = geometry->rack_factor * geometry->base_radius[i] *
-                               (tan(geometry->working_pressure_angle) - tan(geometry->transverse_pressure_angle));
-  }
+  set_pitch_point(geometry);
   return EO_OK;
 }
 
@@ -372,6 +383,44 @@ enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear
   for (int i = 0; i < 2; i++)
     EO_TRY(check_tip(&this_geometry, i, pair, error));
   *geometry = this_geometry;
+  return EO_OK;
+}
+
+/* What the distance makes of a pair whose gears are there already. */
+static enum eo_code assemble(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error)
+{
+  const struct eo_geometry drawn = *geometry;
+  double base = geometry->base_radius[0] + geometry->base_radius[1];
+  if (geometry->centre_distance <= base)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The axes are not further apart than the base radii add up to.");
+  geometry->working_pressure_angle = acos(base / geometry->centre_distance); /* theory (G18) */
+  geometry->normal_backlash += backlash_beyond(geometry, drawn.working_pressure_angle);
+  if (geometry->normal_backlash <= 0)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The normal backlash, %.6g um, is not positive: the teeth would jam.",
+                        1e6 * geometry->normal_backlash);
+  set_pitch_point(geometry);
+  for (int i = 0; i < 2; i++)
+    geometry->moved[i] = geometry->tangent_length[i] - drawn.tangent_length[i];
+  EO_TRY(set_path(geometry, pair, error));
+  for (int i = 0; i < 2; i++)
+    EO_TRY(check_tip(geometry, i, pair, error));
+  return EO_OK;
+}
+
+enum eo_code eo_geometry_set_apart(struct eo_geometry *geometry, const struct eo_gear_pair *pair, double deviation,
+                                   struct eo_error *error)
+{
+  struct eo_geometry apart = *geometry;
+  struct eo_error found;
+  if (deviation == 0)
+    return EO_OK;
+  apart.centre_distance += deviation;
+  if (assemble(&apart, pair, &found))
+    return eo_error_set(error, EO_ERROR_INPUT, "/alignment/centre_distance_deviation_um",
+                        "With the axes %.6g um from the centre distance of the drawing: %.380s", 1e6 * deviation,
+                        found.text);
+  *geometry = apart;
   return EO_OK;
 }
 

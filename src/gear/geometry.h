@@ -33,8 +33,10 @@ struct eo_geometry {
   double normal_base_pitch;     /* p_bn */
   double
       tangent_length[2]; /* T1C, T2C: from the base circles to the pitch point, along the transverse line of action */
-  double path_start;     /* s_A < 0: contact starts at the gear's tip */
-  double path_end;       /* s_E > 0: contact ends at the pinion's tip */
+  double moved[2];   /* by how much T1C, T2C are longer than at the distance that the pair is drawn for, which flanks
+                        and flexibility count from: eo_geometry_set_apart() */
+  double path_start; /* s_A < 0: contact starts at the gear's tip */
+  double path_end;   /* s_E > 0: contact ends at the pinion's tip */
   double transverse_contact_ratio, overlap_ratio; /* eps_alpha, eps_beta */
   double rack_factor;    /* k_u = sin(alpha_t)/cos(alpha_n): u = k_u s, the profile coordinate of modifications */
   double rack_offset[2]; /* generating rack coordinate of the pitch point: 0 without profile shift */
@@ -73,6 +75,12 @@ enum eo_code eo_geometry_check_distance(double centre_distance, double base_radi
 /* EO_ERROR_INPUT, always: shifts so negative that the tight mesh has no pressure angle. */
 enum eo_code eo_geometry_refuse_shifts(const struct eo_gear_pair *pair, struct eo_error *error);
 
+/* The same two gears with their axes that much further apart than the pair is drawn for (0: nothing changes): working
+   pressure angle, path of contact, contact ratio, backlash and clearances; flanks, tips and roots stay. geometry: of
+   eo_geometry_init(). Errors (EO_ERROR_INPUT with the key of the deviation): as above. */
+enum eo_code eo_geometry_set_apart(struct eo_geometry *geometry, const struct eo_gear_pair *pair, double deviation,
+                                   struct eo_error *error);
+
 /* Sum of the profile shift coefficients without backlash at the working pressure angle alpha_wt (ISO 21771 (56)). */
 double eo_geometry_shift_sum(const int teeth[2], double normal_pressure_angle, double transverse_pressure_angle,
                              double working_pressure_angle);
@@ -86,6 +94,12 @@ double eo_geometry_involute_inverse(double value);
 static inline double eo_geometry_own_path(int member, double s)
 {
   return member == EO_PINION ? s : -s;
+}
+
+/* The path coordinate of a member's flank as it is at the distance that the pair is drawn for. */
+static inline double eo_geometry_drawn_path(const struct eo_geometry *geometry, int member, double s)
+{
+  return s + eo_geometry_own_path(member, geometry->moved[member]);
 }
 
 /* The transverse profile of one flank of a member in its own frame: tooth centre line along +y, flank at x > 0,

@@ -131,14 +131,22 @@ double eo_modification_lead_coefficient(const struct eo_geometry *geometry, doub
 
 void eo_active_profile(const struct eo_geometry *geometry, int member, double end[2])
 {
-  end[EO_ROOT_SIDE] = member == EO_PINION ? geometry->rack_bottom : -geometry->rack_top;
-  end[EO_TIP_SIDE] = member == EO_PINION ? geometry->rack_top : -geometry->rack_bottom;
+  double bottom = geometry->rack_bottom - geometry->rack_factor * geometry->moved[EO_GEAR],
+         top = geometry->rack_top + geometry->rack_factor * geometry->moved[EO_PINION];
+  end[EO_ROOT_SIDE] = member == EO_PINION ? bottom : -top;
+  end[EO_TIP_SIDE] = member == EO_PINION ? top : -bottom;
+}
+
+/* T C of a member as its flanks are drawn. */
+static double drawn_tangent(const struct eo_geometry *geometry, int member)
+{
+  return geometry->tangent_length[member] - geometry->moved[member];
 }
 
 /* u = k_u sigma; roll length L = T C + sigma, radius^2 = r_b^2 + L^2. */
 struct eo_profile_place eo_profile_place_at(const struct eo_geometry *geometry, int member, double u)
 {
-  double sigma = u / geometry->rack_factor, roll = geometry->tangent_length[member] + sigma,
+  double sigma = u / geometry->rack_factor, roll = drawn_tangent(geometry, member) + sigma,
          base = geometry->base_radius[member], end[2];
   eo_active_profile(geometry, member, end);
   return (struct eo_profile_place){
@@ -168,7 +176,7 @@ double eo_relief_start_at(const struct eo_geometry *geometry, int member, const 
   roll = place->roll_length > 0  ? place->roll_length
          : place->roll_angle > 0 ? place->roll_angle * base
                                  : sqrt(place->diameter * place->diameter / 4 - base * base);
-  return geometry->rack_factor * (roll - geometry->tangent_length[member]);
+  return geometry->rack_factor * (roll - drawn_tangent(geometry, member));
 }
 
 static struct eo_relief relief(double start, double end, double amount, double crowning)
@@ -241,6 +249,11 @@ void eo_modification_complete(struct eo_modification_shape *shape, const struct 
   shape->mirrored = mirrored;
   shape->varies = shape->varies || grid;
   shape->has_terms = shape->has_terms || grid;
+}
+
+void eo_modification_move(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member)
+{
+  shape->moved = geometry->rack_factor * geometry->moved[member];
 }
 
 /* The line along which the plane of a triangular relief cuts the slice at distance q from the face end: at the
@@ -354,6 +367,7 @@ static double wedge_value(const struct eo_wedge *wedge, double u, double slope[2
 
 double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2])
 {
+  u += shape->moved;
   double value = relieved_profile(shape, u, slope);
   if (!shape->has_terms)
     return value;
@@ -382,6 +396,7 @@ static double wedge_across(const struct eo_wedge *wedge, double u)
 
 double eo_modification_across(const struct eo_modification_shape *slice, double u)
 {
+  u += slice->moved;
   double rate = slice->twist * (u - slice->middle);
   for (int i = 0; i < slice->wedges; i++)
     rate += wedge_across(&slice->wedge[i], u);
@@ -418,6 +433,8 @@ int eo_modification_vertices(const struct eo_modification_shape *slice, double v
     count = add_vertex(vertex, count, (slice->wedge[i].length > 0 ? 1 : -1) * slice->wedge[i].start);
   for (int border = 0; slice->grid && border < 2; border++)
     count = add_vertex(vertex, count, slice->grid->u[border * (slice->grid->u_knots - 1)]);
+  for (int i = 0; i < count; i++)
+    vertex[i] -= slice->moved;
   return count;
 }
 

@@ -90,6 +90,7 @@ struct eo_modification_shape {
   double half_width;                /* |x| at the face ends, m */
   double lengthen;                  /* 1/cos(beta): from y to x */
   double middle, half_profile;      /* u in the middle of the active profile and half its length, m */
+  double moved; /* what u counts from beyond the pitch point that the flank is drawn for, m: eo_modification_move() */
 
   /* beside reliefs and crowning, in the profile of one slice: */
   bool has_terms;         /* any of these */
@@ -128,6 +129,9 @@ void eo_modification_init(struct eo_modification_shape *shape, const struct eo_g
 
 /* Adds a grid (NULL: none); mirrored: the flank is a coast flank, so that y runs against eta. */
 void eo_modification_complete(struct eo_modification_shape *shape, const struct eo_flank_spline *grid, bool mirrored);
+
+/* From now on u counts from the pitch point of a pair whose axes may stand further apart than it is drawn for. */
+void eo_modification_move(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member);
 
 /* The shape whose profile is that of the transverse slice at eta; the lead part stays. */
 void eo_modification_slice(const struct eo_modification_shape *shape, double eta, struct eo_modification_shape *slice);
@@ -173,7 +177,8 @@ double eo_relief_start_at(const struct eo_geometry *geometry, int member, const 
 /* How many of the other ways to state a start are used. */
 int eo_relief_places_stated(const struct eo_relief_place *place);
 
-/* Ends of a member's active profile, u, m: [root, tip]. */
+/* Ends of a member's active profile, u, m: [root, tip]; as places, starts and shapes above, of the pair as it is drawn.
+ */
 void eo_active_profile(const struct eo_geometry *geometry, int member, double end[2]);
 
 /* True when both take off the same. */
