@@ -40,7 +40,8 @@ struct eo_alignment {
   double deviation_out_of_plane; /* f_Sigma_beta over the face width of one end, m */
   double pinion_axial_clearance; /* between the stops, m, used with EO_AXIAL_STOPS */
   double coupling_thrust;        /* on the pinion, + to the right, N */
-  double apex_offset[2];         /* [member] of the right end away from the left one beyond the nominal distance, m */
+  double centre_distance_deviation; /* of the axes from the centre distance that the pair is drawn for, m */
+  double apex_offset[2]; /* [member] of the right end away from the left one beyond the nominal distance, m */
   enum eo_apex apex;
   char pinion_rotation[20]; /* entry alone: "clockwise" or "counterclockwise", seen from the left end, running ahead;
                                with a stated hand it states the apex, else the hand; "": not stated */

@@ -61,7 +61,8 @@
   ROW("layers", resolution->elements.layers)                                               \
   ROW("flank_rows", resolution->elements.flank_rows)                                       \
   ROW("fillet_elements", resolution->elements.fillet_elements)                             \
-  ROW("impact_patch", resolution->impact_patch)
+  ROW("impact_patch", resolution->impact_patch)                                             \
+  ROW("centre_distance_deviation", deviation)
 
 #define NAME(name, value) name,
 #define VALUE(name, value) value,
@@ -70,9 +71,15 @@ static const char *const names[] = {PAIR_MEMBERS(NAME)};
 _Static_assert(sizeof names / sizeof *names == EO_PAIR_MEMBERS, "one value for each name");
 
 struct eo_pair_identity eo_pair_identity_of(const struct eo_gear_pair *pair, const struct eo_material *material,
-                                            const struct eo_resolution *resolution)
+                                            const struct eo_resolution *resolution, double deviation)
 {
   return (struct eo_pair_identity){{PAIR_MEMBERS(VALUE)}};
+}
+
+struct eo_pair_identity eo_pair_identity_of_design(const struct eo_design *design)
+{
+  return eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution,
+                             design->alignment.centre_distance_deviation);
 }
 
 bool eo_pair_identity_equal(const struct eo_pair_identity *a, const struct eo_pair_identity *b)

@@ -10,16 +10,17 @@
 #include "base/hash.h"
 #include "design/design.h"
 
-enum { EO_PAIR_MEMBERS = 57 };
+enum { EO_PAIR_MEMBERS = 58 };
 
 /* One number for each member. */
 struct eo_pair_identity {
   double value[EO_PAIR_MEMBERS];
 };
 
-/* Of resolved members of a design. */
+/* Of resolved members of a design; deviation: from the centre distance, m. */
 struct eo_pair_identity eo_pair_identity_of(const struct eo_gear_pair *pair, const struct eo_material *material,
-                                            const struct eo_resolution *resolution);
+                                            const struct eo_resolution *resolution, double deviation);
+struct eo_pair_identity eo_pair_identity_of_design(const struct eo_design *design);
 
 /* True when one prepared pair serves both. */
 bool eo_pair_identity_equal(const struct eo_pair_identity *a, const struct eo_pair_identity *b);

@@ -297,6 +297,10 @@ static const struct eo_field alignment[] = {
               "how far the pinion's right end stands away from its left one beyond the nominal distance"),
     EO_NUMBER(struct eo_alignment, apex_offset[EO_GEAR], "gear_apex_offset_um", &eo_unit_um, -1e4, 1e4, 0,
               "how far the gear's right end stands away from its left one beyond the nominal distance"),
+    EO_NUMBER(
+        struct eo_alignment, centre_distance_deviation, "centre_distance_deviation_um", &eo_unit_um, -5000, 5000, 0,
+        "how much further apart the axes of the same two gears stand than the centre distance that they are drawn "
+        "for: working pressure angle, path of contact and backlash follow, the flanks stay"),
     EO_CHOICE(struct eo_alignment, apex, "apex", apex, EO_APEX_TRAILING,
               "where the helices of both ends would meet, running ahead on the drive flanks: trailing, the outer face "
               "ends meet first, or leading, those at the groove; of one end: trailing, its left face meets first, or "

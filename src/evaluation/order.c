@@ -13,7 +13,7 @@ static struct eo_run run_of(const struct eo_evaluator *evaluator, const struct e
     run.scenario.in_plane = design->alignment.shaft_angle_in_plane;
   if (isnan(run.scenario.out_of_plane))
     run.scenario.out_of_plane = design->alignment.shaft_angle_out_of_plane;
-  run.root = evaluator->pair->flexibility && !(want & EO_WANT_CONTACT_ALONE) &&
+  run.root = evaluator->pair->root && !(want & EO_WANT_CONTACT_ALONE) &&
              (want & EO_WANT_ROOT || eo_objective_wants_root(&design->objective));
   run.rating = !(want & EO_WANT_CONTACT_ALONE) && eo_objective_wants_rating(&design->objective);
   return run;

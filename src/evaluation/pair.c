@@ -44,6 +44,7 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
   pair->kernel = options->kernel;
   if (!pair->kernel.evaluate)
     EO_TRY(prepare_flexibility(pair, options, progress, error));
+  EO_TRY(eo_geometry_set_apart(&pair->geometry, &pair->gear_pair, pair->centre_distance_deviation, error));
   EO_TRY(eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
                              progress, error));
   for (int side = 0; side < 2; side++)
@@ -128,22 +129,71 @@ static enum eo_code new_half(struct eo_pair **result, const struct eo_design *de
   pair->gear_pair = design->gear_pair;
   pair->material = design->material;
   pair->resolution = design->resolution;
+  pair->centre_distance_deviation = design->alignment.centre_distance_deviation;
+  pair->impact = (struct eo_impact_settings){.patch = design->resolution.impact_patch,
+                                             .stations = options->impact_stations};
   enum eo_code code = eo_geometry_init(&pair->geometry, &pair->gear_pair, error);
-  if (!code)
+  if (!code) {
+    eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
     code = prepare(pair, options, progress, error);
+  }
   if (code) {
     eo_pair_free(pair);
     return code;
   }
-  pair->impact = (struct eo_impact_settings){.patch = design->resolution.impact_patch,
-                                             .stations = options->impact_stations};
-  eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
   for (int end = 0; end < 2; end++)
     pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1 ? 0
                                                                         : eo_gear_pair_mid_face(&pair->gear_pair, end);
   pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *result = pair;
   return EO_OK;
+}
+
+/* Phases stay: base pitches, face and helix on the base cylinder do. */
+static enum eo_code set_apart(struct eo_pair *apart, const struct eo_pair *pair, double deviation, bool root,
+                              struct eo_error *error)
+{
+  struct eo_contact_grid_settings settings = eo_contact_grid_default(&pair->resolution);
+  int n = pair->grid->positions;
+  EO_TRY(eo_geometry_init(&apart->geometry, &pair->gear_pair, error));
+  EO_TRY(eo_geometry_set_apart(&apart->geometry, &pair->gear_pair, deviation, error));
+  double *phase = malloc(sizeof *phase * (size_t)n);
+  if (!phase)
+    return eo_error_memory(error);
+  for (int j = 0; j < n; j++)
+    phase[j] = pair->grid->position[j].phase;
+  enum eo_code code = eo_contact_grid_new(&apart->grid, &apart->geometry, &apart->material, &settings, phase,
+                                          apart->kernel, NULL, error);
+  free(phase);
+  EO_TRY(code);
+  for (int side = 0; side < 2; side++)
+    apart->grid->corner[side].rule = pair->grid->corner[side].rule;
+  for (int member = 0; member < 2 && root && pair->root; member++)
+    EO_TRY(eo_root_modes_new(&apart->root_modes[member], pair->flexibility, member, error));
+  if (apart->root_modes[EO_GEAR])
+    EO_TRY(eo_root_tables_new(&apart->root, apart->grid, apart->root_modes, error)); /* which turns the modes */
+  return pair->right ? eo_pair_apart(&apart->right, pair->right, deviation, root, error) : EO_OK;
+}
+
+enum eo_code eo_pair_apart(struct eo_pair **result, const struct eo_pair *pair, double deviation, bool root,
+                           struct eo_error *error)
+{
+  struct eo_pair *apart = malloc(sizeof *apart);
+  if (!apart)
+    return eo_error_memory(error);
+  *apart = *pair;
+  apart->borrows = true;
+  apart->centre_distance_deviation = deviation;
+  apart->grid = NULL;
+  apart->root = NULL;
+  apart->root_modes[EO_PINION] = apart->root_modes[EO_GEAR] = NULL;
+  apart->right = NULL;
+  enum eo_code code = set_apart(apart, pair, deviation, root, error);
+  if (code)
+    eo_pair_free(apart);
+  else
+    *result = apart;
+  return code;
 }
 
 void eo_pair_free(struct eo_pair *pair)
@@ -155,7 +205,8 @@ void eo_pair_free(struct eo_pair *pair)
   eo_contact_grid_free(pair->grid);
   for (int member = 0; member < 2; member++)
     eo_root_modes_free(pair->root_modes[member]);
-  eo_flexibility_free(pair->flexibility);
+  if (!pair->borrows)
+    eo_flexibility_free(pair->flexibility);
   free(pair);
 }
 
@@ -179,7 +230,8 @@ struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *
 
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)
 {
-  struct eo_pair_identity own = eo_pair_identity_of(&pair->gear_pair, &pair->material, &pair->resolution),
-                          asked = eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution);
+  struct eo_pair_identity own = eo_pair_identity_of(&pair->gear_pair, &pair->material, &pair->resolution,
+                                                    pair->centre_distance_deviation),
+                          asked = eo_pair_identity_of_design(design);
   return eo_pair_identity_equal(&own, &asked);
 }

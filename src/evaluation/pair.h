@@ -32,7 +32,9 @@ struct eo_pair {
   double pivot[2];       /* [end]: mid face from the pivot of the shaft angle errors, m */
   struct eo_pair *right; /* owned: the right half where it differs; NULL: as the left one */
   int ahead[2];          /* [inwards]: positions by which the right half's phase is ahead of the left one's */
-  double seconds;        /* wall time of the preparation */
+  double centre_distance_deviation; /* of the axes, m */
+  bool borrows;                     /* the flexibility is another pair's: eo_pair_apart() */
+  double seconds;                   /* wall time of the preparation */
 };
 
 /* How to prepare otherwise than a design says: reference cases bring their own compliance and discretisation. */
@@ -51,6 +53,12 @@ struct eo_pair_options {
 enum eo_code eo_pair_new(struct eo_pair **pair, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error);
 void eo_pair_free(struct eo_pair *pair);
+
+/* The same two gears with their axes so far from the centre distance of the drawing, m: a contact grid of its own on
+   the flexibility of the pair, which is borrowed as long as this one lives; grid and options as by default. root: with
+   the tables of the root stress, where the pair has them. Errors: of eo_geometry_set_apart(), memory. */
+enum eo_code eo_pair_apart(struct eo_pair **apart, const struct eo_pair *pair, double deviation, bool root,
+                           struct eo_error *error);
 
 /* What one end is evaluated on. */
 static inline const struct eo_pair *eo_pair_half(const struct eo_pair *pair, int end)

@@ -68,7 +68,7 @@ void eo_pairs_free(struct eo_pairs *pairs)
 
 void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1])
 {
-  struct eo_pair_identity identity = eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution);
+  struct eo_pair_identity identity = eo_pair_identity_of_design(design);
   eo_pair_identity_key(&identity, key);
 }
 

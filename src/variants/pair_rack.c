@@ -125,8 +125,7 @@ static struct eo_racked_pair *add(struct eo_pair_rack *rack, const struct eo_pai
 enum eo_code eo_pair_rack_take(struct eo_pair_rack *rack, const struct eo_design *design,
                                struct eo_racked_pair **result, struct eo_error *error)
 {
-  const struct eo_pair_identity identity = eo_pair_identity_of(&design->gear_pair, &design->material,
-                                                               &design->resolution);
+  const struct eo_pair_identity identity = eo_pair_identity_of_design(design);
   enum eo_code code = EO_OK;
   pthread_mutex_lock(&rack->mutex);
   struct eo_racked_pair *held = find(rack, &identity);

@@ -69,8 +69,7 @@ static enum eo_code find_axis(struct eo_variant_axis *axis, const char *key, con
 
 static bool same_pair(const struct eo_design *one, const struct eo_design *other)
 {
-  const struct eo_pair_identity a = eo_pair_identity_of(&one->gear_pair, &one->material, &one->resolution),
-                                b = eo_pair_identity_of(&other->gear_pair, &other->material, &other->resolution);
+  const struct eo_pair_identity a = eo_pair_identity_of_design(one), b = eo_pair_identity_of_design(other);
   return eo_pair_identity_equal(&a, &b);
 }
 

@@ -9,11 +9,6 @@
 
 static struct eo_design design;
 
-static struct eo_pair_identity identity_of(const struct eo_design *d)
-{
-  return eo_pair_identity_of(&d->gear_pair, &d->material, &d->resolution);
-}
-
 /* Moves one member of a group of the design by its field. */
 static void nudge(void *group, const struct eo_field *field)
 {
@@ -36,7 +31,7 @@ static int count_identifying(const struct eo_table *table, size_t group, const c
     char key[2][EO_HASH_LENGTH + 1];
     moved = design;
     nudge((char *)&moved + group, &table->field[i]);
-    struct eo_pair_identity before = identity_of(&design), after = identity_of(&moved);
+    struct eo_pair_identity before = eo_pair_identity_of_design(&design), after = eo_pair_identity_of_design(&moved);
     eo_pair_identity_key(&before, key[0]);
     eo_pair_identity_key(&after, key[1]);
     bool equal = eo_pair_identity_equal(&before, &after), listed = false;
@@ -81,9 +76,25 @@ static void test_pair_identity(void)
                                "harmonics",  "te_harmonics",         NULL};
   eo_example_build("paper", &design);
   eo_design_complete(&design, &geometry, NULL);
+  static const char *const aligned[] = {"shaft_angle_error_in_plane_deg",
+                                        "shaft_angle_error_out_of_plane_deg",
+                                        "shaft_angle_error_in_plane_um",
+                                        "shaft_angle_error_out_of_plane_um",
+                                        "shaft_error_grade",
+                                        "pinion_axial",
+                                        "pinion_axial_stiffness_N_per_um",
+                                        "pinion_axial_clearance_um",
+                                        "stagger",
+                                        "coupling_thrust_N",
+                                        "pinion_apex_offset_um",
+                                        "gear_apex_offset_um",
+                                        "apex",
+                                        "pinion_rotation",
+                                        NULL};
   int count = count_identifying(&eo_gear_pair_table, offsetof(struct eo_design, gear_pair), entries) +
               count_identifying(&eo_material_table, offsetof(struct eo_design, material), none) +
-              count_identifying(&eo_resolution_table, offsetof(struct eo_design, resolution), kept);
+              count_identifying(&eo_resolution_table, offsetof(struct eo_design, resolution), kept) +
+              count_identifying(&eo_alignment_table, offsetof(struct eo_design, alignment), aligned);
   ok(count == EO_PAIR_MEMBERS, "%d members identify a pair, and no others", count);
 }
 
