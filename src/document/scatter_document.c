@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "design/made_teeth.h"
+#include "document/scatter_distance.h"
+#include "document/scatter_distribution.h"
 #include "document/scatter_teeth.h"
 #include "rating/flank_tolerance.h"
 
@@ -26,65 +28,7 @@ struct search {
 
 static enum eo_code refuse(const struct search *search, const char *why)
 {
-  return eo_error_set(search->error, EO_ERROR_INPUT, search->pointer, "%.90s: %s", search->row->key, why);
-}
-
-/* Numbers with spaces, commas or semicolons between. */
-static enum eo_code read_values(const struct search *search, struct eo_scatter_input *input)
-{
-  const char *at = search->row->values;
-  input->values = 0;
-  while (*(at += strspn(at, " ,;\t\n"))) {
-    char *end;
-    double value = strtod(at, &end);
-    if (end == at || !isfinite(value))
-      return refuse(search, "values are numbers with spaces, commas or semicolons between.");
-    if (input->values == EO_SCATTER_LIST)
-      return refuse(search, "too many values.");
-    input->value[input->values++] = value;
-    at = end;
-  }
-  return input->values > 0 ? EO_OK : refuse(search, "values are missing.");
-}
-
-/* Rows with the same name of a group share a number; 0: none. */
-static int group_number(const struct search *search)
-{
-  const struct eo_tolerance_settings *tolerance_settings = &search->design->tolerance;
-  for (int i = 0; i < tolerance_settings->rows && *search->row->group; i++)
-    if (tolerance_settings->row[i].kind == search->row->kind &&
-        strcmp(tolerance_settings->row[i].group, search->row->group) == 0)
-      return i + 1;
-  return 0;
-}
-
-static enum eo_code set_distribution(const struct search *search, struct eo_scatter_input *input)
-{
-  const struct eo_scatter_row *row = search->row;
-  input->deviation = (struct eo_distribution){.mean = row->bias, .sigma = row->sigma, .cut = INFINITY};
-  switch (row->kind) {
-  case EO_SCATTER_UNIFORM:
-    input->deviation.kind = EO_DISTRIBUTION_UNIFORM;
-    input->deviation.low = row->low;
-    input->deviation.high = row->high;
-    return row->low <= row->high ? EO_OK : refuse(search, "low is above high.");
-  case EO_SCATTER_HALF_NORMAL:
-    input->deviation.kind = EO_DISTRIBUTION_HALF_NORMAL;
-    input->deviation.cut = isnan(row->cut) ? INFINITY : row->cut;
-    return EO_OK;
-  case EO_SCATTER_VALUES:
-    input->deviation.kind = EO_DISTRIBUTION_LIST;
-    input->together = group_number(search);
-    return read_values(search, input);
-  case EO_SCATTER_FIXED_SUM:
-    input->fixed_sum = group_number(search);
-    if (!input->fixed_sum)
-      return refuse(search, "a fixed sum needs a group: the inputs whose sum stays.");
-    return isnan(row->cut) ? EO_OK : refuse(search, "a fixed sum has no cut.");
-  default:
-    input->deviation.cut = isnan(row->cut) ? INFINITY : row->cut;
-    return EO_OK;
-  }
+  return eo_scatter_refuse_row(search->row, search->pointer, "key", why, search->error);
 }
 
 /* A key that is there already is taken anew: what is stated comes behind the preset. */
@@ -93,7 +37,10 @@ static struct eo_scatter_input *place_for(struct eo_scatter *scatter, const char
   for (int i = 0; i < scatter->inputs; i++)
     if (strcmp(scatter->input[i].key, key) == 0)
       return &scatter->input[i];
-  return scatter->inputs < EO_MAX_SCATTER_INPUTS ? &scatter->input[scatter->inputs++] : NULL;
+  if (scatter->inputs == EO_MAX_SCATTER_INPUTS)
+    return NULL;
+  scatter->input[scatter->inputs].key[0] = '\0';
+  return &scatter->input[scatter->inputs++];
 }
 
 static enum eo_code add_input(struct search *search, const char *key, const struct eo_scatter_input *where)
@@ -101,10 +48,26 @@ static enum eo_code add_input(struct search *search, const char *key, const stru
   struct eo_scatter_input *input = place_for(search->scatter, key);
   if (!input)
     return refuse(search, "more inputs than can scatter at once.");
+  bool new = !*input->key;
   *input = *where;
   snprintf(input->key, sizeof input->key, "%s", key);
   search->found++;
-  return set_distribution(search, input);
+  EO_TRY(eo_scatter_set_distribution(input, &search->design->tolerance, search->row, search->pointer, search->error));
+  if (new && !eo_scatter_moves(&input->deviation))
+    return refuse(search, "nothing scatters: state sigma, of a uniform distribution low and high, or leave the input "
+                          "out. Without any it switches off an input of the preset, and the preset has none here.");
+  return EO_OK;
+}
+
+/* A search has prepared one distance. */
+static enum eo_code settle_distance(const struct search *search, const char *key)
+{
+  if (!search->revolutions)
+    return refuse(search,
+                  "a search evaluates every design at one centre distance, since each asks for a contact grid of "
+                  "its own: leave it to `easeoff tolerance`, or set /objective/robust to \"off\".");
+  struct eo_scatter_input *input = place_for(search->scatter, key);
+  return eo_scatter_settle_distance(input, search->design, search->row, search->pointer, search->error);
 }
 
 static enum eo_code add_number(struct search *search, const char *key, const struct eo_field *field, size_t offset)
@@ -122,7 +85,8 @@ static enum eo_code add_number(struct search *search, const char *key, const str
                                    .least = field->low,
                                    .most = field->high,
                                    .cyclic = offset == offsetof(struct eo_design, alignment.stagger)};
-  return add_input(search, key, &input);
+  EO_TRY(add_input(search, key, &input));
+  return offset == EO_SCATTER_DISTANCE ? settle_distance(search, key) : EO_OK;
 }
 
 static enum eo_code walk(struct search *search, const struct eo_table *table, size_t base, const char *rest,
@@ -208,6 +172,8 @@ static enum eo_code add_row(struct search *search)
     return add_factor(search, EO_TARGET_SPEED);
   if (strncmp(key, "pitch.", 6) == 0)
     return add_tooth_numbers(search, key + 6);
+  if (strcmp(key, "centre_distance") == 0 || strcmp(key, "gear_pair.centre_distance_mm") == 0)
+    return refuse(search, "axes scatter as alignment.centre_distance_deviation_um, about the distance of the drawing.");
   for (int i = 0; varied[i]; i++)
     known |= strncmp(key, varied[i], strlen(varied[i])) == 0 && key[strlen(varied[i])] == '.';
   if (!known)
@@ -228,7 +194,7 @@ static enum eo_code add_stated(struct eo_scatter *scatter, const struct eo_desig
                             .row = &tolerance_settings->row[i],
                             .revolutions = revolutions,
                             .error = error};
-    snprintf(search.pointer, sizeof search.pointer, "/tolerance/inputs/%d/key", i);
+    snprintf(search.pointer, sizeof search.pointer, "/tolerance/inputs/%d", i);
     if (tolerance_settings->preset == EO_SCATTER_AS_MEASURED && tolerance_settings->row[i].kind != EO_SCATTER_VALUES)
       return refuse(&search, "with the preset as_measured every input has values.");
     EO_TRY(add_row(&search));
@@ -242,6 +208,20 @@ static enum eo_code add_preset_row(struct eo_scatter *scatter, const struct eo_d
 {
   struct search search = {
       .scatter = scatter, .design = design, .row = row, .revolutions = true, .pointer = "/tolerance", .error = error};
+  return add_row(&search);
+}
+
+/* The centre distance within its allowance, which is the tolerance of the housing. */
+static enum eo_code add_distance(struct eo_scatter *scatter, const struct eo_design *design, bool revolutions,
+                                 struct eo_error *error)
+{
+  const struct eo_scatter_row row = eo_scatter_distance_row(design);
+  struct search search = {.scatter = scatter,
+                          .design = design,
+                          .row = &row,
+                          .revolutions = revolutions,
+                          .pointer = "/tolerance/centre_distance",
+                          .error = error};
   return add_row(&search);
 }
 
@@ -351,6 +331,8 @@ static enum eo_code add_all(struct eo_scatter *scatter, const struct eo_design *
   scatter->inputs = 0;
   if (preset)
     EO_TRY(add_preset(scatter, design, error));
+  if (design->tolerance.centre_distance)
+    EO_TRY(add_distance(scatter, design, revolutions, error));
   if (teeth)
     EO_TRY(add_teeth(scatter, design, error));
   EO_TRY(add_stated(scatter, design, revolutions, error));
@@ -381,7 +363,7 @@ static enum eo_code find_inputs(struct eo_scatter *scatter, const struct eo_desi
 static bool has_preset(const struct eo_design *design, bool assume_class, bool *assumed)
 {
   const struct eo_tolerance_settings *settings = &design->tolerance;
-  bool nothing = settings->preset == EO_SCATTER_AS_STATED && settings->rows == 0;
+  bool nothing = settings->preset == EO_SCATTER_AS_STATED && settings->rows == 0 && !settings->centre_distance;
   if (assumed)
     *assumed = nothing && assume_class;
   return (nothing && assume_class) || settings->preset == EO_SCATTER_ISO_CLASS || settings->preset == EO_SCATTER_GROUND;
@@ -446,25 +428,4 @@ enum eo_code eo_scatter_draw_range(struct eo_design *design, int first, int pair
     code = draw(design, scatter, first, pairs, points, error);
   free(scatter);
   return code;
-}
-
-void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size)
-{
-  const struct eo_distribution *distribution = &input->deviation;
-  int length = 0;
-  if (input->target == EO_TARGET_SEED)
-    snprintf(text, size, "teeth of its own for every pair");
-  else if (distribution->kind == EO_DISTRIBUTION_UNIFORM)
-    snprintf(text, size, "uniform, %+.4g .. %+.4g", distribution->low, distribution->high);
-  else if (distribution->kind == EO_DISTRIBUTION_LIST)
-    snprintf(text, size, "%d values", input->values);
-  else
-    length = snprintf(text, size, "%snormal, sigma %.4g",
-                      distribution->kind == EO_DISTRIBUTION_HALF_NORMAL ? "half " : "", distribution->sigma);
-  if (length > 0 && distribution->mean != 0)
-    length += snprintf(text + length, size - (size_t)length, ", bias %+.4g", distribution->mean);
-  if (length > 0 && !isinf(distribution->cut))
-    length += snprintf(text + length, size - (size_t)length, ", cut at %.3g sigma", distribution->cut);
-  if (length > 0 && input->fixed_sum > 0)
-    snprintf(text + length, size - (size_t)length, ", fixed sum");
 }

@@ -21,7 +21,4 @@ enum eo_code eo_scatter_draw_pairs(struct eo_design *design, struct eo_error *er
    asks for. Errors: the same. */
 enum eo_code eo_scatter_draw_range(struct eo_design *design, int first, int pairs, int points, struct eo_error *error);
 
-/* A row's distribution in words, "normal, sigma 3.25, cut at 2.5 sigma". */
-void eo_scatter_words(const struct eo_scatter_input *input, char *text, size_t size);
-
 #endif

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "document/result_private.h"
+#include "document/scatter_distance.h"
+#include "document/scatter_distribution.h"
 #include "evaluation/scatter_levels.h"
 #include "format/json.h"
 #include "format/object.h"
@@ -373,7 +375,7 @@ static json_t *encode_worst(const struct eo_tolerance_report *report)
 static const char assumed_text[] =
     "Nothing is stated about the gears as made: class 5 of ISO 1328-1:2013 is taken, the tolerance as 2 sigma.";
 
-enum { MOST_NOTES = 4 };
+enum { MOST_NOTES = 5 };
 
 /* What is to be said of the run itself; returns how many notes. */
 static int write_notes(const struct eo_tolerance_report *report, char note[MOST_NOTES][EO_COMPLETION_NOTE])
@@ -382,6 +384,11 @@ static int write_notes(const struct eo_tolerance_report *report, char note[MOST_
   if (report->assumed)
     snprintf(note[notes++], sizeof *note, "%s", assumed_text);
   notes += eo_tolerance_completion_note(report, note[notes]);
+  if (eo_scatter_distance_step(report->scatter) > 0)
+    snprintf(note[notes++], sizeof *note,
+             "The centre distance is drawn in steps of %.3g um, each prepared once; the numbers of a pair are those at "
+             "the distance that is stated for it.",
+             eo_scatter_distance_step(report->scatter));
   if (report->worst_compliance != 1)
     snprintf(note[notes++], sizeof *note,
              "The worst pair has the compliance_factor %.6g, which no design states: analysed as a design it has the "

@@ -19,7 +19,8 @@ static const struct eo_field row[] = {
      .low = 1,
      .count = EO_SCATTER_KEY,
      .help = "what scatters: keys of this document with points between, modification.pinion.left.profile_slope_um; "
-             "load_cases.1.torque_Nm; * for every name, modification.*.*.helix_slope_um; compliance_factor, "
+             "load_cases.1.torque_Nm, alignment.centre_distance_deviation_um; * for every name, "
+             "modification.*.*.helix_slope_um; compliance_factor, "
              "speed_factor; with single_teeth pitch.pinion.eccentricity_um"},
     EO_CHOICE(struct eo_scatter_row, kind, "distribution", kinds, EO_SCATTER_NORMAL,
               "of the deviation from the nominal value; fixed_sum: normal, and what a group is off in all is "
@@ -79,6 +80,11 @@ static const struct eo_field tolerance[] = {
      .help = "equal seeds give equal pairs"},
     EO_FLAG(struct eo_tolerance_settings, vibration, "vibration", 1, "with the vibration of every pair"),
     EO_FLAG(struct eo_tolerance_settings, root_stress, "root_stress", 0, "with its root stress, which takes longest"),
+    EO_FLAG(
+        struct eo_tolerance_settings, centre_distance, "centre_distance", 0,
+        "the centre distance scatters within gear_pair.centre_distance_allowance_um (js7 of ISO 286 unless stated): "
+        "normal, the allowance is 2 sigma (ground: 3), cut there; as alignment.centre_distance_deviation_um, which "
+        "inputs may state otherwise"),
     EO_FLAG(struct eo_tolerance_settings, single_teeth, "single_teeth", 0,
             "with teeth of its own for every pair: index deviations drawn within the member's tolerance_class of the "
             "block pitch, or the class here; their share of it is half normal, the class 2 sigma (ground: 3) and cut "

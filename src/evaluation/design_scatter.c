@@ -16,6 +16,8 @@ struct eo_scatter_bench {
   const struct eo_design *nominal; /* borrowed, like the scatter */
   const struct eo_scatter *scatter;
   bool vibration, root_stress;
+  struct eo_pair_distances *distances; /* borrowed */
+  const struct eo_pair *pair;          /* of them, what the evaluator works on */
   struct eo_evaluator *evaluator;
   struct eo_design *design; /* the nominal one with the values of a pair in it */
   enum eo_teeth_level level;
@@ -29,26 +31,42 @@ static enum eo_teeth_level level_of(const struct eo_design *design)
              : design->pitch.level;
 }
 
-enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **result, const struct eo_pair *pair,
+/* An evaluator for the pair at the distance of bench->design. What it would keep from one run for the next is of no use
+   where every pair differs. */
+static enum eo_code take_distance(struct eo_scatter_bench *bench, struct eo_error *error)
+{
+  const struct eo_pair *pair;
+  EO_TRY(eo_pair_distances_find(bench->distances, bench->design->alignment.centre_distance_deviation, &pair, error));
+  if (pair == bench->pair)
+    return EO_OK;
+  eo_evaluator_free(bench->evaluator);
+  bench->evaluator = NULL;
+  bench->pair = NULL;
+  EO_TRY(eo_evaluator_new(&bench->evaluator, pair, bench->nominal->load_cases, error));
+  bench->pair = pair;
+  return EO_OK;
+}
+
+enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **result, struct eo_pair_distances *distances,
                                   const struct eo_design *design, const struct eo_scatter *scatter, bool vibration,
                                   bool root_stress, struct eo_error *error)
 {
   struct eo_scatter_bench *bench = calloc(1, sizeof *bench);
   if (!bench)
     return eo_error_memory(error);
+  bench->distances = distances;
   bench->nominal = design;
   bench->scatter = scatter;
   bench->vibration = vibration || root_stress;
   bench->root_stress = root_stress;
   bench->level = level_of(design);
   bench->design = malloc(sizeof *bench->design);
-  enum eo_code code = bench->design ? eo_evaluator_new(&bench->evaluator, pair, design->load_cases, error)
-                                    : eo_error_memory(error);
-  if (code)
+  if (!bench->design) {
     eo_scatter_bench_free(bench);
-  else
-    *result = bench;
-  return code;
+    return eo_error_memory(error);
+  }
+  *result = bench;
+  return EO_OK;
 }
 
 void eo_scatter_bench_free(struct eo_scatter_bench *bench)
@@ -108,6 +126,7 @@ enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *
   eo_design_state_teeth(bench->design);
   if (input)
     eo_scatter_apply(bench->scatter, input, bench->design, &scenario.compliance, &scenario.speed);
+  EO_TRY(take_distance(bench, error));
   const struct eo_scenario *chosen = input ? &scenario : NULL;
   if (bench->vibration)
     EO_TRY(eo_evaluator_run(bench->evaluator, bench->design, chosen, bench->root_stress ? EO_WANT_ROOT : 0, &evaluation,
@@ -125,6 +144,7 @@ struct work {
   struct eo_scatter_bench *bench[EO_MAX_THREADS], *coarse_bench[EO_MAX_THREADS]; /* owned */
   struct eo_design *coarse;                                                      /* the design at that level; owned */
   struct eo_pair *coarse_pair;                                                   /* owned */
+  struct eo_pair_distances *distances, *coarse_distances;                        /* owned */
   const struct eo_scatter_stage *stage;
   pthread_mutex_t keeping;
 };
@@ -216,8 +236,10 @@ static enum eo_code make_benches(struct work *work, const struct eo_pair *pair, 
                                  const struct eo_scatter *scatter, struct eo_error *error)
 {
   const struct eo_scatter_plan *plan = work->plan;
+  EO_TRY(eo_pair_distances_new(&work->distances, pair, plan->root_stress, error));
   for (int i = 0; i < work->threads; i++)
-    EO_TRY(eo_scatter_bench_new(&work->bench[i], pair, design, scatter, plan->vibration, plan->root_stress, error));
+    EO_TRY(eo_scatter_bench_new(&work->bench[i], work->distances, design, scatter, plan->vibration, plan->root_stress,
+                                error));
   if (!work->run->coarse)
     return EO_OK;
   work->coarse = malloc(sizeof *work->coarse);
@@ -225,8 +247,9 @@ static enum eo_code make_benches(struct work *work, const struct eo_pair *pair, 
     return eo_error_memory(error);
   eo_scatter_make_coarse(work->coarse, design);
   EO_TRY(eo_scatter_coarse_pair(&work->coarse_pair, pair, design, work->progress, error));
+  EO_TRY(eo_pair_distances_new(&work->coarse_distances, work->coarse_pair, plan->root_stress, error));
   for (int i = 0; i < work->threads; i++)
-    EO_TRY(eo_scatter_bench_new(&work->coarse_bench[i], work->coarse_pair, work->coarse, scatter, plan->vibration,
+    EO_TRY(eo_scatter_bench_new(&work->coarse_bench[i], work->coarse_distances, work->coarse, scatter, plan->vibration,
                                 plan->root_stress, error));
   return EO_OK;
 }
@@ -237,6 +260,8 @@ static void work_done(struct work *work)
     eo_scatter_bench_free(work->bench[i]);
     eo_scatter_bench_free(work->coarse_bench[i]);
   }
+  eo_pair_distances_free(work->coarse_distances);
+  eo_pair_distances_free(work->distances);
   eo_pair_free(work->coarse_pair);
   free(work->coarse);
   pthread_mutex_destroy(&work->keeping);

@@ -3,6 +3,7 @@
 #ifndef EASEOFF_EVALUATION_DESIGN_SCATTER_H
 #define EASEOFF_EVALUATION_DESIGN_SCATTER_H
 
+#include "evaluation/pair_distances.h"
 #include "evaluation/scalar.h"
 #include "tolerance/pair_completion.h"
 #include "tolerance/scatter.h"
@@ -45,12 +46,12 @@ int eo_scatter_outputs(const struct eo_design *design);
 /* Evaluates pairs as made, one after the other; a row depends on the values alone, not on what came before. */
 struct eo_scatter_bench;
 
-/* pair, design (resolved, served by the pair) and scatter are borrowed. Errors: memory, of the evaluator. */
-enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **bench, const struct eo_pair *pair,
+/* distances of the pair that serves the design (resolved), design and scatter are borrowed. Errors: memory. */
+enum eo_code eo_scatter_bench_new(struct eo_scatter_bench **bench, struct eo_pair_distances *distances,
                                   const struct eo_design *design, const struct eo_scatter *scatter, bool vibration,
                                   bool root_stress, struct eo_error *error);
 /* input[inputs] in the units of the keys; NULL: the design itself. output[eo_scatter_outputs()]. Errors: of the
-   evaluator. */
+   evaluator, of a pair at another distance. */
 enum eo_code eo_scatter_bench_run(struct eo_scatter_bench *bench, const double *input, double *output,
                                   struct eo_error *error);
 void eo_scatter_bench_free(struct eo_scatter_bench *bench); /* NULL is fine */

@@ -16,8 +16,9 @@ static const char FULL = 'f', COARSE = 'c';
 struct shop {
   struct eo_design design, coarse_design;
   struct eo_scatter scatter;
-  struct eo_pair *pair, *coarse_pair; /* owned; coarse_pair: NULL where there is no coarse level */
-  int outputs;                        /* numbers of a row */
+  struct eo_pair *pair, *coarse_pair;                     /* owned; coarse_pair: NULL where there is no coarse level */
+  struct eo_pair_distances *distances, *coarse_distances; /* owned */
+  int outputs;                                            /* numbers of a row */
   struct eo_scatter_bench *bench[EO_MAX_THREADS], *coarse_bench[EO_MAX_THREADS]; /* owned; made by the thread that uses
                                                                                     it */
 };
@@ -35,10 +36,12 @@ static enum eo_code open(struct eo_crew_bench *bench, struct eo_error *error)
   EO_TRY(eo_scatter_of_design(&shop->scatter, &shop->design, true, NULL, error));
   shop->outputs = eo_scatter_outputs(&shop->design);
   EO_TRY(eo_pair_new(&shop->pair, &shop->design, &options, &progress, error));
+  EO_TRY(eo_pair_distances_new(&shop->distances, shop->pair, shop->design.tolerance.root_stress, error));
   if (!eo_scatter_is_coarse_first(&shop->design))
     return EO_OK;
   eo_scatter_make_coarse(&shop->coarse_design, &shop->design);
-  return eo_scatter_coarse_pair(&shop->coarse_pair, shop->pair, &shop->design, &progress, error);
+  EO_TRY(eo_scatter_coarse_pair(&shop->coarse_pair, shop->pair, &shop->design, &progress, error));
+  return eo_pair_distances_new(&shop->coarse_distances, shop->coarse_pair, false, error);
 }
 
 static void free_benches(struct shop *shop, int thread)
@@ -54,6 +57,8 @@ static void close(struct eo_crew_bench *bench)
     return;
   for (int i = 0; i < EO_MAX_THREADS; i++)
     free_benches(shop, i);
+  eo_pair_distances_free(shop->coarse_distances);
+  eo_pair_distances_free(shop->distances);
   eo_pair_free(shop->coarse_pair);
   eo_pair_free(shop->pair);
   free(shop);
@@ -67,7 +72,7 @@ static enum eo_code find_bench(struct shop *shop, int thread, bool coarse, struc
   const struct eo_tolerance_settings *settings = &shop->design.tolerance;
   struct eo_scatter_bench **own = coarse ? &shop->coarse_bench[thread] : &shop->bench[thread];
   if (!*own)
-    EO_TRY(eo_scatter_bench_new(own, coarse ? shop->coarse_pair : shop->pair,
+    EO_TRY(eo_scatter_bench_new(own, coarse ? shop->coarse_distances : shop->distances,
                                 coarse ? &shop->coarse_design : &shop->design, &shop->scatter, settings->vibration,
                                 settings->root_stress, error));
   *bench = *own;

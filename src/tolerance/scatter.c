@@ -87,7 +87,8 @@ int eo_scatter_draw(const struct eo_scatter *scatter, const struct eo_sampler *s
   keep_sums(scatter, value);
   for (int i = 0; i < scatter->inputs; i++) {
     const struct eo_scatter_input *input = &scatter->input[i];
-    double drawn = input->nominal + value[i];
+    double deviation = input->step > 0 ? input->step * round(value[i] / input->step) : value[i],
+           drawn = input->nominal + deviation;
     if (input->target == EO_TARGET_SEED)
       drawn = floor(drawn);
     value[i] = input->cyclic ? drawn : fmin(fmax(drawn, input->least), input->most);

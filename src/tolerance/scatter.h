@@ -20,6 +20,7 @@ struct eo_scatter_input {
   size_t offset;                    /* MEMBER: of a double in the struct that is drawn; SEED: of an uint64_t */
   double unit;                      /* SI value = value times unit */
   double nominal, least, most;      /* in the unit of the key; a drawn value beyond a bound is the bound */
+  double step;                      /* drawn values stand whole steps from nominal; 0: anywhere */
   bool cyclic;                      /* a phase: what is drawn has no bound, the struct gets its part of a turn, 0..1 */
   struct eo_distribution deviation; /* from nominal */
   int values;

@@ -62,7 +62,8 @@ struct eo_tolerance_settings {
   int method;   /* enum eo_scatter_method */
   uint64_t seed;
   bool vibration, root_stress;
-  bool single_teeth; /* every pair has teeth of its own, over the hunting period */
+  bool centre_distance; /* scatters within its allowance */
+  bool single_teeth;    /* every pair has teeth of its own, over the hunting period */
   int rows;
   struct eo_scatter_row row[EO_MAX_SCATTER_ROWS];
   int limits;

@@ -14,7 +14,7 @@ import { progressBar } from '../../jobbar.js';
 import { emptyText } from './empty_text.js';
 import { influences, inputTable, percentiles, unitOfKey, yields } from './tolerance_tables.js';
 
-const MADE = ['preset', 'class', 'edition'];
+const MADE = ['preset', 'class', 'edition', 'centre_distance'];
 const DRAWN = ['pairs', 'method', 'sampling', 'seed', 'vibration', 'root_stress', 'single_teeth'];
 const LOOKS = {
   preset: { label: 'Scatter' },
@@ -24,6 +24,7 @@ const LOOKS = {
   method: { label: 'Computed' },
   vibration: { label: 'with their vibration' },
   root_stress: { label: 'with their root stress' },
+  centre_distance: { label: 'with the centre distance' },
   single_teeth: { label: 'with teeth of their own' },
 };
 const FIRST = 64; // pairs of the first answer; a job has all of them
