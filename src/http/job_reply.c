@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "evaluation/scatter_tally.h"
 #include "http/answers.h"
 #include "http/http_private.h"
 #include "http/route.h"
@@ -36,6 +37,37 @@ void eo_reply_job_outcome(struct eo_reply *reply, enum eo_job_outcome outcome)
   case EO_JOB_OUTCOME_REPEATED:
     break;
   }
+}
+
+/* What was there of a tolerance analysis when it was stopped may be too little. */
+static bool is_cut_short(const struct eo_job_view *job)
+{
+  return job->row.kind == EO_JOB_TOLERANCE && job->row.state == EO_JOB_CANCELLED;
+}
+
+void eo_reply_no_result(struct eo_reply *reply, const struct eo_job_view *job)
+{
+  if (is_cut_short(job))
+    eo_reply_problem(
+        reply, 409, "state",
+        "The tolerance analysis was stopped before %d pairs were there, and fewer say nothing. Retry goes on "
+        "from those that are.",
+        EO_SCATTER_FEWEST);
+  else
+    eo_reply_job_outcome(reply, EO_JOB_OUTCOME_STATE);
+}
+
+void eo_request_no_result(struct eo_request *request, int64_t id, enum eo_job_outcome outcome)
+{
+  struct eo_job_view job = {0};
+  struct eo_error error;
+  enum eo_job_outcome found = EO_JOB_OUTCOME_MISSING;
+  if (outcome == EO_JOB_OUTCOME_STATE && !eo_service_job(request->http->service, id, false, &found, &job, &error) &&
+      found == EO_JOB_OUTCOME_DONE)
+    eo_reply_no_result(&request->reply, &job);
+  else
+    eo_reply_job_outcome(&request->reply, outcome);
+  eo_job_view_done(&job);
 }
 
 static bool read_key(struct eo_request *request, const char **key)

@@ -156,7 +156,7 @@ static void get_result(struct eo_request *request)
   if (eo_service_result(request->http->service, id, &outcome, &text, &error))
     eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(&request->reply, outcome);
+    eo_request_no_result(request, id, outcome);
   else
     eo_reply_text(&request->reply, 200, "application/json", &text);
   eo_text_done(&text);
@@ -186,7 +186,7 @@ static void get_front(struct eo_request *request)
   if (eo_service_result(request->http->service, id, &outcome, &result, &error))
     eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(&request->reply, outcome);
+    eo_request_no_result(request, id, outcome);
   else if (read_front(request, &result, &front))
     eo_reply_table(request, &front);
   eo_text_done(&result);

@@ -127,7 +127,7 @@ static bool find_result(struct eo_request *request, int64_t id, struct eo_design
   else if (!there)
     eo_reply_problem(&request->reply, 404, NULL, "There is no tolerance analysis with this number.");
   else if (!ended)
-    eo_reply_job_outcome(&request->reply, EO_JOB_OUTCOME_STATE);
+    eo_reply_no_result(&request->reply, &job);
   eo_job_view_done(&job);
   return ended && !code;
 }

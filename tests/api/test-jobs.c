@@ -169,6 +169,35 @@ static void test_park(void)
 }
 
 /* Pairs that were drawn before the stop are a result; where it goes on, more are. */
+/* Stopped while it waits for the one before it. */
+static void test_stopped_early(int before)
+{
+  json_t *own = coarse_document("ga", 10);
+  json_object_set_new(own, "tolerance", json_pack("{s:i,s:i}", "pairs", 100000, "seed", 5));
+  json_t *order = json_pack("{s:s, s:o}", "kind", "tolerance", "design", own);
+  char *text = json_dumps(order, JSON_COMPACT);
+  json_t *added = call_json("POST", API "/jobs", NULL, text, NULL);
+  int id = (int)json_integer_value(json_object_get(added, "id"));
+  static const char *const parts[] = {"/result", "/pairs"};
+  ok(before < id && post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30),
+     "a tolerance analysis is stopped before its pairs are there");
+  for (int i = 0; i < 2; i++) {
+    char path[80];
+    struct reply reply;
+    snprintf(path, sizeof path, API "/jobs/%d%s", id, parts[i]);
+    int connection = open_connection();
+    send_request(connection, "GET", path, "", NULL);
+    read_reply(connection, &reply, false);
+    ok(reply.status == 409 && strstr(reply.body, "stopped before 10 pairs were there"), "%s says so: %s", parts[i],
+       reply.body);
+    free_reply(&reply);
+    close(connection);
+  }
+  json_decref(added);
+  json_decref(order);
+  free(text);
+}
+
 static void test_stopped_pairs(void)
 {
   json_t *own = coarse_document("ga", 10);
@@ -183,6 +212,8 @@ static void test_stopped_pairs(void)
   long long before = 0;
   for (int i = 0; i < 2; i++) {
     wait_for_evaluations(id, (int)before + 30);
+    if (i == 0)
+      test_stopped_early(id);
     ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "a tolerance analysis is stopped");
     json_t *job = get_of_job(id, ""), *answer = get_of_job(id, "/result");
     long long pairs = json_integer_value(json_object_get(answer, "pairs"));
