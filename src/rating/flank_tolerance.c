@@ -56,6 +56,18 @@ static enum eo_code check_range(const char *name, double value, double low, doub
       unit, low, high, unit);
 }
 
+/* Grades 0 and 12 are those of 1995 alone. */
+static enum eo_code check_class(int grade, struct eo_error *error)
+{
+  if (grade == 0 || grade == 12)
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/tolerance_class",
+        "ISO 1328-1:2013 has the tolerance classes 1 .. 11. Grade %d is one of the edition of 1995, which "
+        "has the grades 0 .. 12: state that edition, or one of these classes.",
+        grade);
+  return check_range("tolerance class", grade, 1, 11, "/tolerance_class", "", error);
+}
+
 static enum eo_code check_input(enum eo_tolerance_edition edition, const struct eo_tolerance_input *in,
                                 struct eo_error *error)
 {
@@ -66,8 +78,7 @@ static enum eo_code check_input(enum eo_tolerance_edition edition, const struct 
   EO_TRY(check_range("face width", 1e3 * in->face_width, 4, new ? 1200 : 1000, "/face_width_mm", " mm", error));
   if (new)
     EO_TRY(check_range("helix angle", fabs(in->helix_angle) * 180 / M_PI, 0, 45, "/helix_angle_deg", " deg", error));
-  EO_TRY(new ? check_range("tolerance class", in->grade, 1, 11, "/tolerance_class", "", error)
-             : check_range("grade", in->grade, 0, 12, "/grade", "", error));
+  EO_TRY(new ? check_class(in->grade, error) : check_range("grade", in->grade, 0, 12, "/grade", "", error));
   if (in->teeth)
     EO_TRY(check_range("number of teeth", in->teeth, 5, new ? 1000 : INFINITY, "/teeth", "", error));
   return EO_OK;
