@@ -179,6 +179,36 @@ static void note_coarse_teeth(const struct eo_design *design, struct eo_warnings
                    positions, positions / 2 - 1, usual, usual / 2 - 1);
 }
 
+/* A member has tables of this flank, at either end. */
+static bool has_table(const struct eo_pitch *pitch, enum eo_flank_side side, int member)
+{
+  bool has = false;
+  for (int end = 0; end < 2; end++)
+    for (int term = 0; term < EO_TOOTH_TERMS; term++)
+      has = has || pitch->tables.place[side][member][end][term].teeth > 0;
+  return has;
+}
+
+/* Tables of the flank that does not carry, and none of the one that does. */
+static void note_other_flank(const struct eo_design *design, int k, struct eo_warnings *warnings)
+{
+  static const char *const flank[2] = {"drive", "coast"};
+  const struct eo_pitch *pitch = &design->pitch;
+  enum eo_flank_side side = eo_design_running(design, k).flank;
+  for (int i = 0; pitch->stated && i < 2; i++) {
+    const struct eo_pitch_member *member = &pitch->member[i];
+    char key[40];
+    snprintf(key, sizeof key, "/pitch/%s", member_name[i]);
+    if (has_table(pitch, !side, i) && !has_table(pitch, side, i) && !member->tolerance_class && !member->flank_class)
+      eo_warnings_at(
+          warnings, key,
+          "Load case %d runs on the %s flanks, and the %s's tables of single teeth are of its %s flanks alone: "
+          "its teeth are alike there. State those of the other flank (\"coast\" of an end), or a "
+          "tolerance_class.",
+          k + 1, flank[side], member_name[i], flank[!side]);
+  }
+}
+
 /* A helix pushes along the axis, and only a second end takes that up within the body. */
 static void note_thrust(const struct eo_design *design, struct eo_warnings *warnings)
 {
@@ -297,6 +327,8 @@ void eo_design_note_findings(const struct eo_design *design, const struct eo_geo
   note_proportions(design, geometry, warnings);
   note_thrust(design, warnings);
   note_coarse_teeth(design, warnings);
+  for (int k = 0; k < design->load_cases; k++)
+    note_other_flank(design, k, warnings);
   note_folds(design, geometry, warnings);
   note_search(design, geometry, warnings);
 }

@@ -196,13 +196,22 @@ static json_t *reach(json_t *object, const char *key)
   return json_object_get(object, key);
 }
 
+/* Of a table that tells flanks apart; "" where all have the same rows. */
+static void say_whose(bool whole, int flank, char whose[60])
+{
+  *whose = '\0';
+  if (whole)
+    snprintf(whose, 60, " of the %s, %s end, %s flank,", eo_member_name[flank / 4], eo_end_name[flank / 2 % 2],
+             eo_flank_side_name[flank % 2]);
+}
+
 /* f_i = F_i - F_i-1 adds up to 0 round a gear, but for the rounding of the numbers: of each evenly within half of its
    last place, four times the spread of their sum at most; and of numbers that were computed on, a five-hundredth of
    what unrelated ones add up to. */
 static enum eo_code check_closed(const struct reading *reading, bool whole, int flank, struct eo_error *error)
 {
   static const double SPREADS = 4, CLOSED = 0.002;
-  char whose[60] = "";
+  char whose[60];
   double sum = 0, squares = 0, teeth = reading->most[flank] - reading->least[flank] + 1;
   for (int tooth = reading->least[flank]; tooth <= reading->most[flank]; tooth++) {
     double single = *value_of(reading, flank, SINGLE, tooth);
@@ -212,9 +221,7 @@ static enum eo_code check_closed(const struct reading *reading, bool whole, int 
   double rounding = pow(10, -reading->decimals[flank]) * fmin(SPREADS * sqrt(teeth / 12), teeth / 2);
   if (fabs(sum) <= fmax(rounding, CLOSED * sqrt(squares)))
     return EO_OK;
-  if (whole)
-    snprintf(whose, sizeof whose, " of the %s, %s end, %s flank,", eo_member_name[flank / 4],
-             eo_end_name[flank / 2 % 2], eo_flank_side_name[flank % 2]);
+  say_whose(whole, flank, whose);
   return eo_error_set(
       error, EO_ERROR_INPUT, NULL,
       "The single pitch deviations (single_um)%s add up to %.4g um over %g teeth; round a gear they add "
@@ -228,13 +235,15 @@ static enum eo_code put_flank(const struct reading *reading, bool whole, int fla
                               struct eo_error *error)
 {
   int first = reading->least[flank];
+  char whose[60];
+  say_whose(whole, flank, whose);
   for (int tooth = first; tooth <= reading->most[flank]; tooth++)
     if (*value_of(reading, flank, TOOTH, tooth) != tooth)
-      return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table leaves out tooth %d (its last row is line %d).",
-                          tooth, reading->line_of[flank]);
+      return eo_error_set(error, EO_ERROR_INPUT, NULL, "The table%s leaves out tooth %d (its last row is line %d).",
+                          whose, tooth, reading->line_of[flank]);
   if (first > 1)
     return eo_error_set(error, EO_ERROR_INPUT, NULL,
-                        "The table begins with tooth %d: teeth are counted from 0 or from 1.", first);
+                        "The table%s begins with tooth %d: teeth are counted from 0 or from 1.", whose, first);
   if (reading->has[SINGLE])
     EO_TRY(check_closed(reading, whole, flank, error));
   for (int heading = INDEX; heading <= LEAD_CROWNING; heading++) {

@@ -382,6 +382,36 @@ static void test_body(void)
   }
 }
 
+/* Astern the coast flanks carry. */
+static void test_other_flank(void)
+{
+  static struct eo_design astern;
+  static struct eo_warnings found;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  const char *text[3] = {0};
+  eo_example_build("paper", &astern);
+  const double index[64] = {1e-6};
+  astern.pitch.stated = true;
+  if (eo_tooth_tables_add(&astern.pitch.tables, EO_DRIVE_FLANK, EO_PINION, EO_LEFT, EO_TOOTH_INDEX,
+                          astern.gear_pair.teeth[EO_PINION], index, &error))
+    printf("Bail out! %s\n", error.text);
+  for (int step = 0; step < 3; step++) {
+    astern.load_case[0].direction = step > 0 ? EO_ASTERN : EO_AHEAD;
+    astern.pitch.member[EO_PINION].tolerance_class = step == 2 ? 5 : 0;
+    found.count = 0;
+    if (eo_design_complete(&astern, &geometry, &error))
+      printf("Bail out! %s\n", error.text);
+    eo_design_note_findings(&astern, &geometry, &found);
+    for (int i = 0; i < found.count; i++)
+      text[step] = strcmp(found.key[i], "/pitch/pinion") == 0 ? found.text[i] : text[step];
+  }
+  ok(!text[0], "ahead the drive flanks carry, of which there are tables");
+  ok(text[1] && strstr(text[1], "Load case 1 runs on the coast flanks") && strstr(text[1], "drive flanks alone"),
+     "astern a finding says whose tables are not used: %s", text[1] ? text[1] : "nothing");
+  ok(!text[2], "a class draws the teeth of the other flanks");
+}
+
 int main(void)
 {
   test_body();
@@ -393,5 +423,6 @@ int main(void)
   test_mesh_of_a_resolution();
   test_one_end();
   test_hashes();
+  test_other_flank();
   return tap_done();
 }

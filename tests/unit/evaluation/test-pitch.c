@@ -354,6 +354,9 @@ static void test_document(void)
      "a cell that is no number has its line and column");
   ok(faulty("{\"gear\":{\"left\":{\"csv\":\"tooth,index_um\\n0,1\\n0,2\\n\"}}}", "/pitch/gear/left/csv", "already"),
      "a tooth that is there twice is refused");
+  ok(faulty("{\"csv\":\"member,end,flank,tooth,index_um\\ngear,left,coast,1,0\\ngear,left,coast,3,1.5\\n\"}",
+            "/pitch/csv", "The table of the gear, left end, coast flank, leaves out tooth 2"),
+     "a table of many flanks says whose tooth it leaves out");
   ok(faulty("{\"csv\":\"tooth,index_um\\n0,1\\n\"}", "/pitch/csv", "member"),
      "a fault in a table of the pair says whose teeth");
   ok(faulty("{\"csv\":\"member,end,flank,tooth,single_um\\ngear,left,coast,1,0\\ngear,left,coast,2,1.5\\n"
