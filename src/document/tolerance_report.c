@@ -30,6 +30,32 @@ static double value_at(const struct eo_scatter_run *run, int pair, int scalar, i
   return run->output[(size_t)pair * (size_t)run->outputs + (size_t)(scalar * run->cases + load_case)];
 }
 
+enum { OUTPUT_NAMES = 358 };
+
+/* What the pairs have, of single ends or without; returns its length, which may be more than there is room for. */
+static size_t list_outputs(const struct eo_tolerance_settings *settings, bool ends, char names[OUTPUT_NAMES])
+{
+  size_t length = 0;
+  int computed = (settings->vibration ? EO_SCALAR_VIBRATION : 0) | (settings->root_stress ? EO_SCALAR_ROOT : 0) |
+                 (settings->single_teeth ? EO_SCALAR_TEETH : 0);
+  for (int i = 0; i < EO_ALL_SCALARS && length < OUTPUT_NAMES; i++) {
+    const struct eo_scalar *scalar = eo_scalar_at(i);
+    if (!(scalar->needs & ~computed) && (ends || scalar->end < 0 || scalar->needs & EO_SCALAR_TEETH))
+      length += (size_t)snprintf(names + length, OUTPUT_NAMES - length, "%s%s", length ? ", " : "", scalar->key);
+  }
+  return length;
+}
+
+/* An error has no room for those of single ends beside all of the hunting period. */
+static enum eo_code refuse_output(const struct eo_tolerance_settings *settings, const char *asked, const char *pointer,
+                                  struct eo_error *error)
+{
+  char names[OUTPUT_NAMES];
+  if (list_outputs(settings, true, names) >= OUTPUT_NAMES)
+    list_outputs(settings, false, names);
+  return eo_error_set(error, EO_ERROR_INPUT, pointer, "There is no output \"%.16s\": %s.", asked, names);
+}
+
 static enum eo_code check_limit(const struct eo_tolerance_limit *limit, const struct eo_design *design, int index,
                                 struct eo_error *error)
 {
@@ -37,10 +63,7 @@ static enum eo_code check_limit(const struct eo_tolerance_limit *limit, const st
   int scalar = eo_scalar_find(limit->output), cases = design->load_cases;
   snprintf(pointer, sizeof pointer, "/tolerance/limits/%d/output", index);
   if (scalar < 0)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer,
-                        "There is no output \"%.60s\": peak_to_peak_um, order_1_um, max_pressure_MPa, impact_N, "
-                        "rms_m_per_s2, K_Hbeta, edge_load_share and others of the documentation are.",
-                        limit->output);
+    return refuse_output(&design->tolerance, limit->output, pointer, error);
   if (eo_scalar_at(scalar)->needs & EO_SCALAR_TEETH && !design->tolerance.single_teeth)
     return eo_error_set(error, EO_ERROR_INPUT, pointer,
                         "%s is a number of the hunting period, which is computed with \"single_teeth\": true.",
@@ -193,8 +216,8 @@ static void find_worst(struct eo_tolerance_report *report)
   eo_table_round_to_document(&eo_design_table, &report->worst_design);
   memset(&report->worst_design.tolerance, 0, sizeof report->worst_design.tolerance);
   eo_table_defaults(&eo_tolerance_table, &report->worst_design.tolerance);
-  snprintf(report->worst_design.name, sizeof report->worst_design.name, "%.150s, pair %d as made", report->design->name,
-           report->worst + 1);
+  snprintf(report->worst_design.name, sizeof report->worst_design.name, "%.150s%s %d as made", report->design->name,
+           *report->design->name ? ", pair" : "Pair", report->worst + 1);
 }
 
 /* One number of all pairs; it is left out again where none has it. input: [pairs][quantities]. */

@@ -307,7 +307,15 @@ refuses "no output \"peak\"" '{"pairs": 1, "limits": [{"output": "peak", "at_mos
 refuses "no load case 2" '{"pairs": 1, "limits": [{"output": "peak_to_peak_um", "load_case": 2, "at_most": 1}]}'
 refuses "alone cannot keep a sum" '{"inputs": [{"key": "alignment.gear_apex_offset_um", "distribution": "fixed_sum", "group": "a", "sigma": 1}]}'
 refuses "every input has values" '{"preset": "as_measured", "inputs": [{"key": "alignment.gear_apex_offset_um", "sigma": 1}]}'
-refuses "low is above high" '{"inputs": [{"key": "speed_factor", "distribution": "uniform", "low": 1, "high": 0}]}'
+refuses "edge_load_share, K_Hbeta, K_Halpha, impact_N, rms_m_per_s2, dynamic_factor, contact_loss" '{"limits": [{"output": "peak", "at_most": 1}]}'
+refuses "tooth_pressure_MPa, period_rms_m_per_s2, tooth_root_stress_MPa.$" '{"single_teeth": true, "root_stress": true, "limits": [{"output": "peak", "at_most": 1}]}'
+refuses "compliance_factor: nothing scatters: state sigma" '{"inputs": [{"key": "compliance_factor"}]}'
+refuses "nothing scatters: state sigma, of a uniform distribution low and high" '{"inputs": [{"key": "speed_factor", "distribution": "uniform"}]}'
+refuses "tolerance/inputs/0/sigma.*\"uniform\" does not use sigma" '{"inputs": [{"key": "speed_factor", "distribution": "uniform", "low": -0.1, "high": 0.1, "sigma": 0.1}]}'
+refuses "tolerance/inputs/0/low.*\"normal\" does not use low" '{"inputs": [{"key": "speed_factor", "sigma": 0.1, "low": -0.1}]}'
+refuses "tolerance/inputs/0/values.*values are missing: state the measured deviations" '{"inputs": [{"key": "speed_factor", "distribution": "values"}]}'
+refuses "ISO 1328-1:2013 has the tolerance classes 1 .. 11. Grade 12 is one of the edition of 1995" '{"preset": "iso_class", "class": 12}'
+refuses "low is above high: 1 is to be the largest" '{"inputs": [{"key": "speed_factor", "distribution": "uniform", "low": 1, "high": 0}]}'
 
 echo "1..$count"
 exit $failed

@@ -249,6 +249,9 @@ static void test_worst(void)
   ok(worst->alignment.centre_distance_deviation != 0 && !eo_pair_serves(pair, worst),
      "the worst pair has its distance, %.2f um off, and asks for a pair of its own",
      1e6 * worst->alignment.centre_distance_deviation);
+  char name[60];
+  snprintf(name, sizeof name, "Pair %d as made", report->worst + 1);
+  ok(strcmp(worst->name, name) == 0, "of a design without a name it is called %s", worst->name);
   struct eo_pair *own = prepare(worst);
   near(eo_scalar_value(eo_scalar_at(swing), run(own, worst, &evaluator), 0),
        result.output[report->worst * result.outputs + swing], 1e-6, "opened as a design it has its number");
