@@ -351,6 +351,8 @@ const struct eo_command eo_command_tolerance = {
     "\"method\":\n"
     "\"full\" in the block computes all pairs in full.\n"
     "\n"
+    "\"centre_distance\": true in the block lets the axes stand apart within their allowance; the key\n"
+    "alignment.centre_distance_deviation_um among the inputs does it with a distribution of its own.\n\n"
     "--single-teeth gives every pair teeth of its own, with index deviations within the class, and computes its "
     "hunting\n"
     "period; at every instant that takes some hundred times as long. From 64 pairs on it follows from few solutions, "

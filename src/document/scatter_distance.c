@@ -76,3 +76,16 @@ double eo_scatter_distance_step(const struct eo_scatter *scatter)
     step = fmax(step, scatter->input[i].step);
   return step;
 }
+
+/* A grid is mostly the compliance between all points of a position in single precision, on some six lines at once. */
+double eo_scatter_distance_memory(const struct eo_scatter *scatter, const struct eo_design *design)
+{
+  static const double LINES = 6;
+  const struct eo_resolution *resolution = &design->resolution;
+  double points = LINES * resolution->cells_per_line, grids = 0;
+  for (int i = 0; i < scatter->inputs; i++)
+    if (scatter->input[i].target == EO_TARGET_MEMBER && scatter->input[i].offset == EO_SCATTER_DISTANCE)
+      grids = fmin(design->tolerance.pairs, EO_SCATTER_DISTANCE_STEPS + 3);
+  return grids * (eo_gear_pair_is_uneven(&design->gear_pair) ? 2 : 1) * sizeof(float) * resolution->positions * points *
+         points;
+}

@@ -24,4 +24,7 @@ enum eo_code eo_scatter_settle_distance(struct eo_scatter_input *input, const st
 /* The step of a run whose centre distance scatters, in the unit of its key; 0: it does not, or has few values. */
 double eo_scatter_distance_step(const struct eo_scatter *scatter);
 
+/* What their contact grids take in memory, bytes, on the side of much; 0 where no distance scatters. */
+double eo_scatter_distance_memory(const struct eo_scatter *scatter, const struct eo_design *design);
+
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "design/made_teeth.h"
+#include "document/scatter_distance.h"
 #include "document/tolerance_document.h"
 #include "evaluation/scatter_levels.h"
 #include "tolerance/response_surface.h"
@@ -22,7 +23,8 @@ double eo_tolerance_memory(const struct eo_design *design, const struct eo_scatt
 {
   double pairs = design->tolerance.pairs, levels = eo_scatter_is_coarse_first(design) ? 2 : 1,
          numbers = (1 + levels) * eo_scatter_outputs(design) + 3. * scatter->inputs + 2;
-  return sizeof(double) * pairs * numbers + eo_surface_memory(design->tolerance.pairs, scatter->inputs);
+  return sizeof(double) * pairs * numbers + eo_surface_memory(design->tolerance.pairs, scatter->inputs) +
+         eo_scatter_distance_memory(scatter, design);
 }
 
 static double value_at(const struct eo_scatter_run *run, int pair, int scalar, int load_case)

@@ -46,6 +46,7 @@ for (const [block, asked, what, word] of [
   [undefined, 0, 'nothing is chosen', 'Choose how the gears are made'],
   [{ preset: 'as_stated', inputs: [], single_teeth: true }, 0, 'single teeth alone', 'teeth of its own'],
   [{ preset: 'iso_class', single_teeth: true }, 0, 'a preset', 'draw the pairs'],
+  [{ centre_distance: true }, 0, 'the centre distance alone', 'draw the pairs'],
   [{ preset: 'as_stated', inputs: [{ key: 'compliance_factor' }] }, 0, 'inputs of your own', 'draw the pairs'],
   [{ single_teeth: true }, 2, 'pairs that were asked for', 'on their way'],
 ])

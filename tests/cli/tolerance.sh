@@ -71,6 +71,16 @@ tolerance --pairs 24 --json --threads 1 --worst "$folder/worst.json"
 cp "$folder/out" "$folder/one.json"
 tolerance --pairs 24 --json --threads 3
 same "$folder/out" "$folder/one.json" "3 threads give the same bytes"
+cp "$folder/design.json" "$folder/first.json"
+write_design '{"centre_distance": true, "root_stress": true}'
+tolerance --pairs 8 --json --threads 1
+cp "$folder/out" "$folder/rooted.json"
+tolerance --pairs 8 --json --threads 3
+same "$folder/out" "$folder/rooted.json" "root stress at many centre distances: 3 threads give the same bytes"
+"$EASEOFF" tolerance "$folder/design.json" --data "$folder/data" --pairs 8 >"$folder/out" 2>"$folder/err"
+grep -q "^note: The centre distance is drawn in steps of 2.88 um" "$folder/out"
+result $? "the analysis says in which steps the distance is drawn"
+cp "$folder/first.json" "$folder/design.json"
 tolerance --pairs 24 --json --keep "$folder/pairs"
 # as a kill leaves it: a row cut off in its middle
 head -n 12 "$folder/pairs" >"$folder/cut"
