@@ -281,13 +281,32 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   return EO_OK;
 }
 
-/* Without a key that came later and is not used: a design of before it stays the same one. New; NULL without memory. */
+/* Of a block that is the caller's own. */
+static void drop_unused(json_t *block, const char *key)
+{
+  const json_t *value = json_object_get(block, key);
+  if (json_is_null(value) || json_is_false(value) || (json_is_number(value) && json_number_value(value) == 0))
+    json_object_del(block, key);
+}
+
+/* Without keys that came later and are not used: a design of before them stays the same one. New; NULL without memory.
+ */
 static json_t *without_unused(const json_t *document)
 {
-  json_t *whole = json_copy((json_t *)document), *pair = json_copy(json_object_get(document, "gear_pair"));
-  if (pair && json_is_null(json_object_get(pair, "right_helix_angle_deg")))
-    json_object_del(pair, "right_helix_angle_deg");
-  if (!whole || !pair || json_object_set_new(whole, "gear_pair", pair) == 0)
+  static const struct {
+    const char *block, *key;
+  } later[] = {{"gear_pair", "right_helix_angle_deg"},
+               {"alignment", "centre_distance_deviation_um"},
+               {"tolerance", "centre_distance"}};
+  json_t *whole = json_copy((json_t *)document);
+  bool failed = !whole;
+  for (size_t i = 0; i < sizeof later / sizeof *later && !failed; i++) {
+    const json_t *given = json_object_get(document, later[i].block);
+    json_t *own = json_copy((json_t *)given);
+    drop_unused(own, later[i].key);
+    failed = given && json_object_set_new(whole, later[i].block, own) != 0;
+  }
+  if (!failed)
     return whole;
   json_decref(whole);
   return NULL;
@@ -343,7 +362,9 @@ static json_t *encode_wants(const struct eo_design *design)
   json_t *wants = json_object();
   bool failed = !wants;
   if (design->objective.robust != EO_ROBUST_OFF && design->drawn.pairs > 0) {
-    eo_json_put(wants, "tolerance", eo_table_encode(&eo_tolerance_table, &design->tolerance), &failed);
+    json_t *tolerance = eo_table_encode(&eo_tolerance_table, &design->tolerance);
+    drop_unused(tolerance, "centre_distance");
+    eo_json_put(wants, "tolerance", tolerance, &failed);
     eo_json_put(wants, "scatter_pairs", json_integer(design->drawn.pairs), &failed);
     if (design->drawn.first > 0)
       eo_json_put(wants, "first_pairs", json_integer(design->drawn.first), &failed);

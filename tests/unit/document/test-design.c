@@ -355,6 +355,18 @@ static void test_hashes(void)
   design.material.density = nextafter(7850, 8000);
   eo_design_problem(&design, &spec, problem[1], NULL);
   ok(strcmp(problem[0], problem[1]) != 0, "one bit of the density changes both hashes");
+  json_t *before = eo_design_encode(&design);
+  json_object_del(json_object_get(before, "alignment"), "centre_distance_deviation_um");
+  json_object_del(json_object_get(before, "tolerance"), "centre_distance");
+  eo_design_hash_document(before, first, NULL);
+  json_decref(before);
+  eo_design_hash(&design, second, NULL);
+  ok(strcmp(first, second) == 0, "a design of before axes could stand apart keeps its hash");
+  eo_design_problem(&design, &spec, problem[0], NULL);
+  design.alignment.centre_distance_deviation = 1e-6;
+  eo_design_hash(&design, second, NULL);
+  eo_design_problem(&design, &spec, problem[1], NULL);
+  ok(strcmp(first, second) != 0 && strcmp(problem[0], problem[1]) != 0, "axes that do have another");
   eo_text_done(&spec);
   eo_hash_hex("abc", 3, first);
   ok(strcmp(first, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0,
