@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "measurement/leaps.h"
 #include "measurement/orientation.h"
 #include "measurement/units_probe.h"
 
@@ -64,6 +65,7 @@ static enum eo_code measure(struct eo_measurement *measurement, struct eo_angles
   }
   if (is_refused(measurement))
     return EO_OK;
+  EO_TRY(eo_leaps_cut(angles, &settings->transmission, &measurement->findings, progress, error));
   EO_TRY(eo_transmission_measure(&measurement->transmission, angles, &settings->transmission, &measurement->findings,
                                  progress, error));
   return measurement->transmission.harmonics > 0 ? judge_load(measurement, recording, tracks, settings, error) : EO_OK;
