@@ -18,7 +18,11 @@
 #define THINS                                                                                               \
   "decimat decimac decimaz dezimi downsampl subsampl undersampl unterabtast sousechantill submuestr diezm " \
   "sottocampion thinn thinby ausdunn ausduenn datenreduk datareduc samplereduc ratereduc datenverdicht "    \
-  "reductionfactor reduktionsfaktor facteurdereduction"
+  "reductionfactor reduktionsfaktor facteurdereduction compressionfactor compressionratio "                 \
+  "kompressionsfaktor kompressionsrate facteurdecompression"
+
+/* Of a file's bytes as a rule, and of its rows only with a ratio. */
+#define COMPRESSES "compress kompress komprim comprim compresi"
 
 /* Beside words of the lists below alone: "mean temperature 40" is none of samples. */
 #define AVERAGES "averaging averages averaged mittelung mittelungen gemittelt moyennage moyennes promediado binning"
@@ -271,12 +275,42 @@ static double divided(const struct clause *clause, bool *kept)
   return named && sure ? found : 0;
 }
 
+/* "Compression 4:1". */
+static double compressed(const struct clause *clause)
+{
+  for (int i = 0; i + 2 < clause->count && eo_stated_holds(clause->folded, COMPRESSES); i++)
+    if (token_at(clause, i + 1)->mark && token_at(clause, i + 2)->number == 1 && samples_at(clause, i) > 1)
+      return samples_at(clause, i);
+    else if (token_at(clause, i)->number == 1 && ratio_at(clause, i) > 1)
+      return ratio_at(clause, i);
+  return 0;
+}
+
+/* "skip: 3", "skipped samples: 3": so many are left out before the next one, with "factor" so many less one; rows and
+ * lines are those of a heading. */
+static double skipped(const struct clause *clause)
+{
+  double number = NAN;
+  bool skips = false, each = any_word(clause, "every factor faktor");
+  for (int i = 0; i < clause->count; i++) {
+    const struct token *token = &clause->token[i];
+    bool skip = is_word(clause, i, "skip skips skipped skipping skipfactor skipcount nskip sampleskip");
+    number = isnan(number) ? token->number : number;
+    skips = skips || skip;
+    if (*token->word && !skip &&
+        !is_word(clause, i, COUNTS " sample samples scan scans value values point points reading readings every of"))
+      return 0;
+  }
+  return skips && number >= 1 && number < MOST && number == floor(number) ? number + !each : 0;
+}
+
 /* What a clause says of rows that were left out; 0: nothing. */
 static double left_out(const struct clause *clause, const struct clause *before)
 {
   bool filter = eo_stated_holds(clause->folded, "filter cutoff nyquist bandw");
-  double samples[] = {every(clause), one_of(clause), filter ? 0 : quotient(clause), bracketed(clause, before),
-                      resampled(clause)};
+  double samples[] = {
+      every(clause),      one_of(clause), filter ? 0 : quotient(clause), bracketed(clause, before), resampled(clause),
+      compressed(clause), skipped(clause)};
   for (size_t i = 0; i < sizeof samples / sizeof *samples; i++)
     if (samples[i] > 1)
       return samples[i];

@@ -171,6 +171,11 @@ static void test_fewer_rows(void)
                                      "Sampling rate: 16000/4 Hz",
                                      "Sampling rate: 16 kHz; stored rate = rate / 4",
                                      "Sampling rate: 16 kHz\nData reduction 4:1",
+                                     "Sampling rate: 16 kHz\nCompression 4:1",
+                                     "Sampling rate: 16 kHz\nCompression factor: 4",
+                                     "Sampling rate: 16 kHz\nskip: 3",
+                                     "Sampling rate: 16 kHz, 3 samples skipped",
+                                     "Sampling rate: 16 kHz\nskip factor 4",
                                      "Sampling rate: 16 kHz\nresampled by 1/4",
                                      "Sampling rate: 16 kHz, divider: 4",
                                      "dt = 62.5 us\nDecimation = 4",
@@ -193,6 +198,8 @@ static void test_fewer_rows(void)
                                              "Sampling rate: 4 kHz / 2 channels, run 1 of 4",
                                              "Sampling rate: 4 kHz\nMean temperature: 40\nMoving average: 4",
                                              "Sampling rate: 4 kHz\nDecimation filter: 4th order",
+                                             "Sampling rate: 4 kHz\nCompression level: 4\nskip lines: 3",
+                                             "Sampling rate: 4 kHz\nskip: 0",
                                              "Sampling rate: 4 kHz\nGear reduction: 3",
                                              "Sampling rate: 4 kHz\nDisplay update rate: 10 Hz"};
   for (size_t i = 0; i < sizeof open / sizeof *open; i++)
