@@ -14,6 +14,7 @@ enum {
   MOST_LEAPS = 64, /* kept; angles hold fewer runs */
 };
 static const double STEADY = 0.02;  /* relative: the speed may change phases as well, near a resonance at once */
+static const double GOES_ON = 1e-3; /* relative: by so much the speed may leap itself */
 static const double PLAIN = 40;     /* times what the groups of a side scatter: a steady change leads to 25 at most */
 static const double MATTERS = 0.04; /* of the power on both sides: 0.2 rad, less than 0.5 % of the amplitude */
 static const double SHIFT = 0.05;   /* of the difference may be left when one side is shifted: a load changes more */
@@ -138,20 +139,29 @@ static void sum_up(struct finder *finder)
   }
 }
 
-/* Turns that belong together, all at one speed. */
-static bool is_steady(const struct finder *finder, int from, int to)
+static double time_of(const struct finder *finder, int from, int to)
 {
+  return (finder->border[to].time - finder->border[from].time) / (to - from);
+}
+
+/* Turns that belong together, at one speed or at one that goes on as it went: channels that are not read at the same
+   time shift all orders when the speed leaps. */
+static bool is_steady(const struct finder *finder, int turn, int width)
+{
+  int side = SIDE * width + 1, from = turn - side, to = turn + 1 + side;
   double least = INFINITY, most = 0;
   if (from < 0 || to >= finder->turns)
     return false;
   for (int t = from; t < to; t++) {
-    double time = finder->border[t + 1].time - finder->border[t].time;
     if (finder->border[t].row < 0 || finder->border[t + 1].row < 0)
       return false;
-    least = fmin(least, time);
-    most = fmax(most, time);
+    least = fmin(least, time_of(finder, t, t + 1));
+    most = fmax(most, time_of(finder, t, t + 1));
   }
-  return most < (1 + STEADY) * least;
+  double change = time_of(finder, turn - 1, turn) - time_of(finder, from, from + 1) + time_of(finder, to - 1, to) -
+                  time_of(finder, turn + 1, turn + 2);
+  double leap = time_of(finder, turn + 1, to) - time_of(finder, from, turn) - change / 2 * (side + 1) / (side - 1);
+  return most < (1 + STEADY) * least && fabs(leap) < GOES_ON * least;
 }
 
 /* An order on either side of a turn: the mean of its amplitudes in SIDE groups of windows, and their scatter. */
@@ -207,7 +217,7 @@ static double shifted(const struct finder *finder, const struct sides *sides, do
 static bool leaps_at(const struct finder *finder, int turn, int width, struct leap *leap)
 {
   struct sides sides;
-  if (!is_steady(finder, turn - SIDE * width - 1, turn + 2 + SIDE * width))
+  if (!is_steady(finder, turn, width))
     return false;
   compare(finder, turn, width, &sides);
   if (sides.difference < PLAIN * sides.scatter || sides.difference < MATTERS * sides.power)
