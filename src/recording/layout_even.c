@@ -8,9 +8,12 @@
 
 #include "base/sort.h"
 
-#define BLOCK 2048      /* rows read at once */
-#define STEPS 20000     /* steps from which the resolution of times is told */
-#define FEW 20          /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
+#define BLOCK 2048  /* rows read at once */
+#define STEPS 20000 /* steps from which the resolution of times is told */
+#define FEW 20      /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
+#define COUNTS 1024 /* rows between steps of the time, from which the usual number is told */
+#define LEAST_COUNTS 5
+#define MOSTLY 0.8      /* of them: alike but for a row */
 #define CLOCK_SURE 2e-3 /* relative: times that tell the rate less closely ask for it */
 
 /* Straight line through the times over the number of the row, by least squares, and what it leaves. Where most rows
@@ -25,6 +28,8 @@ struct line {
   int64_t edges;                    /* rows at which the time steps */
   double edge_row[2], edge_time[2]; /* of the first and the last of them */
   double odd;                       /* rows by which other steps are off at most */
+  double each[COUNTS];              /* rows for a unit of time, from one step to the next */
+  int counts, lost;                 /* of each, and of those that differ from the usual number */
 };
 
 static void add_time(struct line *line, double row, double time)
@@ -37,6 +42,8 @@ static void add_time(struct line *line, double row, double time)
   line->product += before * (time - line->time);
   if (line->count > 1 && time > line->before) {
     int at = line->edges++ > 0;
+    if (at && line->counts < COUNTS)
+      line->each[line->counts++] = (row - line->edge_row[line->edges > 2]) / (time - line->edge_time[line->edges > 2]);
     line->edge_row[at] = row;
     line->edge_time[at] = time;
   }
@@ -127,19 +134,41 @@ static enum eo_code find_resolution(const struct eo_guess *guess, int column, do
   return code;
 }
 
+/* Rows for a unit of time where a regular clock tells them but for a few steps in which rows were lost, sorting each[];
+   0: it does not, or lost none. */
+static double usual_count(struct line *line, double quantum)
+{
+  double sum = 0;
+  int alike = 0;
+  eo_sort_numbers(line->counts, line->each);
+  double middle = line->counts ? line->each[line->counts / 2] : 0;
+  for (int i = 0; i < line->counts; i++)
+    if (fabs(line->each[i] - middle) * quantum < 1.5) {
+      sum += line->each[i];
+      alike++;
+    }
+  line->lost = line->counts - alike;
+  if (line->counts < LEAST_COUNTS || alike < MOSTLY * line->counts)
+    line->lost = 0;
+  return line->lost ? sum / alike : 0;
+}
+
 /* Times that stand for many rows: the line through their steps, where it is sure enough. */
-static enum eo_code settle_standing(const struct eo_guess *guess, int column, const struct line *line, double quantum,
+static enum eo_code settle_standing(const struct eo_guess *guess, int column, struct line *line, double quantum,
                                     struct eo_layout_clock *clock, struct eo_error *error)
 {
   char text[80];
-  double rows = line->edge_row[1] - line->edge_row[0], sure = line->edges > 1 ? (1 + line->odd) / rows : INFINITY;
+  double rows = line->edge_row[1] - line->edge_row[0], sure = line->edges > 1 ? (1 + line->odd) / rows : INFINITY,
+         usual = usual_count(line, quantum);
+  if (usual > 0)
+    sure = 2 * (1 + line->lost) / rows;
   if (!(sure < CLOCK_SURE))
     return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
                         "%s only tells steps of %.3g s, %lld of them in the recording: that does not tell the sampling "
                         "rate within %.2g %%; give it.",
                         eo_layout_label(guess, column, text, sizeof text), quantum * clock->scale,
                         (long long)line->edges, 100 * CLOCK_SURE);
-  clock->interval = (line->edge_time[1] - line->edge_time[0]) / rows * clock->scale;
+  clock->interval = (usual > 0 ? 1 / usual : (line->edge_time[1] - line->edge_time[0]) / rows) * clock->scale;
   clock->start = line->edge_time[0] * clock->scale - line->edge_row[0] * clock->interval;
   return EO_OK;
 }
@@ -170,10 +199,14 @@ enum eo_code eo_layout_make_even(struct eo_guess *guess, struct eo_error *error)
     if (code)
       return code;
     clock->column = -1;
-    if (!member || guess->clock[0].start != clock->start)
-      eo_notes_add(guess->notes,
-                   "%s only tells steps of %.3g s; within that its rows are even, %.9g s each: the rows count.",
-                   eo_layout_label(guess, column, text, sizeof text), quantum * clock->scale, clock->interval);
+    if (member && guess->clock[0].start == clock->start)
+      continue;
+    if (line.lost)
+      eo_notes_add(guess->notes, "In %d of %d steps of the time rows were lost, or written twice.", line.lost,
+                   line.counts);
+    eo_notes_add(guess->notes,
+                 "%s only tells steps of %.3g s; within that its rows are even, %.9g s each: the rows count.",
+                 eo_layout_label(guess, column, text, sizeof text), quantum * clock->scale, clock->interval);
   }
   return EO_OK;
 }

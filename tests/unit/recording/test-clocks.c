@@ -65,6 +65,23 @@ static void test_times(void)
   eo_recording_free(r);
 }
 
+/* Seconds in whole numbers: rows that are lost in one of them do not slow the others down. */
+static void test_lost_rows(void)
+{
+  FILE *f = begin("Time [s];Pinion [deg];Gear [deg]\n");
+  for (int i = 0; i < 6 * ROWS; i++)
+    if (i < 9000 || i >= 9030)
+      fprintf(f, "%d;%.12g;%.12g\n", (i + 700) / 2000, degrees(pinion(i / 2000.0)), degrees(gear(i / 2000.0)));
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
+  ok(r && fabs(tracks.interval / 5e-4 - 1) < 1e-9 && noted(&notes, "In 1 of 11 steps of the time rows were lost"),
+     "seconds that stand for 2000 rows each, but one of them for 1970, tell steps of %.9g s%s",
+     r ? tracks.interval : NAN, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 static void test_units(void)
 {
   FILE *f = begin("t [s];Pinion [foo];Gear [foo]\n");
@@ -364,6 +381,7 @@ int main(void)
   fixture_open();
   test_clocks();
   test_times();
+  test_lost_rows();
   test_units();
   test_columns();
   test_counters();
