@@ -47,12 +47,15 @@ static struct eo_leaf *add_leaf(struct eo_tree *tree, enum eo_leaf_kind kind, co
     tree->room = room;
   }
   struct eo_leaf *leaf = &tree->leaf[tree->leaves];
-  *leaf = (struct eo_leaf){.kind = kind, .path = strndup(path, EO_TREE_PATH - 1), .text = text ? strdup(text) : NULL};
+  *leaf = (struct eo_leaf){
+      .kind = kind, .path = strndup(path, EO_TREE_PATH - 1), .text = text ? strdup(text) : NULL, .unit = ""};
   if (!leaf->path || (text && !leaf->text)) {
     free(leaf->path);
     free(leaf->text);
     return NULL;
   }
+  const char *base = eo_tree_base_of(leaf->path);
+  eo_tree_fold(base, strlen(base), leaf->key, sizeof leaf->key);
   tree->leaves++;
   return leaf;
 }
@@ -318,6 +321,7 @@ static void note_scales(const struct eo_tree *tree, struct eo_notes *notes)
 
 void eo_tree_settle(struct eo_tree *tree, struct eo_notes *notes)
 {
+  eo_tree_read_facts(tree);
   for (int s = 0; s < tree->sets; s++) {
     const struct eo_leaf *series = &tree->leaf[tree->set[s]];
     for (int i = 0; i < tree->leaves; i++) {

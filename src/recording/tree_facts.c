@@ -100,11 +100,11 @@ static bool strip_name(const char *key, const char *name, char *rest, size_t siz
 static bool names_other(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
 {
   char rest[64];
-  size_t group = eo_tree_group_size(fact->path);
+  const char *base = eo_tree_base_of(fact->path);
   for (int i = 0; i < tree->sets; i++) {
     const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
-    if (leaf != series && eo_tree_group_size(leaf->path) == group && eo_tree_holds(fact->path, group, leaf->path) &&
-        strip_name(eo_tree_base_of(fact->path), eo_tree_base_of(leaf->path), rest, sizeof rest))
+    if (leaf != series && leaf->group == fact->group && eo_tree_holds(fact->path, fact->group, leaf->path) &&
+        strip_name(base, leaf->path + leaf->group + (leaf->group > 0), rest, sizeof rest))
       return true;
   }
   return false;
@@ -113,17 +113,12 @@ static bool names_other(const struct eo_tree *tree, const struct eo_leaf *fact, 
 /* "ms" under "SampleIntervalUnit" beside "SampleInterval"; "" when there is none. */
 static const char *unit_named_after(const struct eo_tree *tree, const struct eo_leaf *number)
 {
-  char key[64], other[64];
-  size_t group = eo_tree_group_size(number->path);
-  eo_tree_fold(eo_tree_base_of(number->path), strlen(eo_tree_base_of(number->path)), key, sizeof key);
+  size_t length = strlen(number->key);
   for (int i = 0; i < tree->leaves; i++) {
     const struct eo_leaf *leaf = &tree->leaf[i];
-    if (leaf->kind != EO_LEAF_TEXT || eo_tree_group_size(leaf->path) != group ||
-        strncmp(leaf->path, number->path, group))
-      continue;
-    eo_tree_fold(eo_tree_base_of(leaf->path), strlen(eo_tree_base_of(leaf->path)), other, sizeof other);
-    size_t length = strlen(key);
-    if (!strncmp(key, other, length) && (!strcmp(other + length, "unit") || !strcmp(other + length, "units")))
+    if (leaf->kind == EO_LEAF_TEXT && !strncmp(leaf->key, number->key, length) &&
+        (!strcmp(leaf->key + length, "unit") || !strcmp(leaf->key + length, "units")) && leaf->group == number->group &&
+        !strncmp(leaf->path, number->path, leaf->group))
       return leaf->text;
   }
   return "";
@@ -231,6 +226,20 @@ static bool takes_seconds(const char *key)
   return (stated.kind == EO_STATED_INTERVAL || stated.kind == EO_STATED_START) && stated.value == 2;
 }
 
+void eo_tree_read_facts(struct eo_tree *tree)
+{
+  for (int i = 0; i < tree->leaves; i++) {
+    struct eo_leaf *leaf = &tree->leaf[i];
+    const char *base = eo_tree_base_of(leaf->path);
+    if (leaf->kind == EO_LEAF_NUMBER || leaf->kind == EO_LEAF_TEXT)
+      leaf->unit = unit_named_after(tree, leaf);
+    if (leaf->kind != EO_LEAF_NUMBER)
+      continue;
+    leaf->stated = eo_stated_read(base, leaf->number, leaf->unit);
+    leaf->seconds = takes_seconds(base);
+  }
+}
+
 /* unit: of the number itself, "" when it has none. */
 static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series, double number,
                        const char *unit)
@@ -241,12 +250,13 @@ static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const s
   if (depth < 0)
     return;
   if (!*unit)
-    unit = unit_named_after(tree, fact);
+    unit = fact->unit;
   if (!*unit && about_abscissa(fact, outer))
     unit = unit_beside(tree, fact);
-  if (!*unit && takes_seconds(key))
+  bool whole = fact->kind == EO_LEAF_NUMBER && !strcmp(key, eo_tree_base_of(fact->path)); /* nothing taken off */
+  if (!*unit && (whole ? fact->seconds : takes_seconds(key)))
     unit = unit_of_axis(tree, fact);
-  struct eo_stated stated = eo_stated_read(key, number, unit);
+  struct eo_stated stated = whole && !strcmp(unit, fact->unit) ? fact->stated : eo_stated_read(key, number, unit);
   int member = eo_stated_member(eo_tree_base_of(series->path));
   if (stated.kind && (stated.member < 0 || member < 0 || stated.member == member))
     use_stated(tree, fact, series, &stated, depth);

@@ -18,7 +18,12 @@ struct eo_leaf {
   enum eo_leaf_kind kind;
   char *path; /* owned */
   double number;
-  char *text; /* owned; of texts and lists */
+  char *text;              /* owned; of texts and lists */
+  size_t group;            /* bytes of the path of its group */
+  char key[64];            /* the last part of the path, folded */
+  const char *unit;        /* text under the key with "unit" behind; "": none */
+  struct eo_stated stated; /* by a number under its own key, in that unit */
+  bool seconds;            /* without a unit it would be in s */
   int first, channels;
 };
 
@@ -55,6 +60,9 @@ void eo_tree_fold(const char *word, size_t length, char *folded, size_t size);
 bool eo_tree_is_one_of(const char *word, size_t length, const char *words);
 
 bool eo_tree_is_time(const struct eo_leaf *leaf);
+
+/* What facts say whatever the series, once for all: units under their keys with "unit" behind, what numbers state. */
+void eo_tree_read_facts(struct eo_tree *tree);
 
 /* Gives a series what a fact says of it, where that is nearer than what it has. */
 void eo_tree_use(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series);
