@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -105,10 +106,20 @@ static void limit_memory(void)
 #endif
 }
 
+/* A reader whose parent is killed would go on until its time is up. */
+static void end_with(pid_t parent)
+{
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) /* it was killed before */
+    _exit(2);
+}
+
 /* Gives back what the parent had open and its ways of ending, then reads. */
-static void run_child(int pipe, eo_series_reader *reader, const char *path, const struct eo_reader_options *options)
+static void run_child(int pipe, pid_t parent, eo_series_reader *reader, const char *path,
+                      const struct eo_reader_options *options)
 {
   struct child child = {3, 0};
+  end_with(parent);
   if (dup2(pipe, child.pipe) < 0)
     _exit(2);
   int silence = open("/dev/null", O_RDWR);
@@ -256,9 +267,9 @@ enum eo_code eo_isolate_read(eo_series_reader *reader, const char *path, const s
   int ends[2];
   if (pipe2(ends, O_CLOEXEC))
     return eo_error_set(error, EO_ERROR_FILE, "", "No pipe to a reader could be made: %s.", strerror(errno));
-  pid_t process = fork();
+  pid_t own = getpid(), process = fork();
   if (process == 0)
-    run_child(ends[1], reader, path, options);
+    run_child(ends[1], own, reader, path, options);
   close(ends[1]);
   if (process < 0) {
     close(ends[0]);

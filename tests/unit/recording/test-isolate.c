@@ -6,6 +6,8 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define ROWS 10000
@@ -78,6 +80,57 @@ static void check_end(const char *how)
   eo_recording_free(recorder.recording);
 }
 
+/* Says its number in the file, then hangs. */
+static enum eo_code hang_named(const char *path, const struct eo_reader_options *options,
+                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
+{
+  FILE *file = fopen(path, "w");
+  if (file) {
+    fprintf(file, "%d\n", (int)getpid());
+    fclose(file);
+  }
+  return end_early("hang", options, sink, notes, error);
+}
+
+static int number_in(const char *path)
+{
+  char text[32] = "";
+  FILE *file = fopen(path, "r");
+  if (file && !fgets(text, sizeof text, file))
+    *text = '\0';
+  if (file)
+    fclose(file);
+  return strchr(text, '\n') ? atoi(text) : 0;
+}
+
+/* A reader whose parent is killed ends as well; it comes to this process, which waits for it. */
+static void check_killed_parent(void)
+{
+  char path[64];
+  struct eo_reader_options options = {.max_bytes = 1 << 30};
+  snprintf(path, sizeof path, "/tmp/easeoff-isolate-%d", (int)getpid());
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  pid_t parent = fork();
+  if (parent == 0) {
+    struct eo_error error;
+    struct eo_series_recorder recorder = {0};
+    struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
+    _exit(eo_isolate_read(hang_named, path, &options, &sink, NULL, &error) != EO_OK);
+  }
+  int reader = 0, status = 0;
+  for (int i = 0; i < 500 && !reader; i++, usleep(10000))
+    reader = number_in(path);
+  kill(parent, SIGKILL);
+  waitpid(parent, NULL, 0);
+  pid_t ended = 0;
+  for (int i = 0; i < 500 && reader && !ended; i++, usleep(10000))
+    ended = waitpid(reader, &status, WNOHANG);
+  ok(reader && ended == reader && WIFSIGNALED(status), "a reader whose parent is killed ends");
+  if (reader && !ended)
+    kill(reader, SIGKILL);
+  unlink(path);
+}
+
 int main(void)
 {
   struct eo_error error;
@@ -107,5 +160,6 @@ int main(void)
   options.progress = &progress;
   ok(eo_isolate_read(end_early, "hang", &options, &sink, NULL, &error) == EO_ERROR_CANCELLED && asked == 2,
      "a reader that hangs can be cancelled");
+  check_killed_parent();
   return tap_done();
 }
