@@ -15,6 +15,7 @@
 #include <string.h>
 
 #define KEY 96
+#define FASTEST 1.5e-6 /* s between rows */
 #define MARKS " \t:=;,|\"([{<>)]}'"
 
 void eo_header_split(struct eo_header *header, const struct eo_text_format *format, const char *head)
@@ -61,6 +62,20 @@ static void use_fact(struct eo_text_format *format, const struct eo_stated *stat
   eo_turns_use(format, stated);
 }
 
+/* "4.000 Hz" in a file of decimal commas may be 4000 Hz: that is stated as well, where rows can come so fast. */
+static void use_thousands(struct eo_text_format *format, const char *key, const char *at, const char *end,
+                          const char *unit)
+{
+  int groups;
+  double value;
+  const char *after = format->point == ',' ? eo_text_grouped(at, end, ',', &groups, &value) : NULL;
+  if (!after || groups != 1 || !memchr(at, '.', (size_t)(after - at)) || memchr(at, ',', (size_t)(after - at)))
+    return;
+  struct eo_stated stated = eo_stated_read(key, value, unit);
+  if (stated.kind == EO_STATED_INTERVAL && stated.value > FASTEST)
+    use_fact(format, &stated);
+}
+
 /* "filter at", before a number: what stands before the last word belongs to the number before. */
 static bool leads_on(const char *words)
 {
@@ -81,9 +96,10 @@ static const char *words_behind(const char *at, const char *end, char words[KEY]
 
 /* A number whose key stands behind it: "4 kHz sampling rate, 1 kHz filter". What it is the rate or the time of may also
    be said there: of a filter, which is none of the rows. True: it is read; *behind moves on. */
-static bool take_from_behind(struct eo_text_format *format, double value, const char *unit, const char *end,
+static bool take_from_behind(struct eo_text_format *format, const struct eo_header_number *number, const char *end,
                              const char **behind)
 {
+  const char *unit = number->unit;
   char words[KEY];
   bool ended;
   double factor;
@@ -93,11 +109,13 @@ static bool take_from_behind(struct eo_text_format *format, double value, const 
   const char *last = words_behind(*behind, end, words, &ended);
   if (!*words || !ended)
     return false;
-  struct eo_stated stated = eo_stated_read(words, value, unit);
+  struct eo_stated stated = eo_stated_read(words, number->value, unit);
   if (!eo_stated_excludes(words) && stated.kind != EO_STATED_INTERVAL)
     return false;
-  if (stated.kind == EO_STATED_INTERVAL)
+  if (stated.kind == EO_STATED_INTERVAL) {
+    use_thousands(format, words, number->at, end, unit);
     use_fact(format, &stated);
+  }
   *behind = last;
   return true;
 }
@@ -208,8 +226,7 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
       continue;
     number.behind = eo_header_unit(number.after, line->end, number.unit, sizeof number.unit);
     p = number.after - 1;
-    if (take_thinned_rate(format, &number) ||
-        take_from_behind(format, number.value, number.unit, line->end, &number.behind)) {
+    if (take_thinned_rate(format, &number) || take_from_behind(format, &number, line->end, &number.behind)) {
       number.from = number.behind;
       p = number.behind - 1;
       continue;
@@ -217,6 +234,9 @@ static void take_facts(struct eo_text_format *format, const struct eo_header_lin
     struct eo_stated stated = eo_turns_state(&turns, format, &number, line->end);
     if (!stated.kind || stated.kind == EO_STATED_THINNED) /* the whole line is read for it */
       continue;
+    char key[KEY];
+    eo_header_trim(key, sizeof key, number.from, number.at);
+    use_thousands(format, key, number.at, line->end, number.unit);
     use_fact(format, &stated);
     number.from = number.behind;
   }
@@ -239,6 +259,7 @@ static void take_below(struct eo_text_format *format, const struct eo_header_lin
     if (end != value.text + value.length)
       continue;
     struct eo_stated stated = eo_stated_read(key, number, "");
+    use_thousands(format, key, value.text, end, "");
     use_fact(format, &stated);
   }
 }

@@ -123,6 +123,31 @@ static FILE *told(const char *sentence)
   return f;
 }
 
+/* Rows with decimal commas. */
+static FILE *with_commas(const char *sentence)
+{
+  FILE *f = begin(sentence);
+  fputs("\npinion [deg];gear [deg]\n", f);
+  for (int i = 0; i < ROWS; i++) {
+    double angle[2] = {degrees(pinion(i / RATE)), degrees(gear(i / RATE))};
+    fprintf(f, "%d,%08d;%d,%08d\n", (int)angle[0], (int)(fmod(angle[0], 1) * 1e8), (int)angle[1],
+            (int)(fmod(angle[1], 1) * 1e8));
+  }
+  return f;
+}
+
+/* A point before three digits, beside decimal commas, may part thousands. */
+static void test_thousands(void)
+{
+  static const char *const rates[] = {"Abtastrate;4.000,0;Hz",    "Abtastrate: 4.000 Hz",  "4.000 Hz Abtastrate",
+                                      "Abtastrate: 4000.000 Hz",  "Abtastrate: 4.000 kHz", "Abtastintervall: 0.250 ms",
+                                      "Abtastrate;Kanal\n4.000;2"};
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+    right(with_commas(rates[i]), NULL, 1e-6, "a sampling rate of 4000 Hz", rates[i]);
+  asked(with_commas("Abtastrate: 60.000 Hz"), NULL, "/sample_rate_Hz", "60000 and 60 Hz",
+        "a rate that may be one or in thousands");
+}
+
 /* The rate in a sentence, and sentences with numbers of something else that were taken for it. */
 static void test_sentences(void)
 {
@@ -145,13 +170,7 @@ static void test_sentences(void)
                                                {"Sampled with 1 kHz filter at 4 kHz", "states no sampling rate"}};
   for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++)
     right(told(sentences[i]), NULL, 1e-7, "a sampling rate of 4000 Hz", sentences[i]);
-  FILE *f = begin("Abtastrate;4.000,0;Hz\npinion [deg];gear [deg]\n");
-  for (int i = 0; i < ROWS; i++) {
-    double angle[2] = {degrees(pinion(i / RATE)), degrees(gear(i / RATE))};
-    fprintf(f, "%d,%08d;%d,%08d\n", (int)angle[0], (int)(fmod(angle[0], 1) * 1e8), (int)angle[1],
-            (int)(fmod(angle[1], 1) * 1e8));
-  }
-  right(f, NULL, 1e-6, "a sampling rate of 4000 Hz", "thousands before a decimal comma");
+  test_thousands();
   for (size_t i = 0; i < sizeof open / sizeof *open; i++)
     asked(told(open[i][0]), NULL, "/sample_rate_Hz", open[i][1], open[i][0]);
 }
