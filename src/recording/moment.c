@@ -277,12 +277,62 @@ static bool take_stamp(struct rest *rest, struct eo_moment *moment)
   return false;
 }
 
+/* "2026-123T10:00:00", "2026:123:10:00:00": year, day of the year and time. */
+static bool take_ordinal(struct rest *rest, struct eo_moment *moment)
+{
+  struct rest start = *rest;
+  struct eo_moment found = {.has_day = true};
+  int year, day;
+  bool leads = take_number(rest, 4, &year) == 4 && (take(rest, '-') || take(rest, ':') || take(rest, '/')) &&
+               take_number(rest, 3, &day) == 3 && is_date(year, 1, 1) && day > 0 &&
+               eo_moment_day(year, 1, 1) + day <= eo_moment_day(year + 1, 1, 1) && rest->at < rest->end &&
+               strchr("T: -", *rest->at++);
+  if (!leads || !take_time(rest, &found)) {
+    *rest = start;
+    return false;
+  }
+  found.day = eo_moment_day(year, 1, 1) + day - 1;
+  *moment = found;
+  return true;
+}
+
+/* "PT1.25S", "P0DT0H1M2.5S": a duration of ISO 8601; months and years of it have no length. */
+static bool take_duration(struct rest *rest, struct eo_moment *moment)
+{
+  static const char marks[] = "DHMS";
+  static const double seconds[] = {EO_MOMENT_DAY, 3600, 60, 1};
+  struct rest start = *rest;
+  double sum = 0;
+  int number, next = 0;
+  bool fraction = false;
+  if (!take(rest, 'P'))
+    return false;
+  bool timed = take(rest, 'T');
+  while (!fraction && take_number(rest, 9, &number) > 0) {
+    double value = number + take_fraction(rest, &fraction);
+    const char *mark = rest->at < rest->end && *rest->at ? strchr(marks, *rest->at) : NULL;
+    if (!mark || mark - marks < next || (mark > marks) != timed)
+      break;
+    next = (int)(mark - marks) + 1;
+    sum += value * seconds[mark - marks];
+    rest->at++;
+    timed = take(rest, 'T') || timed;
+  }
+  if (!next || rest->at < rest->end) {
+    *rest = start;
+    return false;
+  }
+  *moment = (struct eo_moment){.has_time = true, .seconds = sum};
+  return true;
+}
+
 bool eo_moment_read(const char *text, size_t length, struct eo_moment *moment)
 {
   struct rest rest = {text, text + length};
   *moment = (struct eo_moment){0};
   skip_blanks(&rest);
-  if (take_stamp(&rest, moment) || take_compact(&rest, moment))
+  if (take_stamp(&rest, moment) || take_compact(&rest, moment) || take_ordinal(&rest, moment) ||
+      take_duration(&rest, moment))
     return rest.at == rest.end;
   take_days(&rest, moment);
   if (take_date(&rest, moment) || take_american(&rest, moment)) {

@@ -20,7 +20,8 @@ struct eo_moment {
 /* Reads the whole text: "2024-03-05T08:59:59.5Z" (also +01:00, a blank for T, slashes for hyphens), "05.03.2024
    08:59:59,5", "3/5/2024 8:59:59 AM" (month first unless that is impossible), "05-Mar-2024 08:59:59", either half
    alone, "59:59.5" (minutes and seconds), "0 days 00:00:01", "1700000000000042244" (nanoseconds since 1970; tenths of a
-   microsecond since 1601 or year 1). False when it is none of these. */
+   microsecond since 1601 or year 1), "2024-065T08:59:59.5", "2024:065:08:59:59.5" (day of the year), "PT1.25S". False
+   when it is none of these. */
 bool eo_moment_read(const char *text, size_t length, struct eo_moment *moment);
 
 /* Nanoseconds since 1970 of a moment that has a day. */

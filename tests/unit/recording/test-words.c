@@ -93,6 +93,16 @@ static void test_moments(void)
   struct eo_moment m;
   ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000,
      "a moment is read as an epoch");
+  moment("2024-065T08:59:59.5", day, 32399.5);
+  moment("2024:065:08:59:59.5", day, 32399.5);
+  moment("2024-065 08:59:59.5Z", day, 32399.5);
+  moment("PT1.25S", -1, 1.25);
+  moment("P1DT2H3M4,5S", -1, 93784.5);
+  no_moment("2023-366T00:00:00");
+  no_moment("2024-065");
+  no_moment("P1M");
+  no_moment("PT");
+  no_moment("PT5S1M");
   no_moment("12.5");
   no_moment("05.13.2024");
   no_moment("2024-02-30");
