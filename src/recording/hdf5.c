@@ -172,8 +172,13 @@ static bool add_channels(struct eo_hdf5 *hdf5, hid_t set, hid_t type, bool whole
                  : eo_tree_add_series(hdf5->tree, path, (int)across, (int64_t)length, whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
     keep_channel(hdf5, base + (int)k,
-                 (struct eo_hdf5_channel){
-                     .set = set, .type = type, .width = 1, .along = sides->place[along], .other = other, .across = k});
+                 (struct eo_hdf5_channel){.set = set,
+                                          .type = type,
+                                          .exact = whole ? H5T_NATIVE_INT64 : 0,
+                                          .width = 1,
+                                          .along = sides->place[along],
+                                          .other = other,
+                                          .across = k});
   return base >= 0;
 }
 
@@ -201,15 +206,16 @@ static hid_t field_type(const char *name, hid_t field)
 }
 
 /* A field that is an array: one channel per element. */
-static bool add_array(struct eo_hdf5 *hdf5, hid_t set, hid_t memory, int width, bool whole, const char *path,
+static bool add_array(struct eo_hdf5 *hdf5, hid_t set, hid_t memory, hid_t exact, int width, const char *path,
                       hsize_t length)
 {
   int base = width > WIDE || length > INT64_MAX / 16
                  ? -1
-                 : eo_tree_add_series(hdf5->tree, path, width, (int64_t)length, whole);
+                 : eo_tree_add_series(hdf5->tree, path, width, (int64_t)length, exact > 0);
   for (int k = 0; base >= 0 && k < width; k++)
-    keep_channel(hdf5, base + k,
-                 (struct eo_hdf5_channel){.set = set, .type = memory, .width = width, .place = k, .other = -1});
+    keep_channel(
+        hdf5, base + k,
+        (struct eo_hdf5_channel){.set = set, .type = memory, .exact = exact, .width = width, .place = k, .other = -1});
   return base >= 0;
 }
 
@@ -251,12 +257,15 @@ static bool add_field(struct eo_hdf5 *hdf5, hid_t set, hid_t field, const struct
     inner = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &width);
     H5Tclose(element);
   }
-  hid_t memory = nested_type(nest, inner);
+  hid_t memory = nested_type(nest, inner),
+        exact = class == H5T_INTEGER && element < 0 ? nested_type(nest, H5T_NATIVE_INT64) : 0;
   H5Tclose(inner);
   bool added = (class == H5T_INTEGER || class == H5T_FLOAT) && width >= 1 &&
-               add_array(hdf5, set, memory, width <= WIDE ? (int)width : WIDE + 1, class == H5T_INTEGER, path, length);
+               add_array(hdf5, set, memory, exact, width <= WIDE ? (int)width : WIDE + 1, path, length);
   if (!added)
     H5Tclose(memory);
+  if (!added && exact > 0)
+    H5Tclose(exact);
   return added;
 }
 
@@ -428,6 +437,7 @@ static enum eo_code read_file(struct eo_hdf5 *hdf5, hid_t file, int64_t bytes, c
   struct eo_series_file content = {
       eo_tree_series(hdf5->tree), eo_tree_count(hdf5->tree), bytes, options->max_bytes, eo_hdf5_values, hdf5};
   code = eo_tree_check_begins(hdf5->tree, &content, error);
+  eo_hdf5_find_stamps(hdf5);
   return code ? code : eo_series_copy(&content, sink, notes, error);
 }
 

@@ -14,6 +14,8 @@
 
 struct eo_hdf5_channel {
   hid_t set, type;  /* borrowed from sets; of a value in memory: a double, or a record with one field */
+  hid_t exact;      /* the same of integers of 64 bits; 0: it has none */
+  int64_t origin;   /* of these, taken off before they are doubles: ns since 1970; 0: none */
   int width, place; /* values of one element in memory, and which of them is the channel's */
   int along;        /* dimension along which values follow each other */
   int other;        /* the other one that is longer than 1, -1: none */
@@ -61,6 +63,10 @@ void eo_hdf5_add_frame(struct eo_hdf5 *hdf5, const char *records, const char *na
    unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
    cache it has. */
 hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set);
+
+/* Integers that count nanoseconds since 1970 are too long for doubles, which leave steps of 256 ns: those of all
+   channels count from the first of the file. */
+void eo_hdf5_find_stamps(struct eo_hdf5 *hdf5);
 
 /* Values first .. first + count - 1 of a channel, as the file's scale has them; context: struct eo_hdf5. Errors:
    EO_ERROR_INPUT, also without memory. */

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/hdf5_private.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
-#define AHEAD ((size_t)192 << 20) /* bytes of values that are read at once where chunks are too large to be kept */
+#define CACHE ((size_t)256 << 20)    /* bytes of chunks kept for all data sets together */
+#define EARLIEST 1000000000000000000 /* ns since 1970, in 2001 */
+#define LATEST 2200000000000000000   /* in 2039 */
+#define AHEAD ((size_t)192 << 20)    /* bytes of values that are read at once where chunks are too large to be kept */
 
 hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set)
 {
@@ -31,6 +34,16 @@ hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set)
   return set;
 }
 
+/* Integers in the place of doubles become such; what lies before 1970 stands for missing times. */
+static void count_from(int64_t origin, int64_t count, double *values)
+{
+  for (int64_t i = 0; i < count; i++) {
+    int64_t stamp;
+    memcpy(&stamp, &values[i], sizeof stamp);
+    values[i] = stamp > 0 ? (double)(stamp - origin) : NAN;
+  }
+}
+
 /* Stored values from the file; false: they cannot be read, or there is no memory. */
 static bool read_stored(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)
 {
@@ -47,7 +60,9 @@ static bool read_stored(const struct eo_hdf5_channel *channel, int64_t first, in
   hid_t space = H5Dget_space(channel->set), memory = H5Screate_simple(1, &length, NULL);
   herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
   if (status >= 0)
-    status = H5Dread(channel->set, channel->type, memory, space, H5P_DEFAULT, all);
+    status = H5Dread(channel->set, channel->origin ? channel->exact : channel->type, memory, space, H5P_DEFAULT, all);
+  if (status >= 0 && channel->origin)
+    count_from(channel->origin, count, all);
   for (int64_t i = 0; channel->width > 1 && i < count; i++)
     values[i] = all[i * channel->width + channel->place];
   if (channel->width > 1)
@@ -76,6 +91,24 @@ static bool read_ahead(const struct eo_hdf5 *hdf5, struct eo_hdf5_channel *chann
   }
   memcpy(values, channel->ahead + (first - channel->first), (size_t)count * sizeof *values);
   return true;
+}
+
+void eo_hdf5_find_stamps(struct eo_hdf5 *hdf5)
+{
+  int64_t origin = 0;
+  for (int i = 0; i < eo_tree_count(hdf5->tree); i++) {
+    struct eo_hdf5_channel *channel = &hdf5->channel[i];
+    struct eo_series *series = &eo_tree_series(hdf5->tree)[i];
+    double first;
+    if (!channel->exact || channel->width > 1 || series->length < 1 || !read_stored(channel, 0, 1, &first) ||
+        first < EARLIEST || first > LATEST)
+      continue;
+    origin = origin ? origin : (int64_t)first;
+    channel->origin = origin;
+    series->clock.epoch = origin;
+    if (!*series->unit && eo_tree_value(hdf5->tree, i, 1) == 1)
+      snprintf(series->unit, sizeof series->unit, "ns");
+  }
 }
 
 /* The first way of packing of a data set that is not built in, by its name and number; "" when there is none. */

@@ -493,6 +493,37 @@ static void test_many_facts(void)
   eo_recording_free(r);
 }
 
+/* Nanoseconds since 1970 in each of two groups, which doubles round to 256; they count from the first of the file. */
+static void test_stamps(void)
+{
+  static const int64_t first = 1772614800123456789;
+  static int64_t stamp[COUNT];
+  struct eo_error error;
+  hsize_t count = COUNT;
+  hid_t file = open_file();
+  for (int side = 0; side < 2; side++) {
+    hid_t group = H5Gcreate2(file, side ? "pinion" : "gear", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    for (int i = 0; i < COUNT; i++)
+      stamp[i] = first + 50001 * i + 77 * side;
+    H5Dclose(put(group, "time", 1, &count, H5T_STD_I64LE, H5T_NATIVE_INT64, stamp, H5P_DEFAULT));
+    H5Dclose(put(group, "angle", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+    H5Gclose(group);
+  }
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  int time[2] = {-1, -1};
+  for (int c = 0; r && c < eo_recording_columns(r); c++)
+    if (strstr(eo_recording_name(r, c), "time"))
+      time[strstr(eo_recording_name(r, c), "pinion") != NULL] = c;
+  int wrong = time[0] < 0 || time[1] < 0;
+  for (int side = 0; side < 2 && !wrong; side++)
+    wrong = eo_recording_clock(r, time[side]).epoch + (int64_t)cell_of(r, 7, time[side]) !=
+                first + 7 * 50001 + 77 * side ||
+            strcmp(eo_recording_unit(r, time[side]), "ns") != 0;
+  ok(!wrong, "nanoseconds since 1970 of two groups are read to the last one%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 int main(void)
 {
   fixture_open();
@@ -515,6 +546,7 @@ int main(void)
   test_wide_records();
   test_namesakes();
   test_two_days();
+  test_stamps();
   test_many_facts();
   test_hostile();
   return fixture_close();
