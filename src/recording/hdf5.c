@@ -32,12 +32,10 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
   if (attribute < 0)
     return 0;
   hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-  H5T_class_t class = H5Tget_class(type);
   if (eo_hdf5_texts(attribute, false, type, space, list, sizeof list)) {
     eo_hdf5_add_texts(attributes->h, path, list);
     eo_hdf5_add_frame(attributes->h, attributes->path, name, list);
-  } else if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
-             H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
+  } else if (eo_hdf5_number(attribute, type, space, &value))
     eo_tree_add_number(attributes->h->tree, path, value);
   H5Sclose(space);
   H5Tclose(type);

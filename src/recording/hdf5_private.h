@@ -64,6 +64,9 @@ void eo_hdf5_add_frame(struct eo_hdf5 *hdf5, const char *records, const char *na
    cache it has. */
 hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set);
 
+/* The number of an attribute, which may be an array of one, by its space or by its type; false: it is none. */
+bool eo_hdf5_number(hid_t attribute, hid_t type, hid_t space, double *value);
+
 /* Integers that count nanoseconds since 1970 are too long for doubles, which leave steps of 256 ns: those of all
    channels count from the first of the file. */
 void eo_hdf5_find_stamps(struct eo_hdf5 *hdf5);

@@ -34,6 +34,20 @@ hid_t eo_hdf5_open_cached(struct eo_hdf5 *hdf5, hid_t set)
   return set;
 }
 
+bool eo_hdf5_number(hid_t attribute, hid_t type, hid_t space, double *value)
+{
+  hsize_t one = 1;
+  bool array = H5Tget_class(type) == H5T_ARRAY && H5Tget_array_ndims(type) == 1;
+  hid_t element = array ? H5Tget_super(type) : H5Tcopy(type),
+        memory = array ? H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &one) : H5Tcopy(H5T_NATIVE_DOUBLE);
+  H5T_class_t class = H5Tget_class(element);
+  bool good = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(element) == H5Tget_size(type) &&
+              H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, memory, value) >= 0;
+  H5Tclose(memory);
+  H5Tclose(element);
+  return good;
+}
+
 /* Integers in the place of doubles become such; what lies before 1970 stands for missing times. */
 static void count_from(int64_t origin, int64_t count, double *values)
 {

@@ -493,6 +493,31 @@ static void test_many_facts(void)
   eo_recording_free(r);
 }
 
+/* A scale that is an array of one number, by its space or by its type. */
+static void test_arrays_of_one(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT, one = 1;
+  double scale = 0.25;
+  hid_t file = open_file(), type = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &one);
+  for (int typed = 0; typed < 2; typed++) {
+    hid_t set = put(file, typed ? "typed" : "plain", 1, &count, H5T_STD_I32LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT);
+    hid_t space = typed ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &one, NULL);
+    hid_t attribute = H5Acreate2(set, "scale_factor", typed ? type : H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
+                                 H5P_DEFAULT);
+    H5Awrite(attribute, typed ? type : H5T_NATIVE_DOUBLE, &scale);
+    H5Aclose(attribute);
+    H5Sclose(space);
+    H5Dclose(set);
+  }
+  H5Tclose(type);
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && cell_of(r, 50, 0) == 0.25 * floor(pinion[50]) && cell_of(r, 50, 1) == cell_of(r, 50, 0),
+     "a scale may be an array of one number%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
 /* Nanoseconds since 1970 in each of two groups, which doubles round to 256; they count from the first of the file. */
 static void test_stamps(void)
 {
@@ -547,6 +572,7 @@ int main(void)
   test_namesakes();
   test_two_days();
   test_stamps();
+  test_arrays_of_one();
   test_many_facts();
   test_hostile();
   return fixture_close();
