@@ -384,13 +384,14 @@ static enum eo_code settle_channels(struct eo_guess *guess, struct eo_error *err
   return EO_OK;
 }
 
-static enum eo_code find(struct eo_guess *guess, struct eo_error *error)
+static enum eo_code find(struct eo_guess *guess, struct eo_recording *recording, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int c = 0; !code && c < guess->columns; c++)
     code = eo_column_look(guess->recording, c, &guess->look[c], error);
   if (code)
     return code;
+  eo_layout_read_constants(guess, recording);
   guess->kind = guess->choice->kind        ? guess->choice->kind
                 : looks_like_pulses(guess) ? EO_LAYOUT_PULSES
                                            : EO_LAYOUT_GUESS_KIND;
@@ -444,7 +445,7 @@ enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_lay
   guess->tracks = &found;
   guess->notes = notes;
   guess->columns = eo_recording_columns(*recording);
-  enum eo_code code = find(guess, error);
+  enum eo_code code = find(guess, *recording, error);
   if (!code)
     code = replace(guess, spool_directory, recording, error);
   if (!code)

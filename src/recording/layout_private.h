@@ -49,6 +49,9 @@ enum eo_code eo_layout_chosen(const struct eo_guess *guess, const char *chosen, 
 /* Values go one way, but for resets, and do go. */
 bool eo_layout_turns(const struct eo_column *look);
 
+/* States rates and counts per turn that a column holds in all rows, for the other columns. */
+void eo_layout_read_constants(const struct eo_guess *guess, struct eo_recording *recording);
+
 /* Fills time[] and number[]. */
 void eo_layout_mark_times(struct eo_guess *guess);
 /* Of several columns of time the one whose name shares most words with the channel's; of equals the nearest before it,

@@ -239,6 +239,24 @@ static void test_marks(void)
   right(f, NULL, 1e-7, "taken as the angle", "what an instrument could not measure is no number");
 }
 
+/* Facts that a program writes beside each row; one that changes is none. */
+static void test_constants(void)
+{
+  FILE *f = begin("Pinion [deg];Sampling rate [Hz];Gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.13g;4000;%.13g\n", degrees(pinion(i / RATE)), degrees(gear(i / RATE)));
+  right(f, NULL, 1e-9, "a sampling rate of 4000 Hz", "a rate in each row");
+  f = begin("t [s];Pinion [counts];Gear [counts];Pinion cpr;Gear cpr\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.9g;%.0f;%.0f;1048576;2097152\n", i / RATE, floor(pinion(i / RATE) / 2 / M_PI * 1048576),
+            floor(gear(i / RATE) / 2 / M_PI * 2097152));
+  right(f, NULL, 2e-5, "holds 2097152 in all rows", "counts per turn in each row");
+  f = begin("Pinion [deg];Gear [deg];Sampling rate [Hz]\n");
+  for (int i = 0; i < 30 * ROWS; i++)
+    fprintf(f, "%.13g;%.13g;%d\n", degrees(pinion(i / RATE)), degrees(gear(i / RATE)), i < 29 * ROWS ? 4000 : 5000);
+  asked(f, NULL, "/sample_rate_Hz", "states no sampling rate", "a rate that changes");
+}
+
 int main(void)
 {
   fixture_open();
@@ -248,5 +266,6 @@ int main(void)
   test_units();
   test_times();
   test_marks();
+  test_constants();
   return fixture_close();
 }
