@@ -61,7 +61,7 @@
   ROW("layers", resolution->elements.layers)                                               \
   ROW("flank_rows", resolution->elements.flank_rows)                                       \
   ROW("fillet_elements", resolution->elements.fillet_elements)                             \
-  ROW("impact_patch", resolution->impact_patch)                                             \
+  ROW("impact_patch", resolution->impact_patch)                                            \
   ROW("centre_distance_deviation", deviation)
 
 #define NAME(name, value) name,

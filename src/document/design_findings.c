@@ -192,20 +192,19 @@ static bool has_table(const struct eo_pitch *pitch, enum eo_flank_side side, int
 /* Tables of the flank that does not carry, and none of the one that does. */
 static void note_other_flank(const struct eo_design *design, int k, struct eo_warnings *warnings)
 {
-  static const char *const flank[2] = {"drive", "coast"};
   const struct eo_pitch *pitch = &design->pitch;
   enum eo_flank_side side = eo_design_running(design, k).flank;
   for (int i = 0; pitch->stated && i < 2; i++) {
     const struct eo_pitch_member *member = &pitch->member[i];
     char key[40];
-    snprintf(key, sizeof key, "/pitch/%s", member_name[i]);
+    snprintf(key, sizeof key, "/pitch/%s", eo_member_name[i]);
     if (has_table(pitch, !side, i) && !has_table(pitch, side, i) && !member->tolerance_class && !member->flank_class)
       eo_warnings_at(
           warnings, key,
           "Load case %d runs on the %s flanks, and the %s's tables of single teeth are of its %s flanks alone: "
           "its teeth are alike there. State those of the other flank (\"coast\" of an end), or a "
           "tolerance_class.",
-          k + 1, flank[side], member_name[i], flank[!side]);
+          k + 1, eo_flank_side_name[side], eo_member_name[i], eo_flank_side_name[!side]);
   }
 }
 
