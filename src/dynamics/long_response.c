@@ -208,14 +208,11 @@ static void place_meshes(struct response *response, const double x[2], const dou
    where the meshes are there, which they hardly change. */
 static void take_step(struct response *response, int i)
 {
-  enum { CORRECTIONS = 2 };
   double next[2] = {2 * response->force[0] - response->before[0], 2 * response->force[1] - response->before[1]},
          x[2] = {0}, v[2] = {0};
   eo_long_motion_go(&response->motion, response->before, response->force, x, v);
-  for (int correction = 0; correction < CORRECTIONS; correction++) {
-    place_meshes(response, x, v, next);
-    find_pushes(response, i, next);
-  }
+  place_meshes(response, x, v, next);
+  find_pushes(response, i, next);
   place_meshes(response, x, v, next);
   memcpy(response->before, response->force, sizeof response->before);
   find_pushes(response, i, response->force);
