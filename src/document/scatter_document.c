@@ -10,6 +10,7 @@
 #include "document/scatter_distance.h"
 #include "document/scatter_distribution.h"
 #include "document/scatter_teeth.h"
+#include "gear/names.h"
 #include "rating/flank_tolerance.h"
 
 /* Where an evaluation reads its numbers; other blocks belong to the prepared pair, the rating or the search. */
@@ -278,7 +279,6 @@ static enum eo_code add_ground(struct eo_scatter *scatter, const struct eo_desig
 static enum eo_code add_flank(struct eo_scatter *scatter, const struct eo_design *design,
                               const struct eo_flank_tolerance *tolerance, int member, int end, struct eo_error *error)
 {
-  static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   const struct {
     const char *key;
     double limit;
@@ -287,7 +287,7 @@ static enum eo_code add_flank(struct eo_scatter *scatter, const struct eo_design
              {"helix_slope_um", tolerance->helix_slope},
              {"lead_crowning_um", tolerance->helix_form}};
   char flank[64], key[EO_SCATTER_KEY];
-  snprintf(flank, sizeof flank, "modification.%s.%s", member_name[member], end_name[end]);
+  snprintf(flank, sizeof flank, "modification.%s.%s", eo_member_name[member], eo_end_name[end]);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     snprintf(key, sizeof key, "%s.%s", flank, all[i].key);
     EO_TRY(add_normal(scatter, design, key, 1e6 * all[i].limit, error));

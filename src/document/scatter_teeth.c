@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "document/pitch_document.h"
-
-static const char *const member_name[2] = {"pinion", "gear"};
+#include "gear/names.h"
 
 static size_t place_of(int member, size_t offset)
 {
@@ -17,12 +16,12 @@ bool eo_scatter_find_tooth_number(const char *name, int member, struct eo_tooth_
 {
   size_t length = strcspn(name, "."), offset;
   bool meant = strncmp(name, "*.", 2) == 0 ||
-               (strlen(member_name[member]) == length && strncmp(name, member_name[member], length) == 0);
+               (strlen(eo_member_name[member]) == length && strncmp(name, eo_member_name[member], length) == 0);
   const struct eo_field *field = meant && name[length] ? eo_pitch_member_number(name + length + 1, &offset) : NULL;
   if (!field)
     return false;
   *number = (struct eo_tooth_number){.field = field, .offset = place_of(member, offset)};
-  snprintf(number->key, sizeof number->key, "pitch.%s.%s", member_name[member], field->key);
+  snprintf(number->key, sizeof number->key, "pitch.%s.%s", eo_member_name[member], field->key);
   return true;
 }
 
@@ -40,7 +39,7 @@ enum eo_code eo_scatter_add_seeds(struct eo_scatter *scatter, struct eo_error *e
                                        .unit = 1,
                                        .most = DIFFERENT - 1,
                                        .deviation = {.kind = EO_DISTRIBUTION_UNIFORM, .high = DIFFERENT}};
-    snprintf(input->key, sizeof input->key, "pitch.%s.seed", member_name[member]);
+    snprintf(input->key, sizeof input->key, "pitch.%s.seed", eo_member_name[member]);
   }
   return EO_OK;
 }

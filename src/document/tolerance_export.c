@@ -5,6 +5,7 @@
 
 #include "document/flank_chart.h"
 #include "document/tolerance_export.h"
+#include "gear/names.h"
 
 /* A quantity by its symbols in both editions. */
 struct quantity {
@@ -33,7 +34,6 @@ static void list_quantities(const struct eo_flank_tolerance *tolerance, struct q
 
 void eo_tolerances_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
-  static const char *const members[2] = {"pinion", "gear"};
   const struct eo_rating_settings *settings = &design->rating;
   bool new = settings->edition == EO_ISO6336_2019;
   eo_text_add(text, "member,standard,grade,quantity,symbol,tolerance_um,note\r\n");
@@ -44,7 +44,7 @@ void eo_tolerances_csv(const struct eo_design *design, const struct eo_geometry 
     eo_flank_tolerance_of(design, geometry, member, &tolerance, note, sizeof note);
     list_quantities(&tolerance, list);
     for (int i = 0; i < QUANTITIES; i++) {
-      eo_text_print(text, "%s,ISO 1328-1:%s,%d,\"%s\",%s,", members[member], new ? "2013" : "1995",
+      eo_text_print(text, "%s,ISO 1328-1:%s,%d,\"%s\",%s,", eo_member_name[member], new ? "2013" : "1995",
                     settings->accuracy_grade, list[i].name, new ? list[i].symbol_2013 : list[i].symbol_1995);
       if (isfinite(list[i].value))
         eo_text_print(text, "%.10g,\r\n", 1e6 * list[i].value);

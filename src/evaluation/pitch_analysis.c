@@ -9,6 +9,7 @@
 #include "contact/tooth_courses.h"
 #include "dynamics/long_sketch.h"
 #include "evaluation/evaluator_private.h"
+#include "gear/names.h"
 #include "numerics/fft.h"
 #include "numerics/periodic.h"
 
@@ -304,13 +305,12 @@ static void add_order(struct eo_pitch_case *own, double order, const char *name)
 /* Orders of the shafts and of the mesh with its sidebands, by name. */
 static void list_orders(struct eo_pitch_case *own)
 {
-  static const char *const name[2] = {"pinion", "gear"};
   const int *z = own->hunting.teeth;
   char text[32];
   own->orders = 0;
   for (int i = 0; i < 2 * EO_PITCH_SHAFT_ORDERS; i++) {
     int member = i / EO_PITCH_SHAFT_ORDERS, j = i % EO_PITCH_SHAFT_ORDERS + 1;
-    snprintf(text, sizeof text, "%s %d", name[member], j);
+    snprintf(text, sizeof text, "%s %d", eo_member_name[member], j);
     add_order(own, (double)j * z[EO_PINION] / z[member], text);
   }
   for (int h = 1; h <= EO_PITCH_MESH_ORDERS; h++) {
@@ -319,7 +319,7 @@ static void list_orders(struct eo_pitch_case *own)
     for (int i = 0; i < 4 * EO_PITCH_SIDEBANDS && h <= EO_PITCH_SIDED; i++) {
       int member = i / (2 * EO_PITCH_SIDEBANDS), j = i % EO_PITCH_SIDEBANDS + 1,
           side = i / EO_PITCH_SIDEBANDS % 2 ? 1 : -1;
-      snprintf(text, sizeof text, "mesh %d %c %s %d", h, side < 0 ? '-' : '+', name[member], j);
+      snprintf(text, sizeof text, "mesh %d %c %s %d", h, side < 0 ? '-' : '+', eo_member_name[member], j);
       add_order(own, (double)h * z[EO_PINION] + side * (double)j * z[EO_PINION] / z[member], text);
     }
   }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "gear/gear_pair.h"
+#include "gear/names.h"
 #include "recording/recorded_unit.h"
 
 enum { BLOCK = 4096, SLICES = 50 };
@@ -16,8 +17,6 @@ static const double FAR = 30; /* times the speeds of the load cases: between the
                                  another one (57, 60, 1000) */
 static const double SAME_INTERVAL = 1e-6;
 static const double RPM = 30 / M_PI;
-
-static const char *const member_name[2] = {"pinion", "gear"};
 
 struct sums {
   double sum[SLICES];
@@ -177,13 +176,13 @@ static void judge_torque(struct eo_load *load, const struct eo_load_known *known
     return;
   double spread = (load_column->high - load_column->low) / load_column->mean;
   eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_NOTE, from, load->pinion_torque,
-                  "The torque column of the %s has a mean of %.5g N m over what is measured%s.", member_name[from],
+                  "The torque column of the %s has a mean of %.5g N m over what is measured%s.", eo_member_name[from],
                   load_column->mean,
                   from == EO_GEAR ? "; over the ratio of the teeth, without losses, it stands for the pinion's" : "");
   if (spread > STEADY_TORQUE)
     eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_WARNING, from, spread,
                     "The torque of the %s is not steady: %.5g to %.5g N m; the vibration belongs to no single load.",
-                    member_name[from], load_column->low, load_column->high);
+                    eo_member_name[from], load_column->low, load_column->high);
   if (!isnan(own) && !isnan(other) && fabs(other / own - 1) > SAME_RATIO)
     eo_findings_add(findings, EO_FINDING_TORQUE, EO_SEVERITY_WARNING, -1, other / own,
                     "The torque columns contradict each other: %.5g N m at the pinion, %.5g N m at the gear, which "
@@ -221,7 +220,7 @@ static void settle_unit(struct eo_load *load, const struct eo_load_known *known,
       column->high *= units[i].rpm;
       eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_NOTE, member, column->mean,
                       "The speed column of the %s states no unit; in %s it is that of the encoder.",
-                      member_name[member], units[i].name);
+                      eo_member_name[member], units[i].name);
     }
 }
 
@@ -256,7 +255,7 @@ static bool judge_column(struct eo_load *load, const struct eo_load_known *known
                       off > OTHER_SPEED && !backed ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING, member, RPM * speed,
                       "The speed column of the %s says %.6g rpm of the pinion, its encoder %.6g rpm: which of them is "
                       "right, or is the unit of the time or the lines per turn another one? State the speed.",
-                      member_name[member], RPM * speed, RPM * known->measured);
+                      eo_member_name[member], RPM * speed, RPM * known->measured);
   }
   return agrees;
 }

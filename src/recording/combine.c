@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two recordings of one run are put side by side, each column with the clock of its file. */
 #include "recording/layout_private.h"
+#include "gear/names.h"
 #include "recording/tables.h"
 
 #include <stdio.h>
@@ -78,13 +79,12 @@ enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct e
                                const struct eo_layout_choice *choice, const char *spool_directory,
                                struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error)
 {
-  static const char *const member_names[2] = {"pinion", "gear"};
   struct pair pair = {.side = {pinion, gear}};
   for (int s = 0; s < 2; s++) {
     const char *chosen = !choice ? NULL : s && choice->gear_time ? choice->gear_time : choice->time;
     EO_TRY(find_time(pair.side[s], choice, chosen, &pair.time[s], error));
   }
-  EO_TRY(eo_tables_beside(pair.side, member_names, pair.time, 2, spool_directory, combined, error));
+  EO_TRY(eo_tables_beside(pair.side, eo_member_name, pair.time, 2, spool_directory, combined, error));
   name_pulses(&pair, *combined);
   if (!is_pulses(&pair))
     note_clocks(&pair, notes);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/layout_private.h"
+
+#include "gear/names.h"
 #include "recording/lost.h"
 
 #include <math.h>
@@ -21,11 +23,6 @@
   "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|" \
   "trigger|index|sample|count_no|status|couple|coppia|vitesse|velocidad|velocita"
 #define INCREMENT_WORDS "increment|increments|inkrement|inkremente|delta|diff|difference|differenz|dcount|dcounts"
-
-const char *eo_layout_member(int member)
-{
-  return member ? "gear" : "pinion";
-}
 
 const char *eo_layout_label(const struct eo_guess *guess, int column, char *text, size_t size)
 {
@@ -263,7 +260,7 @@ static void note_angle(const struct eo_guess *guess, int member)
     snprintf(turns, sizeof turns, "starting again after %.6g",
              eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
   eo_notes_add(guess->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
-               eo_layout_label(guess, channel->column[0], text, sizeof text), eo_layout_member(member),
+               eo_layout_label(guess, channel->column[0], text, sizeof text), eo_member_name[member],
                eo_layout_scale_name(channel->scale), channel->scale, turns);
 }
 
@@ -277,10 +274,10 @@ static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_e
   channel->factor = 1;
   if (!(channel->lines > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "Give the %s per turn of the %s's encoder.",
-                        guess->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", eo_layout_member(member));
+                        guess->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", eo_member_name[member]);
   if (guess->kind == EO_LAYOUT_PULSES) {
     eo_notes_add(guess->notes, "%s is taken as the times of the pulses of the %s.",
-                 eo_layout_label(guess, channel->column[0], text, sizeof text), eo_layout_member(member));
+                 eo_layout_label(guess, channel->column[0], text, sizeof text), eo_member_name[member]);
     return EO_OK;
   }
   if (look->quantity == EO_QUANTITY_VOLTAGE) {
@@ -292,7 +289,7 @@ static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_e
   }
   eo_notes_add(guess->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
                eo_layout_label(guess, channel->column[0], text, sizeof text),
-               eo_layout_label(guess, channel->column[1], second, sizeof second), eo_layout_member(member));
+               eo_layout_label(guess, channel->column[1], second, sizeof second), eo_member_name[member]);
   return EO_OK;
 }
 

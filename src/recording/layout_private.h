@@ -72,7 +72,6 @@ enum eo_code eo_layout_make_even(struct eo_guess *guess, struct eo_error *error)
 /* Fills scale and doubt of a member's channel of angles. Errors: the key that would settle it. */
 enum eo_code eo_layout_find_scale(struct eo_guess *guess, int member, struct eo_error *error);
 const char *eo_layout_scale_name(double scale); /* "degrees", ... */
-const char *eo_layout_member(int member);       /* "pinion", "gear" */
 /* Values per second of a column by its clock, without the resets, in the column's unit. */
 double eo_layout_rate(const struct eo_guess *guess, int column, const struct eo_layout_clock *clock);
 

@@ -3,6 +3,8 @@
  * speed. */
 #include "recording/layout_private.h"
 
+#include "gear/names.h"
+
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -131,7 +133,7 @@ enum eo_code eo_layout_find_scale(struct eo_guess *guess, int member, struct eo_
   char text[80];
   if (counts || look->whole)
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "%s counts; give the counts per turn of the %s's encoder.",
-                        eo_layout_label(guess, channel->column[0], text, sizeof text), eo_layout_member(member));
+                        eo_layout_label(guess, channel->column[0], text, sizeof text), eo_member_name[member]);
   channel->scale = scale_by_speed(guess, member);
   channel->doubt = EO_DOUBT_UNIT;
   eo_notes_add(guess->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
