@@ -11,4 +11,5 @@
    than angles hold: a refusing finding. Errors: memory, of reading, cancelled. */
 enum eo_code eo_leaps_cut(struct eo_angles *angles, const struct eo_transmission_settings *settings,
                           struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error);
+
 #endif

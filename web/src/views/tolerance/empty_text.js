@@ -4,7 +4,8 @@
 /** @param {Api.Design['tolerance']} block what scatters @param {number} asked pairs on their way */
 export function emptyText(block, asked) {
   if (asked > 0) return 'The first pairs are on their way.';
-  const chosen = (block?.preset ?? 'as_stated') !== 'as_stated' || (block?.inputs ?? []).length > 0 || block?.centre_distance;
+  const preset = (block?.preset ?? 'as_stated') !== 'as_stated';
+  const chosen = preset || (block?.inputs ?? []).length > 0 || block?.centre_distance;
   if (chosen) return 'Nothing has been drawn yet. How the gears are made stands on the left: draw the pairs.';
   const others =
     'a preset from ISO 1328-1 is enough; inputs of your own stand in the block "tolerance" of the design document.';
