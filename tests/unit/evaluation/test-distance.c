@@ -30,7 +30,7 @@ static struct eo_pair *prepare(struct eo_design *design)
 {
   struct eo_geometry geometry;
   struct eo_error error;
-  struct eo_pair *pair;
+  struct eo_pair *pair = NULL;
   const struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &form}};
   if (eo_design_complete(design, &geometry, &error) || eo_pair_new(&pair, design, &options, NULL, &error))
     stop(&error);
@@ -127,7 +127,7 @@ static void test_gap(void)
 static struct eo_evaluation *run(const struct eo_pair *pair, const struct eo_design *design,
                                  struct eo_evaluator **evaluator)
 {
-  const struct eo_evaluation *evaluation;
+  const struct eo_evaluation *evaluation = NULL;
   struct eo_error error;
   if (eo_evaluator_new(evaluator, pair, design->load_cases, &error) ||
       eo_evaluator_run(*evaluator, design, NULL, 0, &evaluation, &error))
